@@ -1,0 +1,217 @@
+"""Field types shared by studies and lubricant records, and how their errors are told.
+
+Both are YAML files turned into frozen pydantic models. Here is what the two have in
+common: a strict base model, fields that hold SI numbers but are written with units, a YAML
+reader that refuses repeated keys, and the one line that reports a refused value.
+"""
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import yaml
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, WithJsonSchema
+
+from lube.errors import LubeError
+from lube.units import parse_number, parse_quantity
+
+
+class StrictModel(BaseModel):
+    """Frozen model that refuses unknown keys."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def _as_value_error(parse):
+    """Let pydantic collect a LubeError as one of its own."""
+
+    def validate(value):
+        try:
+            return parse(value)
+        except LubeError as error:
+            raise ValueError(str(error)) from None
+
+    return validate
+
+
+def bounded(number, above=-math.inf, below=math.inf, least=-math.inf, most=math.inf):
+    """Return the number if it lies within its limits, else raise LubeError.
+
+    Parameters
+    ----------
+    number : float
+        The value.
+    above, below : float, optional
+        Limits that it may not touch.
+    least, most : float, optional
+        Limits that it may touch.
+
+    Returns
+    -------
+    float
+        `number`.
+
+    Raises
+    ------
+    LubeError
+        If it lies outside.
+    """
+    limits = {"above": above, "below": below, "at least": least, "at most": most}
+    if not (above < number < below and least <= number <= most):
+        needed = [f"{word} {limit:g}" for word, limit in limits.items() if math.isfinite(limit)]
+        raise LubeError(f"got {number:g}, need a value {' and '.join(needed)}")
+    return number
+
+
+def quantity(units, **limits):
+    """Field type for a number written with its unit and kept in `units`.
+
+    Parameters
+    ----------
+    units : str
+        Unit of the kept number.
+    **limits
+        As in `bounded`, in `units`.
+
+    Returns
+    -------
+    type
+        An annotated float.
+    """
+
+    def parse(value):
+        return bounded(parse_quantity(value, units), **limits)
+
+    schema = {"type": "string", "description": f"number with a unit of the kind {units}"}
+    return Annotated[float, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]
+
+
+def pure_number(**limits):
+    """Field type for a number without dimension; fractions such as ``600/7`` are exact.
+
+    Parameters
+    ----------
+    **limits
+        As in `bounded`.
+
+    Returns
+    -------
+    type
+        An annotated float.
+    """
+
+    def parse(value):
+        return bounded(parse_number(value), **limits)
+
+    return Annotated[
+        float, BeforeValidator(_as_value_error(parse)), WithJsonSchema({"type": "number"})
+    ]
+
+
+Length = quantity("m", above=0.0)
+Pressure = quantity("Pa", above=0.0)
+Force = quantity("N", above=0.0)
+Speed = quantity("rpm", above=0.0)
+Temperature = quantity("degC", above=-273.15)
+Resistivity = quantity("ohm*m", above=0.0)
+
+
+class _UniqueKeyLoader(yaml.SafeLoader):
+    """Safe YAML, without its habit of letting the last of two equal keys win."""
+
+    def construct_mapping(self, node, deep=False):
+        seen = set()
+        for key_node, _ in node.value:
+            key = self.construct_object(key_node, deep=True)
+            if isinstance(key, (list, dict)):
+                raise LubeError(f"line {key_node.start_mark.line + 1}: a key must be a word")
+            if key in seen:
+                raise LubeError(f"line {key_node.start_mark.line + 1}: key {key!r} is repeated")
+            seen.add(key)
+        return super().construct_mapping(node, deep)
+
+
+def read_yaml(path, error_type):
+    """Read a YAML file that must hold one mapping.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to read.
+    error_type : type
+        The child of LubeError to raise.
+
+    Returns
+    -------
+    dict
+        The mapping, values as YAML gives them.
+
+    Raises
+    ------
+    LubeError
+        Of `error_type`, if the file cannot be read, is not YAML, repeats a key or holds
+        anything but a mapping.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+        content = yaml.load(text, Loader=_UniqueKeyLoader)
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise error_type(f"{path}: cannot be read: {reason}") from None
+    except LubeError as error:
+        raise error_type(f"{path}: {error}") from None
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        mark = getattr(error, "problem_mark", None)
+        line = f" at line {mark.line + 1}" if mark else ""
+        raise error_type(f"{path}: not valid YAML{line}") from None
+    if not isinstance(content, dict):
+        raise error_type(f"{path}: need a mapping of keys to values, got {type(content).__name__}")
+    return content
+
+
+def validate(model, content, where, error_type):
+    """Build a model from a mapping, telling the first mistake in one line.
+
+    Parameters
+    ----------
+    model : type
+        A `StrictModel`.
+    content : dict
+        Its raw values.
+    where : str or Path
+        File the values came from, for the message.
+    error_type : type
+        The child of LubeError to raise.
+
+    Returns
+    -------
+    StrictModel
+        The checked, frozen model.
+
+    Raises
+    ------
+    LubeError
+        Of `error_type`: which key, what came, what is needed.
+    """
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        mistakes = error.errors(include_url=False)
+        more = f" (and {len(mistakes) - 1} more)" if len(mistakes) > 1 else ""
+        raise error_type(f"{where}: {_tell(mistakes[0])}{more}") from None
+
+
+def _tell(mistake):
+    key = ".".join(str(part) for part in mistake["loc"]) or "file"
+    came = repr(mistake.get("input"))
+    came = came if len(came) <= 60 else came[:57] + "..."
+    match mistake["type"]:
+        case "extra_forbidden":
+            return f"{key}: unknown key"
+        case "missing":
+            return f"{key}: missing, and it has no default"
+        case "value_error":
+            return f"{key}: {mistake['ctx']['error']}".replace("file: ", "")
+        case _:
+            needed = mistake["msg"].replace("Input should be", "need")
+            return f"{key}: got {came}, {needed}"

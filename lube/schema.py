@@ -1,0 +1,303 @@
+"""What every file of a study contains: names, dimensions, units and meaning.
+
+Stages return unlabelled arithmetic wrapped in xarray; `label` writes the attributes last,
+because arithmetic on labelled arrays keeps the wrong ones, and `check` refuses a dataset
+that is not what its name promises, before it is saved and after it is read.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from lube.errors import DataError
+
+OPERATING_DIMS = ("lubricant", "film_formula", "temperature", "speed", "force")
+CONTACT_DIMS = ("slide_to_roll_ratio", *OPERATING_DIMS)
+LINE_DIMS = ("realisation", "roller")
+
+REGIMES = (
+    "isoviscous_rigid",
+    "piezoviscous_rigid",
+    "isoviscous_elastic",
+    "piezoviscous_elastic",
+)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable or coordinate of a file.
+
+    Attributes
+    ----------
+    dims : tuple of str
+        Its dimensions, in order.
+    units : str or None
+        Unit in UDUNITS notation, ``"1"`` for a pure number, None for text.
+    long_name : str
+        What it is, in words fit for an axis.
+    kind : str
+        Allowed NumPy kinds: ``f`` float64, ``i`` integer, ``b`` true/false (stored as int8),
+        ``U`` text.
+    required : bool
+        Whether a file without it is refused.
+    attributes : dict
+        Further CF attributes.
+    """
+
+    dims: tuple
+    units: str | None
+    long_name: str
+    kind: str = "f"
+    required: bool = True
+    attributes: dict = field(default_factory=dict)
+
+
+def _number(dims, units, long_name, **more):
+    return Variable(tuple(dims), units, long_name, **more)
+
+
+def _text(dims, long_name, **more):
+    return Variable(tuple(dims), None, long_name, kind="U", **more)
+
+
+COORDINATES = {
+    "lubricant": _text(["lubricant"], "lubricant record"),
+    "film_formula": _text(["film_formula"], "film thickness formula"),
+    "viscosity_law": _text(["viscosity_law"], "viscosity-temperature law"),
+    "temperature": _number(["temperature"], "degC", "temperature of rollers and oil"),
+    "speed": _number(["speed"], "rpm", "rotation speed"),
+    "force": _number(["force"], "N", "normal force"),
+    "slide_to_roll_ratio": _number(["slide_to_roll_ratio"], "1", "slide-to-roll ratio"),
+    "realisation": _number(["realisation"], "1", "realisation of the roughness", kind="i"),
+    "roller": _number(["roller"], "1", "roller", kind="i"),
+    "position": _number(["position"], "m", "position along the circumference"),
+    "time": _number(["time"], "s", "time"),
+    "fit_temperature": _number(["fit_temperature"], "degC", "temperature"),
+}
+
+_LUBRICANT = {
+    "kinematic_viscosity": _number(["lubricant", "temperature"], "m2 s-1", "kinematic viscosity"),
+    "density": _number(["lubricant", "temperature"], "kg m-3", "density"),
+    "dynamic_viscosity": _number(["lubricant", "temperature"], "Pa s", "dynamic viscosity"),
+    "pressure_viscosity_coefficient": _number(
+        ["lubricant", "temperature"], "Pa-1", "pressure-viscosity coefficient"
+    ),
+    "pressure_viscosity_definition": _text(
+        ["lubricant"], "definition of the pressure-viscosity coefficient"
+    ),
+    "viscosity_law_used": _text(["lubricant"], "law that gives the kinematic viscosity"),
+    "viscosity_index": _number(["lubricant"], "1", "viscosity index (ASTM D2270)"),
+    "thermal_conductivity": _number(["lubricant"], "W m-1 K-1", "thermal conductivity"),
+    "temperature_viscosity_coefficient": _number(
+        ["lubricant", "temperature"], "K-1", "relative fall of dynamic viscosity with temperature"
+    ),
+    "fit_parameter": _number(
+        ["lubricant", "viscosity_law", "parameter"],
+        "1",
+        "parameter of the viscosity-temperature law",
+        attributes={"comment": "viscosity in mm2/s and temperature in K within the law"},
+    ),
+    "fitted_kinematic_viscosity": _number(
+        ["lubricant", "viscosity_law", "fit_temperature"], "m2 s-1", "fitted kinematic viscosity"
+    ),
+    "data_temperature": _number(["lubricant", "data_point"], "degC", "temperature of the datum"),
+    "data_kinematic_viscosity": _number(
+        ["lubricant", "data_point"], "m2 s-1", "kinematic viscosity of the datum"
+    ),
+    "fit_residual": _number(
+        ["lubricant", "viscosity_law", "data_point"],
+        "1",
+        "relative residual, fit over datum less one",
+    ),
+}
+
+_FILM = {
+    "film_thickness": _number(OPERATING_DIMS, "m", "film thickness"),
+    "lambda_ratio": _number(OPERATING_DIMS, "1", "lambda ratio"),
+    "contact_half_width": _number(["force"], "m", "contact half-width"),
+    "hertz_pressure": _number(["force"], "Pa", "maximum Hertzian pressure"),
+    "entrainment_speed": _number(["speed"], "m s-1", "entrainment speed"),
+    "moes_load": _number(["lubricant", "temperature", "speed", "force"], "1", "Moes load number M"),
+    "moes_material": _number(["lubricant", "temperature", "speed"], "1", "Moes material number L"),
+    "regime": _number(
+        ["lubricant", "temperature", "speed", "force"],
+        None,
+        "regime of lubrication",
+        kind="i",
+        attributes={
+            "flag_values": np.arange(len(REGIMES), dtype="int8"),
+            "flag_meanings": " ".join(REGIMES),
+        },
+    ),
+    "in_validity_range": _number(
+        OPERATING_DIMS,
+        None,
+        "whether the film formula is within its range of validity",
+        kind="b",
+        attributes={
+            "flag_values": np.array([0, 1], dtype="int8"),
+            "flag_meanings": "outside inside",
+        },
+    ),
+    "inlet_shear_heating_factor": _number(
+        ["lubricant", "temperature", "speed"],
+        "1",
+        "film reduction by inlet shear heating, not applied",
+    ),
+    "formula_place": _text(["film_formula"], "where in the contact the formula gives the film"),
+    "formula_source": _text(["film_formula"], "source of the film thickness formula"),
+}
+
+_ROUGHNESS = {
+    "height": _number([*LINE_DIMS, "position"], "m", "height of the line towards the other roller"),
+    "seed": _number(["realisation"], "1", "study seed the realisation was drawn with", kind="i"),
+    "rms_height": _number(LINE_DIMS, "m", "realised rms height"),
+    "rms_slope": _number(LINE_DIMS, "1", "realised rms slope"),
+    "rms_curvature": _number(LINE_DIMS, "m-1", "realised rms curvature"),
+    "skewness": _number(LINE_DIMS, "1", "realised skewness of heights"),
+    "kurtosis": _number(LINE_DIMS, "1", "realised kurtosis of heights"),
+    "spectrum_rms_height": _number(["roller"], "m", "rms height of the spectrum"),
+    "spectrum_rms_slope": _number(["roller"], "1", "rms slope of the spectrum"),
+    "spectrum_rms_curvature": _number(["roller"], "m-1", "rms curvature of the spectrum"),
+}
+
+
+def _mean_over_time(dims, units, long_name):
+    return _number(dims, units, long_name, attributes={"cell_methods": "time: mean"})
+
+
+_RUN_DIMS = ("realisation", *CONTACT_DIMS)
+_PROBABILITIES = {
+    "breakthrough_probability": "probability of boundary layer breakthrough",
+    "geometric_contact_probability": "probability of geometric contact",
+}
+
+_CONTACT_RUN = {
+    **{
+        name: _mean_over_time(_RUN_DIMS, "1", long_name)
+        for name, long_name in _PROBABILITIES.items()
+    },
+    "mean_contact_length": _mean_over_time(_RUN_DIMS, "m", "mean contact length"),
+    "mean_contact_force": _mean_over_time(_RUN_DIMS, "N", "mean contact force"),
+}
+
+_ENSEMBLE = {
+    f"{name}_{suffix}": _number(CONTACT_DIMS, "1", long_name + meaning)
+    for name, long_name in _PROBABILITIES.items()
+    for suffix, meaning in (
+        ("mean", ", mean over realisations"),
+        ("lower", ", lower limit of the 95 % interval"),
+        ("upper", ", upper limit of the 95 % interval"),
+    )
+}
+
+_TRACE = {
+    "contact_length": _number(["operating_point", "time"], "m", "contact length"),
+    "contact_resistance": _number(["operating_point", "time"], "ohm", "contact resistance"),
+    **{
+        name: Variable(
+            ("operating_point",),
+            COORDINATES[name].units,
+            COORDINATES[name].long_name,
+            kind=COORDINATES[name].kind,
+        )
+        for name in CONTACT_DIMS
+    },
+    "film_thickness": _number(["operating_point"], "m", "film thickness"),
+    "contact_half_width": _number(["operating_point"], "m", "contact half-width"),
+}
+
+FILES = {
+    "lubricant": _LUBRICANT,
+    "film": _FILM,
+    "roughness": _ROUGHNESS,
+    "contact_batch": _CONTACT_RUN,
+    "contact": {**_CONTACT_RUN, **_ENSEMBLE},
+    "trace": _TRACE,
+}
+"""Variables of each kind of file, by the kind's name."""
+
+
+def _expected(kind, name):
+    return FILES[kind].get(name) or COORDINATES.get(name)
+
+
+def label(dataset, kind):
+    """Write units, long names and flags on a dataset, replacing what arithmetic left there.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Result of a stage.
+    kind : str
+        A key of `FILES`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same data with the attributes of the schema.
+
+    Raises
+    ------
+    DataError
+        If the dataset does not fit the schema.
+    """
+    labelled = dataset.copy()
+    for name in labelled.variables:
+        expected = _expected(kind, name)
+        if expected is None:
+            continue
+        attributes = {"long_name": expected.long_name, **expected.attributes}
+        if expected.units is not None:
+            attributes["units"] = expected.units
+        labelled[name].attrs = attributes
+    return check(labelled, kind)
+
+
+def check(dataset, kind, where="dataset"):
+    """Refuse a dataset whose variables, dimensions, types or units are not the schema's.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Dataset to check.
+    kind : str
+        A key of `FILES`.
+    where : str, optional
+        What to call the dataset in an error, for instance its path.
+
+    Returns
+    -------
+    xarray.Dataset
+        `dataset` itself.
+
+    Raises
+    ------
+    DataError
+        At the first departure, naming the variable, what it is and what it should be.
+    """
+    for name, expected in FILES[kind].items():
+        if name not in dataset.variables:
+            if expected.required:
+                raise DataError(f"{where}: not a {kind} file: variable {name!r} is missing")
+            continue
+        _check_variable(dataset[name], name, expected, where)
+    for name in dataset.dims:
+        if name in COORDINATES:
+            if name not in dataset.coords:
+                raise DataError(f"{where}: coordinate {name!r} is missing")
+            _check_variable(dataset[name], name, COORDINATES[name], where)
+    return dataset
+
+
+def _check_variable(array, name, expected, where):
+    if array.dims != expected.dims:
+        raise DataError(f"{where}: {name!r} has dimensions {array.dims}, need {expected.dims}")
+    kind = {"O": "U", "T": "U", "u": "i"}.get(array.dtype.kind, array.dtype.kind)
+    wanted = "i" if expected.kind == "b" and kind == "i" else expected.kind
+    if kind != wanted:
+        raise DataError(f"{where}: {name!r} holds {array.dtype}, need kind {expected.kind!r}")
+    if array.attrs.get("units") != expected.units:
+        raise DataError(
+            f"{where}: {name!r} is in {array.attrs.get('units')!r}, need {expected.units!r}"
+        )

@@ -1,0 +1,123 @@
+"""Numbers with units, as people write them: ``50 mm``, ``335 mm^2/s``, ``40 degC``.
+
+The YAML files of a study may not contain a dimensional number without its unit.
+This module turns such a text into a float in the unit that the study computes in,
+and says in one line what is wrong when it cannot.
+"""
+
+import functools
+import math
+import re
+
+from lube.errors import LubeError
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_FRACTION = re.compile(rf"({_NUMBER})\s*/\s*(\d+)")
+_QUANTITY = re.compile(rf"\s*({_NUMBER}(?:\s*/\s*\d+)?)\s*(\S.*?)?\s*", re.DOTALL)
+
+# Units are products and quotients of names with one-digit exponents. Pint would read far
+# more, arithmetic that never ends included; a file from elsewhere must not reach that.
+_FACTOR = r"[A-Za-zµμΩ°%]+(?:(?:\^|\*\*)?[+-]?\d|[²³])?"
+_UNITS = re.compile(rf"(?:1|{_FACTOR})(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
+
+
+@functools.cache
+def _registry():
+    import pint  # imported on first use: it costs more than the rest of the package
+
+    return pint.UnitRegistry()
+
+
+def parse_number(value):
+    """Turn a bare number, or an exact fraction such as ``600/7``, into a float.
+
+    Parameters
+    ----------
+    value : int, float or str
+        The number as the YAML reader gave it.
+
+    Returns
+    -------
+    float
+        The finite number.
+
+    Raises
+    ------
+    LubeError
+        If `value` is not a number or not finite.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise LubeError(f"got {value!r}, need a number")
+    try:
+        fraction = _FRACTION.fullmatch(value.strip()) if isinstance(value, str) else None
+        number = float(fraction[1]) / float(fraction[2]) if fraction else float(value)
+    except (ValueError, ZeroDivisionError, OverflowError):
+        raise LubeError(f"got {value!r}, need a number") from None
+    if not math.isfinite(number):
+        raise LubeError(f"got {value!r}, need a finite number")
+    return number
+
+
+def convert(number, units, target):
+    """Convert a number, or an array, between two units of the same dimension.
+
+    Parameters
+    ----------
+    number : float or numpy.ndarray
+        The value in `units`.
+    units, target : str
+        Units that pint understands, such as ``mm^2/s`` and ``m^2/s``.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        The value in `target`.
+
+    Raises
+    ------
+    LubeError
+        If a unit is unknown or the dimensions differ.
+    """
+    if units == target:
+        return number
+    if len(units) > 40 or not _UNITS.fullmatch(units):
+        raise LubeError(f"{units[:40]!r} is no unit, need one of the kind {target!r}")
+    registry = _registry()
+    try:
+        return registry.Quantity(number, units).to(target).magnitude
+    except Exception as error:  # pint's parser raises many kinds, all meaning one thing
+        kind = type(error).__name__
+        reason = "unknown unit" if "Undefined" in kind else "wrong dimension or unit"
+        raise LubeError(f"{reason} {units!r}, need a unit of the kind {target!r}") from None
+
+
+def parse_quantity(value, target):
+    """Turn ``'50 mm'`` into a float in the target unit.
+
+    Parameters
+    ----------
+    value : str
+        A number and its unit.
+    target : str
+        The unit of the returned number, such as ``m``.
+
+    Returns
+    -------
+    float
+        The finite value in `target`.
+
+    Raises
+    ------
+    LubeError
+        If the text has no number or no unit, or the unit's dimension is wrong.
+    """
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if match is None:
+        raise LubeError(f"got {value!r}, need a number with its unit, such as '1 {target}'")
+    number, units = match.groups()
+    if units is None:
+        raise LubeError(f"got {value!r} without a unit, need one such as '{number} {target}'")
+    converted = float(convert(parse_number(number), units, target))
+    if not math.isfinite(converted):
+        raise LubeError(f"got {value!r}, need a finite number")
+    return converted
