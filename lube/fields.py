@@ -6,6 +6,8 @@ reader that refuses repeated keys, and the one line that reports a refused value
 """
 
 import math
+from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated
 
@@ -13,7 +15,7 @@ import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, WithJsonSchema
 
 from lube.errors import LubeError
-from lube.units import parse_number, parse_quantity
+from lube.units import convert, parse_number, parse_quantity
 
 
 class StrictModel(BaseModel):
@@ -108,10 +110,74 @@ def pure_number(**limits):
     ]
 
 
+def levels(units, **limits):
+    """Field type for the levels of an operating variable.
+
+    With a unit they are written ``{values: [40, 50], units: degC}``, without as a list.
+
+    Parameters
+    ----------
+    units : str or None
+        Unit of the kept numbers, None for pure numbers.
+    **limits
+        As in `bounded`, in `units`.
+
+    Returns
+    -------
+    type
+        An annotated tuple of floats: not empty, rising, each level once.
+    """
+
+    def parse(value):
+        numbers = [parse_number(one) for one in _level_list(value, units)]
+        if units is not None:
+            numbers = [float(convert(number, value["units"], units)) for number in numbers]
+        for number in numbers:
+            bounded(number, **limits)
+        for lower, upper in pairwise(numbers):
+            if upper <= lower:
+                raise LubeError(f"got {upper:g} after {lower:g}, need rising levels, each once")
+        return tuple(numbers)
+
+    shape = "list of numbers" if units is None else f"{{values: [...], units: {units}}}"
+    schema = {"type": "object" if units else "array", "description": shape}
+    return Annotated[
+        tuple[float, ...], BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)
+    ]
+
+
+def _level_list(value, units):
+    if units is None:
+        numbers, needed = value, "a list such as [0, 0.1]"
+    else:
+        needed = f"values and their unit, such as {{values: [1, 2], units: {units}}}"
+        if not isinstance(value, dict) or set(value) != {"values", "units"}:
+            raise LubeError(f"got {value!r}, need {needed}")
+        if not isinstance(value["units"], str):
+            raise LubeError(f"got units {value['units']!r}, need {needed}")
+        numbers = value["values"]
+    if not isinstance(numbers, list) or not numbers:
+        raise LubeError(f"got {value!r}, need {needed}")
+    return numbers
+
+
+@contextmanager
+def collected(key):
+    """Turn a LubeError about a key into an error that pydantic collects.
+
+    Parameters
+    ----------
+    key : str
+        The key of the model that the error is about.
+    """
+    try:
+        yield
+    except LubeError as error:
+        raise ValueError(f"{key}: {error}") from None
+
+
 Length = quantity("m", above=0.0)
 Pressure = quantity("Pa", above=0.0)
-Force = quantity("N", above=0.0)
-Speed = quantity("rpm", above=0.0)
 Temperature = quantity("degC", above=-273.15)
 Resistivity = quantity("ohm*m", above=0.0)
 

@@ -76,6 +76,7 @@ COORDINATES = {
 }
 
 _LUBRICANT = {
+    "lubricant_title": _text(["lubricant"], "lubricant"),
     "kinematic_viscosity": _number(["lubricant", "temperature"], "m2 s-1", "kinematic viscosity"),
     "density": _number(["lubricant", "temperature"], "kg m-3", "density"),
     "dynamic_viscosity": _number(["lubricant", "temperature"], "Pa s", "dynamic viscosity"),
@@ -87,15 +88,23 @@ _LUBRICANT = {
     ),
     "viscosity_law_used": _text(["lubricant"], "law that gives the kinematic viscosity"),
     "viscosity_index": _number(["lubricant"], "1", "viscosity index (ASTM D2270)"),
-    "thermal_conductivity": _number(["lubricant"], "W m-1 K-1", "thermal conductivity"),
+    "thermal_conductivity": _number(
+        ["lubricant", "temperature"], "W m-1 K-1", "thermal conductivity"
+    ),
     "temperature_viscosity_coefficient": _number(
         ["lubricant", "temperature"], "K-1", "relative fall of dynamic viscosity with temperature"
     ),
+    "law_source": _text(["viscosity_law"], "equation and source of the viscosity law"),
+    "parameter": _text(["parameter"], "parameter of the viscosity-temperature laws"),
+    "parameter_units": _text(["parameter"], "unit of the parameter"),
     "fit_parameter": _number(
         ["lubricant", "viscosity_law", "parameter"],
         "1",
         "parameter of the viscosity-temperature law",
-        attributes={"comment": "viscosity in mm2/s and temperature in K within the law"},
+        attributes={
+            "comment": "viscosity in mm2/s and temperature in K within the law; "
+            "the unit of each parameter is in parameter_units"
+        },
     ),
     "fitted_kinematic_viscosity": _number(
         ["lubricant", "viscosity_law", "fit_temperature"], "m2 s-1", "fitted kinematic viscosity"
@@ -161,6 +170,10 @@ _ROUGHNESS = {
     "spectrum_rms_curvature": _number(["roller"], "m-1", "rms curvature of the spectrum"),
 }
 
+_ROUGHNESS_BATCH = {
+    "height": _number([*LINE_DIMS, "position"], "m", "height of the line", kind="i"),
+}
+
 
 def _mean_over_time(dims, units, long_name):
     return _number(dims, units, long_name, attributes={"cell_methods": "time: mean"})
@@ -211,6 +224,7 @@ FILES = {
     "lubricant": _LUBRICANT,
     "film": _FILM,
     "roughness": _ROUGHNESS,
+    "roughness_batch": _ROUGHNESS_BATCH,
     "contact_batch": _CONTACT_RUN,
     "contact": {**_CONTACT_RUN, **_ENSEMBLE},
     "trace": _TRACE,
@@ -283,11 +297,17 @@ def check(dataset, kind, where="dataset"):
             continue
         _check_variable(dataset[name], name, expected, where)
     for name in dataset.dims:
-        if name in COORDINATES:
-            if name not in dataset.coords:
-                raise DataError(f"{where}: coordinate {name!r} is missing")
-            _check_variable(dataset[name], name, COORDINATES[name], where)
+        if name in COORDINATES and (name in dataset.coords or name != "position"):
+            _check_coordinate(dataset, name, where)
     return dataset
+
+
+def _check_coordinate(dataset, name, where):
+    if name not in dataset.coords:
+        raise DataError(f"{where}: coordinate {name!r} is missing")
+    _check_variable(dataset[name], name, COORDINATES[name], where)
+    if not dataset.indexes[name].is_unique:
+        raise DataError(f"{where}: coordinate {name!r} repeats a value")
 
 
 def _check_variable(array, name, expected, where):

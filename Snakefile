@@ -1,0 +1,19 @@
+# Mixed lubrication of rough rollers: the whole study. See README.md.
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/lubricant.smk"
+include: "workflow/rules/film.smk"
+include: "workflow/rules/roughness.smk"
+include: "workflow/rules/contact.smk"
+include: "workflow/rules/figure.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        [result(f"{kind}.nc") for kind in DATASETS],
+        [result(f"figures/{figure}.{suffix}") for figure in FIGURES for suffix in ("png", "pdf")],
+        [result(f"notebooks/{figure}.ipynb") for figure in FIGURES],
+    message:
+        "Done: datasets, figures and executed notebooks are in {RESULTS}"

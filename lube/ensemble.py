@@ -1,0 +1,186 @@
+"""From realisations to probabilities with honest intervals.
+
+The scatter between realisations says how many independent looks at the contact an ensemble
+is worth: were each look a coin that shows contact with probability p, the variance of the
+mean would be p (1 - p) / n. With this effective number n, Wilson's score interval stays
+within 0 and 1, is lopsided near either end as it should be, and becomes the usual
+mean +- t s / sqrt(R) in between.
+"""
+
+import numpy as np
+import scipy.stats
+import xarray as xr
+
+from lube.errors import DataError
+from lube.schema import label
+
+CONFIDENCE = 0.95
+PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
+
+
+def effective_looks(probabilities):
+    """Count the independent looks that the scatter between realisations amounts to.
+
+    Parameters
+    ----------
+    probabilities : numpy.ndarray
+        Shape (R, ...), one probability for each realisation.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (...): p (1 - p) / (s^2 / R), infinite where there is no scatter, NaN for a
+        single realisation.
+    """
+    mean = probabilities.mean(axis=0)
+    realisations = probabilities.shape[0]
+    if realisations == 1:
+        return np.full(mean.shape, np.nan)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return mean * (1.0 - mean) * realisations / probabilities.var(axis=0, ddof=1)
+
+
+def score_interval(mean, looks, quantile):
+    """Wilson's score interval of a probability.
+
+    Parameters
+    ----------
+    mean : numpy.ndarray
+        Estimated probability.
+    looks : numpy.ndarray
+        Number of independent looks behind it.
+    quantile : float
+        Two-sided quantile: 1.96 for 95 % and many realisations, Student's t for few.
+
+    Returns
+    -------
+    lower, upper : numpy.ndarray
+        Limits within 0 and 1 that enclose `mean`.
+
+    References
+    ----------
+    E. B. Wilson, Probable inference, the law of succession, and statistical inference,
+    J. Am. Stat. Assoc. 22 (1927) 209-212.
+    """
+    shrink = 1.0 + quantile**2 / looks
+    centre = (mean + quantile**2 / (2.0 * looks)) / shrink
+    half = (
+        quantile * np.sqrt(mean * (1.0 - mean) / looks + (quantile / (2.0 * looks)) ** 2) / shrink
+    )
+    return np.maximum(centre - half, 0.0), np.minimum(centre + half, 1.0)
+
+
+def probability_interval(probabilities, windows):
+    """Mean over realisations and its 95 % interval.
+
+    Where contact was seen never, or always, or the scatter is unknown because there is one
+    realisation only, `windows` stands in for the effective number of looks: so many windows
+    that share no roughness fit into one revolution. Never seen then means a one-sided upper
+    limit, 1 - 0.05^(1/n), the exact binomial one for n windows without contact.
+
+    Parameters
+    ----------
+    probabilities : numpy.ndarray
+        Shape (R, ...), one probability for each realisation.
+    windows : numpy.ndarray
+        Independent windows in one realisation, broadcastable to shape (...).
+
+    Returns
+    -------
+    mean, lower, upper : numpy.ndarray
+        Shape (...) each.
+    """
+    realisations = probabilities.shape[0]
+    mean = probabilities.mean(axis=0)
+    windows = np.broadcast_to(windows * realisations, mean.shape).astype(float)
+    looks = effective_looks(probabilities)
+    scattered = np.isfinite(looks) & (mean > 0.0) & (mean < 1.0)
+    looks = np.where(scattered, looks, windows)
+    degrees = max(realisations - 1, 1)
+    student = scipy.stats.t.ppf(0.5 + CONFIDENCE / 2.0, degrees)
+    normal = scipy.stats.norm.ppf(0.5 + CONFIDENCE / 2.0)
+    lower, upper = score_interval(mean, looks, np.where(scattered, student, normal))
+    bound = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
+    lower = np.select([mean == 0.0, mean == 1.0], [0.0, 1.0 - bound], lower)
+    upper = np.select([mean == 0.0, mean == 1.0], [bound, 1.0], upper)
+    return mean, lower, upper
+
+
+def independent_windows(contact, film):
+    """Windows that share no roughness, in one realisation, for each force.
+
+    Two windows see independent roughness where they are a longest wavelength apart.
+
+    Parameters
+    ----------
+    contact : xarray.Dataset
+        A ``contact_batch`` or ``contact`` dataset.
+    film : xarray.Dataset
+        The ``film`` dataset it was made with.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over force; at least one.
+    """
+    reach = 2.0 * film["contact_half_width"] + contact.attrs["longest_wavelength"]
+    return np.maximum(contact.attrs["travel"] / reach, 1.0)
+
+
+def gather(batches, film):
+    """Join batches of realisations and give every probability its interval.
+
+    Parameters
+    ----------
+    batches : list of xarray.Dataset
+        ``contact_batch`` datasets, together the realisations 0 .. R - 1.
+    film : xarray.Dataset
+        The ``film`` dataset they were made with.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``contact`` file of `lube.schema`.
+
+    Raises
+    ------
+    DataError
+        If a realisation is missing or comes twice, or the operating points differ.
+    """
+    try:
+        joined = xr.concat(batches, "realisation", join="exact", combine_attrs="identical")
+    except ValueError as error:
+        raise DataError(f"the batches belong to different studies: {error}") from None
+    joined = joined.sortby("realisation")
+    found = joined["realisation"].values
+    if not np.array_equal(found, np.arange(found.size)):
+        raise DataError(f"need realisations 0 to {found.size - 1}, each once, got {found.tolist()}")
+    return with_intervals(joined, film)
+
+
+def with_intervals(contact, film):
+    """Add mean, lower and upper limit of each probability, over the realisations present.
+
+    Parameters
+    ----------
+    contact : xarray.Dataset
+        A ``contact_batch`` dataset, or a selection of realisations from a ``contact`` one.
+    film : xarray.Dataset
+        The ``film`` dataset it was made with.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``contact`` file of `lube.schema`.
+    """
+    windows = independent_windows(contact, film)
+    contact = contact.copy()
+    for name in PROBABILITIES:
+        dims = contact[name].dims
+        limits = probability_interval(
+            contact[name].values,
+            windows.broadcast_like(contact[name][0]).transpose(*dims[1:]).values,
+        )
+        for suffix, values in zip(("mean", "lower", "upper"), limits, strict=True):
+            contact[f"{name}_{suffix}"] = (dims[1:], values)
+    return label(contact, "contact")

@@ -1,0 +1,148 @@
+"""NetCDF in and out: checked against the schema, compressed, complete or not there at all.
+
+Files carry the values they were computed from, and no clock time: the same study makes the
+same bytes.
+"""
+
+import hashlib
+import json
+import os
+from importlib.metadata import version
+from pathlib import Path
+
+import netCDF4  # noqa: F401  (named here because xarray would report its absence late)
+import numpy as np
+import xarray as xr
+
+from lube.errors import DataError
+from lube.schema import check
+
+CONVENTIONS = "CF-1.11, ACDD-1.3"
+
+
+def save(dataset, path, kind, study, compress=True):
+    """Save a dataset, refusing one that does not fit its kind.
+
+    The file is written beside its final place, forced to disk, and renamed: a reader finds
+    the whole file or none.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Result of a stage.
+    path : str or Path
+        File to write.
+    kind : str
+        A key of `lube.schema.FILES`.
+    study : Study
+        The study it belongs to; its values on which the stage depends are written along.
+    compress : bool, optional
+        False for files that live for minutes only.
+
+    Raises
+    ------
+    DataError
+        If the dataset does not fit the schema.
+    """
+    path = Path(path)
+    dataset = check(dataset, kind, path).assign_attrs(_origin(study, kind))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(path.name + ".part")
+    try:
+        dataset.to_netcdf(
+            part, engine="netcdf4", format="NETCDF4", encoding=_encoding(dataset, compress)
+        )
+        _force_to_disk(part)
+        os.replace(part, path)
+        _force_to_disk(path.parent)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def load(path, kind, raw=False):
+    """Load a dataset of a known kind into memory.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to read.
+    kind : str
+        A key of `lube.schema.FILES`.
+    raw : bool, optional
+        Leave packed heights as whole steps.
+
+    Returns
+    -------
+    xarray.Dataset
+        The data, independent of the file.
+
+    Raises
+    ------
+    DataError
+        If the file is missing, truncated, damaged, or not of this kind; its path is named.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise DataError(f"{path}: no such file, need a {kind} dataset")
+    try:
+        with xr.open_dataset(path, engine="netcdf4", mask_and_scale=not raw) as dataset:
+            dataset.load()
+    except (OSError, RuntimeError, ValueError, AttributeError) as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise DataError(
+            f"{path}: not a whole NetCDF file, truncated, damaged or foreign ({reason})"
+        ) from None
+    return check(dataset, kind, path)
+
+
+def _origin(study, kind):
+    """Global attributes that tell where a file comes from."""
+    stage = kind.removesuffix("_batch")
+    inputs = json.dumps(study.stage_inputs(stage), sort_keys=True)
+    return {
+        "Conventions": CONVENTIONS,
+        "title": f"{study.title}: {stage}",
+        "study": study.name,
+        "study_inputs": inputs,
+        "study_inputs_sha256": hashlib.sha256(inputs.encode()).hexdigest(),
+        "source": f"lube {version('lube')}",
+    }
+
+
+def _encoding(dataset, compress):
+    """Storage of every variable: checksummed, in explicit chunks, without fill values."""
+    encoding = {}
+    for name, variable in dataset.variables.items():
+        # CF forbids fill values on coordinates, and no other variable has gaps but those
+        # where NaN says so itself.
+        encoding[name] = {"_FillValue": None}
+        if variable.dtype.kind in "fib" and variable.ndim > 0:
+            encoding[name] |= {
+                "zlib": compress,
+                "complevel": 4,
+                "shuffle": compress,
+                "fletcher32": True,
+                "chunksizes": _chunks(variable),
+            }
+    if dataset.get("height") is not None and dataset["height"].dtype.kind == "f":
+        encoding["height"] |= {
+            "dtype": "int32",
+            "scale_factor": dataset.attrs["height_step"],
+            "_FillValue": np.iinfo(np.int32).min,
+        }
+    return encoding
+
+
+def _chunks(variable):
+    """One chunk for a small variable, one a line for roughness lines and traces."""
+    if variable.size <= 2**18:
+        return variable.shape
+    return (1,) * (variable.ndim - 1) + (variable.shape[-1],)
+
+
+def _force_to_disk(path):
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

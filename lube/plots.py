@@ -1,0 +1,188 @@
+"""What all figures share: style, colours, axis labels from attributes, saving.
+
+Colours are Okabe and Ito's, which readers with any colour vision can tell apart; ordered
+quantities get steps of a map that also rises in lightness.
+"""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from lube.units import convert
+
+COLOURS = {
+    "black": "#000000",
+    "orange": "#E69F00",
+    "sky": "#56B4E9",
+    "green": "#009E73",
+    "blue": "#0072B2",
+    "vermilion": "#D55E00",
+    "purple": "#CC79A7",
+    "grey": "#7F7F7F",
+}
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+
+_STYLE = {
+    "figure.constrained_layout.use": True,
+    "figure.dpi": 110,
+    "savefig.dpi": 220,
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#E4E4E4",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "lines.linewidth": 1.4,
+    "lines.markersize": 4.5,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "pdf.fonttype": 42,
+    "svg.hashsalt": "lube",
+}
+
+# UDUNITS notation of the files -> what a reader expects on an axis.
+_AXIS_UNITS = {
+    "degC": "°C",
+    "um": "µm",
+    "mm2 s-1": "mm²/s",
+    "m2 s-1": "m²/s",
+    "Pa-1": "1/Pa",
+    "GPa-1": "1/GPa",
+    "kg m-3": "kg/m³",
+    "m s-1": "m/s",
+    "rpm": "r/min",
+    "ohm": "Ω",
+}
+
+
+def use_style():
+    """Set the style of all figures that are drawn afterwards."""
+    plt.rcdefaults()
+    plt.rcParams.update(_STYLE)
+
+
+def in_units(array, units):
+    """Convert a labelled array for an axis.
+
+    Parameters
+    ----------
+    array : xarray.DataArray
+        With its unit in the attribute ``units``, such as ``m2 s-1``.
+    units : str
+        The unit wanted, in the same notation, such as ``mm2 s-1``.
+
+    Returns
+    -------
+    xarray.DataArray
+        The converted array, its attributes telling so.
+    """
+    factor = convert(1.0, _for_pint(array.attrs["units"]), _for_pint(units))
+    converted = array * factor
+    converted.attrs = {**array.attrs, "units": units}
+    return converted
+
+
+def _for_pint(units):
+    """``m2 s-1`` -> ``m^2 s^-1``."""
+    return " ".join(
+        part.rstrip("-0123456789") + ("^" + power if power else "")
+        for part in units.split()
+        for power in [part[len(part.rstrip("-0123456789")) :]]
+    )
+
+
+def axis_label(array, symbol=None):
+    """Axis label from the attributes of an array: what it is, its symbol, its unit.
+
+    Parameters
+    ----------
+    array : xarray.DataArray
+        With the attributes ``long_name`` and ``units``.
+    symbol : str, optional
+        Symbol to add, such as ``$h_0$``.
+
+    Returns
+    -------
+    str
+        Such as ``Film thickness $h_0$ (µm)``.
+    """
+    name = array.attrs["long_name"]
+    units = array.attrs.get("units", "1")
+    words = [name[0].upper() + name[1:], symbol, None if units == "1" else f"({nice_units(units)})"]
+    return " ".join(word for word in words if word)
+
+
+def nice_units(units):
+    """Units as a reader expects them: ``degC`` -> ``°C``."""
+    return _AXIS_UNITS.get(units, units)
+
+
+def level_colours(levels):
+    """Colours for the levels of an ordered quantity, light to dark.
+
+    Parameters
+    ----------
+    levels : sequence
+        The levels, rising.
+
+    Returns
+    -------
+    dict
+        From level to colour.
+    """
+    values = np.asarray(levels).tolist()
+    shades = plt.get_cmap("viridis_r")(np.linspace(0.15, 0.95, len(values)))
+    return dict(zip(values, shades, strict=True))
+
+
+def level_markers(levels):
+    """Markers for the levels of a quantity, from level to marker."""
+    values = np.asarray(levels).tolist()
+    return {value: MARKERS[number % len(MARKERS)] for number, value in enumerate(values)}
+
+
+def level_name(value, units):
+    """Level of an operating variable as text: ``86 r/min``, ``800 N``."""
+    return f"{value:.0f} {nice_units(units)}"
+
+
+def interval_bars(axes, x, mean, lower, upper, **style):
+    """Draw probabilities with their intervals; never-seen ones as arrows down from their limit.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Axes with a logarithmic or linear scale of probability.
+    x, mean, lower, upper : numpy.ndarray
+        One-dimensional, of equal length.
+    **style
+        ``color``, ``marker``, ``linestyle`` and ``label`` as for `Axes.errorbar`.
+    """
+    seen = mean > 0.0
+    gap = np.where(seen, mean, np.nan)
+    bars = np.where(seen, [mean - lower, upper - mean], 0.0)
+    axes.errorbar(x, gap, yerr=bars, capsize=2, elinewidth=1.0, **style)
+    style = {"color": style.get("color"), "marker": r"$\downarrow$", "linestyle": "none"}
+    axes.plot(np.asarray(x)[~seen], np.asarray(upper)[~seen], markersize=7, **style)
+
+
+def save_figure(figure, stem):
+    """Save a figure as PNG and PDF, the same bytes each time.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        Figure to save.
+    stem : str or Path
+        Path without suffix.
+    """
+    Path(stem).parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(f"{stem}.png", metadata={"Software": None})
+    figure.savefig(f"{stem}.pdf", metadata={"CreationDate": None, "Producer": None})

@@ -1,0 +1,271 @@
+"""Roughness lines: periodic, self-affine, and the same wherever and whenever they are drawn.
+
+A line is a sum of waves with fixed amplitudes, set by the power spectrum C1D ~ q^(-2H - 1)
+between q_min and q_max, and random phases. Fixed amplitudes make the rms height of every
+line exactly that of the roller (up to the rounding to height steps); with random amplitudes
+it would be so on average only. The paper does not say which it used.
+"""
+
+import functools
+
+import numpy as np
+import scipy.fft
+import xarray as xr
+
+from lube.kernels.synthesis import random_directions, whole_steps
+from lube.schema import label
+
+ROLLERS = (1, 2)
+PADDING = np.iinfo(np.int32).min
+"""Marks the missing end of a line that is shorter than its partner's."""
+
+
+def wave_amplitudes(spec, roller):
+    """Amplitudes of the waves around one roller (paper, section 2).
+
+    Parameters
+    ----------
+    spec : LineSpec
+        What determines the lines.
+    roller : int
+        0 for the first roller, 1 for the second.
+
+    Returns
+    -------
+    first_wave : int
+        Number of waves around the circumference that the first amplitude belongs to.
+    amplitudes : numpy.ndarray
+        Shape (modes,), m; half the sum of their squares is the mean square height.
+    """
+    perimeter = spec.points[roller] * spec.spacing
+    turn = perimeter / (2.0 * np.pi)
+    # Limits that fall on a whole number of waves belong to the band in spite of rounding.
+    first_wave = int(np.ceil(spec.q_min * turn * (1.0 - 1e-9)))
+    last_wave = int(np.floor(spec.q_max * turn * (1.0 + 1e-9)))
+    waves = np.arange(first_wave, last_wave + 1)
+    shape = (waves / first_wave) ** (-spec.hurst_exponent - 0.5)
+    rms = np.sqrt(0.5 * np.sum(shape**2))
+    return first_wave, spec.rms_height[roller] / rms * shape
+
+
+@functools.lru_cache(maxsize=4)
+def _spectrum(spec, roller):
+    """Amplitudes as an inverse real FFT wants them, in height steps, single precision."""
+    first_wave, amplitudes = wave_amplitudes(spec, roller)
+    points = spec.points[roller]
+    scaled = 0.5 * points / spec.height_step * amplitudes
+    return first_wave, scaled.astype(np.float32)
+
+
+def draw_line(spec, roller, seed):
+    """Draw one roughness line.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        What determines the lines.
+    roller : int
+        0 for the first roller, 1 for the second.
+    seed : numpy.random.SeedSequence
+        Seed of this line alone.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,), int32: heights in steps of `spec.height_step`, positive towards the
+        other roller.
+    """
+    first_wave, amplitudes = _spectrum(spec, roller)
+    points = spec.points[roller]
+    waves = np.zeros(points // 2 + 1, np.complex64)
+    directions = random_directions(np.random.default_rng(seed), amplitudes.size)
+    np.multiply(amplitudes, directions, out=waves[first_wave : first_wave + amplitudes.size])
+    return whole_steps(scipy.fft.irfft(waves, points, overwrite_x=True))
+
+
+def draw_realisation(spec, seed, realisation):
+    """Draw the two independent lines of one realisation.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        What determines the lines.
+    seed : int
+        Seed of the study.
+    realisation : int
+        Number of the realisation; it alone, with the seed, decides what is drawn.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        The lines of the first and second roller, shapes (N1,) and (N2,), int32 steps.
+    """
+    children = np.random.SeedSequence((seed, realisation)).spawn(len(ROLLERS))
+    return tuple(draw_line(spec, roller, child) for roller, child in enumerate(children))
+
+
+def line_moments(line, spacing):
+    """Moments of one periodic line.
+
+    Slope and curvature are differences of neighbouring points, as the contact sees them.
+
+    Parameters
+    ----------
+    line : numpy.ndarray
+        Heights, shape (N,), m.
+    spacing : float
+        Distance dx of neighbouring points, m.
+
+    Returns
+    -------
+    dict of str to float
+        ``rms_height`` (m), ``rms_slope``, ``rms_curvature`` (1/m), ``skewness``, ``kurtosis``
+        (3 for a Gaussian line).
+    """
+    before = np.roll(line, 1)
+    slope = (line - before) / spacing
+    curvature = (np.roll(slope, -1) - slope) / spacing
+    variance = np.mean(line**2)
+    return {
+        "rms_height": np.sqrt(variance),
+        "rms_slope": np.sqrt(np.mean(slope**2)),
+        "rms_curvature": np.sqrt(np.mean(curvature**2)),
+        "skewness": np.mean(line**3) / variance**1.5,
+        "kurtosis": np.mean(line**4) / variance**2,
+    }
+
+
+def spectrum_moments(spec, roller):
+    """Moments that the spectrum promises for the same differences of neighbouring points.
+
+    A wave of wave vector q loses the factor (2 sin(q dx / 2) / dx)^2 q^-2 of its mean square
+    slope to the difference over dx, and its square for the curvature.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        What determines the lines.
+    roller : int
+        0 for the first roller, 1 for the second.
+
+    Returns
+    -------
+    dict of str to float
+        ``rms_height`` (m), ``rms_slope``, ``rms_curvature`` (1/m).
+    """
+    first_wave, amplitudes = wave_amplitudes(spec, roller)
+    waves = np.arange(first_wave, first_wave + amplitudes.size)
+    difference = 2.0 * np.sin(np.pi * waves / spec.points[roller]) / spec.spacing
+    names = ("rms_height", "rms_slope", "rms_curvature")
+    return {
+        name: np.sqrt(0.5 * np.sum(amplitudes**2 * difference ** (2 * order)))
+        for order, name in enumerate(names)
+    }
+
+
+def roughness_lines(spec, seed, realisations):
+    """Draw realisations as a labelled dataset.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        What determines the lines; `Study.line_spec` of a study.
+    seed : int
+        Seed of the study.
+    realisations : sequence of int
+        Which realisations.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``roughness`` file of `lube.schema`. Heights are in m, exact multiples of the
+        height step; where the rollers differ in size, the shorter line ends in NaN.
+    """
+    heights = np.full((len(realisations), len(ROLLERS), max(spec.points)), np.nan)
+    moments = []
+    for heights_of_pair, realisation in zip(heights, realisations, strict=True):
+        lines = draw_realisation(spec, seed, realisation)
+        for row, line in zip(heights_of_pair, lines, strict=True):
+            row[: line.size] = line * spec.height_step
+            moments.append(line_moments(row[: line.size], spec.spacing))
+    shape = heights.shape[:2]
+    dims = ("realisation", "roller")
+    variables = {
+        name: (dims, np.array([moment[name] for moment in moments]).reshape(shape))
+        for name in moments[0]
+    }
+    promised = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
+    variables |= {
+        f"spectrum_{name}": ("roller", [moment[name] for moment in promised])
+        for name in promised[0]
+    }
+    dataset = xr.Dataset(
+        {
+            "height": ((*dims, "position"), heights),
+            "seed": ("realisation", np.full(len(realisations), seed, np.int64)),
+            **variables,
+        },
+        coords={
+            "realisation": np.asarray(realisations, np.int64),
+            "roller": np.asarray(ROLLERS, np.int64),
+            "position": spec.spacing * np.arange(max(spec.points)),
+        },
+        attrs=line_attributes(spec),
+    )
+    return label(dataset, "roughness")
+
+
+def roughness_batch(spec, seed, realisations):
+    """Draw realisations as whole height steps, lean, to be handed on to the contact stage.
+
+    Parameters
+    ----------
+    spec, seed, realisations
+        As in `roughness_lines`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``roughness_batch`` file of `lube.schema`: int32 heights in steps, which the
+        attribute ``scale_factor`` turns into m.
+    """
+    heights = np.full((len(realisations), len(ROLLERS), max(spec.points)), PADDING, np.int32)
+    for heights_of_pair, realisation in zip(heights, realisations, strict=True):
+        lines = draw_realisation(spec, seed, realisation)
+        for row, line in zip(heights_of_pair, lines, strict=True):
+            row[: line.size] = line
+    dataset = xr.Dataset(
+        {"height": (("realisation", "roller", "position"), heights)},
+        coords={
+            "realisation": np.asarray(realisations, np.int64),
+            "roller": np.asarray(ROLLERS, np.int64),
+        },
+        attrs=line_attributes(spec),
+    )
+    dataset = label(dataset, "roughness_batch")
+    dataset["height"].attrs["scale_factor"] = spec.height_step
+    return dataset
+
+
+def line_attributes(spec):
+    """Global attributes of a roughness file: the spectrum and the height step.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        What determines the lines.
+
+    Returns
+    -------
+    dict
+        Attribute names and values; lengths in m, wave vectors in rad/m.
+    """
+    return {
+        "hurst": spec.hurst_exponent,
+        "q_min": spec.q_min,
+        "q_max": spec.q_max,
+        "rms": np.array(spec.rms_height),
+        "spacing": spec.spacing,
+        "points": np.array(spec.points),
+        "height_step": spec.height_step,
+    }

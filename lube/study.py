@@ -1,0 +1,421 @@
+"""A study: one YAML file, checked as a whole before anything is computed.
+
+The models below are the only description of the configuration. Their JSON schema makes the
+table in the README; their validators make the one-line errors; and `Study.stage_inputs`
+tells which values a stage depends on, so that a change re-runs that stage and no other.
+"""
+
+import math
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, model_validator
+
+from lube.errors import LubeError, StudyError
+from lube.fields import (
+    Length,
+    Pressure,
+    Resistivity,
+    StrictModel,
+    bounded,
+    collected,
+    levels,
+    pure_number,
+    quantity,
+    read_yaml,
+    validate,
+)
+from lube.formulas import formula
+from lube.hertz import contact_half_width, reduced_modulus, reduced_radius
+from lube.records import LubricantRecord, check_temperatures, load_record
+from lube.units import parse_quantity
+
+AUTOMATIC_WAVELENGTH = "contact width at the largest force"
+
+Slug = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")]
+
+
+class Roller(StrictModel):
+    """One roller: a cylinder of some material with a rough surface."""
+
+    radius: Length = Field(description="radius of the cylinder")
+    young_modulus: Pressure = Field(description="Young's modulus")
+    poisson_ratio: pure_number(least=0.0, most=0.5) = Field(description="Poisson's ratio")
+    rms_roughness: Length = Field(description="rms height of the roughness")
+
+
+class RollerPair(StrictModel):
+    """Two rollers pressed together along a line."""
+
+    length: Length = Field(description="length L' of the line contact")
+    first: Roller
+    second: Roller
+
+    @property
+    def reduced_radius(self):
+        """Radius R* of the equivalent cylinder on a plane, m."""
+        return reduced_radius(self.first.radius, self.second.radius)
+
+    @property
+    def reduced_modulus(self):
+        """Reduced modulus E*, Pa."""
+        return reduced_modulus(
+            self.first.young_modulus,
+            self.first.poisson_ratio,
+            self.second.young_modulus,
+            self.second.poisson_ratio,
+        )
+
+    @property
+    def composite_rms_roughness(self):
+        """Rms height of the sum of the two independent lines, m."""
+        return math.hypot(self.first.rms_roughness, self.second.rms_roughness)
+
+    def contact_half_width(self, force):
+        """Hertzian half-width a in m at a normal force in N (the paper's Eq. 2)."""
+        return contact_half_width(force, self.length, self.reduced_radius, self.reduced_modulus)
+
+
+class OperatingGrid(StrictModel):
+    """Levels of the operating variables; every combination is an operating point."""
+
+    force: levels("N", above=0.0) = Field(description="normal forces")
+    speed: levels("rpm", above=0.0) = Field(
+        description="rotation speeds of the first roller when it rolls without slip"
+    )
+    temperature: levels("degC", above=-273.15) = Field(
+        description="temperatures of rollers and oil"
+    )
+    slide_to_roll_ratio: levels(None, least=-2.0, most=2.0) = Field(
+        description="(v1 - v2) / mean surface speed; 0 is pure rolling"
+    )
+
+
+def _wavelength(value):
+    if value == AUTOMATIC_WAVELENGTH:
+        return value
+    try:
+        return bounded(parse_quantity(value, "m"), above=0.0)
+    except LubeError as error:
+        raise ValueError(f"{error}, or the words {AUTOMATIC_WAVELENGTH!r}") from None
+
+
+class Roughness(StrictModel):
+    """How the roughness lines of both rollers are drawn."""
+
+    points: Annotated[StrictInt, Field(ge=64, le=2**24)] = Field(
+        description="points N around the first roller"
+    )
+    hurst_exponent: pure_number(above=0.0, below=1.0) = Field(description="Hurst exponent H")
+    longest_wavelength: Annotated[
+        float | Literal[AUTOMATIC_WAVELENGTH], BeforeValidator(_wavelength)
+    ] = Field(description=f"2 pi / q_min: a length, or the words '{AUTOMATIC_WAVELENGTH}'")
+    points_per_shortest_wavelength: pure_number(least=2.0) = Field(
+        description="2 pi / (q_max dx); 2 is the finest that the grid can hold"
+    )
+    height_step: Length = Field(
+        description="heights and films are whole multiples of this length, so sums are exact"
+    )
+
+
+class BoundaryLayer(StrictModel):
+    """The adsorbed layer that a contact must break through (the paper's Eqs. 4 and 6)."""
+
+    critical_thickness: Length = Field(description="critical thickness h_c")
+    shear_strength: Pressure = Field(description="limiting shear stress tau0")
+
+
+class LineSpec(StrictModel):
+    """Everything that determines the roughness lines but the seed and the realisation.
+
+    Attributes
+    ----------
+    points : tuple of int
+        Points around either roller.
+    spacing : float
+        Distance dx of neighbouring points, m.
+    rms_height : tuple of float
+        Rms height of either line, m.
+    hurst_exponent : float
+        Hurst exponent H of C1D ~ q^(-2H - 1).
+    q_min, q_max : float
+        Smallest and largest wave vector, rad/m.
+    height_step : float
+        Length of one integer height step, m.
+    """
+
+    points: tuple[int, int]
+    spacing: float
+    rms_height: tuple[float, float]
+    hurst_exponent: float
+    q_min: float
+    q_max: float
+    height_step: float
+
+
+class TracePoint(StrictModel):
+    """An operating point whose contact is recorded at every time step."""
+
+    force: quantity("N") = Field(description="a force of the grid")
+    speed: quantity("rpm") = Field(description="a speed of the grid, the same for all traces")
+    temperature: quantity("degC") = Field(description="a temperature of the grid")
+    lubricant: str | None = Field(None, description="a lubricant of the study; else its first")
+    film_formula: str | None = Field(None, description="a formula of the study; else its first")
+    slide_to_roll_ratio: pure_number() | None = Field(
+        None, description="a ratio of the grid; else its first"
+    )
+
+
+class Study(StrictModel):
+    """A whole study, checked and in SI units (but the rig's rpm and degC)."""
+
+    name: Slug = Field(description="results go to results/<name>")
+    title: str = Field(description="one line for figures and files")
+    seed: Annotated[StrictInt, Field(ge=0)] = Field(description="seed of all randomness")
+    realisations: Annotated[StrictInt, Field(ge=1, le=10**6)] = Field(
+        description="how many pairs of roughness lines"
+    )
+    batch_size: Annotated[StrictInt, Field(ge=1)] = Field(
+        description="realisations per job; changes no result"
+    )
+    kept_realisations: tuple[StrictInt, ...] = Field(
+        description="realisations whose lines stay in roughness.nc, 0 among them"
+    )
+    rollers: RollerPair
+    lubricants: tuple[LubricantRecord, ...] = Field(
+        min_length=1, description="names of shipped records, or paths of your own YAML records"
+    )
+    film_formulas: tuple[str, ...] = Field(
+        min_length=1, description="names from the registry of film formulas"
+    )
+    operating_grid: OperatingGrid
+    roughness: Roughness
+    boundary_layer: BoundaryLayer
+    resistivity: Resistivity = Field(description="resistivity of the rollers' material (Eq. 1)")
+    traces: tuple[TracePoint, ...] = Field(
+        min_length=1, description="operating points recorded over one revolution"
+    )
+
+    @property
+    def line_spec(self):
+        """The roughness lines that this study draws, a `LineSpec`."""
+        first, second = self.rollers.first, self.rollers.second
+        spacing = 2.0 * math.pi * first.radius / self.roughness.points
+        return LineSpec(
+            points=(
+                self.roughness.points,
+                round(self.roughness.points * second.radius / first.radius),
+            ),
+            spacing=spacing,
+            rms_height=(first.rms_roughness, second.rms_roughness),
+            hurst_exponent=self.roughness.hurst_exponent,
+            q_min=2.0 * math.pi / self.longest_wavelength,
+            q_max=2.0 * math.pi / (self.roughness.points_per_shortest_wavelength * spacing),
+            height_step=self.roughness.height_step,
+        )
+
+    @property
+    def longest_wavelength(self):
+        """Longest wavelength of the roughness, m; by the paper 2 a_max."""
+        if self.roughness.longest_wavelength == AUTOMATIC_WAVELENGTH:
+            return 2.0 * float(self.rollers.contact_half_width(max(self.operating_grid.force)))
+        return self.roughness.longest_wavelength
+
+    @property
+    def batches(self):
+        """Index of the first realisation of each batch, as a range."""
+        return range(0, self.realisations, self.batch_size)
+
+    def batch(self, first):
+        """Return the realisations of the batch that begins with `first`, as a range."""
+        return range(first, min(first + self.batch_size, self.realisations))
+
+    def stage_inputs(self, stage):
+        """Return the values of the study that a stage depends on, as plain data.
+
+        Parameters
+        ----------
+        stage : str
+            ``lubricant``, ``film``, ``roughness``, ``contact`` or ``trace``.
+
+        Returns
+        -------
+        dict
+            Plain values, fit for JSON. They are Snakemake's parameters of the stage and
+            the record of origin in its file: a change re-runs the stages that name it.
+        """
+        content = self.model_dump(mode="json")
+        grid, rollers = content["operating_grid"], content["rollers"]
+        lines = {"seed": self.seed, "lines": self.line_spec.model_dump(mode="json")}
+        mechanics = {
+            "reduced_modulus": self.rollers.reduced_modulus,
+            "boundary_layer": content["boundary_layer"],
+            "slide_to_roll_ratio": grid["slide_to_roll_ratio"],
+        }
+        inputs = {
+            "lubricant": {
+                "lubricants": content["lubricants"],
+                "temperature": grid["temperature"],
+            },
+            "film": {
+                "rollers": rollers,
+                "film_formulas": content["film_formulas"],
+                "force": grid["force"],
+                "speed": grid["speed"],
+            },
+            "roughness": lines,
+            "contact": lines | mechanics,
+            "trace": lines
+            | mechanics
+            | {"traces": content["traces"], "resistivity": content["resistivity"]},
+        }
+        return inputs[stage]
+
+    @model_validator(mode="after")
+    def _check_names(self):
+        _refuse_repeats("lubricants", [record.name for record in self.lubricants])
+        _refuse_repeats("film_formulas", self.film_formulas)
+        for name in self.film_formulas:
+            with collected("film_formulas"):
+                formula(name)
+        for record in self.lubricants:
+            with collected("operating_grid.temperature"):
+                check_temperatures(record, self.operating_grid.temperature)
+        return self
+
+    @model_validator(mode="after")
+    def _check_realisations(self):
+        _refuse_repeats("kept_realisations", self.kept_realisations)
+        for kept in self.kept_realisations:
+            if not 0 <= kept < self.realisations:
+                raise ValueError(
+                    f"kept_realisations: got {kept}, need realisations from 0 to "
+                    f"{self.realisations - 1}"
+                )
+        if 0 not in self.kept_realisations:
+            raise ValueError("kept_realisations: need 0 among them, the traces use it")
+        return self
+
+    @model_validator(mode="after")
+    def _check_lines(self):
+        spec = self.line_spec
+        longest, shortest = 2.0 * math.pi / spec.q_min, 2.0 * math.pi / spec.q_max
+        if shortest >= longest:
+            least = math.ceil(self.roughness.points * shortest / longest) + 1
+            raise ValueError(
+                f"roughness.points: {self.roughness.points} points are too coarse: the shortest "
+                f"wavelength, {shortest:.3g} m, is not below the longest, {longest:.3g} m; need "
+                f"{least} or more"
+            )
+        for roller, points in zip(("first", "second"), spec.points, strict=True):
+            perimeter = points * spec.spacing
+            if perimeter < longest:
+                raise ValueError(
+                    f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short for "
+                    f"the longest wavelength, {longest:.3g} m"
+                )
+            if math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
+                raise ValueError(
+                    f"rollers.{roller}.radius: no whole number of waves between {shortest:.3g} "
+                    f"and {longest:.3g} m long goes round its perimeter, {perimeter:.3g} m"
+                )
+        self._check_window(spec)
+        return self
+
+    def _check_window(self, spec):
+        widest = 2.0 * self.rollers.contact_half_width(max(self.operating_grid.force))
+        narrowest = 2.0 * self.rollers.contact_half_width(min(self.operating_grid.force))
+        if widest >= min(spec.points) * spec.spacing:
+            raise ValueError(
+                f"operating_grid.force: the contact at {max(self.operating_grid.force):g} N is "
+                f"{widest:.3g} m wide, need less than a roller's perimeter"
+            )
+        if narrowest < 2.0 * spec.spacing:
+            raise ValueError(
+                f"roughness.points: the contact at {min(self.operating_grid.force):g} N is "
+                f"{narrowest:.3g} m wide, need at least two grid spacings of {spec.spacing:.3g} m"
+            )
+        for rms in spec.rms_height:
+            if not 1e3 <= rms / spec.height_step <= 1e7:
+                raise ValueError(
+                    f"roughness.height_step: got {spec.height_step:.3g} m, need {rms / 1e7:.3g} "
+                    f"to {rms / 1e3:.3g} m for a roughness of {rms:.3g} m"
+                )
+
+    @model_validator(mode="after")
+    def _check_traces(self):
+        points = self.trace_points
+        # All traces share one time axis, whose step is set by the faster surface.
+        if len({(point["speed"], point["slide_to_roll_ratio"]) for point in points}) > 1:
+            raise ValueError(
+                "traces: need one speed and one slide-to-roll ratio for all, as they share a "
+                "time axis"
+            )
+        return self
+
+    @property
+    def trace_points(self):
+        """Operating points of the traces, a list of dicts from coordinate to level."""
+        return [self._trace_point(number, point) for number, point in enumerate(self.traces)]
+
+    def _trace_point(self, number, point):
+        """Find the levels of the study that a trace names, or by silence its first ones."""
+        levels_of = {
+            "slide_to_roll_ratio": self.operating_grid.slide_to_roll_ratio,
+            "lubricant": [record.name for record in self.lubricants],
+            "film_formula": self.film_formulas,
+            "temperature": self.operating_grid.temperature,
+            "speed": self.operating_grid.speed,
+            "force": self.operating_grid.force,
+        }
+        found = {}
+        for variable, available in levels_of.items():
+            wanted = getattr(point, variable)
+            matches = [level for level in available if wanted is None or _same(level, wanted)]
+            if not matches:
+                raise ValueError(
+                    f"traces.{number}.{variable}: got {wanted}, need one of the study's: "
+                    f"{', '.join(str(level) for level in available)}"
+                )
+            found[variable] = matches[0]
+        return found
+
+
+def _same(level, wanted):
+    if isinstance(level, str):
+        return level == wanted
+    return math.isclose(level, wanted, rel_tol=1e-9)
+
+
+def _refuse_repeats(key, values):
+    repeated = sorted({str(value) for value in values if list(values).count(value) > 1})
+    if repeated:
+        raise ValueError(f"{key}: {repeated[0]} is repeated, need each once")
+
+
+def load_study(path):
+    """Read and check a study.
+
+    Parameters
+    ----------
+    path : str or Path
+        YAML file of the study.
+
+    Returns
+    -------
+    Study
+        The whole study, with its lubricant records.
+
+    Raises
+    ------
+    StudyError
+        Which key, what came, what is needed.
+    RecordError
+        If a lubricant record that the study names cannot be used.
+    """
+    content = read_yaml(path, StudyError)
+    names = content.get("lubricants")
+    if isinstance(names, list) and all(isinstance(name, str) for name in names):
+        records = tuple(load_record(name, folder=Path(path).parent) for name in names)
+        content = content | {"lubricants": records}
+    return validate(Study, content, path, StudyError)

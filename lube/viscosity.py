@@ -1,0 +1,404 @@
+"""Viscosity, density and pressure-viscosity coefficient as plain functions of temperature.
+
+Temperatures here are absolute, in kelvin, and kinematic viscosities are in mm2/s, because
+the constants of ASTM D341, ASTM D2270 and Gold's form hold for mm2/s only. Callers convert.
+
+The three viscosity-temperature laws stand in one registry, `VISCOSITY_LAWS`. Each becomes a
+straight line in coordinates of its own, so each is fitted by one linear least-squares line:
+exact for two points, and for more the line with the least squared residuals in those
+coordinates.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lube.errors import RangeError
+
+ZERO_CELSIUS = 273.15
+DENSITY_REFERENCE = ZERO_CELSIUS + 15.0
+
+# Cameron's convention for Vogel's law with only two data points: nu = a exp(b/(theta + 95)),
+# theta in degC.
+CAMERON_POLE = ZERO_CELSIUS - 95.0
+
+ASTM_D341_LEAST = 0.21
+_NEWTON_STEPS = 8
+_POLE_GRID = 200
+
+
+def _straight_line(x, y):
+    """Intercept and slope of the least-squares line, computed about the centre."""
+    x_mean, y_mean = np.mean(x), np.mean(y)
+    slope = np.sum((x - x_mean) * (y - y_mean)) / np.sum((x - x_mean) ** 2)
+    return float(y_mean - slope * x_mean), float(slope)
+
+
+def _data(temperature, kinematic_viscosity, least=0.0):
+    """Fit data as float arrays, refused where no law can go through them."""
+    temperature = np.asarray(temperature, dtype=float)
+    viscosity = np.asarray(kinematic_viscosity, dtype=float)
+    if np.unique(temperature).size < 2:
+        raise RangeError("got one temperature, need viscosities at two or more for a fit")
+    if np.any(viscosity <= least):
+        raise RangeError(f"got {viscosity.min():g} mm2/s, the law needs more than {least:g} mm2/s")
+    return temperature, viscosity
+
+
+def _low_viscosity_term(kinematic_viscosity):
+    """C of ASTM D341 by natural exponent; it matters below 2 mm2/s only."""
+    return np.exp(-1.47 - 1.84 * kinematic_viscosity - 0.51 * kinematic_viscosity**2)
+
+
+def fit_astm_d341(temperature, kinematic_viscosity):
+    """Fit ASTM D341 (Ubbelohde-Walther), log10 log10 Z = A - B log10 T.
+
+    Z = nu + 0.7 + C with C = exp(-1.47 - 1.84 nu - 0.51 nu^2).
+
+    Parameters
+    ----------
+    temperature : numpy.ndarray, shape (n,)
+        Absolute temperatures of n >= 2 data points, K.
+    kinematic_viscosity : numpy.ndarray, shape (n,)
+        Their viscosities, above 0.21 mm2/s.
+
+    Returns
+    -------
+    tuple of float
+        A and B. Two points are met exactly; more by least squares in log10 log10 Z.
+
+    Raises
+    ------
+    RangeError
+        With fewer than two temperatures, or a viscosity of 0.21 mm2/s or less.
+    """
+    temperature, viscosity = _data(temperature, kinematic_viscosity, least=ASTM_D341_LEAST)
+    z = viscosity + 0.7 + _low_viscosity_term(viscosity)
+    intercept, slope = _straight_line(np.log10(temperature), np.log10(np.log10(z)))
+    return intercept, -slope
+
+
+def evaluate_astm_d341(temperature, a, b):
+    """Kinematic viscosity by ASTM D341.
+
+    Z(nu) is inverted by Newton's method. Z rises with nu and is convex, so that starting
+    at nu = Z - 0.7, which lies above the root, every step comes closer from one side.
+
+    Parameters
+    ----------
+    temperature : float or numpy.ndarray
+        Absolute temperature, K.
+    a, b : float
+        A and B of `fit_astm_d341`.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        Kinematic viscosity, mm2/s; infinite or nan where the law leaves the floats.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        z = 10.0 ** (10.0 ** (a - b * np.log10(temperature)))
+        viscosity = z - 0.7
+        for _ in range(_NEWTON_STEPS):
+            low = _low_viscosity_term(viscosity)
+            slope = 1.0 - low * (1.84 + 1.02 * viscosity)
+            viscosity = viscosity - (viscosity + 0.7 + low - z) / slope
+    return viscosity
+
+
+def fit_vogel(temperature, kinematic_viscosity):
+    """Fit Vogel's law, nu = a exp(b/(T - c)).
+
+    With two temperatures c is fixed by Cameron's convention T - c = theta + 95, theta in
+    degC. With more, ln nu is a straight line in 1/(T - c) for any pole c; the c with the
+    least squared residuals in ln nu is sought between 0 K, where the law is Andrade's, and
+    1 K below the coldest datum: first on a grid, then by bounded minimisation, so that
+    the result depends on no starting guess.
+
+    Parameters
+    ----------
+    temperature : numpy.ndarray, shape (n,)
+        Absolute temperatures of n >= 2 data points, K.
+    kinematic_viscosity : numpy.ndarray, shape (n,)
+        Their viscosities, mm2/s.
+
+    Returns
+    -------
+    tuple of float
+        a in mm2/s, b in K and c in K.
+
+    Raises
+    ------
+    RangeError
+        With fewer than two temperatures, a viscosity of zero or less, or just two
+        temperatures of which one is at or below Cameron's pole of -95 degC.
+    """
+    temperature, viscosity = _data(temperature, kinematic_viscosity)
+    log_viscosity = np.log(viscosity)
+    if np.unique(temperature).size > 2:
+        pole = _best_pole(temperature, log_viscosity)
+    elif temperature.min() > CAMERON_POLE:
+        pole = CAMERON_POLE
+    else:
+        raise RangeError(
+            f"got {temperature.min() - ZERO_CELSIUS:g} degC, Vogel's law through two points "
+            "needs temperatures above -95 degC"
+        )
+    intercept, slope = _straight_line(1.0 / (temperature - pole), log_viscosity)
+    return float(np.exp(intercept)), slope, float(pole)
+
+
+def _best_pole(temperature, log_viscosity):
+    """Pole c of Vogel's law with the least squared residuals in ln nu, K."""
+    from scipy.optimize import minimize_scalar  # on first use: Snakemake imports this module
+
+    def squared_residuals(pole):
+        reciprocal = 1.0 / (temperature - pole)
+        intercept, slope = _straight_line(reciprocal, log_viscosity)
+        return np.sum((intercept + slope * reciprocal - log_viscosity) ** 2)
+
+    grid = np.linspace(0.0, temperature.min() - 1.0, _POLE_GRID)
+    best = int(np.argmin([squared_residuals(pole) for pole in grid]))
+    bounds = grid[max(best - 1, 0)], grid[min(best + 1, _POLE_GRID - 1)]
+    refined = minimize_scalar(
+        squared_residuals, bounds=bounds, method="bounded", options={"xatol": 1e-9}
+    )
+    return refined.x
+
+
+def evaluate_vogel(temperature, a, b, c):
+    """Kinematic viscosity by Vogel's law, nu = a exp(b/(T - c)).
+
+    Parameters
+    ----------
+    temperature : float or numpy.ndarray
+        Absolute temperature, K.
+    a, b, c : float
+        As of `fit_vogel`.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        Kinematic viscosity, mm2/s; infinite at the pole c and below it.
+    """
+    above_pole = np.maximum(np.asarray(temperature, dtype=float) - c, 0.0)
+    with np.errstate(over="ignore", divide="ignore"):
+        return a * np.exp(b / above_pole)
+
+
+def fit_andrade(temperature, kinematic_viscosity):
+    """Fit Andrade's law (of Arrhenius' form), nu = a exp(b/T).
+
+    Parameters
+    ----------
+    temperature : numpy.ndarray, shape (n,)
+        Absolute temperatures of n >= 2 data points, K.
+    kinematic_viscosity : numpy.ndarray, shape (n,)
+        Their viscosities, mm2/s.
+
+    Returns
+    -------
+    tuple of float
+        a in mm2/s and b in K. Two points are met exactly; more by least squares in ln nu.
+
+    Raises
+    ------
+    RangeError
+        With fewer than two temperatures, or a viscosity of zero or less.
+    """
+    temperature, viscosity = _data(temperature, kinematic_viscosity)
+    intercept, slope = _straight_line(1.0 / temperature, np.log(viscosity))
+    return float(np.exp(intercept)), slope
+
+
+def evaluate_andrade(temperature, a, b):
+    """Kinematic viscosity by Andrade's law, nu = a exp(b/T).
+
+    Parameters
+    ----------
+    temperature : float or numpy.ndarray
+        Absolute temperature, K.
+    a, b : float
+        As of `fit_andrade`.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        Kinematic viscosity, mm2/s.
+    """
+    return a * np.exp(b / np.asarray(temperature, dtype=float))
+
+
+@dataclass(frozen=True)
+class ViscosityLaw:
+    """A viscosity-temperature law: temperature in K, viscosity in mm2/s.
+
+    Attributes
+    ----------
+    fit : callable
+        ``fit(temperature, kinematic_viscosity)`` returns the parameters as a tuple.
+    evaluate : callable
+        ``evaluate(temperature, *parameters)`` returns the kinematic viscosity.
+    parameters : tuple of str
+        Names of the parameters, in order; keys of `PARAMETER_UNITS`.
+    source : str
+        The equation and where it comes from.
+    """
+
+    fit: Callable
+    evaluate: Callable
+    parameters: tuple[str, ...]
+    source: str
+
+
+VISCOSITY_LAWS = {
+    "astm-d341": ViscosityLaw(
+        fit_astm_d341,
+        evaluate_astm_d341,
+        ("A", "B"),
+        "log10 log10 (nu + 0.7 + exp(-1.47 - 1.84 nu - 0.51 nu^2)) = A - B log10 T (ASTM D341)",
+    ),
+    "vogel": ViscosityLaw(
+        fit_vogel,
+        evaluate_vogel,
+        ("a", "b", "c"),
+        "nu = a exp(b/(T - c)) (Vogel 1921; c by Cameron's -95 degC for two temperatures)",
+    ),
+    "andrade": ViscosityLaw(
+        fit_andrade, evaluate_andrade, ("a", "b"), "nu = a exp(b/T) (Andrade 1930)"
+    ),
+}
+"""Viscosity-temperature laws by name."""
+
+PARAMETER_UNITS = {"A": "1", "B": "1", "a": "mm2 s-1", "b": "K", "c": "K"}
+"""Units of the laws' parameters; a parameter of one name has one unit in every law."""
+
+
+# Quadratic fits of the standard to its table of reference oils: from Y = KV100 upwards,
+# L = a Y^2 + b Y + c and H = d Y^2 + e Y + f. The last row is equation text of the standard.
+_REFERENCE_OILS = np.array(
+    [
+        # Y        a         b         c        d        e        f
+        [2.0, 1.14673, 1.7576, -0.109, 0.84155, 1.5521, -0.077],
+        [3.8, 3.38095, -15.4952, 33.196, 0.78571, 1.7929, -0.183],
+        [4.4, 2.50000, -7.2143, 13.812, 0.82143, 1.5679, 0.119],
+        [5.0, 0.10100, 16.6350, -45.469, 0.04985, 9.1613, -18.557],
+        [6.4, 3.35714, -23.5643, 78.466, 0.22619, 7.7369, -16.656],
+        [7.0, 0.01191, 21.4750, -72.870, 0.79762, -0.7321, 14.610],
+        [7.7, 0.41858, 16.1558, -56.040, 0.05794, 10.5156, -28.240],
+        [9.0, 0.88779, 7.5527, -16.600, 0.26665, 6.7015, -10.810],
+        [12.0, 0.76720, 10.7972, -38.180, 0.20073, 8.4658, -22.490],
+        [15.0, 0.97305, 5.3135, -2.200, 0.28889, 5.9741, -4.930],
+        [18.0, 0.97256, 5.2500, -0.980, 0.24504, 7.4160, -16.730],
+        [22.0, 0.91413, 7.4759, -21.820, 0.20323, 9.1267, -34.230],
+        [28.0, 0.87031, 9.7157, -50.770, 0.18411, 10.1015, -46.750],
+        [40.0, 0.84703, 12.6752, -133.310, 0.17029, 11.4866, -80.620],
+        [55.0, 0.85921, 11.1009, -83.190, 0.17130, 11.3680, -76.940],
+        [70.0, 0.83530, 14.6700, -216.000, 0.16840, 11.8500, -97.000],
+    ]
+)
+
+
+def reference_oils(viscosity_100):
+    """Viscosities at 40 degC of the reference oils of VI 0 and VI 100 (ASTM D2270).
+
+    Parameters
+    ----------
+    viscosity_100 : float
+        Kinematic viscosity of the reference oils at 100 degC, 2 mm2/s or more.
+
+    Returns
+    -------
+    tuple of float
+        L of the oil of viscosity index 0 and H of that of 100, mm2/s. The standard's
+        quadratic fits; they meet its table within 0.2 %.
+
+    Raises
+    ------
+    RangeError
+        Below 2 mm2/s, where the viscosity index is not defined.
+    """
+    if not viscosity_100 >= 2.0:
+        raise RangeError(
+            f"got {viscosity_100:g} mm2/s at 100 degC, the viscosity index needs 2 mm2/s or more"
+        )
+    row = np.searchsorted(_REFERENCE_OILS[:, 0], viscosity_100, side="right") - 1
+    low_coefficients, high_coefficients = _REFERENCE_OILS[row, 1:4], _REFERENCE_OILS[row, 4:7]
+    return (
+        float(np.polyval(low_coefficients, viscosity_100)),
+        float(np.polyval(high_coefficients, viscosity_100)),
+    )
+
+
+def viscosity_index(viscosity_40, viscosity_100):
+    """Viscosity index by ASTM D2270, procedure A up to 100 and procedure B above.
+
+    Parameters
+    ----------
+    viscosity_40, viscosity_100 : float
+        Kinematic viscosities at 40 and at 100 degC, mm2/s.
+
+    Returns
+    -------
+    float
+        Viscosity index, not rounded to the whole number that the standard reports.
+
+    Raises
+    ------
+    RangeError
+        Below 2 mm2/s at 100 degC.
+    """
+    low, high = reference_oils(viscosity_100)
+    if viscosity_40 >= high:
+        return 100.0 * (low - viscosity_40) / (low - high)
+    exponent = float(np.log(high / viscosity_40) / np.log(viscosity_100))
+    return (10.0**exponent - 1.0) / 0.00715 + 100.0
+
+
+GOLD_BASES = {
+    "mineral": (9.904, 0.1390),
+    "polyalphaolefin": (7.382, 0.1335),
+    "ester": (6.605, 0.1360),
+    "polyglycol": (5.489, 0.1485),
+}
+"""Gold's s and t by base oil (Gold et al., J. Synth. Lubr. 18, 2001)."""
+
+
+def gold_pressure_viscosity(kinematic_viscosity, base):
+    """Pressure-viscosity coefficient by Gold's form, alpha = s nu^t 1e-9 1/Pa.
+
+    Parameters
+    ----------
+    kinematic_viscosity : float or numpy.ndarray
+        Kinematic viscosity at the temperature in question, mm2/s.
+    base : str
+        A key of `GOLD_BASES`.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        Pressure-viscosity coefficient, 1/Pa.
+    """
+    s, t = GOLD_BASES[base]
+    return s * np.asarray(kinematic_viscosity, dtype=float) ** t * 1e-9
+
+
+def linear_density(temperature, density_15, thermal_coefficient):
+    """Density falling linearly with temperature about 15 degC.
+
+    Parameters
+    ----------
+    temperature : float or numpy.ndarray
+        Absolute temperature T, K.
+    density_15 : float
+        Density at 15 degC, kg/m3.
+    thermal_coefficient : float
+        Its relative fall per kelvin, 1/K.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        density_15 (1 - thermal_coefficient (T - 288.15 K)), kg/m3.
+    """
+    return density_15 * (1.0 - thermal_coefficient * (temperature - DENSITY_REFERENCE))

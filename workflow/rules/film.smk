@@ -1,0 +1,16 @@
+rule film:
+    input:
+        lubricant=result("lubricant.nc"),
+        sources=script_sources("film"),
+    output:
+        result("film.nc"),
+    log:
+        result("logs/film.log"),
+    benchmark:
+        result("benchmarks/film.tsv")
+    params:
+        study=stage_inputs("film"),
+    message:
+        "Film: Hertz contact and film thickness over forces, speeds and temperatures"
+    script:
+        "../scripts/film.py"

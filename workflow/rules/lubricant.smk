@@ -1,0 +1,16 @@
+rule lubricant:
+    input:
+        records=sorted({str(file) for record in STUDY.lubricants for file in record.files}),
+        sources=script_sources("lubricant"),
+    output:
+        result("lubricant.nc"),
+    log:
+        result("logs/lubricant.log"),
+    benchmark:
+        result("benchmarks/lubricant.tsv")
+    params:
+        study=stage_inputs("lubricant"),
+    message:
+        "Lubricant: viscosity fits, density and pressure-viscosity coefficient"
+    script:
+        "../scripts/lubricant.py"

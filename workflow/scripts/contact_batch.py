@@ -1,0 +1,18 @@
+"""Run the contact model on one batch of realisations, at all operating points."""
+
+import logging
+
+from lube.contact import contact_statistics
+from lube.io import load, save
+from lube.study import load_study
+
+logging.basicConfig(filename=snakemake.log[0], level=logging.INFO, format="%(message)s")
+study = load_study(snakemake.config["study_file"])
+statistics = contact_statistics(
+    load(snakemake.input.lines, "roughness_batch", raw=True),
+    load(snakemake.input.film, "film"),
+    study.rollers.reduced_modulus,
+    study.boundary_layer,
+    study.operating_grid.slide_to_roll_ratio,
+)
+save(statistics, snakemake.output[0], "contact_batch", study)

@@ -1,0 +1,11 @@
+"""Make film.nc: film thickness and contact geometry over the operating grid."""
+
+from lube.film import film_table
+from lube.io import load, save
+from lube.study import load_study
+
+study = load_study(snakemake.config["study_file"])
+grid = study.operating_grid
+lubricant = load(snakemake.input.lubricant, "lubricant")
+table = film_table(lubricant, study.rollers, grid.force, grid.speed, study.film_formulas)
+save(table, snakemake.output[0], "film", study)
