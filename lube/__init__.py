@@ -1,0 +1,44 @@
+"""Mixed lubrication of rough rollers: film, roughness, contact, and their probabilities.
+
+The names below are the public interface. They are loaded on first use, so that importing the
+package, as the workflow does at every start, costs nothing.
+"""
+
+import importlib
+
+_HOMES = {
+    "lube.contact": ("contact_statistics",),
+    "lube.ensemble": ("gather", "with_intervals"),
+    "lube.errors": ("DataError", "LubeError", "RangeError", "RecordError", "StudyError"),
+    "lube.film": ("film_table",),
+    "lube.formulas": ("FORMULAS",),
+    "lube.io": ("load", "save"),
+    "lube.lubricant": ("lubricant_table",),
+    "lube.records": ("load_record", "shipped_records"),
+    "lube.resistance": ("contact_resistance",),
+    "lube.roughness": ("roughness_lines",),
+    "lube.study": (
+        "BoundaryLayer",
+        "LineSpec",
+        "Roller",
+        "RollerPair",
+        "Roughness",
+        "Study",
+        "line_spec",
+        "load_study",
+    ),
+    "lube.trace": ("contact_trace", "contact_window"),
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+
+__all__ = sorted(_HOME_OF)  # noqa: PLE0605
+
+
+def __getattr__(name):
+    if name not in _HOME_OF:
+        raise AttributeError(f"module 'lube' has no attribute {name!r}")
+    return getattr(importlib.import_module(_HOME_OF[name]), name)
+
+
+def __dir__():
+    return __all__

@@ -148,7 +148,15 @@ def gather(batches, film):
         If a realisation is missing or comes twice, or the operating points differ.
     """
     try:
-        joined = xr.concat(batches, "realisation", join="exact", combine_attrs="identical")
+        joined = xr.concat(
+            batches,
+            "realisation",
+            data_vars="minimal",
+            coords="minimal",
+            compat="equals",
+            join="exact",
+            combine_attrs="identical",
+        )
     except ValueError as error:
         raise DataError(f"the batches belong to different studies: {error}") from None
     joined = joined.sortby("realisation")

@@ -59,6 +59,9 @@ def _hertz_contact(rollers, force, speed):
     pair = (rollers.length, rollers.reduced_radius, rollers.reduced_modulus)
     return xr.Dataset(
         {
+            "reduced_radius": rollers.reduced_radius,
+            "reduced_modulus": rollers.reduced_modulus,
+            "composite_rms_roughness": rollers.composite_rms_roughness,
             "contact_half_width": hertz.contact_half_width(force, *pair),
             "hertz_pressure": hertz.maximum_pressure(force, *pair),
             "entrainment_speed": 2.0 * np.pi * rollers.first.radius * speed / 60.0,

@@ -12,6 +12,7 @@ import re
 import numpy as np
 
 from lube.errors import RangeError, RecordError
+from lube.viscosity import ZERO_CELSIUS
 
 ATMOSPHERIC_PRESSURE = 101325.0
 
@@ -19,8 +20,9 @@ ATMOSPHERIC_PRESSURE = 101325.0
 # to ten digits and the curvature term is cancelled: the slope is right to about 1e-5.
 _SLOPE_STEP = 3e5
 
-# CoolProp is undecided within a hair of the boiling point.
-_BOILING_MARGIN = 0.1
+# CoolProp is undecided within a hair of the boiling point, and at the triple point's
+# temperature atmospheric pressure already means a solid.
+_MARGIN = 0.1
 
 # Numbers read as degC and turned into K may miss a limit by rounding.
 _ROUNDING = 1e-6
@@ -50,8 +52,8 @@ def liquid_range(fluid):
     Returns
     -------
     tuple of float
-        Lowest and highest temperature, K: from the lower limit of the equation of state to
-        0.1 K below boiling.
+        Lowest and highest temperature, K: from 0.1 K above the lower limit of the equation
+        of state to 0.1 K below boiling.
 
     Raises
     ------
@@ -68,12 +70,12 @@ def liquid_range(fluid):
             f"coolprop_fluid: got {fluid!r}, need a pure fluid by CoolProp's spelling, "
             "such as 'n-Dodecane'"
         ) from None
-    lowest = coolprop.PropsSI("Tmin", fluid)
+    lowest = coolprop.PropsSI("Tmin", fluid) + _MARGIN
     try:
         boiling = coolprop.PropsSI("T", "P", ATMOSPHERIC_PRESSURE, "Q", 0, fluid)
     except ValueError:
         boiling = -np.inf
-    highest = min(coolprop.PropsSI("Tmax", fluid), boiling - _BOILING_MARGIN)
+    highest = min(coolprop.PropsSI("Tmax", fluid), boiling - _MARGIN)
     if not lowest < highest:
         raise RecordError(
             f"coolprop_fluid: got {fluid!r}, need a fluid that is liquid at atmospheric pressure"
@@ -85,11 +87,14 @@ def _within_range(fluid, temperature, pressure):
     """Temperatures as a float array, refused outside the fluid's range of states."""
     lowest, highest = liquid_range(fluid)
     temperature = np.asarray(temperature, dtype=float)
-    outside = (temperature < lowest - _ROUNDING) | (temperature > highest + _ROUNDING)
-    if outside.any():
+    beyond = np.maximum(lowest - temperature, temperature - highest)
+    if not beyond.max() <= _ROUNDING:
+        came, low, high = (
+            kelvin - ZERO_CELSIUS for kelvin in (temperature[beyond.argmax()], lowest, highest)
+        )
         raise RangeError(
-            f"{fluid}: got {temperature[outside][0] - 273.15:g} degC, CoolProp's liquid range at "
-            f"atmospheric pressure is {lowest - 273.15:.2f} to {highest - 273.15:.2f} degC"
+            f"{fluid}: got {came:g} degC, CoolProp's liquid range at atmospheric pressure is "
+            f"{low:.2f} to {high:.2f} degC"
         )
     most = _coolprop().PropsSI("pmax", fluid)
     if not ATMOSPHERIC_PRESSURE <= pressure <= most:
@@ -113,7 +118,7 @@ def liquid_property(fluid, name, temperature, pressure=ATMOSPHERIC_PRESSURE):
     temperature : numpy.ndarray, shape (n,)
         Temperatures, K.
     pressure : float, optional
-        Pressure, Pa. Whether the liquid would freeze under it is not asked.
+        Pressure, Pa. Whether the liquid freezes under it CoolProp knows for some fluids only.
 
     Returns
     -------
@@ -139,7 +144,7 @@ def liquid_property(fluid, name, temperature, pressure=ATMOSPHERIC_PRESSURE):
     if wrong.any():
         raise RangeError(
             f"{fluid}: CoolProp gives a {name} of {values[wrong][0]:g} at "
-            f"{temperature[wrong][0] - 273.15:g} degC and {pressure / 1e6:g} MPa, need a "
+            f"{temperature[wrong][0] - ZERO_CELSIUS:g} degC and {pressure / 1e6:g} MPa, need a "
             "positive one"
         )
     return values

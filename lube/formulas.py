@@ -336,7 +336,8 @@ def regime_films(load, speed, material):
 
     References
     ----------
-    Johnson, J. Mech. Eng. Sci. 12 (1970), for the chart; constants as in `physics.md`, section 3.
+    Johnson, J. Mech. Eng. Sci. 12 (1970), for the chart; the last constants are those of Martin,
+    Herrebrugh and Dowson and Higginson.
 
     Notes
     -----
@@ -439,7 +440,7 @@ _ROWS = (
         place="central",
         evaluate=dowson_toyoda,
         source="Dowson & Toyoda, Proc. 5th Leeds-Lyon Symp. Tribol. (1978)",
-        remark="+3 to +18 % of a numerical solution to M = 10, +41 % at M = 100",
+        remark="+3 to +18 % of a numerical solution to M = 10, +40 % at M = 100",
         **ELASTIC_PIEZOVISCOUS,
     ),
     Formula(

@@ -6,6 +6,7 @@ same bytes.
 
 import hashlib
 import json
+import logging
 import os
 from importlib.metadata import version
 from pathlib import Path
@@ -16,6 +17,8 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.schema import check
+
+log = logging.getLogger(__name__)
 
 CONVENTIONS = "CF-1.11, ACDD-1.3"
 
@@ -55,6 +58,7 @@ def save(dataset, path, kind, study, compress=True):
         _force_to_disk(part)
         os.replace(part, path)
         _force_to_disk(path.parent)
+        log.info("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
     finally:
         part.unlink(missing_ok=True)
 

@@ -6,7 +6,6 @@ source, or says ``assumed: ...`` and why. This module only reads and checks; wha
 from a record at a temperature is computed in `lube.lubricant`.
 """
 
-import csv
 import re
 from pathlib import Path
 from typing import Annotated, Literal
@@ -83,7 +82,7 @@ class PressureViscosity(Sourced):
     gold_base: Literal[tuple(GOLD_BASES)] | None = Field(
         None, description="base oil, for Gold's form alpha = s nu^t"
     )
-    value: quantity("1/Pa", least=0.0) | None = Field(
+    value: quantity("1/Pa", above=0.0) | None = Field(
         None, description="measured coefficient, the same at all temperatures"
     )
     definition: Literal["slope-at-atmospheric", "secant", "reciprocal-asymptotic"] | None = Field(
@@ -294,7 +293,7 @@ def _check_points(points, where):
             )
 
 
-_HEADER_CELL = re.compile(r"\s*(\w+)\s*\[([^\]]+)\]\s*")
+_HEADER_CELL = re.compile(r"(\w+)\s*\[\s*([^\]]+?)\s*\]")
 
 
 def read_viscosity_csv(path):
@@ -329,7 +328,7 @@ def read_viscosity_csv(path):
     points = []
     for number, text in rows:
         where = f"{path}: line {number}"
-        cells = next(csv.reader([text], delimiter=delimiter))
+        cells = _cells(text, delimiter)
         if len(cells) != len(columns):
             raise RecordError(f"{where}: got {len(cells)} values, need {len(columns)}")
         if delimiter == ";":
@@ -350,18 +349,26 @@ def _csv_lines(path):
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise RecordError(f"{path}: cannot be read: {reason}") from None
     numbered = enumerate(text.splitlines(), start=1)
-    return [(number, line) for number, line in numbered if line.strip() and line[0] != "#"]
+    return [
+        (number, line)
+        for number, line in numbered
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+
+
+def _cells(line, delimiter):
+    return [cell.strip().strip('"') for cell in line.split(delimiter)]
 
 
 def _csv_columns(header, delimiter, where):
     """Units by column name, in the order of the columns."""
     columns = {}
     needed = "temperature [degC] and kinematic_viscosity [mm^2/s] or dynamic_viscosity [mPa*s]"
-    for cell in next(csv.reader([header], delimiter=delimiter)):
+    for cell in _cells(header, delimiter):
         match = _HEADER_CELL.fullmatch(cell)
         if not match or match[1] not in ViscosityPoint.model_fields or match[1] in columns:
-            raise RecordError(f"{where}: got the column {cell.strip()!r}, need {needed}")
-        columns[match[1]] = match[2].strip()
+            raise RecordError(f"{where}: got the column {cell!r}, need {needed}")
+        columns[match[1]] = match[2]
     if "temperature" not in columns or len(columns) != 2:
         raise RecordError(f"{where}: got the columns {', '.join(columns)}, need {needed}")
     return columns

@@ -121,6 +121,9 @@ _LUBRICANT = {
 }
 
 _FILM = {
+    "reduced_radius": _number([], "m", "reduced radius R*"),
+    "reduced_modulus": _number([], "Pa", "reduced modulus E*"),
+    "composite_rms_roughness": _number([], "m", "composite rms roughness"),
     "film_thickness": _number(OPERATING_DIMS, "m", "film thickness"),
     "lambda_ratio": _number(OPERATING_DIMS, "1", "lambda ratio"),
     "contact_half_width": _number(["force"], "m", "contact half-width"),
@@ -185,7 +188,13 @@ _PROBABILITIES = {
     "geometric_contact_probability": "probability of geometric contact",
 }
 
+_LAYER = {
+    "critical_thickness": _number([], "m", "critical thickness of the boundary layer"),
+    "shear_strength": _number([], "Pa", "limiting shear stress of the boundary layer"),
+}
+
 _CONTACT_RUN = {
+    **_LAYER,
     **{
         name: _mean_over_time(_RUN_DIMS, "1", long_name)
         for name, long_name in _PROBABILITIES.items()
@@ -205,6 +214,9 @@ _ENSEMBLE = {
 }
 
 _TRACE = {
+    **_LAYER,
+    "reduced_modulus": _number([], "Pa", "reduced modulus E*"),
+    "resistivity": _number([], "ohm m", "resistivity of the rollers' material"),
     "contact_length": _number(["operating_point", "time"], "m", "contact length"),
     "contact_resistance": _number(["operating_point", "time"], "ohm", "contact resistance"),
     **{

@@ -153,6 +153,96 @@ class LineSpec(StrictModel):
     height_step: float
 
 
+def line_spec(rollers, roughness, largest_force):
+    """Work out the roughness lines of a pair of rollers.
+
+    Parameters
+    ----------
+    rollers : RollerPair
+        The rollers.
+    roughness : Roughness
+        How their lines are drawn.
+    largest_force : float
+        Largest force of the study, N; its contact width may set the longest wavelength.
+
+    Returns
+    -------
+    LineSpec
+        Everything that determines the lines but the seed and the realisation.
+
+    Raises
+    ------
+    StudyError
+        If the grid is too coarse for the shortest wavelength, a perimeter too short for the
+        longest, or the height step out of proportion to the roughness.
+    """
+    first, second = rollers.first, rollers.second
+    spacing = 2.0 * math.pi * first.radius / roughness.points
+    longest = roughness.longest_wavelength
+    if longest == AUTOMATIC_WAVELENGTH:
+        longest = 2.0 * float(rollers.contact_half_width(largest_force))
+    shortest = roughness.points_per_shortest_wavelength * spacing
+    spec = LineSpec(
+        points=(roughness.points, round(roughness.points * second.radius / first.radius)),
+        spacing=spacing,
+        rms_height=(first.rms_roughness, second.rms_roughness),
+        hurst_exponent=roughness.hurst_exponent,
+        q_min=2.0 * math.pi / longest,
+        q_max=2.0 * math.pi / shortest,
+        height_step=roughness.height_step,
+    )
+    _check_waves(spec, longest, shortest)
+    _check_height_step(spec)
+    return spec
+
+
+def _check_waves(spec, longest, shortest):
+    if shortest >= longest:
+        least = math.ceil(spec.points[0] * shortest / longest) + 1
+        raise StudyError(
+            f"roughness.points: got {spec.points[0]}, too coarse a grid: the shortest wavelength, "
+            f"{shortest:.3g} m, is not below the longest, {longest:.3g} m; need {least} or more"
+        )
+    for roller, points in zip(("first", "second"), spec.points, strict=True):
+        perimeter = points * spec.spacing
+        if perimeter < longest:
+            raise StudyError(
+                f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short for "
+                f"the longest wavelength, {longest:.3g} m"
+            )
+        if math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
+            raise StudyError(
+                f"rollers.{roller}.radius: no whole number of waves between {shortest:.3g} "
+                f"and {longest:.3g} m long goes round its perimeter, {perimeter:.3g} m"
+            )
+
+
+def _check_height_step(spec):
+    """Heights must be many steps high, and fit a 32-bit integer with room for their peaks."""
+    for rms in spec.rms_height:
+        if not 1e3 <= rms / spec.height_step <= 1e7:
+            raise StudyError(
+                f"roughness.height_step: got {spec.height_step:.3g} m, need {rms / 1e7:.3g} "
+                f"to {rms / 1e3:.3g} m for a roughness of {rms:.3g} m"
+            )
+
+
+def _check_windows(rollers, spec, forces):
+    """Every contact must be wider than the grid is fine, and narrower than a roller is round."""
+    widest = 2.0 * rollers.contact_half_width(max(forces))
+    narrowest = 2.0 * rollers.contact_half_width(min(forces))
+    if widest >= min(spec.points) * spec.spacing:
+        raise StudyError(
+            f"operating_grid.force: the contact at {max(forces):g} N is {widest:.3g} m wide, "
+            "need less than a roller's perimeter"
+        )
+    if narrowest < 2.0 * spec.spacing:
+        raise StudyError(
+            f"roughness.points: the contact at {min(forces):g} N is {narrowest:.3g} m wide, "
+            f"need at least two grid spacings of {spec.spacing:.3g} m"
+        )
+
+
 class TracePoint(StrictModel):
     """An operating point whose contact is recorded at every time step."""
 
@@ -199,27 +289,7 @@ class Study(StrictModel):
     @property
     def line_spec(self):
         """The roughness lines that this study draws, a `LineSpec`."""
-        first, second = self.rollers.first, self.rollers.second
-        spacing = 2.0 * math.pi * first.radius / self.roughness.points
-        return LineSpec(
-            points=(
-                self.roughness.points,
-                round(self.roughness.points * second.radius / first.radius),
-            ),
-            spacing=spacing,
-            rms_height=(first.rms_roughness, second.rms_roughness),
-            hurst_exponent=self.roughness.hurst_exponent,
-            q_min=2.0 * math.pi / self.longest_wavelength,
-            q_max=2.0 * math.pi / (self.roughness.points_per_shortest_wavelength * spacing),
-            height_step=self.roughness.height_step,
-        )
-
-    @property
-    def longest_wavelength(self):
-        """Longest wavelength of the roughness, m; by the paper 2 a_max."""
-        if self.roughness.longest_wavelength == AUTOMATIC_WAVELENGTH:
-            return 2.0 * float(self.rollers.contact_half_width(max(self.operating_grid.force)))
-        return self.roughness.longest_wavelength
+        return line_spec(self.rollers, self.roughness, max(self.operating_grid.force))
 
     @property
     def batches(self):
@@ -298,49 +368,12 @@ class Study(StrictModel):
 
     @model_validator(mode="after")
     def _check_lines(self):
-        spec = self.line_spec
-        longest, shortest = 2.0 * math.pi / spec.q_min, 2.0 * math.pi / spec.q_max
-        if shortest >= longest:
-            least = math.ceil(self.roughness.points * shortest / longest) + 1
-            raise ValueError(
-                f"roughness.points: {self.roughness.points} points are too coarse: the shortest "
-                f"wavelength, {shortest:.3g} m, is not below the longest, {longest:.3g} m; need "
-                f"{least} or more"
-            )
-        for roller, points in zip(("first", "second"), spec.points, strict=True):
-            perimeter = points * spec.spacing
-            if perimeter < longest:
-                raise ValueError(
-                    f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short for "
-                    f"the longest wavelength, {longest:.3g} m"
-                )
-            if math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
-                raise ValueError(
-                    f"rollers.{roller}.radius: no whole number of waves between {shortest:.3g} "
-                    f"and {longest:.3g} m long goes round its perimeter, {perimeter:.3g} m"
-                )
-        self._check_window(spec)
+        try:
+            spec = self.line_spec
+            _check_windows(self.rollers, spec, self.operating_grid.force)
+        except LubeError as error:
+            raise ValueError(str(error)) from None
         return self
-
-    def _check_window(self, spec):
-        widest = 2.0 * self.rollers.contact_half_width(max(self.operating_grid.force))
-        narrowest = 2.0 * self.rollers.contact_half_width(min(self.operating_grid.force))
-        if widest >= min(spec.points) * spec.spacing:
-            raise ValueError(
-                f"operating_grid.force: the contact at {max(self.operating_grid.force):g} N is "
-                f"{widest:.3g} m wide, need less than a roller's perimeter"
-            )
-        if narrowest < 2.0 * spec.spacing:
-            raise ValueError(
-                f"roughness.points: the contact at {min(self.operating_grid.force):g} N is "
-                f"{narrowest:.3g} m wide, need at least two grid spacings of {spec.spacing:.3g} m"
-            )
-        for rms in spec.rms_height:
-            if not 1e3 <= rms / spec.height_step <= 1e7:
-                raise ValueError(
-                    f"roughness.height_step: got {spec.height_step:.3g} m, need {rms / 1e7:.3g} "
-                    f"to {rms / 1e3:.3g} m for a roughness of {rms:.3g} m"
-                )
 
     @model_validator(mode="after")
     def _check_traces(self):

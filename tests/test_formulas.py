@@ -88,19 +88,21 @@ def library_film(alpha, viscosity, speed, radius, load_per_length, modulus):
 
 
 @given(
-    st.floats(5e-9, 30e-9),
-    st.floats(1e-3, 1.0),
-    st.floats(0.01, 50.0),
-    st.floats(1e-3, 1.0),
-    st.floats(1e3, 1e7),
-    st.floats(1e10, 3e11),
+    st.tuples(
+        st.floats(5e-9, 30e-9),
+        st.floats(1e-3, 1.0),
+        st.floats(0.01, 50.0),
+        st.floats(1e-3, 1.0),
+        st.floats(1e3, 1e7),
+        st.floats(1e10, 3e11),
+    )
 )
-def test_dimensionless_form_is_eq_3(*inputs):
+def test_dimensionless_form_is_eq_3(inputs):
     assert library_film(*inputs) == pytest.approx(dimensional_film(*inputs), rel=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("which", "exponent"), enumerate([0.470, 0.692, 0.692, 0.474, -0.166, -0.056])
+    ("which", "exponent"), list(enumerate([0.470, 0.692, 0.692, 0.474, -0.166, -0.056]))
 )
 def test_exponents_of_eq_3_are_the_printed_ones(which, exponent):
     inputs = (15e-9, 0.1, 0.5, RADIUS, 8e4, MODULUS)
@@ -184,6 +186,24 @@ def test_moes_film_over_the_root_of_the_speed_depends_on_m_and_l_only(m, l_, spe
     root = np.sqrt(2 * speed)
     film_parameter = formulas.moes(m * root, speed, l_ / np.sqrt(root)) / root
     assert film_parameter == pytest.approx(moes_at(m, l_), rel=1e-9)
+
+
+def test_moes_asymptotes_have_their_constants():
+    """physics.md, section 3."""
+    assert formulas.moes_asymptotes(1.0, 1.0) == (3.0, 1.287, 2.621, 1.311)
+
+
+@given(loads, speeds, materials)
+def test_moes_formula_as_printed_with_his_own_speed_parameter(load, speed, material):
+    """Written out once more, with U made of the sum of the speeds: physics.md, section 3."""
+    sum_speed = 2.0 * speed
+    m, l_ = load / sum_speed**0.5, material * sum_speed**0.25
+    ri, ei, rp, ep = 3 / m, 2.621 / m**0.2, 1.287 * l_ ** (2 / 3), 1.311 * l_**0.75 / m**0.125
+    s = (7 + 8 * np.exp(-2 * ei / ri)) / 5
+    first = (ri ** (7 / 3) + ei ** (7 / 3)) ** (3 * s / 7)
+    second = (rp ** (-7 / 2) + ep ** (-7 / 2)) ** (-2 * s / 7)
+    expected = (first + second) ** (1 / s) * sum_speed**0.5
+    assert formulas.moes(load, speed, material) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.fixture(scope="module")
@@ -469,6 +489,26 @@ def test_pan_hamrock_holds_within_ten_per_cent_where_the_grid_is_in_its_range(po
 def test_pan_hamrock_is_more_than_ten_per_cent_off_just_below_its_range(point):
     assert not formulas.formula("pan-hamrock").holds(*formulas.moes_numbers(*groups(*point)))
     assert film("pan-hamrock", *point) > 1.10 * numerical_film(*point)[0]
+
+
+@pytest.mark.parametrize("moes_load", [1.5, 8.0, 20.0, 100.0])
+@pytest.mark.parametrize("moes_material", [5.0, 8.0, 12.0])
+def test_pan_hamrock_holds_within_twelve_per_cent_over_its_whole_range(
+    moes_load, moes_material, monkeypatch
+):
+    """Beyond the grid: U = 1e-11, an oil of 0.3 Pa s. The inlet sharpens as M rises."""
+    monkeypatch.setattr(NumericalFilm, "STEP", min(0.02, 0.5 / moes_load))
+    number = 1e-11
+    root = np.sqrt(2 * number)
+    load, material = moes_load * root, moes_material / np.sqrt(root)
+    expected = formulas.pan_hamrock(load, number, material) * RADIUS
+    solver = NumericalFilm(
+        force=load * 2 * MODULUS * RADIUS * LENGTH,
+        viscosity=0.3,
+        alpha=material / (2 * MODULUS),
+        speed=number * 2 * MODULUS * RADIUS / 0.3,
+    )
+    assert expected == pytest.approx(solver.solve(expected)[0], rel=0.125)
 
 
 # --- Printed figures ---------------------------------------------------------------------

@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
+from lube.jobs import begin_job
 from lube.notebooks import execute_notebook
 
+begin_job(snakemake.log[0])
 datasets = {Path(path).stem: path for path in snakemake.input.datasets}
 execute_notebook(
     snakemake.input.notebook,

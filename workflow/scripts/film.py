@@ -2,8 +2,10 @@
 
 from lube.film import film_table
 from lube.io import load, save
+from lube.jobs import begin_job
 from lube.study import load_study
 
+begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
 grid = study.operating_grid
 lubricant = load(snakemake.input.lubricant, "lubricant")

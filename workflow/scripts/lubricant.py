@@ -1,9 +1,11 @@
 """Make lubricant.nc: properties of every lubricant at the study's temperatures."""
 
 from lube.io import save
+from lube.jobs import begin_job
 from lube.lubricant import lubricant_table
 from lube.study import load_study
 
+begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
 table = lubricant_table(study.lubricants, study.operating_grid.temperature)
 save(table, snakemake.output[0], "lubricant", study)
