@@ -67,7 +67,7 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,)):
             **{name: film[name] for name in OPERATING_DIMS},
         },
         attrs={
-            "travel": spacing * max(lines.attrs["points"]),
+            "travel": spacing * min(lines.attrs["points"]),
             "longest_wavelength": 2.0 * np.pi / lines.attrs["q_min"],
         },
     )

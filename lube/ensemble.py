@@ -76,7 +76,10 @@ def probability_interval(probabilities, windows):
     Where contact was seen never, or always, or the scatter is unknown because there is one
     realisation only, `windows` stands in for the effective number of looks: so many windows
     that share no roughness fit into one revolution. Never seen then means a one-sided upper
-    limit, 1 - 0.05^(1/n), the exact binomial one for n windows without contact.
+    limit, 1 - 0.05^(1/n), the exact binomial one for n windows without contact. No upper
+    limit is below this one, nor a lower one above its mirror image: segments cut by the
+    window's edges break for a few steps in every realisation, so their small scatter says
+    nothing of the whole segments, rare and seen for the whole passage, not met so far.
 
     Parameters
     ----------
@@ -101,8 +104,10 @@ def probability_interval(probabilities, windows):
     normal = scipy.stats.norm.ppf(0.5 + CONFIDENCE / 2.0)
     lower, upper = score_interval(mean, looks, np.where(scattered, student, normal))
     bound = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
-    lower = np.select([mean == 0.0, mean == 1.0], [0.0, 1.0 - bound], lower)
-    upper = np.select([mean == 0.0, mean == 1.0], [bound, 1.0], upper)
+    lower = np.select(
+        [mean == 0.0, mean == 1.0], [0.0, 1.0 - bound], np.minimum(lower, 1.0 - bound)
+    )
+    upper = np.select([mean == 0.0, mean == 1.0], [bound, 1.0], np.maximum(upper, bound))
     return mean, lower, upper
 
 

@@ -47,5 +47,7 @@ def _tell(kind, error, traceback):
     """Report an uncaught error: one line for the user's, all of it for ours."""
     if isinstance(error, LubeError):
         logging.error("Error: %s", error)
+    elif isinstance(error, KeyboardInterrupt):
+        logging.error("Interrupted")
     else:
         logging.error("Error in the study's own code", exc_info=(kind, error, traceback))

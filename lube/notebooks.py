@@ -13,6 +13,9 @@ from papermill.exceptions import PapermillExecutionError
 
 from lube.errors import LubeError
 
+# A kernel that is stopped after its last cell reports a KeyboardInterrupt; it alarms for nothing.
+_QUIET_KERNEL = ["--log-level=CRITICAL"]
+
 
 def execute_notebook(notebook, output, parameters):
     """Execute a notebook with the given parameters and save the executed copy.
@@ -35,12 +38,16 @@ def execute_notebook(notebook, output, parameters):
     _check_parameters(notebook, parameters)
     try:
         executed = papermill.execute_notebook(
-            str(notebook), None, parameters, kernel_name="python3", progress_bar=False
+            str(notebook),
+            None,
+            parameters,
+            kernel_name="python3",
+            progress_bar=False,
+            extra_arguments=_QUIET_KERNEL,
         )
     except PapermillExecutionError as error:
-        raise LubeError(
-            f"{notebook}: cell {error.cell_index} fails: {error.ename}: {error.evalue}"
-        ) from error
+        reason = " ".join(f"{error.ename}: {error.evalue}".split())
+        raise LubeError(f"{notebook}: cell {error.cell_index} fails: {reason}") from error
     Path(output).parent.mkdir(parents=True, exist_ok=True)
     nbformat.write(_without_times(executed), output)
 

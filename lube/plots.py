@@ -8,6 +8,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from lube.units import convert
 
@@ -44,6 +45,7 @@ _STYLE = {
     "xtick.labelsize": 8,
     "ytick.labelsize": 8,
     "pdf.fonttype": 42,
+    "agg.path.chunksize": 10000,  # long traces are drawn in pieces
     "svg.hashsalt": "lube",
 }
 
@@ -153,24 +155,63 @@ def level_name(value, units):
     return f"{value:.0f} {nice_units(units)}"
 
 
+def plain_log_ticks(axis, numbers=(1, 2, 5)):
+    """Label a logarithmic axis with plain numbers: 20, 50, 100 instead of powers of ten.
+
+    Parameters
+    ----------
+    axis : matplotlib.axis.Axis
+        The axis, on a logarithmic scale.
+    numbers : sequence of int, optional
+        Which multiples of the powers of ten get a label.
+    """
+    axis.set_major_locator(LogLocator(subs=numbers))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def panel_letters(axes):
+    """Write (a), (b), ... over the panels of a figure, before what stands there already.
+
+    Parameters
+    ----------
+    axes : iterable of matplotlib.axes.Axes
+        The panels in reading order.
+    """
+    for letter, panel in zip("abcdefghijklmnop", np.ravel(list(axes)), strict=False):
+        panel.set_title(f"({letter}) {panel.get_title(loc='left')}".strip())
+
+
 def interval_bars(axes, x, mean, lower, upper, **style):
-    """Draw probabilities with their intervals; never-seen ones as arrows down from their limit.
+    """Draw probabilities with their intervals.
+
+    On a logarithmic scale a probability that was never seen has no point; an arrow hangs down
+    from its upper limit instead.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Axes with a logarithmic or linear scale of probability.
+        Axes whose scale is already set.
     x, mean, lower, upper : numpy.ndarray
         One-dimensional, of equal length.
     **style
-        ``color``, ``marker``, ``linestyle`` and ``label`` as for `Axes.errorbar`.
+        ``color``, ``marker``, ``label`` and so on, as for `Axes.errorbar`.
     """
-    seen = mean > 0.0
-    gap = np.where(seen, mean, np.nan)
+    seen = (mean > 0.0) | (axes.get_yscale() == "linear")
     bars = np.where(seen, [mean - lower, upper - mean], 0.0)
-    axes.errorbar(x, gap, yerr=bars, capsize=2, elinewidth=1.0, **style)
-    style = {"color": style.get("color"), "marker": r"$\downarrow$", "linestyle": "none"}
-    axes.plot(np.asarray(x)[~seen], np.asarray(upper)[~seen], markersize=7, **style)
+    points = np.where(seen, mean, np.nan)
+    axes.errorbar(x, points, yerr=bars, capsize=2, elinewidth=1.0, **style)
+    limits = np.asarray(upper)[~seen]
+    axes.errorbar(
+        np.asarray(x)[~seen],
+        limits,
+        yerr=0.5 * limits,
+        uplims=True,
+        linestyle="none",
+        capsize=2.5,
+        elinewidth=1.0,
+        color=style.get("color"),
+    )
 
 
 def save_figure(figure, stem):

@@ -42,6 +42,8 @@ def wave_amplitudes(spec, roller):
     # Limits that fall on a whole number of waves belong to the band in spite of rounding.
     first_wave = int(np.ceil(spec.q_min * turn * (1.0 - 1e-9)))
     last_wave = int(np.floor(spec.q_max * turn * (1.0 + 1e-9)))
+    # A wave of two points is no wave: its height on the grid would hang on its phase.
+    last_wave = min(last_wave, (spec.points[roller] - 1) // 2)
     waves = np.arange(first_wave, last_wave + 1)
     shape = (waves / first_wave) ** (-spec.hurst_exponent - 0.5)
     rms = np.sqrt(0.5 * np.sum(shape**2))

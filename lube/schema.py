@@ -230,6 +230,7 @@ _TRACE = {
     },
     "film_thickness": _number(["operating_point"], "m", "film thickness"),
     "contact_half_width": _number(["operating_point"], "m", "contact half-width"),
+    "entrainment_speed": _number(["operating_point"], "m s-1", "entrainment speed"),
 }
 
 FILES = {

@@ -261,7 +261,7 @@ class Study(StrictModel):
 
     name: Slug = Field(description="results go to results/<name>")
     title: str = Field(description="one line for figures and files")
-    seed: Annotated[StrictInt, Field(ge=0)] = Field(description="seed of all randomness")
+    seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)] = Field(description="seed of all randomness")
     realisations: Annotated[StrictInt, Field(ge=1, le=10**6)] = Field(
         description="how many pairs of roughness lines"
     )
@@ -339,7 +339,7 @@ class Study(StrictModel):
             | mechanics
             | {"traces": content["traces"], "resistivity": content["resistivity"]},
         }
-        return inputs[stage]
+        return {"title": self.title} | inputs[stage]
 
     @model_validator(mode="after")
     def _check_names(self):

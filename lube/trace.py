@@ -50,7 +50,7 @@ def contact_trace(lines, film, points, boundary_layer, resistivity):
     spacing = lines.attrs["spacing"]
     length = (("operating_point", "time"), np.array(broken) * spacing)
     faster_surface = places["entrainment_speed"].values[0] * (1.0 + abs(ratio) / 2.0)
-    trace = places[["film_thickness", "contact_half_width"]].assign(
+    trace = places[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
         contact_length=length,
         contact_resistance=(length[0], contact_resistance(length[1], resistivity)),
         reduced_modulus=film["reduced_modulus"],

@@ -2,15 +2,33 @@
 import ast
 import hashlib
 import json
+import os
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
+ROOT = Path(workflow.basedir)
+
+# Jobs and notebooks take the lube beside this workflow, never another clone's that happens
+# to be installed: the files watched for changes are then the files that run.
+sys.path.insert(0, str(ROOT))
+os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+
+import lube
 from lube.errors import LubeError
 from lube.study import load_study
 
-ROOT = Path(workflow.basedir)
 DATASETS = ("lubricant", "film", "roughness", "contact", "trace")
 FIGURES = sorted(path.stem for path in Path("notebooks").glob("*.ipynb"))
+
+
+@contextmanager
+def told_in_one_line():
+    """End Snakemake before any job, with one line, if the study is not fit to start."""
+    try:
+        yield
+    except LubeError as error:
+        sys.exit(f"The study cannot start. {error}")
 
 
 def the_study_file():
@@ -22,11 +40,9 @@ def the_study_file():
     return (workflow.configfiles or [Path("workflow/config/paper.yaml")])[0]
 
 
-try:
+with told_in_one_line():
     config["study_file"] = str(the_study_file())
     STUDY = load_study(config["study_file"])
-except LubeError as error:
-    sys.exit(f"The study cannot start. {error}")
 
 RESULTS = f"results/{STUDY.name}"
 
@@ -36,21 +52,30 @@ def result(name):
     return f"{RESULTS}/{name}"
 
 
+def digest(content):
+    """Fingerprint of plain data; as a parameter of a rule, its change re-runs the rule."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
 def stage_inputs(stage):
-    """Digest of the study's values that a stage depends on: a change re-runs the stage."""
-    inputs = json.dumps(STUDY.stage_inputs(stage), sort_keys=True)
-    return hashlib.sha256(inputs.encode()).hexdigest()
+    """Fingerprint of the study's values that a stage depends on."""
+    return digest(STUDY.stage_inputs(stage))
 
 
-def imported_modules(source):
-    """Names of the modules of the lube package that a piece of Python imports."""
-    for node in ast.walk(ast.parse(source)):
+def imported_modules(code):
+    """Names of the modules that a piece of Python imports, as far as they may be lube's."""
+    for node in ast.walk(ast.parse(code)):
         if isinstance(node, ast.ImportFrom) and node.module:
-            # `from lube import io` and `from lube.io import load` both mean lube.io.
-            yield node.module
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+            # `from lube import io`, `from lube import load` and `from lube.io import load`
+            # all mean lube.io: the package's public names come from their home modules.
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+            yield from [node.module, *names]
+            if node.module == "lube":
+                yield from filter(None, (lube._HOME_OF.get(alias.name) for alias in node.names))
         elif isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
+            if any(alias.name == "lube" for alias in node.names):
+                yield from lube._HOMES
 
 
 def sources(code):
@@ -61,34 +86,14 @@ def sources(code):
         path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
         if path.is_relative_to(ROOT / "lube") and path.is_file() and path not in found:
             found.add(path)
-            waiting += imported_modules(path.read_text())
+            waiting += imported_modules(path.read_text(encoding="utf-8"))
     # The package's __init__ names everything and computes nothing.
     return sorted(str(path.relative_to(ROOT)) for path in found - {ROOT / "lube/__init__.py"})
 
 
 def script_sources(name):
-    return sources((ROOT / f"workflow/scripts/{name}.py").read_text())
-
-
-def notebook_code(figure):
-    """The code cells of a figure's notebook: what decides on the figure, outputs do not."""
-    cells = json.loads(Path(f"notebooks/{figure}.ipynb").read_text())["cells"]
-    return ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
-
-
-def notebook_digest(figure):
-    return hashlib.sha256("\n".join(notebook_code(figure)).encode()).hexdigest()
-
-
-def figure_datasets(figure):
-    """Datasets that a notebook names in its first code cell, such as `film = "..."`."""
-    names = [
-        target.id
-        for node in ast.parse(notebook_code(figure)[0]).body
-        if isinstance(node, ast.Assign)
-        for target in node.targets
-    ]
-    return [result(f"{name}.nc") for name in names if name in DATASETS]
+    """Files of the lube package that a script of the workflow depends on."""
+    return sources((ROOT / f"workflow/scripts/{name}.py").read_text(encoding="utf-8"))
 
 
 def batch_limits(wildcards):

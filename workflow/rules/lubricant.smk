@@ -1,6 +1,12 @@
+def record_files():
+    """Files of the study's lubricant records, told from here so that the tree can be moved."""
+    files = {file for record in STUDY.lubricants for file in record.files}
+    return sorted(os.path.relpath(file) for file in files)
+
+
 rule lubricant:
     input:
-        records=sorted({str(file) for record in STUDY.lubricants for file in record.files}),
+        records=record_files(),
         sources=script_sources("lubricant"),
     output:
         result("lubricant.nc"),

@@ -1,0 +1,59 @@
+"""Shared fixtures: the rollers of the smoke study on grids fine or small enough for a test."""
+
+from pathlib import Path
+
+import pytest
+
+from lube import film_table, line_spec, load_study, roughness_lines
+from lube.lubricant import lubricant_table
+
+SMOKE = Path(__file__).parents[1] / "workflow" / "config" / "smoke.yaml"
+LARGEST_FORCE = 1600.0
+
+
+@pytest.fixture(scope="session")
+def study():
+    """The smoke study: the paper's rollers and layer."""
+    return load_study(SMOKE)
+
+
+@pytest.fixture(scope="session")
+def make_spec(study):
+    """Roughness lines of the study's rollers on a grid of other fineness, or rougher, ..."""
+
+    def make(points, second_radius=None, second_roughness=None, **roughness):
+        second = study.rollers.second
+        second = second.model_copy(
+            update={
+                "radius": second_radius or second.radius,
+                "rms_roughness": second_roughness or second.rms_roughness,
+            }
+        )
+        return line_spec(
+            study.rollers.model_copy(update={"second": second}),
+            study.roughness.model_copy(update={"points": points, **roughness}),
+            LARGEST_FORCE,
+        )
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def film(study):
+    """Film table whose five dimensions all differ in length, so that none passes for another."""
+    oil = lubricant_table(study.lubricants, [40.0, 55.0, 70.0, 80.0])
+    forces = [100.0, 200.0, 400.0, 800.0, LARGEST_FORCE]
+    speeds = [60.0, 100.0, 150.0]
+    return film_table(oil, study.rollers, forces, speeds, ["paper", "pan-hamrock-minimum"])
+
+
+@pytest.fixture(scope="session")
+def lines(make_spec):
+    """Two realisations, a tenth as fine as the paper's."""
+    return roughness_lines(make_spec(100_000), seed=11, realisations=[0, 1])
+
+
+@pytest.fixture(scope="session")
+def coarse_lines(make_spec):
+    """One realisation on a grid so coarse that the literal scan is quick."""
+    return roughness_lines(make_spec(6000), seed=11, realisations=[0])
