@@ -36,13 +36,15 @@ def _as_value_error(parse):
     return validate
 
 
-def bounded(number, above=-math.inf, below=math.inf, least=-math.inf, most=math.inf):
+def bounded(number, units, above=-math.inf, below=math.inf, least=-math.inf, most=math.inf):
     """Return the number if it lies within its limits, else raise LubeError.
 
     Parameters
     ----------
     number : float
         The value.
+    units : str or None
+        Its unit, for the message; None for a pure number.
     above, below : float, optional
         Limits that it may not touch.
     least, most : float, optional
@@ -58,11 +60,24 @@ def bounded(number, above=-math.inf, below=math.inf, least=-math.inf, most=math.
     LubeError
         If it lies outside.
     """
-    limits = {"above": above, "below": below, "at least": least, "at most": most}
     if not (above < number < below and least <= number <= most):
-        needed = [f"{word} {limit:g}" for word, limit in limits.items() if math.isfinite(limit)]
-        raise LubeError(f"got {number:g}, need a value {' and '.join(needed)}")
+        limits = {"above": above, "below": below, "least": least, "most": most}
+        unit = f" {units}" if units else ""
+        raise LubeError(f"got {number:g}, need a value {_in_words(limits)}{unit}")
     return number
+
+
+def _in_words(limits):
+    """``{"above": 0.0, "most": 0.5}`` -> ``above 0 and at most 0.5``."""
+    words = {"above": "above", "below": "below", "least": "at least", "most": "at most"}
+    return " and ".join(
+        f"{words[name]} {value:g}" for name, value in limits.items() if math.isfinite(value)
+    )
+
+
+def _described(kind, limits):
+    """Kind of a field and its limits, for the JSON schema and the README's table."""
+    return f"{kind}, {_in_words(limits)}" if limits else kind
 
 
 def quantity(units, **limits):
@@ -82,9 +97,9 @@ def quantity(units, **limits):
     """
 
     def parse(value):
-        return bounded(parse_quantity(value, units), **limits)
+        return bounded(parse_quantity(value, units), units, **limits)
 
-    schema = {"type": "string", "description": f"number with a unit of the kind {units}"}
+    schema = {"type": "string", "format": _described(f"quantity in {units}", limits)}
     return Annotated[float, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]
 
 
@@ -103,11 +118,10 @@ def pure_number(**limits):
     """
 
     def parse(value):
-        return bounded(parse_number(value), **limits)
+        return bounded(parse_number(value), None, **limits)
 
-    return Annotated[
-        float, BeforeValidator(_as_value_error(parse)), WithJsonSchema({"type": "number"})
-    ]
+    schema = {"type": "number", "format": _described("number", limits)}
+    return Annotated[float, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]
 
 
 def levels(units, **limits):
@@ -133,14 +147,14 @@ def levels(units, **limits):
         if units is not None:
             numbers = [float(convert(number, value["units"], units)) for number in numbers]
         for number in numbers:
-            bounded(number, **limits)
+            bounded(number, units, **limits)
         for lower, upper in pairwise(numbers):
             if upper <= lower:
                 raise LubeError(f"got {upper:g} after {lower:g}, need rising levels, each once")
         return tuple(numbers)
 
-    shape = "list of numbers" if units is None else f"{{values: [...], units: {units}}}"
-    schema = {"type": "object" if units else "array", "description": shape}
+    shape = "list of numbers" if units is None else f"values and units in {units}"
+    schema = {"type": "object", "format": _described(shape, limits)}
     return Annotated[
         tuple[float, ...], BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)
     ]
@@ -267,8 +281,22 @@ def validate(model, content, where, error_type):
         raise error_type(f"{where}: {_tell(mistakes[0])}{more}") from None
 
 
+# What pydantic's own kinds of mistake mean to someone who writes YAML.
+_NEEDED = {
+    "model_type": "need keys with their values",
+    "tuple_type": "need a list such as [a, b]",
+    "too_short": "need at least {min_length}",
+    "int_type": "need a whole number",
+    "string_type": "need text",
+    "string_pattern_mismatch": "need lower-case letters, digits, '-' or '_', 63 at most",
+    "greater_than_equal": "need at least {ge}",
+    "less_than_equal": "need at most {le}",
+}
+
+
 def _tell(mistake):
-    key = ".".join(str(part) for part in mistake["loc"]) or "file"
+    """Say in one line which key is mistaken, what came and what is needed."""
+    key = ".".join(" ".join(str(part).split()) for part in mistake["loc"]) or "file"
     came = repr(mistake.get("input"))
     came = came if len(came) <= 60 else came[:57] + "..."
     match mistake["type"]:
@@ -278,6 +306,8 @@ def _tell(mistake):
             return f"{key}: missing, and it has no default"
         case "value_error":
             return f"{key}: {mistake['ctx']['error']}".replace("file: ", "")
+        case kind if kind in _NEEDED:
+            return f"{key}: got {came}, {_NEEDED[kind].format(**mistake.get('ctx', {}))}"
         case _:
             needed = mistake["msg"].replace("Input should be", "need")
             return f"{key}: got {came}, {needed}"

@@ -273,7 +273,7 @@ def label(dataset, kind):
     for name in labelled.variables:
         expected = _expected(kind, name)
         if expected is None:
-            continue
+            continue  # to be refused below, by name
         attributes = {"long_name": expected.long_name, **expected.attributes}
         if expected.units is not None:
             attributes["units"] = expected.units
@@ -303,6 +303,9 @@ def check(dataset, kind, where="dataset"):
     DataError
         At the first departure, naming the variable, what it is and what it should be.
     """
+    for name in dataset.variables:
+        if _expected(kind, name) is None:
+            raise DataError(f"{where}: not a {kind} file: variable {name!r} does not belong there")
     for name, expected in FILES[kind].items():
         if name not in dataset.variables:
             if expected.required:

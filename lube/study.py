@@ -9,7 +9,14 @@ import math
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    StrictInt,
+    StringConstraints,
+    WithJsonSchema,
+    model_validator,
+)
 
 from lube.errors import LubeError, StudyError
 from lube.fields import (
@@ -95,7 +102,7 @@ def _wavelength(value):
     if value == AUTOMATIC_WAVELENGTH:
         return value
     try:
-        return bounded(parse_quantity(value, "m"), above=0.0)
+        return bounded(parse_quantity(value, "m"), "m", above=0.0)
     except LubeError as error:
         raise ValueError(f"{error}, or the words {AUTOMATIC_WAVELENGTH!r}") from None
 
@@ -108,8 +115,12 @@ class Roughness(StrictModel):
     )
     hurst_exponent: pure_number(above=0.0, below=1.0) = Field(description="Hurst exponent H")
     longest_wavelength: Annotated[
-        float | Literal[AUTOMATIC_WAVELENGTH], BeforeValidator(_wavelength)
-    ] = Field(description=f"2 pi / q_min: a length, or the words '{AUTOMATIC_WAVELENGTH}'")
+        float | Literal[AUTOMATIC_WAVELENGTH],
+        BeforeValidator(_wavelength),
+        WithJsonSchema(
+            {"type": "string", "format": f"quantity in m, or the words `{AUTOMATIC_WAVELENGTH}`"}
+        ),
+    ] = Field(description="2 pi / q_min")
     points_per_shortest_wavelength: pure_number(least=2.0) = Field(
         description="2 pi / (q_max dx); 2 is the finest that the grid can hold"
     )
@@ -261,7 +272,9 @@ class Study(StrictModel):
 
     name: Slug = Field(description="results go to results/<name>")
     title: str = Field(description="one line for figures and files")
-    seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)] = Field(description="seed of all randomness")
+    seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)] = Field(
+        description="seed of all randomness"
+    )
     realisations: Annotated[StrictInt, Field(ge=1, le=10**6)] = Field(
         description="how many pairs of roughness lines"
     )
@@ -447,8 +460,14 @@ def load_study(path):
         If a lubricant record that the study names cannot be used.
     """
     content = read_yaml(path, StudyError)
-    names = content.get("lubricants")
-    if isinstance(names, list) and all(isinstance(name, str) for name in names):
-        records = tuple(load_record(name, folder=Path(path).parent) for name in names)
-        content = content | {"lubricants": records}
+    if isinstance(content.get("lubricants"), list):
+        content = content | {"lubricants": _records(content["lubricants"], path)}
     return validate(Study, content, path, StudyError)
+
+
+def _records(names, path):
+    """Load the records that a study names, by a shipped name or a path from the study's folder."""
+    for name in names:
+        if not isinstance(name, str):
+            raise StudyError(f"{path}: lubricants: got {name!r}, need names or paths of records")
+    return tuple(load_record(name, folder=Path(path).parent) for name in names)

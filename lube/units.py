@@ -20,6 +20,9 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER}(?:\s*/\s*\d+)?)\s*(\S.*?)?\s*", re.DOTAL
 _FACTOR = r"[A-Za-zµμΩ°%]+(?:(?:\^|\*\*)?[+-]?\d|[²³])?"
 _UNITS = re.compile(rf"(?:1|{_FACTOR})(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
 
+# To pint an angle is a pure number, so 1 Hz would be 9.55 rpm, which nobody means.
+_ANGLE = re.compile("rpm|turn|revolution|cycle|rad|deg")
+
 
 @functools.cache
 def _registry():
@@ -82,6 +85,8 @@ def convert(number, units, target):
         return number
     if len(units) > 40 or not _UNITS.fullmatch(units):
         raise LubeError(f"{units[:40]!r} is no unit, need one of the kind {target!r}")
+    if target == "rpm" and not _ANGLE.search(units):
+        raise LubeError(f"{units!r} names no angle, need a unit such as 'rpm', 'turn/s' or 'rad/s'")
     registry = _registry()
     try:
         return registry.Quantity(number, units).to(target).magnitude

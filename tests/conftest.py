@@ -56,4 +56,6 @@ def lines(make_spec):
 @pytest.fixture(scope="session")
 def coarse_lines(make_spec):
     """One realisation on a grid so coarse that the literal scan is quick."""
-    return roughness_lines(make_spec(6000), seed=11, realisations=[0])
+    return roughness_lines(
+        make_spec(6000, points_per_shortest_wavelength=4.0), seed=11, realisations=[0]
+    )

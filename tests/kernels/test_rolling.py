@@ -37,7 +37,7 @@ def statistics_by_scan(line_1, line_2, points, factor, steps=None):
     return scan_statistics(line_1, line_2, ROLLING, steps, films, half_windows, factor)
 
 
-@settings(max_examples=400)
+@settings(max_examples=1500)
 @given(rough_lines, rough_lines, operating_points, factors)
 def test_rolling_statistics_equal_the_scan(line_1, line_2, points, factor):
     np.testing.assert_array_equal(
@@ -46,7 +46,7 @@ def test_rolling_statistics_equal_the_scan(line_1, line_2, points, factor):
     )
 
 
-@settings(max_examples=300)
+@settings(max_examples=1000)
 @given(rough_lines, rough_lines, st.integers(-8, 8), half_windows, factors)
 def test_rolling_trace_equals_the_scan_at_every_step(line_1, line_2, film, half_window, factor):
     steps = line_1.size

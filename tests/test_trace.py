@@ -1,0 +1,149 @@
+"""Traces over one revolution, and the window that explains each of their steps."""
+
+import numpy as np
+import pytest
+
+from lube import BoundaryLayer, contact_statistics, contact_trace, contact_window
+from lube.schema import CONTACT_DIMS
+
+RESISTIVITY = 0.2e-6
+
+
+def point(film, ratio, **indices):
+    """Operating point at these indices of the film table."""
+    place = film.isel({"lubricant": 0, "speed": 1, **indices})
+    return {"slide_to_roll_ratio": ratio} | {
+        name: place[name].item() for name in CONTACT_DIMS if name in place.coords
+    }
+
+
+def points_of(film, ratio):
+    return [
+        point(film, ratio, film_formula=0, temperature=3, force=4),
+        point(film, ratio, film_formula=1, temperature=1, force=3),
+        point(film, ratio, film_formula=0, temperature=0, force=0),  # nothing touches
+    ]
+
+
+@pytest.fixture(scope="module", params=[0.0, 0.4, -0.4])
+def case(request, lines, coarse_lines, film, study):
+    """Pure rolling on a fine grid, slip either way on a coarse one and with a weak layer."""
+    ratio = request.param
+    weak = BoundaryLayer.model_construct(critical_thickness=5e-9, shear_strength=1e4)
+    surfaces, layer = (lines, study.boundary_layer) if ratio == 0.0 else (coarse_lines, weak)
+    trace = contact_trace(surfaces, film, points_of(film, ratio), layer, RESISTIVITY)
+    contact = contact_statistics(surfaces.isel(realisation=[0]), film, layer, [ratio])
+    return surfaces, trace, contact
+
+
+def test_time_means_are_the_contact_statistics(case, film):
+    _, trace, contact = case
+    ratio = trace["slide_to_roll_ratio"].values[0]
+    for number, place in enumerate(points_of(film, ratio)):
+        length = trace["contact_length"].isel(operating_point=number)
+        expected = contact.sel(realisation=0, **place)
+        share = np.count_nonzero(length > 0.0) / length.size
+        assert share == expected["breakthrough_probability"].item()
+        mean = expected["mean_contact_length"].item()
+        assert length.mean().item() == pytest.approx(mean, rel=1e-12, abs=1e-300)
+
+
+def test_traces_show_contact_and_none(case):
+    touches = (case[1]["contact_length"] > 0.0).mean("time").values
+    assert 0.0 < touches[0] < 1.0
+    assert touches[2] == 0.0
+
+
+def test_resistance_is_equation_1(case):
+    _, trace, _ = case
+    length, resistance = trace["contact_length"].values, trace["contact_resistance"].values
+    assert trace["resistivity"].item() == RESISTIVITY
+    assert (np.isinf(resistance) == (length == 0.0)).all()
+    np.testing.assert_allclose((resistance * length)[length > 0.0], RESISTIVITY, rtol=1e-12)
+
+
+def test_time_goes_by_the_faster_surface(case):
+    lines, trace, _ = case
+    ratio = trace["slide_to_roll_ratio"].values[0]
+    mean_speed = 2.0 * np.pi * 0.05 * 100.0 / 60.0  # 100 rpm on a radius of 50 mm
+    # (v1 - v2) / v = ratio and (v1 + v2) / 2 = v.
+    faster = max(mean_speed * (1.0 + ratio / 2.0), mean_speed * (1.0 - ratio / 2.0))
+    np.testing.assert_allclose(np.diff(trace["time"]), lines.attrs["spacing"] / faster, rtol=1e-9)
+    assert trace["time"].values[0] == 0.0
+    assert trace.sizes["time"] == lines.attrs["points"][0]
+    revolution = 60.0 / 100.0 / (1.0 + abs(ratio) / 2.0)
+    assert trace["time"].values[-1] == pytest.approx(revolution * (1.0 - 1.0 / trace.sizes["time"]))
+
+
+def test_operating_points_carry_their_coordinates(case, film):
+    _, trace, _ = case
+    ratio = trace["slide_to_roll_ratio"].values[0]
+    for number, place in enumerate(points_of(film, ratio)):
+        here = trace.isel(operating_point=number)
+        assert {name: here[name].item() for name in CONTACT_DIMS} == place
+        there = film.sel({name: place[name] for name in CONTACT_DIMS[1:]})
+        for name in ("film_thickness", "contact_half_width"):
+            assert here[name].item() == there[name].item()
+
+
+def steps_to_look_at(length):
+    """First and last steps, every change of state, and some between."""
+    changes = np.flatnonzero(np.diff((length > 0.0).astype(int)))
+    near = np.concatenate([changes, changes + 1])[::10][:40]
+    regular = np.arange(0, length.size, length.size // 60)
+    return np.unique(np.concatenate([[0, 1, length.size - 1], near, regular]))
+
+
+@pytest.mark.parametrize("operating_point", [0, 1])
+def test_window_explains_the_trace_at_every_step(case, operating_point):
+    lines, trace, _ = case
+    length = trace["contact_length"].isel(operating_point=operating_point).values
+    for step in steps_to_look_at(length):
+        window = contact_window(lines, trace, operating_point, step)
+        broken = window["contact_length"].values[window["broken"].values].sum()
+        assert broken == pytest.approx(length[step], rel=1e-12, abs=1e-300)
+
+
+def test_window_lies_within_the_half_width_and_holds_the_heights(case):
+    lines, trace, _ = case
+    window = contact_window(lines, trace, 0, 0)
+    spacing = lines.attrs["spacing"]
+    half_width = trace["contact_half_width"].values[0]
+    assert half_width - spacing < window["x"].values[-1] <= half_width
+    np.testing.assert_array_equal(window["x"], -window["x"].values[::-1])
+    np.testing.assert_allclose(np.diff(window["x"]), spacing, rtol=1e-9)
+    for roller in (0, 1):
+        line = lines["height"].values[0, roller]
+        around = np.rint(window["x"].values / spacing).astype(int) % line.size
+        np.testing.assert_allclose(window["height"].values[roller], line[around], rtol=1e-12)
+    gap = trace["film_thickness"].values[0] - window["height"].sum("roller")
+    np.testing.assert_allclose(window["overlap"], -gap, rtol=0, atol=0.5e-12 * (1.0 + 1e-6))
+
+
+def test_segments_of_the_window_are_equations_5_and_6(case):
+    lines, trace, _ = case
+    step = int(np.argmax(trace["contact_length"].values[0]))
+    window = contact_window(lines, trace, 0, step)
+    overlap, spacing = window["overlap"].values, lines.attrs["spacing"]
+    assert window.sizes["segment"] > 0
+    inside = np.zeros(overlap.size, bool)
+    for segment in range(window.sizes["segment"]):
+        this = window.isel(segment=segment)
+        first, last = this["first"].item(), this["last"].item()
+        assert (overlap[first : last + 1] > 0.0).all()
+        assert first == 0 or overlap[first - 1] <= 0.0
+        assert last == overlap.size - 1 or overlap[last + 1] <= 0.0
+        inside[first : last + 1] = True
+        length = (last - first + 1) * spacing
+        force = trace["reduced_modulus"].item() * spacing * overlap[first : last + 1].sum()
+        layer = np.pi * trace["shear_strength"].item() / 12.0 * length**3 / force
+        assert this["contact_length"].item() == pytest.approx(length)
+        assert this["force"].item() == pytest.approx(force)
+        assert this["layer_thickness"].item() == pytest.approx(layer)
+        assert this["broken"].item() == (layer < trace["critical_thickness"].item())
+    assert (inside == (overlap > 0.0)).all()
+
+
+def test_window_without_contact_has_no_segments(case):
+    lines, trace, _ = case
+    assert contact_window(lines, trace, 2, 5).sizes["segment"] == 0

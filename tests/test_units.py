@@ -1,0 +1,134 @@
+"""Numbers with units: read exactly, or refused in one line that says what is needed."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lube.errors import LubeError
+from lube.units import convert, parse_number, parse_quantity
+
+finite = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e200, max_value=1e200)
+positive = st.floats(min_value=1e-200, max_value=1e200)
+
+# Pairs of units of one dimension, with what one of the first is in the second.
+FACTORS = [
+    ("mm", "m", 1e-3),
+    ("um", "m", 1e-6),
+    ("µm", "m", 1e-6),
+    ("nm", "m", 1e-9),
+    ("pm", "m", 1e-12),
+    ("inch", "m", 0.0254),
+    ("GPa", "Pa", 1e9),
+    ("N/mm^2", "Pa", 1e6),
+    ("bar", "Pa", 1e5),
+    ("kN", "N", 1e3),
+    ("mm^2/s", "m^2/s", 1e-6),
+    ("cSt", "m^2/s", 1e-6),
+    ("mPa*s", "Pa*s", 1e-3),
+    ("cP", "Pa*s", 1e-3),
+    ("g/cm^3", "kg/m^3", 1e3),
+    ("uohm*m", "ohm*m", 1e-6),
+    ("1/GPa", "1/Pa", 1e-9),
+    ("turn/s", "rpm", 60.0),
+    ("rad/s", "rpm", 30.0 / math.pi),
+]
+
+
+def refusal(call, *arguments):
+    with pytest.raises(LubeError) as caught:
+        call(*arguments)
+    message = str(caught.value)
+    assert message and "\n" not in message
+    return message
+
+
+@given(finite)
+def test_a_number_survives_its_way_through_text(number):
+    assert parse_number(repr(number)) == number
+    assert parse_number(number) == number
+
+
+@given(finite)
+def test_a_quantity_in_its_own_unit_survives_exactly(number):
+    assert parse_quantity(f"{number!r} m", "m") == number
+
+
+@pytest.mark.parametrize(("units", "target", "factor"), FACTORS)
+@given(number=positive)
+def test_a_quantity_is_converted_and_back(number, units, target, factor):
+    converted = parse_quantity(f"{number!r} {units}", target)
+    assert converted == pytest.approx(number * factor, rel=1e-12)
+    assert convert(converted, target, units) == pytest.approx(number, rel=1e-12)
+
+
+@given(st.integers(-1000, 1000), st.integers(1, 1000))
+def test_a_fraction_is_the_nearest_float(numerator, denominator):
+    assert parse_number(f"{numerator}/{denominator}") == numerator / denominator
+    assert parse_quantity(f"{numerator}/{denominator} rpm", "rpm") == numerator / denominator
+
+
+def test_a_fraction_may_stand_before_another_unit():
+    assert parse_quantity("1/3 km", "m") == pytest.approx(1000.0 / 3.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "celsius"),
+    [("40 degC", 40.0), ("313.15 K", 40.0), ("104 degF", 40.0), ("-40 degF", -40.0)],
+)
+def test_temperatures_are_points_on_a_scale_not_differences(text, celsius):
+    assert parse_quantity(text, "degC") == pytest.approx(celsius, abs=1e-9)
+
+
+@pytest.mark.parametrize("units", ["Hz", "1/s", "s^-1"])
+def test_a_frequency_that_does_not_say_turn_or_radian_is_no_rotation_speed(units):
+    assert "need a unit such as 'rpm', 'turn/s'" in refusal(parse_quantity, f"2 {units}", "rpm")
+
+
+def test_an_array_is_converted_like_each_of_its_numbers():
+    import numpy as np
+
+    converted = convert(np.array([1.0, 40.0]), "mm", "m")
+    np.testing.assert_allclose(converted, [1e-3, 40e-3], rtol=1e-15)
+
+
+@pytest.mark.parametrize("value", [50, 50.0, True, None, [1], {"a": 1}, "", "mm", "fifty mm"])
+def test_what_is_no_number_with_a_unit_is_refused(value):
+    assert refusal(parse_quantity, value, "m").startswith(f"got {value!r}, need a number with its")
+
+
+def test_a_number_without_unit_is_refused_with_the_unit_it_needs():
+    assert refusal(parse_quantity, "50", "m") == "got '50' without a unit, need one such as '50 m'"
+
+
+@pytest.mark.parametrize("units", ["kg", "m^2", "s", "1/m", "degC", "N"])
+def test_a_wrong_dimension_is_refused_by_name(units):
+    message = refusal(parse_quantity, f"50 {units}", "m")
+    assert repr(units) in message
+    assert "need a unit of the kind 'm'" in message
+
+
+@pytest.mark.parametrize("units", ["furlongs_", "xyz", "mm; import os", "m**9999", "m\nm"])
+def test_an_unknown_unit_is_refused_by_name(units):
+    assert "need" in refusal(parse_quantity, f"50 {units}", "m")
+
+
+@pytest.mark.parametrize("units", ["m**9**9**9**9", "(" * 5000 + "m", "m*" * 5000 + "m"])
+def test_arithmetic_that_never_ends_does_not_reach_the_parser(units):
+    assert "is no unit" in refusal(parse_quantity, f"50 {units}", "m")
+
+
+@pytest.mark.parametrize("value", ["nan mm", "inf mm", "-inf mm", "1e999 mm", "1e308 Gm"])
+def test_a_quantity_that_is_not_finite_is_refused(value):
+    assert "need a" in refusal(parse_quantity, value, "m")
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", math.nan, math.inf, -math.inf, "1e999", 10**400])
+def test_a_number_that_is_not_finite_is_refused(value):
+    assert "need a" in refusal(parse_number, value)
+
+
+@pytest.mark.parametrize("value", [True, None, [1], "one", "1/0", "1/2/3", "1 m", ""])
+def test_what_is_no_number_is_refused(value):
+    assert refusal(parse_number, value) == f"got {value!r}, need a number"
