@@ -2,6 +2,7 @@
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/notebooks.smk"
 include: "workflow/rules/lubricant.smk"
 include: "workflow/rules/film.smk"
 include: "workflow/rules/roughness.smk"

@@ -16,7 +16,7 @@ _HOMES = {
     "lube.lubricant": ("lubricant_table",),
     "lube.records": ("load_record", "shipped_records"),
     "lube.resistance": ("contact_resistance",),
-    "lube.roughness": ("roughness_lines",),
+    "lube.roughness": ("power_spectrum", "roughness_lines"),
     "lube.study": (
         "BoundaryLayer",
         "LineSpec",

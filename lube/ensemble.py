@@ -97,7 +97,8 @@ def probability_interval(probabilities, windows):
     mean = probabilities.mean(axis=0)
     windows = np.broadcast_to(windows * realisations, mean.shape).astype(float)
     looks = effective_looks(probabilities)
-    scattered = np.isfinite(looks) & (mean > 0.0) & (mean < 1.0)
+    # Asked of the values themselves: the variance of equal ones need not round to zero.
+    scattered = np.ptp(probabilities, axis=0) > 0.0
     looks = np.where(scattered, looks, windows)
     degrees = max(realisations - 1, 1)
     student = scipy.stats.t.ppf(0.5 + CONFIDENCE / 2.0, degrees)
@@ -127,8 +128,20 @@ def independent_windows(contact, film):
     -------
     xarray.DataArray
         Over force; at least one.
+
+    Raises
+    ------
+    DataError
+        If the film table lacks a force of the contact results.
     """
-    reach = 2.0 * film["contact_half_width"] + contact.attrs["longest_wavelength"]
+    try:
+        half_width = film["contact_half_width"].sel(force=contact["force"])
+    except KeyError:
+        raise DataError(
+            f"the contact results are at forces {contact['force'].values.tolist()} N, the film "
+            f"table has {film['force'].values.tolist()} N"
+        ) from None
+    reach = 2.0 * half_width + contact.attrs["longest_wavelength"]
     return np.maximum(contact.attrs["travel"] / reach, 1.0)
 
 

@@ -5,6 +5,7 @@ the notebook does not know; and it writes clock times into its output. Here the 
 errors and the last is taken out, so that an executed notebook is the same whenever it is made.
 """
 
+import ast
 from pathlib import Path
 
 import nbformat
@@ -32,8 +33,8 @@ def execute_notebook(notebook, output, parameters):
     Raises
     ------
     LubeError
-        If the notebook has no cell tagged ``parameters``, does not know a parameter, or a
-        cell fails.
+        If the file is no notebook, has no cell tagged ``parameters``, does not know a
+        parameter, or a cell fails.
     """
     _check_parameters(notebook, parameters)
     try:
@@ -42,6 +43,7 @@ def execute_notebook(notebook, output, parameters):
             None,
             parameters,
             kernel_name="python3",
+            language="python",
             progress_bar=False,
             extra_arguments=_QUIET_KERNEL,
         )
@@ -53,16 +55,26 @@ def execute_notebook(notebook, output, parameters):
 
 
 def _check_parameters(notebook, parameters):
-    cells = nbformat.read(notebook, as_version=4).cells
-    if not any("parameters" in cell.metadata.get("tags", []) for cell in cells):
+    try:
+        cells = nbformat.read(notebook, as_version=4).cells
+    except ValueError:
+        raise LubeError(f"{notebook}: not a Jupyter notebook, damaged or foreign") from None
+    tagged = [cell for cell in cells if "parameters" in cell.metadata.get("tags", [])]
+    if not tagged:
         raise LubeError(f"{notebook}: no cell is tagged 'parameters', need one with the paths")
-    known = papermill.inspect_notebook(str(notebook))
+    known = _assigned_names(tagged[0].source)
     for name in parameters:
         if name not in known:
             raise LubeError(
                 f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
                 f"{', '.join(known)}"
             )
+
+
+def _assigned_names(code):
+    assignments = [node for node in ast.parse(code).body if isinstance(node, ast.Assign)]
+    targets = [target for assignment in assignments for target in assignment.targets]
+    return [target.id for target in targets if isinstance(target, ast.Name)]
 
 
 def _without_times(executed):

@@ -137,6 +137,30 @@ def line_moments(line, spacing):
     }
 
 
+def power_spectrum(line, spacing):
+    """One-sided power spectral density of a periodic line.
+
+    Parameters
+    ----------
+    line : numpy.ndarray
+        Heights, shape (N,), m.
+    spacing : float
+        Distance dx of neighbouring points, m.
+
+    Returns
+    -------
+    wave_vector : numpy.ndarray
+        Shape (N // 2,), rad/m.
+    density : numpy.ndarray
+        Shape (N // 2,), m^3; its integral over the wave vector is the mean square height.
+    """
+    step = 2.0 * np.pi / (line.size * spacing)
+    power = 2.0 * np.abs(scipy.fft.rfft(line)[1:] / line.size) ** 2
+    if line.size % 2 == 0:
+        power[-1] /= 2.0  # the wave of two points stands for itself, all others for a pair
+    return step * np.arange(1, power.size + 1), power / step
+
+
 def spectrum_moments(spec, roller):
     """Moments that the spectrum promises for the same differences of neighbouring points.
 

@@ -218,8 +218,8 @@ def _check_waves(spec, longest, shortest):
         perimeter = points * spec.spacing
         if perimeter < longest:
             raise StudyError(
-                f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short for "
-                f"the longest wavelength, {longest:.3g} m"
+                f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short, "
+                f"need at least the longest wavelength, {longest:.3g} m"
             )
         if math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
             raise StudyError(

@@ -117,23 +117,24 @@ def contact_window(lines, trace, operating_point, step):
         ],
         np.int64,
     )
-    overlap = (heights.sum(axis=0) - film) * height_step
+    overlap = heights.sum(axis=0) - film
     first, last = _segments(overlap)
+    points = last - first + 1
+    indentation = np.array([overlap[i : i + n].sum() for i, n in zip(first, points, strict=True)])
     stiffness = place["reduced_modulus"].item() * spacing
-    length = (last - first + 1) * spacing
-    indentation = [overlap[i : k + 1].sum() for i, k in zip(first, last, strict=True)]
-    force = stiffness * np.array(indentation, float)
+    length, force = points * spacing, stiffness * indentation * height_step
     layer = np.pi * place["shear_strength"].item() / 12.0 * length**3 / force
+    factor = layer_factor_of(lines, place["reduced_modulus"], place).item()
     return xr.Dataset(
         {
             "height": (("roller", "x"), heights * height_step),
-            "overlap": ("x", overlap),
+            "overlap": ("x", overlap * height_step),
             "first": ("segment", first),
             "last": ("segment", last),
             "contact_length": ("segment", length),
             "force": ("segment", force),
             "layer_thickness": ("segment", layer),
-            "broken": ("segment", layer < place["critical_thickness"].item()),
+            "broken": ("segment", points.astype(float) ** 3 < factor * indentation),
         },
         coords={"x": window * spacing, "roller": lines["roller"]},
     )

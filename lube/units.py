@@ -85,15 +85,16 @@ def convert(number, units, target):
         return number
     if len(units) > 40 or not _UNITS.fullmatch(units):
         raise LubeError(f"{units[:40]!r} is no unit, need one of the kind {target!r}")
-    if target == "rpm" and not _ANGLE.search(units):
-        raise LubeError(f"{units!r} names no angle, need a unit such as 'rpm', 'turn/s' or 'rad/s'")
     registry = _registry()
     try:
-        return registry.Quantity(number, units).to(target).magnitude
+        converted = registry.Quantity(number, units).to(target).magnitude
     except Exception as error:  # pint's parser raises many kinds, all meaning one thing
         kind = type(error).__name__
         reason = "unknown unit" if "Undefined" in kind else "wrong dimension or unit"
         raise LubeError(f"{reason} {units!r}, need a unit of the kind {target!r}") from None
+    if target == "rpm" and not _ANGLE.search(units):
+        raise LubeError(f"{units!r} names no angle, need a unit such as 'rpm', 'turn/s' or 'rad/s'")
+    return converted
 
 
 def parse_quantity(value, target):

@@ -3,9 +3,14 @@
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from lube import film_table, line_spec, load_study, roughness_lines
 from lube.lubricant import lubricant_table
+
+# The first example of a test may have to wait for its kernel to be compiled.
+settings.register_profile("lube", deadline=None)
+settings.load_profile("lube")
 
 SMOKE = Path(__file__).parents[1] / "workflow" / "config" / "smoke.yaml"
 LARGEST_FORCE = 1600.0

@@ -11,6 +11,7 @@ from lube.roughness import (
     PADDING,
     draw_line,
     draw_realisation,
+    power_spectrum,
     roughness_batch,
     spectrum_moments,
     wave_amplitudes,
@@ -94,6 +95,21 @@ def test_spectrum_falls_with_the_power_2h_plus_1(make_spec, hurst_exponent):
     assert slope == pytest.approx(-2.0 * hurst_exponent - 1.0, abs=1e-3)
 
 
+def test_power_spectrum_is_the_papers_and_holds_the_mean_square_height(unequal):
+    for roller, line in enumerate(draw_realisation(unequal, SEED, 0)):
+        heights = line * unequal.height_step
+        wave_vector, density = power_spectrum(heights, unequal.spacing)
+        steps = np.diff(wave_vector)
+        np.testing.assert_allclose(steps, wave_vector[0], rtol=1e-9)
+        power = np.sum(density) * wave_vector[0]  # Parseval
+        assert power == pytest.approx(np.mean(heights**2), rel=1e-9)
+        inside, radius = band(unequal, roller)
+        found, q = density[inside - 1], inside / radius
+        np.testing.assert_allclose(wave_vector[inside - 1], q, rtol=1e-9)
+        scale = found[0] * q[0] ** 2.4  # H = 0.7
+        np.testing.assert_allclose(found, scale * q**-2.4, rtol=1e-3)
+
+
 def test_band_is_the_papers(spec, study):
     first, amplitudes = wave_amplitudes(spec, 0)
     perimeter = 2.0 * np.pi * study.rollers.first.radius
@@ -101,6 +117,14 @@ def test_band_is_the_papers(spec, study):
     last = first + amplitudes.size - 1
     assert perimeter / first <= width < perimeter / (first - 1)
     assert last == 100_000 // 10
+
+
+def test_limits_that_are_whole_numbers_of_waves_belong_to_the_band(make_spec):
+    perimeter = 2.0 * np.pi * 0.05
+    for waves in range(700, 800):
+        spec = make_spec(50_000, longest_wavelength=perimeter / waves)
+        first, amplitudes = wave_amplitudes(spec, 0)
+        assert (first, first + amplitudes.size - 1) == (waves, 5000)
 
 
 def test_finest_wave_has_more_than_two_points(make_spec):
@@ -191,6 +215,14 @@ def test_realisation_hangs_on_nothing_but_the_pair_of_seeds(make_spec):
         np.testing.assert_array_equal(line, draw_line(spec, roller, children[roller]))
     drawn = [draw_realisation(spec, *pair)[0] for pair in [(0, 1), (1, 0), (1, 1), (0, 0)]]
     assert len({line.tobytes() for line in drawn}) == 4
+
+
+def test_realisation_on_record(make_spec):
+    # Drawn when the tests were written: should it differ, so do the results of every study.
+    spec = make_spec(20_000)
+    first, second = draw_realisation(spec, SEED, 0)
+    np.testing.assert_allclose(first[:4], [-113239, -60932, -200, 50661], rtol=0, atol=2)
+    np.testing.assert_allclose(second[:4], [-205523, -128052, -17898, 106735], rtol=0, atol=2)
 
 
 def test_lean_batches_hold_the_same_heights(unequal):

@@ -158,7 +158,8 @@ def test_an_own_record_is_found_from_the_studys_folder(change):
 
 
 @pytest.mark.parametrize(
-    "freeze", [lambda study: study, lambda study: study.rollers.first, lambda study: study.traces[0]]
+    "freeze",
+    [lambda study: study, lambda study: study.rollers.first, lambda study: study.traces[0]],
 )
 def test_a_study_is_frozen_in_all_its_parts(freeze):
     part = freeze(load_study(PAPER))
@@ -229,7 +230,7 @@ def test_the_largest_force_changes_the_lines_by_its_contact_width(changed_stages
 
 
 def test_the_same_value_in_another_unit_changes_nothing(changed_stages):
-    same = ("rollers.length", "0.01 m"), ("resistivity", "200 nohm*m")
+    same = ("rollers.length", "0.01 m"), ("rollers.first.young_modulus", "210000 MPa")
     assert changed_stages(*same) == set()
 
 
@@ -243,7 +244,8 @@ def test_a_lubricants_values_are_inputs_of_the_lubricant_stage_alone(changed_sta
 @pytest.mark.parametrize("stage", STAGES)
 def test_stage_inputs_are_plain_data(stage):
     inputs = load_study(PAPER).stage_inputs(stage)
-    assert json.loads(json.dumps(inputs, allow_nan=False)) == inputs or "lines" in inputs
+    written = json.dumps(inputs, allow_nan=False)
+    assert json.dumps(json.loads(written)) == written
 
 
 # What is refused: key, value, what is told of it
@@ -258,7 +260,6 @@ UNKNOWN_KEYS = [
     ("roughness.colour", 1, "roughness.colour: unknown key"),
     ("boundary_layer.colour", 1, "boundary_layer.colour: unknown key"),
     ("traces.0.load", "800 N", "traces.0.load: unknown key"),
-    ("operating_grid.force.colour", 1, "operating_grid.force: got"),
 ]
 
 # Every quantity of a study but the levels: its key, its unit, another dimension's unit.
@@ -329,7 +330,6 @@ GRIDS = [
     ("roughness.longest_wavelength", "1 m", "the perimeter, 0.314 m, is too short"),
     ("roughness.height_step", "1 nm", "got 1e-09 m, need 2e-14 to 2e-10 m"),
     ("roughness.height_step", "1e-15 m", "got 1e-15 m, need 2e-14 to 2e-10 m"),
-    ("rollers.second.radius", "0.05 mm", "too short for the longest wavelength"),
 ]
 
 NAMES = [
@@ -386,14 +386,20 @@ def test_a_quantity_needs_a_unit_of_its_dimension_and_a_finite_number(change, ke
 @pytest.mark.parametrize("number", ["0", "-0.5"])
 def test_lengths_moduli_stresses_and_resistivities_are_positive(change, key, number):
     message = refusal(change((key, f"{number} {UNITS[key]}")))
-    assert f"mine.yaml: {key}: got {number[:2]}" in message
+    assert f"mine.yaml: {key}: got {number[0]}" in message
     assert "need a value above 0" in message
 
 
 @pytest.mark.parametrize(("key", "units", "other"), LEVELS)
 def test_levels_rise_and_have_a_unit_of_their_dimension(change, key, units, other):
     mistakes = {
-        "need values and their unit": [50, [50, 60], {"values": [50]}, {"values": [], "units": units}],
+        "need values and their unit": [
+            50,
+            [50, 60],
+            {"values": [50]},
+            {"values": [], "units": units},
+            {"values": [50], "units": units, "colour": 1},
+        ],
         "need rising levels, each once": [
             {"values": [50, 50], "units": units},
             {"values": [60, 50], "units": units},
@@ -412,11 +418,8 @@ def test_levels_rise_and_have_a_unit_of_their_dimension(change, key, units, othe
 
 @pytest.mark.parametrize("key", ["operating_grid.force", "operating_grid.speed"])
 def test_no_force_and_no_speed_is_zero(change, key):
-    units = dict(LEVELS_UNITS)[key]
+    units = {key: units for key, units, _ in LEVELS}[key]
     assert "got 0, need a value above 0" in refusal(change((key, {"values": [0], "units": units})))
-
-
-LEVELS_UNITS = [(key, units) for key, units, _ in LEVELS]
 
 
 @pytest.mark.parametrize("temperature", [39, 101])
@@ -448,6 +451,13 @@ def test_a_contact_wider_than_a_roller_is_round_is_refused(change):
     changes = ("operating_grid.force", forces), ("traces.0.force", "1600 N")
     wavelength = ("roughness.longest_wavelength", "0.4 mm")
     assert "operating_grid.force: the contact at 1e+10 N" in refusal(change(*changes, wavelength))
+
+
+def test_either_rollers_perimeter_must_hold_the_longest_wave(change):
+    changes = ("rollers.second.radius", "25 mm"), ("roughness.longest_wavelength", "0.2 m")
+    assert "rollers.second.radius: the perimeter, 0.157 m, is too short" in refusal(
+        change(*changes)
+    )
 
 
 def test_traces_of_two_speeds_share_no_time_axis(change):

@@ -59,7 +59,8 @@ def test_resistance_is_equation_1(case):
     length, resistance = trace["contact_length"].values, trace["contact_resistance"].values
     assert trace["resistivity"].item() == RESISTIVITY
     assert (np.isinf(resistance) == (length == 0.0)).all()
-    np.testing.assert_allclose((resistance * length)[length > 0.0], RESISTIVITY, rtol=1e-12)
+    touches = length > 0.0
+    np.testing.assert_allclose(resistance[touches] * length[touches], RESISTIVITY, rtol=1e-12)
 
 
 def test_time_goes_by_the_faster_surface(case):

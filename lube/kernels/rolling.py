@@ -9,7 +9,7 @@ search for runs: a thicker film's runs lie within a thinner film's.
 
 import numpy as np
 
-from lube.kernels.compiler import inlined, kernel
+from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 
 
@@ -85,15 +85,26 @@ def find_runs(line, film, starts, stops, count, new_starts, new_stops):
     return found
 
 
-@inlined
-def _record(first, last, points, steps, broken, lengths):
-    """Note that at the steps first..last a segment of so many points has broken."""
+@kernel
+def _record(step, points, steps, broken, lengths):
+    """Note that at one step a segment of so many points has broken."""
+    if step < 0 or step >= steps:
+        return 0
+    broken[step] = 1
+    if lengths is not None:
+        lengths[step] += points
+    return points
+
+
+@kernel
+def _record_many(first, last, points, steps, broken, lengths):
+    """Note the same for all the steps first..last."""
     first = max(first, 0)
     last = min(last, steps - 1)
     if first > last:
         return 0
     broken[first : last + 1] = 1
-    if lengths.size > 0:
+    if lengths is not None:
         lengths[first : last + 1] += points
     return points * (last - first + 1)
 
@@ -120,8 +131,9 @@ def visit_run(line, start, stop, film, width, steps, factor, broken, lengths):
         From `lube.kernels.layer.layer_factor`.
     broken : numpy.ndarray
         Shape (T,), uint8; set to one at the steps where the layer breaks.
-    lengths : numpy.ndarray
-        Shape (T,), int64, the broken points at each step, added to; or empty: not wanted.
+    lengths : numpy.ndarray or None
+        Shape (T,), int64, the broken points at each step, added to; None if not wanted,
+        which the compiler makes a kernel of its own of.
 
     Returns
     -------
@@ -135,20 +147,20 @@ def visit_run(line, start, stop, film, width, steps, factor, broken, lengths):
         overlap += line[start + i - 1] - film
         if layer_breaks(i, overlap, factor):
             step = start + i - width
-            total += _record(step, step, i, steps, broken, lengths)
+            total += _record(step, i, steps, broken, lengths)
     overlap += line[start + points - 1] - film
     if layer_breaks(points, overlap, factor):  # seen whole, or filling the window first
-        total += _record(
+        total += _record_many(
             stop - width if points < width else start, start, points, steps, broken, lengths
         )
     for step in range(start + 1, stop - width + 1):  # the run is longer than the window
         overlap += line[step + width - 1] - line[step - 1]
         if layer_breaks(width, overlap, factor):
-            total += _record(step, step, width, steps, broken, lengths)
+            total += _record(step, width, steps, broken, lengths)
     for i in range(points - 1, 0, -1):  # the last i points have not yet left at the left edge
         overlap -= line[stop - i - 1] - film
         if layer_breaks(i, overlap, factor):
-            total += _record(stop - i, stop - i, i, steps, broken, lengths)
+            total += _record(stop - i, i, steps, broken, lengths)
     return total
 
 
@@ -202,7 +214,6 @@ def rolling_statistics(line, margin, films, half_windows, factor):
     steps = line.size - 2 * margin
     statistics = np.zeros((films.size, 4), np.int64)
     broken = np.empty(steps, np.uint8)
-    lengths = np.empty(0, np.int64)
     capacity = line.size // 2 + 1
     starts, stops = np.zeros(capacity, np.int64), np.full(capacity, line.size)
     new_starts, new_stops = np.empty_like(starts), np.empty_like(stops)
@@ -224,10 +235,10 @@ def rolling_statistics(line, margin, films, half_windows, factor):
                 continue
             # The run is touched at the steps start - width + 1 .. stop - 1.
             last = min(stop - 1, steps - 1)
-            statistics[point, 0] += last - max(start - width, touched_until, -1)
+            statistics[point, 0] += last - max(start - width, touched_until)
             touched_until = last
             statistics[point, 2] += visit_run(
-                seen, start, stop, film, width, steps, factor, broken, lengths
+                seen, start, stop, film, width, steps, factor, broken, None
             )
             statistics[point, 3] += seen_overlap(seen, start, stop, film, width, steps)
         statistics[point, 1] = np.sum(broken)

@@ -12,7 +12,8 @@ ROOT = Path(workflow.basedir)
 # Jobs and notebooks take the lube beside this workflow, never another clone's that happens
 # to be installed: the files watched for changes are then the files that run.
 sys.path.insert(0, str(ROOT))
-os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+elsewhere = dict(os.environ).get("PYTHONPATH")
+os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, [str(ROOT), elsewhere])))
 
 import lube
 from lube.errors import LubeError
@@ -94,6 +95,12 @@ def sources(code):
 def script_sources(name):
     """Files of the lube package that a script of the workflow depends on."""
     return sources((ROOT / f"workflow/scripts/{name}.py").read_text(encoding="utf-8"))
+
+
+def record_files():
+    """Files of the study's lubricant records, told from here so that the tree can be moved."""
+    files = {file for record in STUDY.lubricants for file in record.files}
+    return sorted(os.path.relpath(file) for file in files)
 
 
 def batch_limits(wildcards):

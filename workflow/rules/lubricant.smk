@@ -1,9 +1,3 @@
-def record_files():
-    """Files of the study's lubricant records, told from here so that the tree can be moved."""
-    files = {file for record in STUDY.lubricants for file in record.files}
-    return sorted(os.path.relpath(file) for file in files)
-
-
 rule lubricant:
     input:
         records=record_files(),

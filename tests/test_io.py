@@ -1,0 +1,305 @@
+"""NetCDF in and out: whole, exact, the same bytes, or refused in one line that names the file."""
+
+import hashlib
+import shutil
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+
+from lube.contact import contact_statistics
+from lube.ensemble import gather
+from lube.errors import DataError
+from lube.film import film_table
+from lube.io import CONVENTIONS, load, save
+from lube.lubricant import lubricant_table
+from lube.roughness import roughness_batch, roughness_lines
+from lube.schema import FILES, check
+from lube.trace import contact_trace
+
+KINDS = list(FILES)
+FINAL_KINDS = [kind for kind in KINDS if not kind.endswith("_batch")]
+
+
+def load_as_jobs_do(path, kind):
+    """Batches of lines stay whole steps, everything else is in its unit."""
+    return load(path, kind, raw=kind == "roughness_batch")
+
+
+@pytest.fixture(scope="module")
+def datasets(study, make_spec):
+    """One dataset of every kind, by the stages themselves, on a coarse grid."""
+    grid, layer = study.operating_grid, study.boundary_layer
+    # Rollers of two sizes, so that the shorter line is padded.
+    spec = make_spec(12_000, second_radius=0.04)
+    oil = lubricant_table(study.lubricants, grid.temperature)
+    film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+    lines = roughness_lines(spec, study.seed, [0, 1])
+    batch = roughness_batch(spec, study.seed, [0, 1])
+    run = contact_statistics(batch, film, layer)
+    points = [point | {"slide_to_roll_ratio": 0.0} for point in study.trace_points]
+    return {
+        "lubricant": oil,
+        "film": film,
+        "roughness": lines,
+        "roughness_batch": batch,
+        "contact_batch": run,
+        "contact": gather([run], film),
+        "trace": contact_trace(lines, film, points, layer, study.resistivity),
+    }
+
+
+@pytest.fixture(scope="module")
+def files(datasets, study, tmp_path_factory):
+    """The same, saved."""
+    folder = tmp_path_factory.mktemp("files")
+    for kind, dataset in datasets.items():
+        save(dataset, folder / f"{kind}.nc", kind, study)
+    return folder
+
+
+def refusal(path, kind):
+    with pytest.raises(DataError) as caught:
+        load(path, kind)
+    message = str(caught.value)
+    assert message.startswith(f"{path}: ")
+    assert "\n" not in message
+    return message
+
+
+def bytes_of(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+# Round trips
+
+
+def test_there_is_a_dataset_of_every_kind(datasets):
+    assert set(datasets) == set(KINDS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_saved_is_loaded_with_its_labels(datasets, files, kind):
+    loaded = load_as_jobs_do(files / f"{kind}.nc", kind)
+    if kind == "film":  # NetCDF has no truth values
+        loaded["in_validity_range"] = loaded["in_validity_range"].astype(bool)
+    xr.testing.assert_equal(loaded, datasets[kind])
+    for name, array in datasets[kind].variables.items():
+        assert loaded[name].attrs["long_name"] == array.attrs["long_name"]
+        assert loaded[name].attrs.get("units") == array.attrs.get("units")
+    for name, value in datasets[kind].attrs.items():
+        np.testing.assert_array_equal(loaded.attrs[name], value)
+
+
+def test_heights_are_exact_after_packing_and_padding_stays_missing(datasets, files):
+    heights = datasets["roughness"]["height"].values
+    loaded = load(files / "roughness.nc", "roughness")["height"].values
+    assert loaded.dtype == np.float64
+    assert np.isnan(heights).any()
+    np.testing.assert_array_equal(loaded, heights)
+    with netCDF4.Dataset(files / "roughness.nc") as raw:
+        assert raw["height"].dtype == np.int32
+
+
+def test_packed_heights_are_whole_steps_of_the_batch(datasets, files):
+    steps = load(files / "roughness.nc", "roughness", raw=False)["height"].values
+    expected = datasets["roughness_batch"]["height"].values
+    present = ~np.isnan(steps)
+    step = datasets["roughness"].attrs["height_step"]
+    np.testing.assert_array_equal(np.rint(steps[present] / step), expected[present])
+
+
+def test_a_batch_is_left_as_whole_steps(datasets, files):
+    loaded = load(files / "roughness_batch.nc", "roughness_batch", raw=True)
+    assert loaded["height"].dtype == np.int32
+    np.testing.assert_array_equal(loaded["height"], datasets["roughness_batch"]["height"])
+
+
+def test_a_loaded_dataset_does_not_hang_on_its_file(files, tmp_path):
+    path = shutil.copy(files / "film.nc", tmp_path / "film.nc")
+    film = load(path, "film")
+    path.unlink()
+    assert np.isfinite(film["film_thickness"].values).all()
+
+
+# What a stranger sees who opens a file
+
+
+@pytest.mark.parametrize("kind", FINAL_KINDS)
+def test_xarray_alone_gives_metres_and_labels(datasets, files, kind):
+    with xr.open_dataset(files / f"{kind}.nc") as opened:
+        check(opened, kind)
+        for name, array in opened.variables.items():
+            if array.dtype.kind == "f":
+                assert array.attrs["units"]
+                np.testing.assert_array_equal(array.values, datasets[kind][name].values)
+
+
+def test_an_operating_point_is_selected_by_the_values_people_say(files, study):
+    point = {"force": 800, "speed": 100, "temperature": 40}
+    with xr.open_dataset(files / "contact.nc") as contact:
+        chosen = contact["breakthrough_probability_mean"].sel(point)
+        assert chosen.sizes["film_formula"] == len(study.film_formulas)
+        assert chosen.notnull().all()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_files_say_which_conventions_they_follow_and_where_they_come_from(files, study, kind):
+    with netCDF4.Dataset(files / f"{kind}.nc") as raw:
+        assert raw.data_model == "NETCDF4"
+        assert raw.Conventions == CONVENTIONS == "CF-1.11, ACDD-1.3"
+        assert raw.study == study.name
+        assert study.title in raw.title
+        digest = hashlib.sha256(raw.study_inputs.encode()).hexdigest()
+        assert raw.study_inputs_sha256 == digest
+        assert raw.source.startswith("lube ")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_coordinate_has_a_fill_value_and_heights_alone_have_one(files, kind):
+    with netCDF4.Dataset(files / f"{kind}.nc") as raw:
+        filled = {name for name, array in raw.variables.items() if "_FillValue" in array.ncattrs()}
+    assert filled == ({"height"} if kind == "roughness" else set())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_array_of_numbers_is_compressed_and_checksummed(files, kind):
+    with netCDF4.Dataset(files / f"{kind}.nc") as raw:
+        for array in raw.variables.values():
+            if array.ndim and array.dtype is not str:
+                filters = array.filters()
+                assert filters["zlib"] and filters["shuffle"] and filters["fletcher32"]
+                assert filters["complevel"] == 4
+                assert array.chunking() != "contiguous"
+
+
+def test_a_file_for_minutes_is_checksummed_but_not_compressed(datasets, study, tmp_path):
+    save(datasets["roughness_batch"], tmp_path / "b.nc", "roughness_batch", study, compress=False)
+    with netCDF4.Dataset(tmp_path / "b.nc") as raw:
+        filters = raw["height"].filters()
+    assert filters["fletcher32"] and not filters["zlib"]
+
+
+# The same bytes, and whole or not at all
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_two_saves_are_the_same_bytes(datasets, files, study, tmp_path, kind):
+    save(datasets[kind], tmp_path / "again.nc", kind, study)
+    assert bytes_of(tmp_path / "again.nc") == bytes_of(files / f"{kind}.nc")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_loading_and_saving_again_keeps_the_values(files, study, tmp_path, kind):
+    first = load_as_jobs_do(files / f"{kind}.nc", kind)
+    save(first, tmp_path / "again.nc", kind, study)
+    xr.testing.assert_identical(load_as_jobs_do(tmp_path / "again.nc", kind), first)
+
+
+def test_a_dataset_that_does_not_fit_its_kind_leaves_the_old_file(datasets, files, study, tmp_path):
+    path = shutil.copy(files / "film.nc", tmp_path / "film.nc")
+    before = bytes_of(path)
+    with pytest.raises(DataError, match="film_thickness"):
+        save(datasets["film"].drop_vars("film_thickness"), path, "film", study)
+    assert bytes_of(path) == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("moment", ["os.replace", "xarray.Dataset.to_netcdf"])
+def test_a_save_that_fails_midway_leaves_the_old_file_and_no_rest(
+    datasets, files, study, tmp_path, monkeypatch, moment
+):
+    path = shutil.copy(files / "film.nc", tmp_path / "film.nc")
+    before = bytes_of(path)
+
+    def fail(*arguments, **options):
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(moment, fail)
+    with pytest.raises(OSError, match="No space left"):
+        save(datasets["film"], path, "film", study)
+    assert bytes_of(path) == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_saving_makes_the_folder_it_needs(datasets, study, tmp_path):
+    save(datasets["film"], tmp_path / "new" / "folder" / "film.nc", "film", study)
+    load(tmp_path / "new" / "folder" / "film.nc", "film")
+
+
+# What is refused
+
+
+def test_a_missing_file_is_named(tmp_path):
+    assert "no such file, need a film dataset" in refusal(tmp_path / "film.nc", "film")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("part", [0.0, 0.01, 0.5, 0.99])
+def test_a_truncated_file_is_named(files, tmp_path, kind, part):
+    whole = (files / f"{kind}.nc").read_bytes()
+    path = tmp_path / f"{kind}.nc"
+    path.write_bytes(whole[: int(part * len(whole))])
+    assert "not a whole NetCDF file" in refusal(path, kind)
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"force,speed\n800,100\n", b"CDF\x01 and nonsense", b"\x89HDF\r\n\x1a\n" * 100]
+)
+def test_what_is_no_netcdf_is_named(tmp_path, content):
+    path = tmp_path / "film.nc"
+    path.write_bytes(content)
+    assert "not a whole NetCDF file" in refusal(path, "film")
+
+
+def test_a_folder_is_no_file(tmp_path):
+    assert "no such file" in refusal(tmp_path, "film")
+
+
+def test_a_foreign_netcdf_is_refused(tmp_path):
+    path = tmp_path / "film.nc"
+    xr.Dataset({"sea_surface_temperature": ("time", [1.0, 2.0])}).to_netcdf(path)
+    assert "not a film file" in refusal(path, "film")
+
+
+def test_a_netcdf_with_a_time_nobody_can_read_is_refused(tmp_path):
+    path = tmp_path / "film.nc"
+    time = ("time", [0.0, 1.0], {"units": "days since the flood"})
+    xr.Dataset(coords={"time": time}).to_netcdf(path)
+    assert "not a" in refusal(path, "film")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_file_of_another_kind_is_refused(files, kind):
+    other = "film" if kind != "film" else "trace"
+    assert f"not a {other} file" in refusal(files / f"{kind}.nc", other)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_one_flipped_bit_inside_the_data_is_noticed(datasets, study, tmp_path, kind):
+    path = tmp_path / f"{kind}.nc"
+    save(datasets[kind], path, kind, study, compress=False)
+    whole = bytearray(path.read_bytes())
+    whole[place_of_largest_array(path, whole)] ^= 1
+    path.write_bytes(whole)
+    assert "damaged" in refusal(path, kind)
+
+
+def place_of_largest_array(path, whole):
+    """Where in an uncompressed file the last bytes of the largest array's first line lie."""
+    with netCDF4.Dataset(path) as raw:
+        raw.set_auto_maskandscale(False)
+        arrays = [array[:] for array in raw.variables.values() if array.dtype is not str]
+    stored = max(arrays, key=np.size)
+    line = stored.reshape(-1, stored.shape[-1])[0].tobytes()
+    assert whole.count(line) == 1
+    return whole.index(line) + len(line) - 1
+
+
+def test_one_flipped_bit_inside_compressed_data_is_noticed(files, tmp_path):
+    whole = bytearray((files / "roughness.nc").read_bytes())
+    whole[len(whole) // 2] ^= 1  # heights are nearly all of this file
+    path = tmp_path / "roughness.nc"
+    path.write_bytes(whole)
+    assert "damaged" in refusal(path, "roughness")

@@ -1,0 +1,80 @@
+"""Notebooks: executed strictly, and the same whenever they are."""
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from lube.errors import LubeError
+from lube.notebooks import execute_notebook
+
+PARAMETERS = 'film = "somewhere"\nfigure = "elsewhere"'
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Write a notebook of a parameters cell and the given code, and return its path."""
+
+    def write_notebook(*codes, parameters=PARAMETERS, tags=("parameters",)):
+        cells = [new_markdown_cell("# A figure")]
+        cells.append(new_code_cell(parameters, metadata={"tags": list(tags)}))
+        cells.extend(new_code_cell(code) for code in codes)
+        path = tmp_path / "figure.ipynb"
+        nbformat.write(new_notebook(cells=cells), path)
+        return path
+
+    return write_notebook
+
+
+def refusal(notebook, output, parameters):
+    with pytest.raises(LubeError) as caught:
+        execute_notebook(notebook, output, parameters)
+    message = str(caught.value)
+    assert message.startswith(f"{notebook}: ")
+    assert "\n" not in message
+    assert not output.exists()
+    return message
+
+
+def test_a_notebook_is_executed_with_its_parameters_twice_the_same(write, tmp_path):
+    notebook = write("print(film, figure)", "from pathlib import Path; Path(figure).touch()")
+    before = notebook.read_bytes()
+    copies = [tmp_path / "made" / "first.ipynb", tmp_path / "made" / "second.ipynb"]
+    for copy in copies:
+        drawn = tmp_path / "drawn"
+        execute_notebook(notebook, copy, {"film": "film.nc", "figure": str(drawn)})
+        assert drawn.exists()
+    assert copies[0].read_bytes() == copies[1].read_bytes()
+    assert notebook.read_bytes() == before
+    outputs = [cell.get("outputs") for cell in nbformat.read(copies[0], as_version=4).cells]
+    assert f"film.nc {drawn}\n" in str(outputs).replace("\\n", "\n")
+
+
+def test_an_executed_notebook_holds_no_clock_time_and_is_valid(write, tmp_path):
+    output = tmp_path / "executed.ipynb"
+    execute_notebook(write("1 + 1"), output, {})
+    text = output.read_text(encoding="utf-8")
+    assert "start_time" not in text and "iopub" not in text and "duration" not in text
+    nbformat.validate(nbformat.read(output, as_version=4))
+
+
+def test_a_failing_cell_is_told_in_one_line_and_leaves_no_copy(write, tmp_path):
+    notebook = write("x = 1", "raise ValueError('no\\nsuch film')")
+    message = refusal(notebook, tmp_path / "executed.ipynb", {"film": "film.nc"})
+    # Counted from 1, as a reader counts: text, parameters, x = 1, and this one.
+    assert message == f"{notebook}: cell 4 fails: ValueError: no such film"
+
+
+def test_a_notebook_without_a_parameters_cell_is_refused(write, tmp_path):
+    message = refusal(write("x = 1", tags=()), tmp_path / "executed.ipynb", {"film": "film.nc"})
+    assert "no cell is tagged 'parameters'" in message
+
+
+def test_a_parameter_that_the_notebook_does_not_know_is_refused(write, tmp_path):
+    message = refusal(write("x = 1"), tmp_path / "executed.ipynb", {"trace": "trace.nc"})
+    assert "parameter 'trace' is not in its parameters cell, which has film, figure" in message
+
+
+def test_a_file_that_is_no_notebook_is_refused(tmp_path):
+    path = tmp_path / "figure.ipynb"
+    path.write_text("no notebook", encoding="utf-8")
+    assert "not a Jupyter notebook" in refusal(path, tmp_path / "executed.ipynb", {})

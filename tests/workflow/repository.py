@@ -1,0 +1,147 @@
+"""A copy of the repository, in which the real Snakemake runs the smoke study."""
+
+import contextlib
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+
+ROOT = Path(__file__).parents[2]
+COPIED = ("Snakefile", "pyproject.toml", "workflow", "lube", "notebooks", "profiles")
+SMOKE = "workflow/config/smoke.yaml"
+RESULTS = "results/smoke"
+SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+
+
+@dataclass(frozen=True)
+class Repository:
+    """A copy of the repository, in which the smoke study may be run and spoilt."""
+
+    folder: Path
+
+    def __truediv__(self, name):
+        return self.folder / name
+
+    @property
+    def results(self):
+        return self.folder / RESULTS
+
+    @property
+    def notebooks(self):
+        return sorted(path.stem for path in (self.folder / "notebooks").glob("*.ipynb"))
+
+    def command(self, *arguments, study=SMOKE):
+        options = ["--configfile", study] if study else []
+        return [str(SNAKEMAKE), *arguments, *options]
+
+    def snakemake(self, *arguments, study=SMOKE):
+        """Run Snakemake and return the finished process; its `stdout` is all it said."""
+        return subprocess.run(
+            self.command(*arguments, study=study),
+            cwd=self.folder,
+            env=environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+        )
+
+    def run(self, *arguments, study=SMOKE):
+        """Run Snakemake, which must succeed."""
+        finished = self.snakemake(*arguments, study=study)
+        assert finished.returncode == 0, finished.stdout
+        return finished.stdout
+
+    def planned(self, study=SMOKE):
+        """Results that the next run would make, by Snakemake's own dry plan."""
+        rows = [line.split("\t") for line in self.run("--summary", study=study).splitlines()]
+        made = {row[0] for row in rows if row[-1] == "update pending"}
+        return {str(Path(name).relative_to(RESULTS)) for name in made}
+
+    def with_values(self, **changes):
+        """Write a copy of the smoke study with some values changed, and return its name."""
+        content = yaml.safe_load((self / SMOKE).read_text(encoding="utf-8"))
+        for key, value in changes.items():
+            *path, last = key.split("__")
+            place = content
+            for part in path:
+                place = place[part]
+            place[last] = value
+        (self / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+        return "mine.yaml"
+
+    def append(self, name, text):
+        """Add a line to a file."""
+        with (self / name).open("a", encoding="utf-8") as file:
+            file.write(text + "\n")
+
+    def snapshot(self):
+        """Contents and times of all results."""
+        files = (path for path in self.results.rglob("*") if path.is_file())
+        return {path: (path.stat().st_mtime_ns, digest(path)) for path in files}
+
+    def products(self):
+        """Digests of what a study is run for: datasets, figures and executed notebooks."""
+        paths = [*self.results.glob("*.nc"), *self.results.glob("figures/*")]
+        paths += self.results.glob("notebooks/*")
+        return {str(path.relative_to(self.results)): digest(path) for path in paths}
+
+    @contextlib.contextmanager
+    def clean_slate(self):
+        """Take away all results for a while; compiled kernels stay, which hang on the path."""
+        kept = self.folder.with_name("kept")
+        kept.mkdir()
+        for name in ("results", ".snakemake"):
+            shutil.move(self / name, kept / name)
+        try:
+            yield
+        finally:
+            for name in ("results", ".snakemake"):
+                shutil.rmtree(self / name, ignore_errors=True)
+                shutil.move(kept / name, self / name)
+            kept.rmdir()
+
+
+def environment():
+    """The environment of a user who has not prepared anything for the copy."""
+    names = {"PYTHONPATH", "SNAKEMAKE_PROFILE"}
+    return {name: value for name, value in os.environ.items() if name not in names}
+
+
+def digest(path):
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def copy_of_the_repository(folder):
+    folder.mkdir(parents=True)
+    for name in COPIED:
+        if (ROOT / name).is_dir():
+            ignored = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints")
+            shutil.copytree(ROOT / name, folder / name, ignore=ignored)
+        else:
+            shutil.copy2(ROOT / name, folder / name)
+    return Repository(folder)
+
+
+def datasets_of(repository, figure):
+    """Datasets that the parameters cell of a figure's notebook names."""
+    cells = yaml.safe_load((repository / f"notebooks/{figure}.ipynb").read_text("utf-8"))["cells"]
+    tagged = [cell for cell in cells if "parameters" in cell["metadata"].get("tags", [])]
+    return set(re.findall(r"^(\w+) *=", "".join(tagged[0]["source"]), re.MULTILINE)) - {"figure"}
+
+
+def products_of(figure):
+    """Files that a figure's job makes."""
+    return {f"figures/{figure}.png", f"figures/{figure}.pdf", f"notebooks/{figure}.ipynb"}
+
+
+def figures_of(repository, *datasets):
+    """Files of all figures that use one of some datasets."""
+    users = [one for one in repository.notebooks if datasets_of(repository, one) & set(datasets)]
+    return {name for figure in users for name in products_of(figure)}

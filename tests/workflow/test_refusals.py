@@ -1,0 +1,139 @@
+"""Bad input: one clear line before any job, non-zero exit, nothing overwritten."""
+
+import json
+
+import pytest
+import yaml
+from repository import SMOKE
+
+PROFILE_NOTE = "Using workflow specific profile"
+
+
+def refusal(repository, *arguments, study):
+    """The one line that Snakemake says of a study that cannot start; results stay as they are."""
+    before = repository.snapshot()
+    finished = repository.snakemake(*arguments, study=study)
+    assert finished.returncode != 0
+    assert repository.snapshot() == before
+    said = [line for line in finished.stdout.splitlines() if not line.startswith(PROFILE_NOTE)]
+    assert len(said) == 1, finished.stdout
+    assert said[0].startswith("The study cannot start. ")
+    return said[0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"colour": "blue"}, "mine.yaml: colour: unknown key"),
+        ({"rollers__length": 10}, "rollers.length: got 10, need a number with its unit"),
+        ({"operating_grid__force": {"values": [2, 1], "units": "N"}}, "need rising levels"),
+        ({"operating_grid__temperature": {"values": [20], "units": "degC"}}, "got 20 degC, need"),
+        ({"lubricants": ["nope"]}, "got 'nope', need one of"),
+        ({"roughness__points": 1000}, "too coarse a grid"),
+        ({"kept_realisations": [0, 4]}, "got 4, need realisations from 0 to 3"),
+        ({"traces": [{"force": "1 N", "speed": "100 rpm", "temperature": "40 degC"}]}, "got 1.0"),
+    ],
+    ids=lambda value: next(iter(value)) if isinstance(value, dict) else "",
+)
+def test_a_mistaken_study_ends_in_one_line_before_any_job(smoke, changes, told):
+    assert told in refusal(smoke, study=smoke.with_values(**changes))
+
+
+def test_values_on_the_command_line_are_refused(smoke):
+    assert "--config is not used" in refusal(smoke, "--config", "seed=3", study=SMOKE)
+
+
+def test_two_studies_at_once_are_refused(smoke):
+    study = smoke.with_values()
+    finished = smoke.snakemake("--configfile", SMOKE, study, study=None)
+    assert finished.returncode != 0
+    assert "got several --configfile, need one" in finished.stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [("name: [1\n", "not valid JSON or YAML"), ("- name\n", "with keys at top level")],
+)
+def test_what_is_no_yaml_mapping_is_refused_by_snakemake_itself(smoke, text, told):
+    (smoke / "broken.yaml").write_text(text, encoding="utf-8")
+    before = smoke.snapshot()
+    finished = smoke.snakemake(study="broken.yaml")
+    assert finished.returncode != 0
+    assert told in finished.stdout
+    assert "Traceback" not in finished.stdout
+    assert smoke.snapshot() == before
+
+
+def test_a_record_without_sources_is_refused(spare):
+    shipped = (spare / "lube/lubricants/mobilgear-shc-xmp-320.yaml").read_text("utf-8")
+    record = yaml.safe_load(shipped)
+    del record["density"]["source"]
+    (spare / "mine-oil.yaml").write_text(yaml.safe_dump(record), encoding="utf-8")
+    message = refusal(spare, study=spare.with_values(lubricants=["mine-oil.yaml"]))
+    assert "mine-oil.yaml: density.source: missing" in message
+
+
+# Notebooks that cannot be figures
+
+
+def broken_notebook(repository, change):
+    figure = repository.notebooks[0]
+    path = repository / f"notebooks/{figure}.ipynb"
+    notebook = json.loads(path.read_text("utf-8"))
+    change(notebook["cells"])
+    path.write_text(json.dumps(notebook), encoding="utf-8")
+    return path.name
+
+
+def test_a_notebook_that_is_no_python_is_refused(spare):
+    def change(cells):
+        cells[-1]["source"] = ["plot this nicely\n"]
+
+    name = broken_notebook(spare, change)
+    assert f"{name}: got 'plot this nicely', which is not Python" in refusal(spare, study=SMOKE)
+
+
+def test_a_notebook_without_a_parameters_cell_is_refused(spare):
+    def change(cells):
+        for cell in cells:
+            cell["metadata"] = {}
+
+    name = broken_notebook(spare, change)
+    assert f"{name}: no cell is tagged 'parameters'" in refusal(spare, study=SMOKE)
+
+
+def test_a_damaged_notebook_is_refused(spare):
+    (spare / "notebooks/fig99_mine.ipynb").write_text('{"cells": [', encoding="utf-8")
+    assert "fig99_mine.ipynb: not a Jupyter notebook" in refusal(spare, study=SMOKE)
+
+
+# Datasets that a job cannot use
+
+
+def failure(repository, target):
+    """What a failing job says on the terminal, and its log."""
+    finished = repository.snakemake(f"results/smoke/{target}.nc")
+    assert finished.returncode != 0
+    assert "Traceback" not in finished.stdout
+    log = (repository.results / f"logs/{target}.log").read_text("utf-8")
+    assert log.count("\n") == 1
+    assert log in finished.stdout
+    return log
+
+
+def test_a_truncated_dataset_is_named_by_the_job_that_reads_it(spare):
+    film = spare.results / "film.nc"
+    film.write_bytes(film.read_bytes()[:20_000])
+    assert "Error: results/smoke/film.nc: not a whole NetCDF file" in failure(spare, "trace")
+
+
+def test_a_foreign_dataset_is_named_by_the_job_that_reads_it(spare):
+    film = spare.results / "film.nc"
+    film.write_bytes((spare.results / "lubricant.nc").read_bytes())
+    assert "Error: results/smoke/film.nc: not a film file" in failure(spare, "trace")
+
+
+def test_a_truncated_batch_is_named_when_batches_are_gathered(spare):
+    batch = spare.results / "batches/contact_2.nc"
+    batch.write_bytes(batch.read_bytes()[:5_000])
+    assert "Error: results/smoke/batches/contact_2.nc: not a whole" in failure(spare, "contact")

@@ -1,0 +1,153 @@
+"""The smoke study as a whole: everything made, nothing made twice, the same bytes always."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import time
+
+import pytest
+from repository import environment, products_of
+
+from lube.io import load
+from lube.schema import FILES, check
+
+DATASETS = ("lubricant", "film", "roughness", "contact", "trace")
+
+
+def test_every_file_of_the_data_model_is_made(smoke):
+    expected = {f"{kind}.nc" for kind in DATASETS}
+    expected |= {name for figure in smoke.notebooks for name in products_of(figure)}
+    assert smoke.notebooks
+    assert set(smoke.products()) == expected
+
+
+@pytest.mark.parametrize("kind", DATASETS)
+def test_every_dataset_fits_the_schema(smoke, kind):
+    check(load(smoke.results / f"{kind}.nc", kind), kind)
+
+
+def test_every_batch_fits_the_schema_and_lines_are_not_kept(smoke):
+    batches = sorted((smoke.results / "batches").iterdir())
+    assert [path.name for path in batches] == ["contact_0.nc", "contact_2.nc"]
+    for path in batches:
+        check(load(path, "contact_batch"), "contact_batch")
+
+
+def test_nothing_unfinished_is_left(smoke):
+    assert not list(smoke.results.rglob("*.part"))
+
+
+def test_figures_are_drawn_and_notebooks_executed(smoke):
+    for figure in smoke.notebooks:
+        assert (smoke.results / f"figures/{figure}.png").read_bytes().startswith(b"\x89PNG")
+        assert (smoke.results / f"figures/{figure}.pdf").read_bytes().startswith(b"%PDF")
+        executed = json.loads((smoke.results / f"notebooks/{figure}.ipynb").read_text("utf-8"))
+        code = [cell for cell in executed["cells"] if cell["cell_type"] == "code"]
+        assert all(cell["execution_count"] for cell in code)
+
+
+def test_datasets_say_which_study_and_version_made_them(smoke):
+    for kind in DATASETS:
+        attributes = load(smoke.results / f"{kind}.nc", kind).attrs
+        assert attributes["study"] == "smoke"
+        assert attributes["source"].startswith("lube ")
+
+
+def test_a_second_run_does_nothing(smoke):
+    before = smoke.snapshot()
+    assert "Nothing to be done" in smoke.run()
+    assert smoke.planned() == set()
+    assert smoke.snapshot() == before
+
+
+def test_a_clone_runs_its_own_lube_and_not_the_installed_one(spare):
+    spare.append("lube/trace.py", "raise RuntimeError('the lube beside this workflow')")
+    finished = spare.snakemake("results/smoke/trace.nc")
+    assert "RuntimeError: the lube beside this workflow" in finished.stdout
+
+
+def test_another_batch_size_on_one_core_makes_the_same_bytes(smoke):
+    first = smoke.products()
+    study = smoke.with_values(batch_size=3)
+    with smoke.clean_slate():
+        smoke.run("--cores", "1", study=study)
+        assert smoke.products() == first
+    assert smoke.products() == first
+
+
+def test_a_run_killed_midway_is_taken_up_again_as_documented(smoke):
+    first = smoke.products()
+    datasets = [f"results/smoke/{kind}.nc" for kind in DATASETS]
+    with smoke.clean_slate():
+        kill_during_contact(smoke, datasets)
+        assert not (smoke.results / "contact.nc").exists()
+        refused = smoke.snakemake("--rerun-incomplete", *datasets)
+        assert refused.returncode != 0
+        assert "--unlock" in refused.stdout
+        smoke.run("--unlock")
+        smoke.run("--rerun-incomplete", *datasets)
+        again = smoke.products()
+        assert not list(smoke.results.rglob("*.part"))
+    assert again == {name: first[name] for name in again}
+    assert len(again) == len(DATASETS)
+
+
+def kill_during_contact(repository, targets):
+    """Start a run, and kill all its processes while the first contact job is at work."""
+    running = subprocess.Popen(
+        repository.command(*targets),
+        cwd=repository.folder,
+        env=environment(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 120.0
+    while not list(repository.results.glob("logs/contact_*.log")):
+        assert running.poll() is None and time.monotonic() < deadline
+        time.sleep(0.02)
+    os.killpg(running.pid, signal.SIGKILL)
+    running.wait()
+
+
+# What the terminal says
+
+
+def test_each_job_says_in_words_what_is_made(smoke):
+    said = (smoke / "said").read_text("utf-8")
+    messages = re.findall(r"^Job \d+: (.*)$", said, re.MULTILINE)
+    assert len(messages) == int(re.search(r"^total +(\d+)$", said, re.MULTILINE)[1])
+    for message in messages:
+        assert re.match(r"(Lubricant|Film|Roughness|Contact|Trace|Figure|Done): \S+", message)
+    assert len(set(messages)) == len(messages)
+    assert not re.search(r"^(local)?rule \w+:$", said, re.MULTILINE)
+
+
+def test_a_run_that_goes_well_says_nothing_alarming(smoke):
+    said = (smoke / "said").read_text("utf-8")
+    assert not re.search("error|warning|traceback|exception", said, re.IGNORECASE)
+
+
+def test_every_job_has_a_log_and_a_benchmark(smoke):
+    logs = {path.stem for path in (smoke.results / "logs").iterdir()}
+    benchmarks = {path.stem for path in (smoke.results / "benchmarks").iterdir()}
+    rows = [line.split("\t") for line in smoke.run("--summary").splitlines()]
+    columns = next(row for row in rows if row[0] == "output_file")
+    named = {row[columns.index("log-file(s)")] for row in rows[rows.index(columns) + 1 :]}
+    assert logs == benchmarks == {name.split("/")[-1].removesuffix(".log") for name in named}
+    for path in (smoke.results / "benchmarks").iterdir():
+        header, values = path.read_text("utf-8").splitlines()
+        assert header.startswith("s\th:m:s")
+        assert float(values.split("\t")[0]) > 0.0
+
+
+def test_logs_of_contact_show_its_progress(smoke):
+    log = (smoke.results / "logs/contact_0.log").read_text("utf-8")
+    assert len([line for line in log.splitlines() if line.startswith("realisation 0")]) > 0
+    assert len([line for line in log.splitlines() if line.startswith("realisation 1")]) > 0
+
+
+def test_there_is_a_kind_of_file_for_every_dataset():
+    assert {kind for kind in FILES if not kind.endswith("_batch")} == set(DATASETS)

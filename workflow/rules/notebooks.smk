@@ -1,0 +1,56 @@
+# What the figures' notebooks depend on, read from their cells before any job.
+def notebook_cells(figure):
+    """Cells of a figure's notebook, reduced to what decides on it; outputs do not."""
+    path = Path(f"notebooks/{figure}.ipynb")
+    try:
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        return [
+            {
+                "type": cell["cell_type"],
+                "source": "".join(cell["source"]),
+                "tags": cell.get("metadata", {}).get("tags", []),
+            }
+            for cell in cells
+        ]
+    except (ValueError, KeyError, TypeError):
+        raise LubeError(f"{path}: not a Jupyter notebook, damaged or foreign") from None
+
+
+def python_of(cell, figure):
+    """Python of a code cell, without the lines that only Jupyter understands."""
+    lines = cell["source"].splitlines()
+    code = "\n".join(line for line in lines if not line.lstrip().startswith(("%", "!")))
+    try:
+        ast.parse(code)
+    except SyntaxError as error:
+        came = repr((error.text or "").strip())
+        raise LubeError(f"notebooks/{figure}.ipynb: got {came}, which is not Python") from None
+    return code
+
+
+def figure_datasets(figure):
+    """Datasets that a notebook names in its parameters cell, such as `film = "..."`."""
+    cells = [cell for cell in notebook_cells(figure) if "parameters" in cell["tags"]]
+    if not cells:
+        raise LubeError(f"notebooks/{figure}.ipynb: no cell is tagged 'parameters', need one")
+    assigned = [
+        target.id
+        for node in ast.parse(python_of(cells[0], figure)).body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    ]
+    return [result(f"{name}.nc") for name in assigned if name in DATASETS]
+
+
+def figure_sources(figure):
+    """Files of the lube package that a figure depends on, by its notebook or its script."""
+    cells = [cell for cell in notebook_cells(figure) if cell["type"] == "code"]
+    code = "\n".join(python_of(cell, figure) for cell in cells)
+    return sorted({*sources(code), *script_sources("figure")})
+
+
+with told_in_one_line():
+    FIGURE_DATASETS = {figure: figure_datasets(figure) for figure in FIGURES}
+    FIGURE_SOURCES = {figure: figure_sources(figure) for figure in FIGURES}
+    FIGURE_CELLS = {figure: digest(notebook_cells(figure)) for figure in FIGURES}
