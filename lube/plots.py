@@ -179,7 +179,7 @@ def panel_letters(axes):
         The panels in reading order.
     """
     for letter, panel in zip("abcdefghijklmnop", np.ravel(list(axes)), strict=False):
-        panel.set_title(f"({letter}) {panel.get_title(loc='left')}".strip())
+        panel.set_title(f"({letter}) {panel.get_title(loc='left')}".strip(), loc="left")
 
 
 def interval_bars(axes, x, mean, lower, upper, **style):

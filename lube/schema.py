@@ -244,6 +244,15 @@ FILES = {
 }
 """Variables of each kind of file, by the kind's name."""
 
+_LINE_ATTRIBUTES = ("q_min", "q_max", "spacing", "points", "height_step")
+ATTRIBUTES = {
+    "roughness": _LINE_ATTRIBUTES,
+    "roughness_batch": _LINE_ATTRIBUTES,
+    "contact_batch": ("travel", "longest_wavelength"),
+    "contact": ("travel", "longest_wavelength"),
+}
+"""Global attributes that the stages read from a file, by kind."""
+
 
 def _expected(kind, name):
     return FILES[kind].get(name) or COORDINATES.get(name)
@@ -315,6 +324,9 @@ def check(dataset, kind, where="dataset"):
     for name in dataset.dims:
         if name in COORDINATES and (name in dataset.coords or name != "position"):
             _check_coordinate(dataset, name, where)
+    for name in ATTRIBUTES.get(kind, ()):
+        if name not in dataset.attrs:
+            raise DataError(f"{where}: not a {kind} file: attribute {name!r} is missing")
     return dataset
 
 

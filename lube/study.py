@@ -342,6 +342,9 @@ class Study(StrictModel):
             },
             "film": {
                 "rollers": rollers,
+                "reduced_radius": self.rollers.reduced_radius,
+                "reduced_modulus": self.rollers.reduced_modulus,
+                "composite_rms_roughness": self.rollers.composite_rms_roughness,
                 "film_formulas": content["film_formulas"],
                 "force": grid["force"],
                 "speed": grid["speed"],
@@ -470,4 +473,7 @@ def _records(names, path):
     for name in names:
         if not isinstance(name, str):
             raise StudyError(f"{path}: lubricants: got {name!r}, need names or paths of records")
-    return tuple(load_record(name, folder=Path(path).parent) for name in names)
+    try:
+        return tuple(load_record(name, folder=Path(path).parent) for name in names)
+    except LubeError as error:
+        raise type(error)(f"{path}: lubricants: {error}") from None

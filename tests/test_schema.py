@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from lube.errors import DataError
-from lube.schema import COORDINATES, FILES, check, label
+from lube.schema import ATTRIBUTES, COORDINATES, FILES, check, label
 
 KINDS = list(FILES)
 VARIABLES = [(kind, name) for kind in KINDS for name in FILES[kind]]
@@ -21,13 +21,13 @@ def values_of(expected):
 
 
 def example(kind):
-    """A dataset with the variables, dimensions and types of a kind, but no attributes."""
+    """A dataset with the variables, dimensions and types of a kind, but no labels."""
     variables = {name: (row.dims, values_of(row)) for name, row in FILES[kind].items()}
     dims = {dim for row in FILES[kind].values() for dim in row.dims}
     coords = {
         dim: values_of(COORDINATES[dim]) for dim in dims if dim in COORDINATES and dim != "position"
     }
-    return xr.Dataset(variables, coords)
+    return xr.Dataset(variables, coords, dict.fromkeys(ATTRIBUTES.get(kind, ()), 1.0))
 
 
 def refusal(dataset, kind):
@@ -149,3 +149,12 @@ def test_truth_values_may_be_stored_as_small_integers():
 def test_an_empty_dataset_is_no_file_of_any_kind():
     for kind in KINDS:
         assert "is missing" in refusal(xr.Dataset(), kind)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [(kind, name) for kind in ATTRIBUTES for name in ATTRIBUTES[kind]]
+)
+def test_a_missing_attribute_is_refused(kind, name):
+    dataset = label(example(kind), kind)
+    del dataset.attrs[name]
+    assert repr(name) in refusal(dataset, kind)

@@ -81,7 +81,8 @@ def imported_modules(code):
 
 def sources(code):
     """Files of the lube package that some code depends on, by following its imports."""
-    found, waiting = set(), list(imported_modules(code))
+    # The study reaches a stage through its values only, and those are parameters of its rule.
+    found, waiting = {ROOT / "lube/study.py"}, list(imported_modules(code))
     while waiting:
         path = ROOT / Path(*waiting.pop().split("."))
         path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
@@ -89,7 +90,8 @@ def sources(code):
             found.add(path)
             waiting += imported_modules(path.read_text(encoding="utf-8"))
     # The package's __init__ names everything and computes nothing.
-    return sorted(str(path.relative_to(ROOT)) for path in found - {ROOT / "lube/__init__.py"})
+    found -= {ROOT / "lube/__init__.py", ROOT / "lube/study.py"}
+    return sorted(str(path.relative_to(ROOT)) for path in found)
 
 
 def script_sources(name):

@@ -1,0 +1,86 @@
+"""What the figures share: labels from attributes, units, honest bars, the same bytes."""
+
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+
+from lube import plots
+
+matplotlib.use("Agg")
+plt = plots.plt
+
+
+def quantity(value, units, name="film thickness"):
+    return xr.DataArray(value, attrs={"units": units, "long_name": name})
+
+
+@pytest.mark.parametrize(
+    ("units", "wanted", "factor"),
+    [
+        ("m", "um", 1e6),
+        ("m2 s-1", "mm2 s-1", 1e6),
+        ("Pa-1", "GPa-1", 1e9),
+        ("ohm", "kohm", 1e-3),
+        ("m", "m", 1.0),
+    ],
+)
+def test_units_of_the_files_are_converted_and_told(units, wanted, factor):
+    converted = plots.in_units(quantity([1.0, 2.0], units), wanted)
+    np.testing.assert_allclose(converted, [factor, 2.0 * factor], rtol=1e-12)
+    assert converted.attrs == {"units": wanted, "long_name": "film thickness"}
+
+
+def test_axis_labels_come_from_the_attributes():
+    assert plots.axis_label(quantity(1.0, "um"), "$h_0$") == "Film thickness $h_0$ (µm)"
+    assert plots.axis_label(quantity(1.0, "1", "lambda ratio")) == "Lambda ratio"
+
+
+def test_every_level_has_a_colour_and_a_marker_of_its_own():
+    levels = [100.0, 200.0, 400.0, 800.0, 1600.0]
+    assert len({tuple(colour) for colour in plots.level_colours(levels).values()}) == 5
+    assert len(set(plots.level_markers(levels).values())) == 5
+
+
+def drawn(scale):
+    figure, axes = plt.subplots()
+    axes.set_yscale(scale)
+    mean, lower, upper = np.array([0.0, 0.1]), np.array([0.0, 0.05]), np.array([1e-3, 0.2])
+    plots.interval_bars(axes, np.array([1.0, 2.0]), mean, lower, upper, color="black", marker="o")
+    points, limits = (container[0] for container in axes.containers)
+    plt.close(figure)
+    return points.get_ydata(), limits.get_ydata()
+
+
+def test_a_probability_never_seen_hangs_from_its_limit_on_a_logarithmic_scale():
+    points, limits = drawn("log")
+    assert np.isnan(points[0])
+    assert points[1] == 0.1
+    assert limits.tolist() == [1e-3]
+
+
+def test_a_probability_never_seen_is_zero_on_a_linear_scale():
+    points, limits = drawn("linear")
+    assert points.tolist() == [0.0, 0.1]
+    assert limits.size == 0
+
+
+def test_panels_are_lettered_before_their_titles():
+    plots.use_style()
+    figure, panels = plt.subplots(1, 2)
+    panels[1].set_title("slow")
+    plots.panel_letters(panels)
+    assert [panel.get_title(loc="left") for panel in panels] == ["(a)", "(b) slow"]
+    plt.close(figure)
+
+
+def test_a_figure_is_saved_as_the_same_bytes_each_time(tmp_path):
+    plots.use_style()
+    for name in ("one", "two"):
+        figure, axes = plt.subplots()
+        axes.plot([1, 2], [1, 4])
+        plots.save_figure(figure, tmp_path / name)
+        plt.close(figure)
+    for suffix in ("png", "pdf"):
+        one, two = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("one", "two"))
+        assert one == two

@@ -1,0 +1,62 @@
+"""The README says what the code does: its tables, its commands, its example."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from lube.formulas import FORMULAS
+from lube.reference import formula_table, record_table, study_table, with_tables
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def code_blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+
+
+def test_the_tables_of_the_readme_are_those_of_the_code():
+    assert with_tables(README) == README, "run: python -m lube.reference README.md"
+
+
+def test_tables_are_filled_between_their_markers_only():
+    text = "before\n<!-- table: formulas -->\nold\n<!-- end -->\nafter"
+    filled = with_tables(text)
+    assert filled == f"before\n<!-- table: formulas -->\n{formula_table()}\n<!-- end -->\nafter"
+
+
+def test_every_formula_has_a_row():
+    rows = formula_table().splitlines()[2:]
+    assert [row.split("`")[1] for row in rows] == list(FORMULAS)
+
+
+@pytest.mark.parametrize(
+    ("row", "table"),
+    [
+        ("| `rollers.first.radius` | quantity in m, above 0 |", study_table),
+        ("| `rollers.second.poisson_ratio` | number, at least 0 and at most 0.5 |", study_table),
+        ("| `operating_grid.force` | values and units in N, above 0 |", study_table),
+        ("| `lubricants` | list of names or paths |", study_table),
+        ("| `traces[].lubricant` | text (optional) |", study_table),
+        ("| `density.at_15_degC` | quantity in kg/m^3, above 0 |", record_table),
+    ],
+)
+def test_a_key_is_told_with_its_unit_and_limits(row, table):
+    assert any(line.startswith(row) for line in table().splitlines())
+
+
+def test_continuous_integration_runs_the_test_command_of_the_readme():
+    command = next(block for block in code_blocks("bash") if "pytest" in block).strip()
+    script = (ROOT / ".ci/run").read_text(encoding="utf-8")
+    assert command.replace("pip install ", "pip install -q ") in script
+
+
+def test_the_example_without_snakemake_runs_as_printed():
+    example = next(block for block in code_blocks("python") if "load_record" in block)
+    *body, last = example.strip().splitlines()
+    names = {}
+    exec("\n".join(body).replace("100_000", "20_000").replace("range(8)", "range(2)"), names)
+    mean = eval(last, names)
+    assert mean.sizes == {"temperature": 2, "force": 2}
+    assert (mean.sel(temperature=80) >= mean.sel(temperature=40)).all()
