@@ -17,15 +17,14 @@ _HOMES = {
     "lube.records": ("load_record", "shipped_records"),
     "lube.resistance": ("contact_resistance",),
     "lube.roughness": ("power_spectrum", "roughness_lines"),
-    "lube.study": (
+    "lube.study": ("Study", "load_study"),
+    "lube.surfaces": (
         "BoundaryLayer",
         "LineSpec",
         "Roller",
         "RollerPair",
         "Roughness",
-        "Study",
         "line_spec",
-        "load_study",
     ),
     "lube.trace": ("contact_trace", "contact_window"),
 }

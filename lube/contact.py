@@ -10,8 +10,7 @@ import logging
 import numpy as np
 import xarray as xr
 
-from lube.kernels.rolling import composite_line, rolling_statistics
-from lube.kernels.scan import scan_statistics
+from lube.kernels.strips import strip_statistics
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
 from lube.steps import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
 
@@ -46,7 +45,10 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,)):
     for r, realisation in enumerate(lines["realisation"].values):
         pair = line_pair(lines, realisation)
         for s, ratio in enumerate(slide_to_roll_ratio):
-            counts[r, s] = _mean_counts(pair, ratio, films, half_windows, factor)
+            ratios = speed_ratios(ratio)
+            steps = revolution(pair, ratios)
+            counts[r, s] = strip_statistics(*pair, ratios, steps, films, half_windows, factor)
+            counts[r, s] /= steps
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
     shape = counts.shape[:2] + tuple(film.sizes[name] for name in OPERATING_DIMS)
     touching, breaking, points, overlap = np.moveaxis(counts[:, :, back], -1, 0)
@@ -74,19 +76,6 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,)):
     dataset["critical_thickness"] = boundary_layer.critical_thickness
     dataset["shear_strength"] = boundary_layer.shear_strength
     return label(dataset, "contact_batch")
-
-
-def _mean_counts(pair, ratio, films, half_windows, factor):
-    """Kernel statistics per time step, by the fastest method that is exact for the slip."""
-    ratios = speed_ratios(ratio)
-    steps = revolution(pair, ratios)
-    if ratio == 0.0:
-        margin = int(half_windows.max())
-        line = composite_line(*pair, steps, margin)
-        statistics = rolling_statistics(line, margin, films, half_windows, factor)
-    else:
-        statistics = scan_statistics(*pair, ratios, steps, films, half_windows, factor)
-    return statistics / steps
 
 
 def _distinct_points(film, lines):

@@ -38,7 +38,7 @@ def save(dataset, path, kind, study, compress=True):
     kind : str
         A key of `lube.schema.FILES`.
     study : Study
-        The study it belongs to; its values on which the stage depends are written along.
+        The study it belongs to; the values that the result follows from are written along.
     compress : bool, optional
         False for files that live for minutes only.
 
@@ -102,10 +102,10 @@ def load(path, kind, raw=False):
 def _origin(study, kind):
     """Global attributes that tell where a file comes from."""
     stage = kind.removesuffix("_batch")
-    inputs = json.dumps(study.stage_inputs(stage), sort_keys=True)
+    inputs = json.dumps(study.origin(stage), sort_keys=True)
     return {
         "Conventions": CONVENTIONS,
-        "title": f"{study.title}: {stage}",
+        "title": f"Mixed lubrication study {study.name}: {stage}",
         "study": study.name,
         "study_inputs": inputs,
         "study_inputs_sha256": hashlib.sha256(inputs.encode()).hexdigest(),

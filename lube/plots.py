@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from lube.schema import COORDINATES
 from lube.units import convert
 
 COLOURS = {
@@ -46,7 +47,6 @@ _STYLE = {
     "ytick.labelsize": 8,
     "pdf.fonttype": 42,
     "agg.path.chunksize": 10000,  # long traces are drawn in pieces
-    "svg.hashsalt": "lube",
 }
 
 # UDUNITS notation of the files -> what a reader expects on an axis.
@@ -151,8 +151,51 @@ def level_markers(levels):
 
 
 def level_name(value, units):
-    """Level of an operating variable as text: ``86 r/min``, ``800 N``."""
-    return f"{value:.0f} {nice_units(units)}"
+    """Level of an operating variable as text: ``86 r/min``, ``800 N``, ``40.5 °C``."""
+    near = abs(value - round(value)) <= 0.004 * abs(value)
+    return f"{f'{value:.0f}' if near else f'{value:.3g}'} {nice_units(units)}"
+
+
+def point_name(place, *variables):
+    """Operating point as text: ``800 N, 100 r/min, 40 °C``.
+
+    Parameters
+    ----------
+    place : xarray.Dataset or xarray.DataArray
+        With scalar coordinates.
+    *variables : str
+        Which of them; force, speed and temperature if none is named.
+
+    Returns
+    -------
+    str
+        The levels with their units.
+    """
+    names = variables or ("force", "speed", "temperature")
+    return ", ".join(level_name(place[name].item(), COORDINATES[name].units) for name in names)
+
+
+def footnote(figure, dataset):
+    """Say below a figure which lubricant, film formula and slip it shows.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure, in constrained layout.
+    dataset : xarray.Dataset or xarray.DataArray
+        What it shows; a coordinate of several values is told with all of them.
+    """
+    words = {
+        "lubricant": "",
+        "film_formula": "film formula ",
+        "slide_to_roll_ratio": "slide-to-roll ratio ",
+    }
+    told = [
+        word + ", ".join(str(value) for value in np.unique(dataset[name]))
+        for name, word in words.items()
+        if name in dataset.coords
+    ]
+    figure.supxlabel(" · ".join(told), x=0.99, ha="right", fontsize=6.5, color="#5F5F5F")
 
 
 def plain_log_ticks(axis, numbers=(1, 2, 5)):

@@ -7,6 +7,7 @@ from a record at a temperature is computed in `lube.lubricant`.
 """
 
 import re
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -280,17 +281,17 @@ def _beside(record_path, name):
 
 def _check_points(points, where):
     """Refuse data through which no viscosity law can go."""
-    coldest = min(points, key=lambda point: point.temperature, default=None)
-    hottest = max(points, key=lambda point: point.temperature, default=None)
-    if coldest is None or coldest.temperature == hottest.temperature:
+    if len({point.temperature for point in points}) < 2:
         raise RecordError(f"{where}: viscosity: need values at two temperatures or more")
     for kind in ("kinematic_viscosity", "dynamic_viscosity"):
-        cold, hot = getattr(coldest, kind), getattr(hottest, kind)
-        if cold is not None and hot is not None and cold <= hot:
-            raise RecordError(
-                f"{where}: viscosity: got more at {hottest.temperature:g} degC than at "
-                f"{coldest.temperature:g} degC, need a viscosity that falls with temperature"
-            )
+        known = [point for point in points if getattr(point, kind) is not None]
+        for cold, hot in pairwise(sorted(known, key=lambda point: point.temperature)):
+            rises = getattr(cold, kind) <= getattr(hot, kind)
+            if rises and cold.temperature < hot.temperature:
+                raise RecordError(
+                    f"{where}: viscosity: got no less at {hot.temperature:g} degC than at "
+                    f"{cold.temperature:g} degC, need a viscosity that falls with temperature"
+                )
 
 
 _HEADER_CELL = re.compile(r"(\w+)\s*\[\s*([^\]]+?)\s*\]")
@@ -325,13 +326,15 @@ def read_viscosity_csv(path):
     (header_line, header), *rows = lines
     delimiter = ";" if ";" in header else ","
     columns = _csv_columns(header, delimiter, f"{path}: line {header_line}")
+    decimal_comma = delimiter == ";" and any("," in text for _, text in rows)
     points = []
     for number, text in rows:
         where = f"{path}: line {number}"
         cells = _cells(text, delimiter)
         if len(cells) != len(columns):
             raise RecordError(f"{where}: got {len(cells)} values, need {len(columns)}")
-        if delimiter == ";":
+        if decimal_comma:
+            _refuse_points(cells, where)
             cells = [cell.replace(",", ".") for cell in cells]
         content = {
             name: f"{cell} {units}"
@@ -339,6 +342,13 @@ def read_viscosity_csv(path):
         }
         points.append(validate(ViscosityPoint, content, where, RecordError))
     return tuple(points)
+
+
+def _refuse_points(cells, where):
+    """Where numbers have a decimal comma, a point is one of thousands, or a mistake."""
+    for cell in cells:
+        if "." in cell:
+            raise RecordError(f"{where}: got {cell!r} in a file with decimal commas, need no point")
 
 
 def _csv_lines(path):

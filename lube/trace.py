@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from lube.kernels.rolling import composite_line, rolling_trace
-from lube.kernels.scan import scan_trace, surface_position
+from lube.kernels.motion import surface_position
+from lube.kernels.strips import strip_trace
 from lube.resistance import contact_resistance
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
 from lube.steps import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
@@ -43,8 +43,10 @@ def contact_trace(lines, film, points, boundary_layer, resistivity):
     )
     pair = line_pair(lines, REALISATION)
     ratio = points[0]["slide_to_roll_ratio"]
+    ratios = speed_ratios(ratio)
+    steps = revolution(pair, ratios)
     broken = [
-        _broken_points(pair, ratio, film_steps, half_window, factor)
+        strip_trace(*pair, ratios, steps, film_steps, half_window, factor)
         for film_steps, half_window in zip(films, half_windows, strict=True)
     ]
     spacing = lines.attrs["spacing"]
@@ -73,17 +75,7 @@ def _places(film, points):
     return chosen.assign_coords(slide_to_roll_ratio=along["slide_to_roll_ratio"])
 
 
-def _broken_points(pair, ratio, film, half_window, factor):
-    """Points of broken segments in the window, at each step of one revolution."""
-    ratios = speed_ratios(ratio)
-    steps = revolution(pair, ratios)
-    if ratio == 0.0:
-        line = composite_line(*pair, steps, half_window)
-        return rolling_trace(line, film, half_window, factor)
-    return scan_trace(*pair, ratios, steps, film, half_window, factor)[:, 1]
-
-
-def contact_window(lines, trace, operating_point, step):
+def contact_window(lines, trace, operating_point, step, reach=None):
     """Look into the contact window at one time step of a trace.
 
     Parameters
@@ -96,6 +88,8 @@ def contact_window(lines, trace, operating_point, step):
         Which of the trace's operating points.
     step : int
         Time step.
+    reach : float, optional
+        How far from the middle to look, m; the contact half-width if not given.
 
     Returns
     -------
@@ -107,12 +101,13 @@ def contact_window(lines, trace, operating_point, step):
     """
     place = trace.isel(operating_point=operating_point)
     spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
-    film, half_window = whole_numbers(place["film_thickness"], place["contact_half_width"], lines)
+    reach = place["contact_half_width"].item() if reach is None else reach
+    film, half_window = whole_numbers(place["film_thickness"], reach, lines)
     window = np.arange(-half_window, half_window + 1)
     ratios = speed_ratios(place["slide_to_roll_ratio"].item())
     heights = np.array(
         [
-            line[(surface_position(step, ratio, line.size) + window) % line.size]
+            line[(surface_position(step, ratio) + window) % line.size]
             for line, ratio in zip(line_pair(lines, REALISATION), ratios, strict=True)
         ],
         np.int64,

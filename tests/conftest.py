@@ -62,5 +62,5 @@ def lines(make_spec):
 def coarse_lines(make_spec):
     """One realisation on a grid so coarse that the literal scan is quick."""
     return roughness_lines(
-        make_spec(6000, points_per_shortest_wavelength=4.0), seed=11, realisations=[0]
+        make_spec(6000, shortest_wavelength="4.0 points"), seed=11, realisations=[0]
     )

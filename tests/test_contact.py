@@ -11,8 +11,8 @@ import xarray as xr
 
 from lube import BoundaryLayer, contact_statistics, roughness_lines
 from lube.kernels.layer import layer_factor
-from lube.kernels.rolling import composite_line, rolling_statistics
 from lube.kernels.scan import scan_statistics
+from lube.kernels.strips import strip_statistics
 from lube.roughness import draw_realisation
 from lube.schema import OPERATING_DIMS
 from lube.steps import line_pair
@@ -87,9 +87,8 @@ def test_every_value_is_the_kernels_at_the_labelled_point(lines, film, layer, co
         pair = line_pair(lines, realisation)
         for place in places(film):
             films, half_windows, factor = kernel_arguments(film, place, lines, layer)
-            margin = int(half_windows[0])
-            line = composite_line(*pair, pair[0].size, margin)
-            counts = rolling_statistics(line, margin, films, half_windows, factor)[0]
+            steps = pair[0].size
+            counts = strip_statistics(*pair, (1.0, 1.0), steps, films, half_windows, factor)[0]
             expected = expected_at(counts, pair[0].size, lines, film["reduced_modulus"].item())
             found = contact.sel(realisation=realisation, slide_to_roll_ratio=0.0, **place)
             for name in MEANS:
@@ -270,7 +269,7 @@ def test_slip_changes_which_asperities_meet(slipping):
 def test_swapping_rollers_and_the_sign_of_slip_changes_nothing(
     make_spec, film, weak_layer, second_radius
 ):
-    spec = make_spec(6000, second_radius, points_per_shortest_wavelength=4.0)
+    spec = make_spec(6000, second_radius, shortest_wavelength="4.0 points")
     lines = roughness_lines(spec, 3, [0])
     swapped = lines.isel(roller=[1, 0]).assign_attrs(points=lines.attrs["points"][::-1])
     few = film.isel(temperature=[3], speed=[0], force=[2, 4])
@@ -284,7 +283,7 @@ def test_independent_looks_are_counted_on_the_shorter_line(make_spec, film, laye
     """A revolution is never claimed to be longer than either roller's."""
     few = film.isel(temperature=[0], speed=[0], force=[0])
     for second_radius in (0.02, 0.05, 0.08):
-        spec = make_spec(6000, second_radius, points_per_shortest_wavelength=4.0)
+        spec = make_spec(6000, second_radius, shortest_wavelength="4.0 points")
         contact = contact_statistics(roughness_lines(spec, 3, [0]), few, layer)
         assert contact.attrs["travel"] == pytest.approx(2 * np.pi * min(0.05, second_radius))
 
@@ -301,10 +300,9 @@ def ensemble(make_spec, study, film):
     factor = layer_factor(film["reduced_modulus"].item(), 5e-9, 1e6, spec.spacing, spec.height_step)
     statistics = []
     for realisation in range(12):
-        line = composite_line(*draw_realisation(spec, 77, realisation), 1_000_000, half_window)
-        statistics.append(
-            rolling_statistics(line, half_window, films, np.full(4, half_window), factor)
-        )
+        pair = draw_realisation(spec, 77, realisation)
+        windows = np.full(4, half_window)
+        statistics.append(strip_statistics(*pair, (1.0, 1.0), 1_000_000, films, windows, factor))
     return spec, half_window, films, np.array(statistics) / 1e6
 
 

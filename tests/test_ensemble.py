@@ -10,7 +10,7 @@ from lube import contact_statistics, gather, roughness_lines, with_intervals
 from lube.ensemble import PROBABILITIES, effective_looks, independent_windows, probability_interval
 from lube.errors import DataError
 from lube.kernels.layer import layer_factor
-from lube.kernels.rolling import composite_line, rolling_statistics
+from lube.kernels.strips import strip_statistics
 from lube.roughness import draw_realisation
 
 # Whole numbers of a million time steps, as real shares of time are.
@@ -154,8 +154,8 @@ def population(make_spec, film):
     factor = layer_factor(modulus, 5e-9, 1e6, spec.spacing, spec.height_step)
     shares = []
     for realisation in range(1600):
-        line = composite_line(*draw_realisation(spec, 5, realisation), 100_000, half_window)
-        counts = rolling_statistics(line, half_window, FILMS, half_windows, factor)
+        pair = draw_realisation(spec, 5, realisation)
+        counts = strip_statistics(*pair, (1.0, 1.0), 100_000, FILMS, half_windows, factor)
         shares.append(counts[:, :2] / 1e5)
     windows = 1e5 * spec.spacing / (2.0 * half_width + 2.0 * np.pi / spec.q_min)
     return np.array(shares), windows

@@ -22,7 +22,7 @@ LAYERS = [
     {"errors"},
     {"units", "hertz", "formulas", "viscosity", "resistance", "schema", "kernels"},
     {"fields", "fluids", "steps"},
-    {"records"},
+    {"records", "surfaces"},
     {"study"},
     {"lubricant", "film", "roughness", "contact", "trace", "ensemble"},
     {"io", "plots", "notebooks", "jobs", "reference"},

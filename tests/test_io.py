@@ -1,6 +1,7 @@
 """NetCDF in and out: whole, exact, the same bytes, or refused in one line that names the file."""
 
 import hashlib
+import json
 import shutil
 
 import netCDF4
@@ -150,9 +151,13 @@ def test_files_say_which_conventions_they_follow_and_where_they_come_from(files,
         assert raw.data_model == "NETCDF4"
         assert raw.Conventions == CONVENTIONS == "CF-1.11, ACDD-1.3"
         assert raw.study == study.name
-        assert study.title in raw.title
+        assert study.name in raw.title
         digest = hashlib.sha256(raw.study_inputs.encode()).hexdigest()
         assert raw.study_inputs_sha256 == digest
+        stage = kind.removesuffix("_batch")
+        assert json.loads(raw.study_inputs)[stage] == study.stage_inputs(stage)
+        follows_the_oil = stage in ("lubricant", "film", "contact", "trace")
+        assert (study.lubricants[0].name in raw.study_inputs) == follows_the_oil
         assert raw.source.startswith("lube ")
 
 

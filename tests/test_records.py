@@ -140,7 +140,7 @@ def test_missing_file_is_refused(tmp_path):
         (POINTS, POINTS + "  csv: a.csv\n", "viscosity: got points and csv, need one of"),
         (POINTS, "  points: []\n", "viscosity: need values at two temperatures or more"),
         ("100 degC", "40 degC", "viscosity: need values at two temperatures or more"),
-        ("11 mm^2/s", "110 mm^2/s", "got more at 100 degC than at 40 degC"),
+        ("11 mm^2/s", "110 mm^2/s", "got no less at 100 degC than at 40 degC"),
         (
             "100 mm^2/s}",
             "100 mm^2/s, dynamic_viscosity: 9 mPa*s}",
@@ -254,7 +254,7 @@ HEADER = "temperature [degC],kinematic_viscosity [mm^2/s]\n"
         (HEADER + "40,100\n100,0\n", "line 3: kinematic_viscosity: got 0, need a value above 0"),
         (HEADER + "40,0,100,5\n", "line 2: got 4 values, need 2"),
         (HEADER + "40,100\n", "data.csv: viscosity: need values at two temperatures or more"),
-        (HEADER + "40,10\n100,100\n", "got more at 100 degC than at 40 degC"),
+        (HEADER + "40,10\n100,100\n", "got no less at 100 degC than at 40 degC"),
     ],
 )
 def test_each_mistake_in_a_csv_file_is_refused_by_line_and_column(write, text, message):
@@ -306,3 +306,22 @@ def test_reading_and_checking_records_stays_light():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_viscosity_must_fall_between_all_neighbours(write):
+    write(HEADER + "20,460\n40,100\n30,50\n", "data.csv")
+    assert "got no less at 40 degC than at 30 degC" in refusal(write(CSV_OIL))
+
+
+def test_a_temperature_may_be_measured_twice(write):
+    write(HEADER + "20,460\n40,100\n40,101\n", "data.csv")
+    assert len(load_record(write(CSV_OIL)).viscosity.points) == 3
+
+
+def test_a_point_among_decimal_commas_is_not_read_as_either(write):
+    header = HEADER.replace(",", ";")
+    write(header + "20;1.100\n40;46,2\n", "data.csv")
+    assert "line 2: got '1.100' in a file with decimal commas" in refusal(write(CSV_OIL))
+    write(header + "20;1.1e3\n40;46.2\n", "data.csv")  # semicolons alone say nothing
+    viscosity = load_record(write(CSV_OIL)).viscosity.points[0].kinematic_viscosity
+    assert viscosity == pytest.approx(1.1e-3)

@@ -6,7 +6,7 @@ import scipy.special
 import scipy.stats
 
 from lube import roughness_lines
-from lube.kernels.rolling import composite_line, find_runs
+from lube.kernels.strips import find_runs
 from lube.roughness import (
     PADDING,
     draw_line,
@@ -129,7 +129,7 @@ def test_limits_that_are_whole_numbers_of_waves_belong_to_the_band(make_spec):
 
 def test_finest_wave_has_more_than_two_points(make_spec):
     """A wave of two points would have a height that hangs on its phase, and the rms with it."""
-    spec = make_spec(4096, points_per_shortest_wavelength=2.0)
+    spec = make_spec(4096, shortest_wavelength="2.0 points")
     first, amplitudes = wave_amplitudes(spec, 0)
     assert first + amplitudes.size - 1 == 2047
     rms = [np.sqrt(np.mean(draw_realisation(spec, SEED, r)[0] ** 2.0)) for r in range(5)]
@@ -201,7 +201,7 @@ def test_rollers_and_realisations_are_independent(spec, pairs):
 
 
 def test_realisation_is_the_same_whatever_the_batch_and_the_order(make_spec):
-    spec = make_spec(5000, points_per_shortest_wavelength=3.0)
+    spec = make_spec(5000, shortest_wavelength="3.0 points")
     alone = np.array(draw_realisation(spec, SEED, 5))
     for realisations in ([5], [5, 0], [0, 1, 2, 3, 4, 5], range(3, 7)):
         batch = roughness_batch(spec, SEED, realisations).sel(realisation=5)
@@ -209,7 +209,7 @@ def test_realisation_is_the_same_whatever_the_batch_and_the_order(make_spec):
 
 
 def test_realisation_hangs_on_nothing_but_the_pair_of_seeds(make_spec):
-    spec = make_spec(5000, points_per_shortest_wavelength=3.0)
+    spec = make_spec(5000, shortest_wavelength="3.0 points")
     children = np.random.SeedSequence((SEED, 5)).spawn(2)
     for roller, line in enumerate(draw_realisation(spec, SEED, 5)):
         np.testing.assert_array_equal(line, draw_line(spec, roller, children[roller]))
@@ -257,7 +257,7 @@ def composites(make_spec):
     """Sums of both lines as fine as the paper's, and their spectrum."""
     spec = make_spec(1_000_000)
     drawn = (draw_realisation(spec, SEED, r) for r in range(12))
-    return spec, [composite_line(*pair, pair[0].size, 0) for pair in drawn]
+    return spec, [first + second for first, second in drawn]
 
 
 def upcrossings_per_step(spec, film):

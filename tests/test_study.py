@@ -10,7 +10,8 @@ from pydantic import ValidationError
 
 from lube.errors import LubeError
 from lube.records import SHIPPED_FOLDER
-from lube.study import AUTOMATIC_WAVELENGTH, load_study
+from lube.study import load_study
+from lube.surfaces import AUTOMATIC_WAVELENGTH
 
 CONFIG = Path(__file__).parents[1] / "workflow" / "config"
 PAPER = CONFIG / "paper.yaml"
@@ -206,7 +207,6 @@ LINES = {"roughness", "contact", "trace"}
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, {"lubricant"}),
         ("traces.1.temperature", "60 degC", {"trace"}),
-        ("title", "Another", set(STAGES)),
         ("realisations", 128, set()),
         ("batch_size", 16, set()),
         ("kept_realisations", [0, 1], set()),
@@ -297,7 +297,7 @@ PURE_NUMBERS = [
     ("roughness.hurst_exponent", 1, "got 1, need a value above 0 and below 1"),
     ("roughness.hurst_exponent", -0.5, "got -0.5, need a value above 0 and below 1"),
     ("roughness.hurst_exponent", INFINITY, "need a finite number"),
-    ("roughness.points_per_shortest_wavelength", 1.9, "got 1.9, need a value at least 2"),
+    ("roughness.shortest_wavelength", "1.9 points", "got 1.9, need a value at least 2 points"),
     ("operating_grid.slide_to_roll_ratio", [2.5], "got 2.5, need a value at least -2 and at most"),
     ("operating_grid.slide_to_roll_ratio", [], "need a list such as [0, 0.1]"),
     ("operating_grid.slide_to_roll_ratio", [0, 0], "got 0 after 0, need rising levels"),

@@ -8,27 +8,7 @@ import numpy as np
 
 from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
-
-
-@kernel
-def surface_position(step, speed_ratio, points):
-    """Index of the point of a line that is in the middle of the window.
-
-    Parameters
-    ----------
-    step : int
-        Time step t.
-    speed_ratio : float
-        Surface speed over the faster surface's, v_i / max(v1, v2).
-    points : int
-        Number N of points around the circumference.
-
-    Returns
-    -------
-    int
-        floor(t v_i / max(v1, v2) + 1/2), modulo N.
-    """
-    return int(np.floor(step * speed_ratio + 0.5)) % points
+from lube.kernels.motion import surface_position
 
 
 @kernel
@@ -115,8 +95,8 @@ def scan_trace(line_1, line_2, speed_ratios, steps, film, half_window, factor):
     trace = np.empty((steps, 3), np.int64)
     width = 2 * half_window + 1
     for step in range(steps):
-        first_1 = (surface_position(step, speed_ratios[0], line_1.size) - half_window) % line_1.size
-        first_2 = (surface_position(step, speed_ratios[1], line_2.size) - half_window) % line_2.size
+        first_1 = (surface_position(step, speed_ratios[0]) - half_window) % line_1.size
+        first_2 = (surface_position(step, speed_ratios[1]) - half_window) % line_2.size
         trace[step] = scan_window(line_1, line_2, first_1, first_2, width, film, factor)
     return trace
 
@@ -149,8 +129,8 @@ def scan_statistics(line_1, line_2, speed_ratios, steps, films, half_windows, fa
         half_window = half_windows[point]
         width = 2 * half_window + 1
         for step in range(steps):
-            first_1 = surface_position(step, speed_ratios[0], line_1.size) - half_window
-            first_2 = surface_position(step, speed_ratios[1], line_2.size) - half_window
+            first_1 = surface_position(step, speed_ratios[0]) - half_window
+            first_2 = surface_position(step, speed_ratios[1]) - half_window
             contact, broken, overlap = scan_window(
                 line_1,
                 line_2,

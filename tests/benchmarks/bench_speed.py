@@ -13,14 +13,15 @@ import scipy.fft
 
 from lube.film import film_table
 from lube.kernels.layer import layer_factor
-from lube.kernels.rolling import composite_line, rolling_statistics
 from lube.kernels.scan import scan_statistics
+from lube.kernels.strips import strip_statistics
 from lube.lubricant import lubricant_table
 from lube.roughness import draw_line, draw_realisation
+from lube.steps import revolution, speed_ratios
 from lube.study import load_study
 
 SCAN_SHARE = 50
-"""The literal scan runs over this fraction of a revolution; its cost is linear in the steps."""
+"""The literal scan runs over 1/50 of a revolution; its cost is linear in the steps."""
 
 
 def best_times(*sides, runs=5):
@@ -54,25 +55,31 @@ def paper_points(study):
     return films, half_windows, factor
 
 
-def bench_contact(study):
-    """The O(N) method against the compiled literal scan, one realisation, 125 points."""
+def bench_contact(study, slide_to_roll_ratio, least_lambda=0.0):
+    """The strips against the compiled literal scan, one realisation, many points."""
     pair = draw_realisation(study.line_spec, study.seed, 0)
     films, half_windows, factor = paper_points(study)
-    steps, margin = pair[0].size, int(half_windows.max())
+    composite = study.rollers.composite_rms_roughness / study.roughness.height_step
+    chosen = films >= least_lambda * composite
+    films, half_windows = films[chosen], half_windows[chosen]
+    ratios = speed_ratios(slide_to_roll_ratio)
+    steps = revolution(pair, ratios)
+    # Slip costs the strips more, and is as linear in the steps.
+    share = 1 if slide_to_roll_ratio == 0.0 else SCAN_SHARE
 
-    def rolling():
-        line = composite_line(*pair, steps, margin)
-        return rolling_statistics(line, margin, films, half_windows, factor)
+    def strips():
+        return strip_statistics(*pair, ratios, steps // share, films, half_windows, factor)
 
     def scan():
         part = steps // SCAN_SHARE
-        return scan_statistics(*pair, (1.0, 1.0), part, films, half_windows, factor)
+        return scan_statistics(*pair, ratios, part, films, half_windows, factor)
 
-    fast, slow = best_times(rolling, scan, runs=3)
-    slow *= SCAN_SHARE
-    print(f"contact, {films.size} points of {steps} steps:")
-    print(f"  literal scan {slow:8.2f} s   (1/{SCAN_SHARE} of the revolution, times {SCAN_SHARE})")
-    print(f"  O(N) method  {fast:8.4f} s   {slow / fast:.0f} times faster")
+    fast, slow = best_times(strips, scan, runs=2) * (share, SCAN_SHARE)
+    print(
+        f"slide-to-roll ratio {slide_to_roll_ratio:g}, {films.size:3d} points"
+        f"{f' of lambda above {least_lambda:g}' if least_lambda else ''}: "
+        f"scan {slow:.1f} s, strips {fast:.3f} s, {slow / fast:.0f} times faster"
+    )
 
 
 def bench_synthesis(study):
@@ -91,5 +98,8 @@ def bench_synthesis(study):
 
 if __name__ == "__main__":
     paper = load_study("workflow/config/paper.yaml")
-    bench_contact(paper)
     bench_synthesis(paper)
+    bench_contact(paper, 0.0)
+    for slip in (0.01, 0.1, 0.5, 1.0, 2.0):
+        bench_contact(paper, slip)
+        bench_contact(paper, slip, least_lambda=3.0)

@@ -1,0 +1,280 @@
+"""The strips against the literal scan, at any slip: equal to the last bit."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from lube.kernels.layer import layer_factor
+from lube.kernels.motion import surface_position
+from lube.kernels.scan import scan_statistics, scan_trace
+from lube.kernels.strips import (
+    BLOCK,
+    LONGEST_STRIP,
+    add_lines,
+    find_runs,
+    high_stretches,
+    strip_end,
+    strip_statistics,
+    strip_trace,
+)
+from lube.roughness import draw_realisation
+
+ROLLING = (1.0, 1.0)
+slower = st.one_of(
+    st.sampled_from([0.0, 1e-9, 1 / 3, 0.5, 2 / 3, 0.9, 0.99, 0.999, 1 - 1e-9, 1.0]),
+    st.floats(0, 1),
+)
+speed_ratios = st.tuples(slower, st.booleans()).map(
+    lambda pair: (1.0, pair[0]) if pair[1] else (pair[0], 1.0)
+)
+
+# Plateaus make long runs, small heights make ties with the film and between segments.
+plateaus = st.lists(st.tuples(st.integers(-3, 3), st.integers(1, 9)), min_size=1, max_size=12).map(
+    lambda pieces: [height for height, points in pieces for _ in range(points)]
+)
+noise = st.lists(st.integers(-3, 3), min_size=1, max_size=40)
+rough_lines = st.one_of(plateaus, noise).map(lambda heights: np.array(heights, np.int32))
+half_windows = st.one_of(st.integers(0, 4), st.integers(0, 60))
+operating_points = st.lists(st.tuples(st.integers(-8, 8), half_windows), min_size=1, max_size=6)
+# n^3 < factor S: the middle ones let some segments break and make ties, S being whole.
+factors = st.sampled_from([0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 9.0, 16.0, 27.0, 100.0, 1e9])
+
+
+def statistics_by(kernel, line_1, line_2, points, factor, steps=None, speed_ratios=ROLLING):
+    films, half_windows = np.array(points, np.int64).T
+    steps = steps or line_1.size
+    return kernel(line_1, line_2, speed_ratios, steps, films, half_windows, factor)
+
+
+statistics_by_strips = partial(statistics_by, strip_statistics)
+statistics_by_scan = partial(statistics_by, scan_statistics)
+
+
+@settings(max_examples=2000)
+@given(rough_lines, rough_lines, operating_points, factors, speed_ratios, st.integers(1, 150))
+def test_statistics_equal_the_scan(line_1, line_2, points, factor, ratios, steps):
+    np.testing.assert_array_equal(
+        statistics_by_strips(line_1, line_2, points, factor, steps, ratios),
+        statistics_by_scan(line_1, line_2, points, factor, steps, ratios),
+    )
+
+
+@settings(max_examples=1500)
+@given(
+    rough_lines,
+    rough_lines,
+    st.integers(-8, 8),
+    half_windows,
+    factors,
+    speed_ratios,
+    st.integers(1, 150),
+)
+def test_trace_equals_the_scan_at_every_step(
+    line_1, line_2, film, half_window, factor, ratios, steps
+):
+    np.testing.assert_array_equal(
+        strip_trace(line_1, line_2, ratios, steps, film, half_window, factor),
+        scan_trace(line_1, line_2, ratios, steps, film, half_window, factor)[:, 1],
+    )
+
+
+@settings(max_examples=300)
+@given(rough_lines, rough_lines, operating_points, factors)
+def test_one_revolution_of_pure_rolling_equals_the_scan(line_1, line_2, points, factor):
+    np.testing.assert_array_equal(
+        statistics_by_strips(line_1, line_2, points, factor),
+        statistics_by_scan(line_1, line_2, points, factor),
+    )
+
+
+# Where strips are cut and blocks of points are passed over
+
+
+@pytest.mark.parametrize("beyond", [-1, 0, 1, LONGEST_STRIP + 1])
+@pytest.mark.parametrize("ratios", [ROLLING, (1.0, 0.9999), (0.9999, 1.0)])
+def test_cutting_long_strips_changes_nothing(beyond, ratios):
+    rng = np.random.default_rng(beyond + 10)
+    line_1, line_2 = rng.integers(-4, 5, 997).astype(np.int32), rng.integers(-4, 5, 601)
+    lines = line_1, line_2.astype(np.int32)
+    steps, points = LONGEST_STRIP + beyond, [(5, 6), (2, 20), (7, 0), (-9, 3)]
+    for factor in (1.0, 9.0):
+        np.testing.assert_array_equal(
+            statistics_by_strips(*lines, points, factor, steps, ratios),
+            statistics_by_scan(*lines, points, factor, steps, ratios),
+        )
+
+
+@given(st.integers(1, 5 * BLOCK), st.integers(0, 4 * BLOCK), st.integers(0, 9), st.randoms())
+def test_blocks_that_are_passed_over_hold_nothing(size, high, film, random):
+    line = np.zeros(size, np.int32)
+    for _ in range(high // 20):
+        line[random.randrange(size)] = random.randrange(12)
+    starts, stops = np.empty((2, size // 2 + 1), np.int64)
+    count = high_stretches(line, film, starts, stops)
+    looked_at = np.zeros(size, bool)
+    for start, stop in zip(starts[:count], stops[:count], strict=True):
+        assert start < stop
+        assert line[start:stop].max() > film
+        assert not looked_at[max(start - 1, 0) : stop].any()  # neighbours are one stretch
+        looked_at[start:stop] = True
+    assert not (line > film)[~looked_at].any()
+
+
+@given(speed_ratios, st.integers(1, 400))
+def test_strips_follow_on_one_another_and_keep_their_alignment(ratios, steps):
+    begin = 0
+    while begin < steps:
+        end = strip_end(begin, steps, ratios)
+        assert begin < end <= steps
+        for ratio in ratios:
+            moved = [
+                surface_position(t, ratio) - surface_position(begin, ratio)
+                for t in range(begin, end)
+            ]
+            assert moved == list(range(end - begin))
+        begin = end
+
+
+def test_strips_of_small_slip_are_about_one_over_the_slip_long():
+    ends = [0]
+    while ends[-1] < 10**5:
+        ends.append(strip_end(ends[-1], 10**5, (1.0, 0.99)))
+    assert np.median(np.diff(ends)) == 100
+
+
+@given(
+    st.integers(-2, 2),
+    st.integers(1, 30),
+    st.integers(-2, 2),
+    st.integers(0, 40),
+    factors,
+)
+def test_flat_surfaces_touch_everywhere_or_nowhere(height, size, film, half_window, factor):
+    line = np.full(size, height, np.int32)
+    flat = np.zeros_like(line)
+    width = 2 * half_window + 1
+    overlap = max(height - film, 0)
+    touches = overlap > 0
+    breaks = width**3 < factor * width * overlap
+    expected = [size * touches, size * breaks, size * width * breaks, size * width * overlap]
+    assert statistics_by_strips(line, flat, [(film, half_window)], factor).tolist() == [expected]
+
+
+@given(rough_lines, rough_lines, operating_points, factors, st.randoms(use_true_random=False))
+def test_points_do_not_see_one_another(line_1, line_2, points, factor, random):
+    together = statistics_by_strips(line_1, line_2, points, factor)
+    order = random.choices(range(len(points)), k=len(points) + 2)  # any order, with repeats
+    again = statistics_by_strips(line_1, line_2, [points[i] for i in order], factor)
+    np.testing.assert_array_equal(again, together[order])
+
+
+@given(noise, operating_points, factors, st.integers(0, 40), st.randoms(use_true_random=False))
+def test_where_both_lines_begin_does_not_matter(heights, points, factor, shift, random):
+    line_1 = np.array(heights, np.int32)
+    line_2 = np.array(random.choices(heights, k=len(heights)), np.int32)
+    np.testing.assert_array_equal(
+        statistics_by_strips(line_1, line_2, points, factor),
+        statistics_by_strips(np.roll(line_1, shift), np.roll(line_2, shift), points, factor),
+    )
+
+
+@given(rough_lines, rough_lines, operating_points, factors)
+def test_swapping_the_rollers_changes_nothing(line_1, line_2, points, factor):
+    steps = 50
+    np.testing.assert_array_equal(
+        statistics_by_strips(line_1, line_2, points, factor, steps),
+        statistics_by_strips(line_2, line_1, points, factor, steps),
+    )
+
+
+@given(rough_lines, rough_lines, operating_points, factors, st.integers(-(10**6), 10**6))
+def test_only_heights_over_the_film_matter(line_1, line_2, points, factor, lift):
+    lifted = [(film + lift, half_window) for film, half_window in points]
+    np.testing.assert_array_equal(
+        statistics_by_strips(line_1, line_2, points, factor),
+        statistics_by_strips(line_1 + np.int32(lift), line_2, lifted, factor),
+    )
+
+
+@given(rough_lines, rough_lines, st.integers(1, 150), st.integers(-100, 100), st.integers(-9, 9))
+@example(np.array([1], np.int32), np.array([2, 3], np.int32), 1, 0, 0)
+def test_lines_are_added_as_the_windows_meet_them(line_1, line_2, size, first, ahead):
+    indices = np.arange(first, first + size)
+    expected = line_1[indices % line_1.size] + line_2[(indices + ahead) % line_2.size]
+    line = np.empty(size, np.int32)
+    add_lines(line_1, line_2, first, first + ahead, line)
+    np.testing.assert_array_equal(line, expected)
+
+
+def runs_above(line, film, starts, stops):
+    size = line.size // 2 + 1
+    new_starts, new_stops = np.empty(size, np.int64), np.empty(size, np.int64)
+    count = find_runs(line, film, starts, stops, starts.size, new_starts, new_stops)
+    return new_starts[:count], new_stops[:count]
+
+
+@given(rough_lines, st.integers(-4, 4), st.integers(0, 4))
+def test_runs_of_a_thicker_film_are_found_within_a_thinner_films(line, film, thicker):
+    whole = np.array([0]), np.array([line.size])
+    within = runs_above(line, film + thicker, *runs_above(line, film, *whole))
+    inside = np.concatenate([[False], line > film + thicker, [False]])
+    edges = np.flatnonzero(inside[1:] != inside[:-1])
+    np.testing.assert_array_equal(within, edges.reshape(-1, 2).T)
+
+
+def test_touched_steps_are_at_most_those_of_all_runs_apart():
+    """The union bound P <= Q + nu+ 2a, for one line and to the step."""
+    line = np.random.default_rng(5).integers(-5, 6, 3000).astype(np.int32)
+    flat = np.zeros_like(line)
+    for film, half_window in [(0, 3), (3, 3), (4, 10)]:
+        starts, _ = runs_above(line, film, np.array([0]), np.array([line.size]))
+        bound = np.count_nonzero(line > film) + starts.size * 2 * half_window
+        touched = statistics_by_strips(line, flat, [(film, half_window)], 1.0)[0, 0]
+        assert touched <= bound
+    lone = np.zeros(100, np.int32)
+    lone[[20, 21, 70]] = 1  # further apart than the window: the bound is met
+    touched = statistics_by_strips(lone, np.zeros_like(lone), [(0, 8)], 1.0)[0, 0]
+    assert touched == 3 + 2 * 16
+
+
+def test_every_point_is_in_as_many_windows_as_the_window_has_points():
+    rng = np.random.default_rng(6)
+    line_1, line_2 = rng.integers(-1000, 1000, (2, 500)).astype(np.int32)
+    points = [(300, 0), (300, 7), (-200, 30), (1500, 249)]
+    overlap = statistics_by_strips(line_1, line_2, points, 1.0)[:, 3]
+    expected = [
+        (2 * half_window + 1) * np.maximum(line_1 + line_2 - film, 0).sum()
+        for film, half_window in points
+    ]
+    assert overlap.tolist() == expected
+
+
+@pytest.mark.parametrize(
+    ("points", "second_radius", "ratios"),
+    [
+        (100_000, 0.05, ROLLING),
+        (60_000, 0.047, ROLLING),
+        (40_000, 0.05, (1.0, 0.99)),
+        (30_000, 0.047, (0.8, 1.0)),
+        (20_000, 0.05, (1.0, 0.0)),
+    ],
+)
+def test_strips_equal_the_scan_on_the_papers_roughness(make_spec, points, second_radius, ratios):
+    spec = make_spec(points, second_radius=second_radius)
+    pair = draw_realisation(spec, seed=1, realisation=0)
+    factor = layer_factor(1.1538e11, 5e-9, 1e6, spec.spacing, spec.height_step)
+    half_window = int(np.pi / spec.q_min / spec.spacing)
+    operating_points = [
+        (250_000, half_window),
+        (250_000, half_window // 4),
+        (600_000, half_window),
+        (900_000, half_window // 2),
+    ]
+    arguments = (*pair, operating_points, factor, points, ratios)
+    fast = statistics_by_strips(*arguments)
+    np.testing.assert_array_equal(fast, statistics_by_scan(*arguments))
+    assert (fast[:3, :2] > 0).all()  # and there was something to compare
+    assert (fast[0, :2] < points).all()
