@@ -75,7 +75,7 @@ def _table(head, rows):
     return "\n".join(f"| {' | '.join(str(cell) for cell in line)} |" for line in lines)
 
 
-def _keys(schema, path="", definitions=None, skip=None):
+def _keys(schema, path="", definitions=None, skip=None, section=""):
     """Rows (key, value, meaning) of all keys below a schema, nested ones with dots."""
     definitions = definitions or schema.get("$defs", {})
     rows = []
@@ -83,11 +83,12 @@ def _keys(schema, path="", definitions=None, skip=None):
         inner, many = _resolve(field, definitions)
         key = f"{path}{name}{'[]' if many else ''}"
         if "properties" in inner and name != skip:
-            rows += _keys(inner, f"{key}.", definitions)
+            optional = "" if name in schema.get("required", []) else " (section optional)"
+            rows += _keys(inner, f"{key}.", definitions, section=section or optional)
         else:
             meaning = field.get("description", inner.get("description", ""))
             value = "list of names or paths" if name == skip else _value(field, inner)
-            optional = "" if name in schema.get("required", []) else " (optional)"
+            optional = section if name in schema.get("required", []) else " (optional)"
             rows.append((f"`{path}{name}`", value + optional, meaning))
     return rows
 

@@ -207,8 +207,8 @@ def test_a_public_name_of_the_package_is_followed_to_its_module(spare, edit_note
          ("film", "roughness", "contact", "trace"), BATCHES),
         ({"operating_grid__temperature": {"values": [40, 60, 80], "units": "degC"}},
          ("lubricant", "film", "contact", "trace"), BATCHES),
-        ({"title": "Another title"},
-         ("lubricant", "film", "roughness", "contact", "trace"), BATCHES),
+        ({"roughness__shortest_wavelength": "12 points"},
+         ("roughness", "contact", "trace"), BATCHES),
     ],
     ids=lambda value: next(iter(value)) if isinstance(value, dict) else "",
 )  # fmt: skip

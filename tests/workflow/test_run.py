@@ -48,6 +48,45 @@ def test_figures_are_drawn_and_notebooks_executed(smoke):
         assert all(cell["execution_count"] for cell in code)
 
 
+def warnings_in(notebook):
+    cells = json.loads(notebook.read_text("utf-8"))["cells"]
+    outputs = [output for cell in cells for output in cell.get("outputs", [])]
+    return ["".join(one["text"]) for one in outputs if one.get("name") == "stderr"]
+
+
+def test_notebooks_warn_of_nothing(smoke):
+    for figure in smoke.notebooks:
+        assert warnings_in(smoke.results / f"notebooks/{figure}.ipynb") == []
+
+
+def test_a_study_unlike_the_papers_goes_through_all_notebooks(spare):
+    """Unequal rollers that slip, two oils, another formula, one level, one realisation, a film
+    so thick that the first oil never lets them touch."""
+    study = spare.with_values(
+        name="unlike",
+        realisations=1,
+        rollers__second__radius="30 mm",
+        lubricants=["mobilgear-shc-xmp-320", "n-dodecane"],
+        film_formulas=["moes"],
+        operating_grid__force={"values": [800], "units": "N"},
+        operating_grid__speed={"values": [3000.5], "units": "rpm"},
+        operating_grid__temperature={"values": [40], "units": "degC"},
+        operating_grid__slide_to_roll_ratio=[-0.2],
+        traces=[
+            {"force": "800 N", "speed": "3000.5 rpm", "temperature": "40 degC", "lubricant": oil}
+            for oil in ("mobilgear-shc-xmp-320", "n-dodecane")
+        ],
+    )
+    spare.run(study=study)
+    results = spare / "results/unlike"
+    contact = load(results / "contact.nc", "contact")
+    touching = contact["geometric_contact_probability_mean"].max("film_formula").squeeze()
+    assert touching.sel(lubricant="mobilgear-shc-xmp-320") == 0.0
+    assert touching.sel(lubricant="n-dodecane") > 0.5
+    for figure in spare.notebooks:
+        assert warnings_in(results / f"notebooks/{figure}.ipynb") == []
+
+
 def test_datasets_say_which_study_and_version_made_them(smoke):
     for kind in DATASETS:
         attributes = load(smoke.results / f"{kind}.nc", kind).attrs

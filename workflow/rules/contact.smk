@@ -9,6 +9,8 @@ rule contact_batch:
         result("logs/contact_{first}.log"),
     benchmark:
         result("benchmarks/contact_{first}.tsv")
+    # Before further lines are drawn: so the batches on disk stay few.
+    priority: 1
     params:
         study=stage_inputs("contact"),
         realisations=batch_limits,

@@ -8,6 +8,7 @@ rule film:
         result("logs/film.log"),
     benchmark:
         result("benchmarks/film.tsv")
+    priority: 1
     params:
         study=stage_inputs("film"),
     message:

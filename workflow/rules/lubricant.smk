@@ -8,6 +8,7 @@ rule lubricant:
         result("logs/lubricant.log"),
     benchmark:
         result("benchmarks/lubricant.tsv")
+    priority: 1
     params:
         study=stage_inputs("lubricant"),
     message:
