@@ -39,7 +39,7 @@ def test_every_formula_has_a_row():
         ("| `operating_grid.force` | values and units in N, above 0 |", study_table),
         ("| `lubricants` | list of names or paths |", study_table),
         ("| `traces[].lubricant` | text (optional) |", study_table),
-        ("| `density.at_15_degC` | quantity in kg/m^3, above 0 |", record_table),
+        ("| `density.at_15_degC` | quantity in kg/m^3, above 0 (section optional) |", record_table),
     ],
 )
 def test_a_key_is_told_with_its_unit_and_limits(row, table):
