@@ -17,8 +17,8 @@ from lube.steps import layer_factor_of, line_pair, revolution, speed_ratios, who
 log = logging.getLogger(__name__)
 
 
-def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,)):
-    """Run the model over one revolution for all realisations and operating points.
+def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), revolutions=1):
+    """Run the model for all realisations and operating points.
 
     Parameters
     ----------
@@ -30,6 +30,8 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,)):
         With attributes ``critical_thickness`` (m) and ``shear_strength`` (Pa).
     slide_to_roll_ratio : sequence of float, optional
         Levels of the slide-to-roll ratio; pure rolling if not given.
+    revolutions : int, optional
+        Revolutions of the roller with the faster surface.
 
     Returns
     -------
@@ -46,7 +48,7 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,)):
         pair = line_pair(lines, realisation)
         for s, ratio in enumerate(slide_to_roll_ratio):
             ratios = speed_ratios(ratio)
-            steps = revolution(pair, ratios)
+            steps = revolutions * revolution(pair, ratios)
             counts[r, s] = strip_statistics(*pair, ratios, steps, films, half_windows, factor)
             counts[r, s] /= steps
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)

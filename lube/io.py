@@ -4,10 +4,12 @@ Files carry the values they were computed from, and no clock time: the same stud
 same bytes.
 """
 
+import contextlib
 import hashlib
 import json
 import logging
 import os
+import shutil
 from importlib.metadata import version
 from pathlib import Path
 
@@ -45,21 +47,39 @@ def save(dataset, path, kind, study, compress=True):
     Raises
     ------
     DataError
-        If the dataset does not fit the schema.
+        If the dataset does not fit the schema, or the file cannot be written: the folder is
+        not writable, the disk is full. An older file at `path` then stays as it was.
     """
     path = Path(path)
     dataset = check(dataset, kind, path).assign_attrs(_origin(study, kind))
-    path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + ".part")
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         dataset.to_netcdf(
             part, engine="netcdf4", format="NETCDF4", encoding=_encoding(dataset, compress)
         )
         _force_to_disk(part)
         os.replace(part, path)
         _force_to_disk(path.parent)
-        log.info("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
+    except (OSError, RuntimeError) as error:
+        raise DataError(f"{path}: cannot be written: {_why_not(error, path)}") from error
     finally:
+        _remove(part)
+    log.info("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
+
+
+def _why_not(error, path):
+    """Reason of a failed write; the NetCDF library keeps quiet about a full disk."""
+    folder = next(folder for folder in path.parents if folder.exists())
+    if not os.access(folder, os.W_OK):
+        return f"the folder {folder} is not writable"
+    free = shutil.disk_usage(folder).free / 2**20
+    reason = getattr(error, "strerror", None) or str(error)
+    return f"{reason} ({free:.0f} MiB are free on its disk)"
+
+
+def _remove(part):
+    with contextlib.suppress(OSError):
         part.unlink(missing_ok=True)
 
 

@@ -97,6 +97,10 @@ class Study(StrictModel):
     realisations: Annotated[StrictInt, Field(ge=1, le=10**6)] = Field(
         description="how many pairs of roughness lines"
     )
+    revolutions: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
+        description="of the roller with the faster surface; equal rollers without slip repeat "
+        "themselves after one"
+    )
     batch_size: Annotated[StrictInt, Field(ge=1)] = Field(
         description="realisations per job; changes no result"
     )
@@ -169,7 +173,7 @@ class Study(StrictModel):
                 "speed": grid["speed"],
             },
             "roughness": lines,
-            "contact": lines | mechanics,
+            "contact": lines | mechanics | {"revolutions": self.revolutions},
             "trace": lines
             | mechanics
             | {"traces": content["traces"], "resistivity": content["resistivity"]},

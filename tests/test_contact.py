@@ -15,7 +15,7 @@ from lube.kernels.scan import scan_statistics
 from lube.kernels.strips import strip_statistics
 from lube.roughness import draw_realisation
 from lube.schema import OPERATING_DIMS
-from lube.steps import line_pair
+from lube.steps import line_pair, speed_ratios
 
 MEANS = (
     "geometric_contact_probability",
@@ -329,3 +329,21 @@ def test_mean_overlap_is_that_of_a_gaussian_line(ensemble, row):
     excess = scipy.stats.norm.pdf(x) - x * scipy.stats.norm.sf(x)
     error = overlap.std(ddof=1) / math.sqrt(overlap.size)
     assert overlap.mean() == pytest.approx((2 * half_window + 1) * sigma * excess, abs=4 * error)
+
+
+def test_equal_rollers_without_slip_repeat_themselves(lines, film, layer):
+    once, thrice = (contact_statistics(lines, film, layer, (0.0,), n) for n in (1, 3))
+    assert same(once, thrice)
+
+
+def test_with_slip_further_revolutions_are_the_scans(coarse_lines, weak_layer, slipping):
+    film, _ = slipping
+    contact = contact_statistics(coarse_lines, film, weak_layer, (0.3,), revolutions=2)
+    place = next(iter(places(film)))
+    films, half_windows, factor = kernel_arguments(film, place, coarse_lines, weak_layer)
+    pair, ratios = line_pair(coarse_lines, 0), speed_ratios(0.3)
+    steps = 2 * pair[0].size
+    counts = scan_statistics(*pair, ratios, steps, films, half_windows, factor)[0]
+    found = contact.sel(realisation=0, slide_to_roll_ratio=0.3, **place)
+    assert found["geometric_contact_probability"].item() == counts[0] / steps
+    assert found["breakthrough_probability"].item() == counts[1] / steps

@@ -166,12 +166,20 @@ def overlap_sum(line, start, stop, film):
 
 
 @kernel
-def _record(first, last, points, broken, lengths):
-    """Note that at the steps first..last of the strip a segment of so many points has broken."""
-    for step in range(first, last + 1):
-        broken[step] = 1
-        if lengths is not None:
-            lengths[step] += points
+def _record(step, points, broken, lengths):
+    """Note that at a step of the strip a segment of so many points has broken."""
+    broken[step] = 1
+    if lengths is not None:
+        lengths[step] += points
+    return points
+
+
+@kernel
+def _record_many(first, last, points, broken, lengths):
+    """Note the same for all the steps first..last."""
+    broken[first : last + 1] = 1
+    if lengths is not None:
+        lengths[first : last + 1] += points
     return points * (last - first + 1)
 
 
@@ -214,27 +222,26 @@ def visit_run(line, start, stop, film, width, factor, broken, lengths):
     for i in range(least, most + 1):
         overlap += line[start + i - 1] - film
         if layer_breaks(i, overlap, factor):
-            step = start + i - width
-            total += _record(step, step, i, broken, lengths)
+            total += _record(start + i - width, i, broken, lengths)
 
     if stop - start <= width:  # seen whole
         first, last = max(stop - width, 0), min(start, steps - 1)
         if first <= last and layer_breaks(points, overlap_sum(line, start, stop, film), factor):
-            total += _record(first, last, points, broken, lengths)
+            total += _record_many(first, last, points, broken, lengths)
     else:  # fills the window, which slides along it
         overlap = overlap_sum(line, start, start + width, film)
         for step in range(start, min(stop - width, steps - 1) + 1):
             if step > start:
                 overlap += line[step + width - 1] - line[step - 1]
             if layer_breaks(width, overlap, factor):
-                total += _record(step, step, width, broken, lengths)
+                total += _record(step, width, broken, lengths)
 
     # The last i points have not yet left at the left edge, at step stop - i.
     least, most = max(1, stop - steps + 1), min(points - 1, stop)
     overlap = overlap_sum(line, stop - most, stop, film) if least <= most else 0
     for i in range(most, least - 1, -1):
         if layer_breaks(i, overlap, factor):
-            total += _record(stop - i, stop - i, i, broken, lengths)
+            total += _record(stop - i, i, broken, lengths)
         overlap -= line[stop - i] - film
     return total
 

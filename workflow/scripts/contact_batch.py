@@ -12,5 +12,6 @@ statistics = contact_statistics(
     load(snakemake.input.film, "film"),
     study.boundary_layer,
     study.operating_grid.slide_to_roll_ratio,
+    study.revolutions,
 )
 save(statistics, snakemake.output[0], "contact_batch", study)
