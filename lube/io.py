@@ -83,7 +83,7 @@ def _remove(part):
         part.unlink(missing_ok=True)
 
 
-def load(path, kind, raw=False):
+def load(path, kind):
     """Load a dataset of a known kind into memory.
 
     Parameters
@@ -92,8 +92,6 @@ def load(path, kind, raw=False):
         File to read.
     kind : str
         A key of `lube.schema.FILES`.
-    raw : bool, optional
-        Leave packed heights as whole steps.
 
     Returns
     -------
@@ -105,18 +103,44 @@ def load(path, kind, raw=False):
     DataError
         If the file is missing, truncated, damaged, or not of this kind; its path is named.
     """
+    with opened(path, kind, raw=False) as dataset:
+        return dataset.load()
+
+
+@contextlib.contextmanager
+def opened(path, kind, raw=True):
+    """Open a dataset of a known kind, whose values are read as they are used.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to read.
+    kind : str
+        A key of `lube.schema.FILES`.
+    raw : bool, optional
+        Leave packed heights as whole steps.
+
+    Yields
+    ------
+    xarray.Dataset
+        The data, to be read before the file is closed.
+
+    Raises
+    ------
+    DataError
+        As `load`, also while values are read.
+    """
     path = Path(path)
     if not path.is_file():
         raise DataError(f"{path}: no such file, need a {kind} dataset")
     try:
         with xr.open_dataset(path, engine="netcdf4", mask_and_scale=not raw) as dataset:
-            dataset.load()
+            yield check(dataset, kind, path)
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise DataError(
             f"{path}: not a whole NetCDF file, truncated, damaged or foreign ({reason})"
-        ) from None
-    return check(dataset, kind, path)
+        ) from error
 
 
 def _origin(study, kind):

@@ -13,7 +13,7 @@ from lube.contact import contact_statistics
 from lube.ensemble import gather
 from lube.errors import DataError
 from lube.film import film_table
-from lube.io import CONVENTIONS, load, save
+from lube.io import CONVENTIONS, load, opened, save
 from lube.lubricant import lubricant_table
 from lube.roughness import roughness_batch, roughness_lines
 from lube.schema import FILES, check
@@ -25,7 +25,8 @@ FINAL_KINDS = [kind for kind in KINDS if not kind.endswith("_batch")]
 
 def load_as_jobs_do(path, kind):
     """Batches of lines stay whole steps, everything else is in its unit."""
-    return load(path, kind, raw=kind == "roughness_batch")
+    with opened(path, kind, raw=kind == "roughness_batch") as dataset:
+        return dataset.load()
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +63,7 @@ def files(datasets, study, tmp_path_factory):
 
 def refusal(path, kind):
     with pytest.raises(DataError) as caught:
-        load(path, kind)
+        load_as_jobs_do(path, kind)
     message = str(caught.value)
     assert message.startswith(f"{path}: ")
     assert "\n" not in message
@@ -104,7 +105,7 @@ def test_heights_are_exact_after_packing_and_padding_stays_missing(datasets, fil
 
 
 def test_packed_heights_are_whole_steps_of_the_batch(datasets, files):
-    steps = load(files / "roughness.nc", "roughness", raw=False)["height"].values
+    steps = load(files / "roughness.nc", "roughness")["height"].values
     expected = datasets["roughness_batch"]["height"].values
     present = ~np.isnan(steps)
     step = datasets["roughness"].attrs["height_step"]
@@ -112,7 +113,8 @@ def test_packed_heights_are_whole_steps_of_the_batch(datasets, files):
 
 
 def test_a_batch_is_left_as_whole_steps(datasets, files):
-    loaded = load(files / "roughness_batch.nc", "roughness_batch", raw=True)
+    with opened(files / "roughness_batch.nc", "roughness_batch") as dataset:
+        loaded = dataset.load()
     assert loaded["height"].dtype == np.int32
     np.testing.assert_array_equal(loaded["height"], datasets["roughness_batch"]["height"])
 
