@@ -13,6 +13,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.schema import label
+from lube.steps import speed_ratios
 
 CONFIDENCE = 0.95
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
@@ -113,9 +114,11 @@ def probability_interval(probabilities, windows):
 
 
 def independent_windows(contact, film):
-    """Windows that share no roughness, in one realisation, for each force.
+    """Windows that share no roughness, in one realisation, for each force and slip.
 
-    Two windows see independent roughness where they are a longest wavelength apart.
+    Two windows see independent roughness where they are a longest wavelength apart on both
+    surfaces, so it is the travel of the slower one that counts: a roller at rest shows all
+    windows the same.
 
     Parameters
     ----------
@@ -127,7 +130,7 @@ def independent_windows(contact, film):
     Returns
     -------
     xarray.DataArray
-        Over force; at least one.
+        Over force and slide_to_roll_ratio; at least one.
 
     Raises
     ------
@@ -142,7 +145,10 @@ def independent_windows(contact, film):
             f"table has {film['force'].values.tolist()} N"
         ) from None
     reach = 2.0 * half_width + contact.attrs["longest_wavelength"]
-    return np.maximum(contact.attrs["travel"] / reach, 1.0)
+    slower = xr.apply_ufunc(
+        lambda ratio: min(speed_ratios(ratio)), contact["slide_to_roll_ratio"], vectorize=True
+    )
+    return np.maximum(contact.attrs["travel"] * slower / reach, 1.0)
 
 
 def gather(batches, film):

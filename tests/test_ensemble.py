@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.stats
+import xarray as xr
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -204,7 +205,7 @@ def test_interval_of_every_point_is_that_of_its_realisations(batches, few):
             for temperature in (0, 1):
                 place = {"force": force, "temperature": temperature, "film_formula": 1}
                 here = contact.isel(place).squeeze()
-                limits = probability_interval(here[name].values, windows.values[force])
+                limits = probability_interval(here[name].values, windows.isel(force=force).item())
                 for suffix, limit in zip(("mean", "lower", "upper"), limits, strict=True):
                     assert here[f"{name}_{suffix}"].item() == pytest.approx(limit)
 
@@ -217,6 +218,16 @@ def test_windows_that_share_no_roughness(batches, few):
         width = 2.0 * few["contact_half_width"].sel(force=force).item()
         windows = independent_windows(contact, few).sel(force=force).item()
         assert windows == pytest.approx(perimeter / (width + longest))
+
+
+def test_windows_under_slip_are_as_many_as_the_slower_surface_passes(batches, few):
+    rolling = batches([0])
+    parts = [rolling.assign_coords(slide_to_roll_ratio=[ratio]) for ratio in (0.0, 1.0, -1.0, 2.0)]
+    windows = independent_windows(xr.concat(parts, "slide_to_roll_ratio"), few).sel(force=1600.0)
+    still = windows.sel(slide_to_roll_ratio=0.0)
+    for ratio in (1.0, -1.0):
+        assert windows.sel(slide_to_roll_ratio=ratio) == pytest.approx(still / 3.0)
+    assert windows.sel(slide_to_roll_ratio=2.0) == 1.0
 
 
 def test_intervals_of_a_selection_of_realisations(batches, few):

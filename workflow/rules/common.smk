@@ -20,7 +20,6 @@ from lube.errors import LubeError
 from lube.study import load_study
 
 DATASETS = ("lubricant", "film", "roughness", "contact", "trace")
-FIGURES = sorted(path.stem for path in Path("notebooks").glob("*.ipynb"))
 
 
 @contextmanager

@@ -43,6 +43,14 @@ def figure_datasets(figure):
     return [result(f"{name}.nc") for name in assigned if name in DATASETS]
 
 
+def wanted(figure):
+    """Whether a figure has something to show: a tag `several-force` asks for several forces."""
+    tags = [tag for cell in notebook_cells(figure) for tag in cell["tags"]]
+    needed = [tag.removeprefix("several-") for tag in tags if tag.startswith("several-")]
+    levels = STUDY.operating_grid.model_dump()
+    return all(len(levels.get(name, ())) > 1 for name in needed)
+
+
 def figure_sources(figure):
     """Files of the lube package that a figure depends on, by its notebook or its script."""
     cells = [cell for cell in notebook_cells(figure) if cell["type"] == "code"]
@@ -51,6 +59,7 @@ def figure_sources(figure):
 
 
 with told_in_one_line():
+    FIGURES = sorted(path.stem for path in Path("notebooks").glob("*.ipynb") if wanted(path.stem))
     FIGURE_DATASETS = {figure: figure_datasets(figure) for figure in FIGURES}
     FIGURE_SOURCES = {figure: figure_sources(figure) for figure in FIGURES}
     FIGURE_CELLS = {figure: digest(notebook_cells(figure)) for figure in FIGURES}
