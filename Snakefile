@@ -7,6 +7,7 @@ include: "workflow/rules/lubricant.smk"
 include: "workflow/rules/film.smk"
 include: "workflow/rules/roughness.smk"
 include: "workflow/rules/contact.smk"
+include: "workflow/rules/master.smk"
 include: "workflow/rules/figure.smk"
 
 

@@ -7,8 +7,8 @@ package, as the workflow does at every start, costs nothing.
 import importlib
 
 _HOMES = {
-    "lube.contact": ("contact_statistics",),
-    "lube.ensemble": ("gather", "with_intervals"),
+    "lube.contact": ("contact_map", "contact_statistics"),
+    "lube.ensemble": ("gather", "gather_map", "with_intervals"),
     "lube.errors": ("DataError", "LubeError", "RangeError", "RecordError", "StudyError"),
     "lube.film": ("film_table",),
     "lube.formulas": ("FORMULAS",),

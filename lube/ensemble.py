@@ -171,6 +171,34 @@ def gather(batches, film):
     DataError
         If a realisation is missing or comes twice, or the operating points differ.
     """
+    return with_intervals(_join(batches), film)
+
+
+def gather_map(batches):
+    """Join batches of a master map and give every probability its interval.
+
+    Parameters
+    ----------
+    batches : list of xarray.Dataset
+        ``master_batch`` datasets, together the realisations 0 .. R - 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``master`` file of `lube.schema`.
+
+    Raises
+    ------
+    DataError
+        As `gather`.
+    """
+    joined = _join(batches)
+    reach = joined["contact_width"] + joined.attrs["longest_wavelength"]
+    return _add_intervals(joined, np.maximum(joined.attrs["travel"] / reach, 1.0), "master")
+
+
+def _join(batches):
+    """All realisations in order, each once."""
     try:
         joined = xr.concat(
             batches,
@@ -187,7 +215,7 @@ def gather(batches, film):
     found = joined["realisation"].values
     if not np.array_equal(found, np.arange(found.size)):
         raise DataError(f"need realisations 0 to {found.size - 1}, each once, got {found.tolist()}")
-    return with_intervals(joined, film)
+    return joined
 
 
 def with_intervals(contact, film):
@@ -205,14 +233,15 @@ def with_intervals(contact, film):
     xarray.Dataset
         The ``contact`` file of `lube.schema`.
     """
-    windows = independent_windows(contact, film)
-    contact = contact.copy()
+    return _add_intervals(contact, independent_windows(contact, film), "contact")
+
+
+def _add_intervals(dataset, windows, kind):
+    dataset = dataset.copy()
     for name in PROBABILITIES:
-        dims = contact[name].dims
-        limits = probability_interval(
-            contact[name].values,
-            windows.broadcast_like(contact[name][0]).transpose(*dims[1:]).values,
-        )
+        dims = dataset[name].dims[1:]
+        everywhere = windows.broadcast_like(dataset[name][0]).transpose(*dims)
+        limits = probability_interval(dataset[name].values, everywhere.values)
         for suffix, values in zip(("mean", "lower", "upper"), limits, strict=True):
-            contact[f"{name}_{suffix}"] = (dims[1:], values)
-    return label(contact, "contact")
+            dataset[f"{name}_{suffix}"] = (dims, values)
+    return label(dataset, kind)

@@ -14,6 +14,7 @@ from lube.errors import DataError
 OPERATING_DIMS = ("lubricant", "film_formula", "temperature", "speed", "force")
 CONTACT_DIMS = ("slide_to_roll_ratio", *OPERATING_DIMS)
 LINE_DIMS = ("realisation", "roller")
+MASTER_DIMS = ("lambda_ratio", "contact_width")
 
 REGIMES = (
     "isoviscous_rigid",
@@ -72,6 +73,8 @@ COORDINATES = {
     "roller": _number(["roller"], "1", "roller", kind="i"),
     "position": _number(["position"], "m", "position along the circumference"),
     "time": _number(["time"], "s", "time"),
+    "lambda_ratio": _number(["lambda_ratio"], "1", "lambda ratio"),
+    "contact_width": _number(["contact_width"], "m", "contact width"),
     "fit_temperature": _number(["fit_temperature"], "degC", "temperature"),
 }
 
@@ -203,14 +206,22 @@ _CONTACT_RUN = {
     "mean_contact_force": _mean_over_time(_RUN_DIMS, "N", "mean contact force"),
 }
 
-_ENSEMBLE = {
-    f"{name}_{suffix}": _number(CONTACT_DIMS, "1", long_name + meaning)
+
+def _intervals(dims):
+    return {
+        f"{name}_{suffix}": _number(dims, "1", long_name + meaning)
+        for name, long_name in _PROBABILITIES.items()
+        for suffix, meaning in (
+            ("mean", ", mean over realisations"),
+            ("lower", ", lower limit of the 95 % interval"),
+            ("upper", ", upper limit of the 95 % interval"),
+        )
+    }
+
+
+_MASTER_RUN = {
+    name: _mean_over_time(("realisation", *MASTER_DIMS), "1", long_name)
     for name, long_name in _PROBABILITIES.items()
-    for suffix, meaning in (
-        ("mean", ", mean over realisations"),
-        ("lower", ", lower limit of the 95 % interval"),
-        ("upper", ", upper limit of the 95 % interval"),
-    )
 }
 
 _TRACE = {
@@ -239,17 +250,22 @@ FILES = {
     "roughness": _ROUGHNESS,
     "roughness_batch": _ROUGHNESS_BATCH,
     "contact_batch": _CONTACT_RUN,
-    "contact": {**_CONTACT_RUN, **_ENSEMBLE},
+    "contact": {**_CONTACT_RUN, **_intervals(CONTACT_DIMS)},
+    "master_batch": _MASTER_RUN,
+    "master": {**_MASTER_RUN, **_intervals(MASTER_DIMS)},
     "trace": _TRACE,
 }
 """Variables of each kind of file, by the kind's name."""
 
 _LINE_ATTRIBUTES = ("q_min", "q_max", "spacing", "points", "height_step")
+_RUN_ATTRIBUTES = ("travel", "longest_wavelength")
 ATTRIBUTES = {
     "roughness": _LINE_ATTRIBUTES,
     "roughness_batch": _LINE_ATTRIBUTES,
-    "contact_batch": ("travel", "longest_wavelength"),
-    "contact": ("travel", "longest_wavelength"),
+    "contact_batch": _RUN_ATTRIBUTES,
+    "contact": _RUN_ATTRIBUTES,
+    "master_batch": _RUN_ATTRIBUTES,
+    "master": _RUN_ATTRIBUTES,
 }
 """Global attributes that the stages read from a file, by kind."""
 

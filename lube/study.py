@@ -39,6 +39,7 @@ _FORERUNNERS = {
     "film": ("lubricant",),
     "roughness": (),
     "contact": ("lubricant", "film", "roughness"),
+    "master": ("lubricant", "film", "roughness"),
     "trace": ("lubricant", "film", "roughness"),
 }
 
@@ -142,7 +143,7 @@ class Study(StrictModel):
         Parameters
         ----------
         stage : str
-            ``lubricant``, ``film``, ``roughness``, ``contact`` or ``trace``.
+            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master`` or ``trace``.
 
         Returns
         -------
@@ -153,11 +154,11 @@ class Study(StrictModel):
         content = self.model_dump(mode="json")
         grid, rollers = content["operating_grid"], content["rollers"]
         lines = {"seed": self.seed, "lines": self.line_spec.model_dump(mode="json")}
-        mechanics = {
+        layer = {
             "reduced_modulus": self.rollers.reduced_modulus,
             "boundary_layer": content["boundary_layer"],
-            "slide_to_roll_ratio": grid["slide_to_roll_ratio"],
         }
+        mechanics = layer | {"slide_to_roll_ratio": grid["slide_to_roll_ratio"]}
         inputs = {
             "lubricant": {
                 "lubricants": content["lubricants"],
@@ -174,6 +175,7 @@ class Study(StrictModel):
             },
             "roughness": lines,
             "contact": lines | mechanics | {"revolutions": self.revolutions},
+            "master": lines | layer,
             "trace": lines
             | mechanics
             | {"traces": content["traces"], "resistivity": content["resistivity"]},

@@ -9,13 +9,14 @@ import pytest
 import scipy.stats
 import xarray as xr
 
-from lube import BoundaryLayer, contact_statistics, roughness_lines
+from lube import BoundaryLayer, contact_map, contact_statistics, gather_map, roughness_lines
+from lube.errors import DataError
 from lube.kernels.layer import layer_factor
 from lube.kernels.scan import scan_statistics
 from lube.kernels.strips import strip_statistics
 from lube.roughness import draw_realisation
 from lube.schema import OPERATING_DIMS
-from lube.steps import line_pair, speed_ratios
+from lube.steps import layer_factor_of, line_pair, speed_ratios, whole_numbers
 
 MEANS = (
     "geometric_contact_probability",
@@ -347,3 +348,60 @@ def test_with_slip_further_revolutions_are_the_scans(coarse_lines, weak_layer, s
     found = contact.sel(realisation=0, slide_to_roll_ratio=0.3, **place)
     assert found["geometric_contact_probability"].item() == counts[0] / steps
     assert found["breakthrough_probability"].item() == counts[1] / steps
+
+
+# The master map
+
+
+@pytest.fixture(scope="module")
+def mapped(lines, film, layer):
+    return contact_map(lines, film, layer, lambda_levels=6, width_levels=4)
+
+
+def test_the_map_spans_all_films_and_windows_of_the_study(mapped, film):
+    for name, values in (
+        ("lambda_ratio", film["lambda_ratio"]),
+        ("contact_width", 2.0 * film["contact_half_width"]),
+    ):
+        levels = mapped[name].values
+        assert levels[[0, -1]] == pytest.approx([values.min().item(), values.max().item()])
+        assert (np.diff(levels) > 0).all()
+    assert mapped.sizes["lambda_ratio"] == 6
+    assert mapped.sizes["contact_width"] == 4
+
+
+def test_every_value_of_the_map_is_the_kernels(mapped, lines, film, layer):
+    factor = layer_factor_of(lines, film["reduced_modulus"].item(), layer)
+    pair = line_pair(lines, 1)
+    for ratio in mapped["lambda_ratio"].values:
+        for width in mapped["contact_width"].values:
+            thickness = ratio * film["composite_rms_roughness"].item()
+            point = whole_numbers([thickness], [width / 2.0], lines)
+            counts = strip_statistics(*pair, (1.0, 1.0), pair[0].size, *point, factor)[0]
+            found = mapped.sel(realisation=1, lambda_ratio=ratio, contact_width=width)
+            assert found["geometric_contact_probability"] == counts[0] / pair[0].size
+            assert found["breakthrough_probability"] == counts[1] / pair[0].size
+
+
+def test_the_map_falls_with_the_film_and_rises_with_the_window(mapped):
+    geometric = mapped["geometric_contact_probability"].transpose(..., "lambda_ratio").values
+    assert (np.diff(geometric, axis=-1) <= 0).all()
+    wider = mapped["geometric_contact_probability"].transpose(..., "contact_width").values
+    assert (np.diff(wider, axis=-1) >= 0).all()
+    assert geometric.max() > 0.9 and geometric.min() < 0.1
+
+
+def test_one_film_and_one_window_make_a_map_of_one_point(lines, film, layer):
+    place = {name: [0] for name in ("lubricant", "film_formula", "temperature", "speed", "force")}
+    mapped = contact_map(lines, film.isel(place), layer)
+    assert mapped.sizes["lambda_ratio"] == mapped.sizes["contact_width"] == 1
+
+
+def test_the_map_gets_its_intervals(mapped):
+    gathered = gather_map([mapped.isel(realisation=[1]), mapped.isel(realisation=[0])])
+    for name in ("breakthrough_probability", "geometric_contact_probability"):
+        np.testing.assert_allclose(gathered[f"{name}_mean"], mapped[name].mean("realisation"))
+        assert (gathered[f"{name}_lower"] <= gathered[f"{name}_mean"]).all()
+        assert (gathered[f"{name}_upper"] > 0).all()
+    with pytest.raises(DataError, match="each once"):
+        gather_map([mapped.isel(realisation=[1])])

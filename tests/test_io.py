@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from lube.contact import contact_statistics
-from lube.ensemble import gather
+from lube.contact import contact_map, contact_statistics
+from lube.ensemble import gather, gather_map
 from lube.errors import DataError
 from lube.film import film_table
 from lube.io import CONVENTIONS, load, opened, save
@@ -40,6 +40,7 @@ def datasets(study, make_spec):
     lines = roughness_lines(spec, study.seed, [0, 1])
     batch = roughness_batch(spec, study.seed, [0, 1])
     run = contact_statistics(batch, film, layer)
+    mapped = contact_map(batch, film, layer, 5, 3)
     points = [point | {"slide_to_roll_ratio": 0.0} for point in study.trace_points]
     return {
         "lubricant": oil,
@@ -48,6 +49,8 @@ def datasets(study, make_spec):
         "roughness_batch": batch,
         "contact_batch": run,
         "contact": gather([run], film),
+        "master_batch": mapped,
+        "master": gather_map([mapped]),
         "trace": contact_trace(lines, film, points, layer, study.resistivity),
     }
 
@@ -158,7 +161,7 @@ def test_files_say_which_conventions_they_follow_and_where_they_come_from(files,
         assert raw.study_inputs_sha256 == digest
         stage = kind.removesuffix("_batch")
         assert json.loads(raw.study_inputs)[stage] == study.stage_inputs(stage)
-        follows_the_oil = stage in ("lubricant", "film", "contact", "trace")
+        follows_the_oil = stage in ("lubricant", "film", "contact", "master", "trace")
         assert (study.lubricants[0].name in raw.study_inputs) == follows_the_oil
         assert raw.source.startswith("lube ")
 
@@ -299,7 +302,8 @@ def place_of_largest_array(path, whole):
         raw.set_auto_maskandscale(False)
         arrays = [array[:] for array in raw.variables.values() if array.dtype is not str]
     stored = max(arrays, key=np.size)
-    line = stored.reshape(-1, stored.shape[-1])[0].tobytes()
+    whole_chunk = stored.size <= 2**18  # larger arrays are stored line by line
+    line = (stored if whole_chunk else stored.reshape(-1, stored.shape[-1])[0]).tobytes()
     assert whole.count(line) == 1
     return whole.index(line) + len(line) - 1
 

@@ -19,7 +19,7 @@ import lube
 from lube.errors import LubeError
 from lube.study import load_study
 
-DATASETS = ("lubricant", "film", "roughness", "contact", "trace")
+DATASETS = ("lubricant", "film", "roughness", "contact", "trace", "master")
 
 
 @contextmanager

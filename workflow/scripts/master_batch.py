@@ -1,0 +1,13 @@
+"""Run the contact model on one batch of realisations, over all films and windows it spans."""
+
+from lube.contact import contact_map
+from lube.io import load, opened, save
+from lube.jobs import begin_job
+from lube.study import load_study
+
+begin_job(snakemake.log[0])
+study = load_study(snakemake.config["study_file"])
+film = load(snakemake.input.film, "film")
+with opened(snakemake.input.lines, "roughness_batch") as lines:
+    run = contact_map(lines, film, study.boundary_layer)
+save(run, snakemake.output[0], "master_batch", study)
