@@ -6,6 +6,8 @@ errors and the last is taken out, so that an executed notebook is the same whene
 """
 
 import ast
+import contextlib
+import os
 from pathlib import Path
 
 import nbformat
@@ -38,20 +40,37 @@ def execute_notebook(notebook, output, parameters):
     """
     _check_parameters(notebook, parameters)
     try:
-        executed = papermill.execute_notebook(
-            str(notebook),
-            None,
-            parameters,
-            kernel_name="python3",
-            language="python",
-            progress_bar=False,
-            extra_arguments=_QUIET_KERNEL,
-        )
+        with _kernel_kept_quiet():
+            executed = papermill.execute_notebook(
+                str(notebook),
+                None,
+                parameters,
+                kernel_name="python3",
+                language="python",
+                progress_bar=False,
+                extra_arguments=_QUIET_KERNEL,
+            )
     except PapermillExecutionError as error:
         reason = " ".join(f"{error.ename}: {error.evalue}".split())
         raise LubeError(f"{notebook}: cell {error.cell_index} fails: {reason}") from error
     Path(output).parent.mkdir(parents=True, exist_ok=True)
     nbformat.write(_without_times(executed), output)
+
+
+@contextlib.contextmanager
+def _kernel_kept_quiet():
+    """Keep what a kernel says while it closes off the terminal: it alarms and means nothing.
+
+    What goes wrong in a cell reaches us as an exception, and not by way of standard error.
+    """
+    terminal = os.dup(2)
+    try:
+        with open(os.devnull, "wb") as nowhere:
+            os.dup2(nowhere.fileno(), 2)
+        yield
+    finally:
+        os.dup2(terminal, 2)
+        os.close(terminal)
 
 
 def _check_parameters(notebook, parameters):
