@@ -12,7 +12,14 @@ from pathlib import Path
 from typing import Annotated
 
 import yaml
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    StringConstraints,
+    ValidationError,
+    WithJsonSchema,
+)
 
 from lube.errors import LubeError
 from lube.units import convert, parse_number, parse_quantity
@@ -190,9 +197,11 @@ def collected(key):
         raise ValueError(f"{key}: {error}") from None
 
 
+Slug = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")]
+"""Name fit for a folder and a label: small letters, digits, hyphens."""
+
 Length = quantity("m", above=0.0)
 Pressure = quantity("Pa", above=0.0)
-Temperature = quantity("degC", above=-273.15)
 Resistivity = quantity("ohm*m", above=0.0)
 
 

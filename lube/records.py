@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 from pydantic import Field, PrivateAttr, StringConstraints, model_validator
 
 from lube.errors import RangeError, RecordError
-from lube.fields import StrictModel, quantity, read_yaml, validate
+from lube.fields import Slug, StrictModel, quantity, read_yaml, validate
 from lube.fluids import ATMOSPHERIC_PRESSURE, liquid_range
 from lube.viscosity import GOLD_BASES, VISCOSITY_LAWS, ZERO_CELSIUS
 
@@ -23,7 +23,6 @@ SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
 # Numbers read as K or degF and turned into degC may miss a limit by rounding.
 _ROUNDING = 1e-6
 
-Name = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")]
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 OilTemperature = quantity("degC", above=-ZERO_CELSIUS, most=1000.0)
 KinematicViscosity = quantity("m^2/s", above=0.0)
@@ -143,7 +142,7 @@ class TemperatureRange(Sourced):
 class LubricantRecord(StrictModel):
     """A lubricant, in SI units (but temperatures in degC). Read it with `load_record`."""
 
-    name: Name = Field(description="label of the lubricant in all files")
+    name: Slug = Field(description="label of the lubricant in all files")
     title: Text = Field(description="name of the lubricant in figures")
     viscosity: Viscosity
     viscosity_law: Literal[tuple(VISCOSITY_LAWS)] | None = Field(

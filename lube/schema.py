@@ -39,8 +39,6 @@ class Variable:
     kind : str
         Allowed NumPy kinds: ``f`` float64, ``i`` integer, ``b`` true/false (stored as int8),
         ``U`` text.
-    required : bool
-        Whether a file without it is refused.
     attributes : dict
         Further CF attributes.
     """
@@ -49,7 +47,6 @@ class Variable:
     units: str | None
     long_name: str
     kind: str = "f"
-    required: bool = True
     attributes: dict = field(default_factory=dict)
 
 
@@ -333,9 +330,7 @@ def check(dataset, kind, where="dataset"):
             raise DataError(f"{where}: not a {kind} file: variable {name!r} does not belong there")
     for name, expected in FILES[kind].items():
         if name not in dataset.variables:
-            if expected.required:
-                raise DataError(f"{where}: not a {kind} file: variable {name!r} is missing")
-            continue
+            raise DataError(f"{where}: not a {kind} file: variable {name!r} is missing")
         _check_variable(dataset[name], name, expected, where)
     for name in dataset.dims:
         if name in COORDINATES and (name in dataset.coords or name != "position"):

@@ -12,13 +12,13 @@ from typing import Annotated
 from pydantic import (
     Field,
     StrictInt,
-    StringConstraints,
     model_validator,
 )
 
 from lube.errors import LubeError, StudyError
 from lube.fields import (
     Resistivity,
+    Slug,
     StrictModel,
     collected,
     levels,
@@ -30,9 +30,6 @@ from lube.fields import (
 from lube.formulas import formula
 from lube.records import LubricantRecord, check_temperatures, load_record
 from lube.surfaces import BoundaryLayer, RollerPair, Roughness, line_spec
-
-Slug = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")]
-
 
 _FORERUNNERS = {
     "lubricant": (),

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_trace
 from lube.resistance import contact_resistance
@@ -120,6 +121,9 @@ def contact_window(lines, trace, operating_point, step, reach=None):
     length, force = points * spacing, stiffness * indentation * height_step
     layer = np.pi * place["shear_strength"].item() / 12.0 * length**3 / force
     factor = layer_factor_of(lines, place["reduced_modulus"], place).item()
+    broken = np.array(
+        [layer_breaks(n, s, factor) for n, s in zip(points, indentation, strict=True)], bool
+    )
     return xr.Dataset(
         {
             "height": (("roller", "x"), heights * height_step),
@@ -129,7 +133,7 @@ def contact_window(lines, trace, operating_point, step, reach=None):
             "contact_length": ("segment", length),
             "force": ("segment", force),
             "layer_thickness": ("segment", layer),
-            "broken": ("segment", points.astype(float) ** 3 < factor * indentation),
+            "broken": ("segment", broken),
         },
         coords={"x": window * spacing, "roller": lines["roller"]},
     )

@@ -9,7 +9,6 @@ from lube.fields import (
     Pressure,
     Resistivity,
     StrictModel,
-    Temperature,
     bounded,
     collected,
     levels,
@@ -40,7 +39,7 @@ def refusal(field, written):
     [
         (Length, "50 mm", 0.05),
         (Pressure, "210 GPa", 210e9),
-        (Temperature, "313.15 K", 40.0),
+        (quantity("degC", above=-273.15), "313.15 K", 40.0),
         (Resistivity, "0.2 uohm*m", 0.2e-6),
         (quantity("N", least=0.0), "0 N", 0.0),
         (pure_number(below=1.0), 0.7, 0.7),
@@ -59,7 +58,7 @@ def test_lengths_pressures_and_resistivities_are_positive(field, number):
 
 
 def test_no_temperature_is_as_cold_as_absolute_zero():
-    assert "need a value above -273.15 degC" in refusal(Temperature, "0 K")
+    assert "need a value above -273.15 degC" in refusal(quantity("degC", above=-273.15), "0 K")
 
 
 @pytest.mark.parametrize(

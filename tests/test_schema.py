@@ -76,12 +76,9 @@ def test_flags_have_as_many_meanings_as_values(row):
 
 
 @pytest.mark.parametrize(("kind", "name"), VARIABLES)
-def test_a_missing_variable_is_refused_by_name_unless_it_may_be_absent(kind, name):
+def test_a_missing_variable_is_refused_by_name(kind, name):
     dataset = label(example(kind), kind).drop_vars(name)
-    if FILES[kind][name].required:
-        assert f"variable {name!r} is missing" in refusal(dataset, kind)
-    else:
-        check(dataset, kind)
+    assert f"variable {name!r} is missing" in refusal(dataset, kind)
 
 
 @pytest.mark.parametrize(("kind", "name"), VARIABLES)
