@@ -9,13 +9,13 @@ include: "workflow/rules/roughness.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/master.smk"
 include: "workflow/rules/figure.smk"
+include: "workflow/rules/benchmark.smk"
 
 
 rule all:
     default_target: True
     input:
         [result(f"{kind}.nc") for kind in DATASETS],
-        [result(f"figures/{figure}.{suffix}") for figure in FIGURES for suffix in ("png", "pdf")],
-        [result(f"notebooks/{figure}.ipynb") for figure in FIGURES],
+        products(figure for figure in FIGURES if figure not in TIMINGS),
     message:
         "Done: datasets, figures and executed notebooks are in {RESULTS}"

@@ -73,6 +73,10 @@ COORDINATES = {
     "lambda_ratio": _number(["lambda_ratio"], "1", "lambda ratio"),
     "contact_width": _number(["contact_width"], "m", "contact width"),
     "fit_temperature": _number(["fit_temperature"], "degC", "temperature"),
+    "least_lambda": _number(["least_lambda"], "1", "least lambda ratio of the operating points"),
+    "line_points": _number(["line_points"], "1", "points around the first roller", kind="i"),
+    "operating_points": _number(["operating_points"], "1", "number of operating points", kind="i"),
+    "realisations": _number(["realisations"], "1", "number of realisations", kind="i"),
 }
 
 _LUBRICANT = {
@@ -241,6 +245,22 @@ _TRACE = {
     "entrainment_speed": _number(["operating_point"], "m s-1", "entrainment speed"),
 }
 
+_SLIP_RUN = ("least_lambda", "slide_to_roll_ratio")
+_SPEED = {
+    "points_above": _number(["least_lambda"], "1", "number of operating points", kind="i"),
+    "strip_time": _number(_SLIP_RUN, "s", "time of one revolution, strip by strip"),
+    "scan_time": _number(_SLIP_RUN, "s", "time of one revolution, literal scan"),
+    "speedup": _number(_SLIP_RUN, "1", "time of the literal scan over that of the strips"),
+    "transform_time": _number([], "s", "time of a bare inverse FFT as long as a line"),
+    "reading_time": _number([], "s", "time to read a line from memory"),
+    "line_time": _number([], "s", "time to draw a line"),
+    "grid_time": _number(["line_points"], "s", "time of a realisation"),
+    "operating_points_time": _number(["operating_points"], "s", "time of the contact runs"),
+    "ensemble_time": _number(["realisations"], "s", "time of an ensemble"),
+    "processes": _number([], "1", "processes side by side", kind="i"),
+    "peak_memory": _number([], "byte", "peak memory of a process"),
+}
+
 FILES = {
     "lubricant": _LUBRICANT,
     "film": _FILM,
@@ -251,6 +271,7 @@ FILES = {
     "master_batch": _MASTER_RUN,
     "master": {**_MASTER_RUN, **_intervals(MASTER_DIMS)},
     "trace": _TRACE,
+    "speed": _SPEED,
 }
 """Variables of each kind of file, by the kind's name."""
 

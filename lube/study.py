@@ -38,6 +38,7 @@ _FORERUNNERS = {
     "contact": ("lubricant", "film", "roughness"),
     "master": ("lubricant", "film", "roughness"),
     "trace": ("lubricant", "film", "roughness"),
+    "speed": ("lubricant", "film", "roughness", "contact"),
 }
 
 
@@ -140,7 +141,8 @@ class Study(StrictModel):
         Parameters
         ----------
         stage : str
-            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master`` or ``trace``.
+            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master``, ``trace`` or
+            ``speed``, which measures how fast the others are.
 
         Returns
         -------
@@ -176,6 +178,7 @@ class Study(StrictModel):
             "trace": lines
             | mechanics
             | {"traces": content["traces"], "resistivity": content["resistivity"]},
+            "speed": {},
         }
         return inputs[stage]
 

@@ -46,12 +46,9 @@ def contact_trace(lines, film, points, boundary_layer, resistivity):
     ratio = points[0]["slide_to_roll_ratio"]
     ratios = speed_ratios(ratio)
     steps = revolution(pair, ratios)
-    broken = [
-        strip_trace(*pair, ratios, steps, film_steps, half_window, factor)
-        for film_steps, half_window in zip(films, half_windows, strict=True)
-    ]
+    broken = strip_trace(*pair, ratios, steps, films, half_windows, factor)
     spacing = lines.attrs["spacing"]
-    length = (("operating_point", "time"), np.array(broken) * spacing)
+    length = (("operating_point", "time"), broken * spacing)
     faster_surface = places["entrainment_speed"].values[0] * (1.0 + abs(ratio) / 2.0)
     trace = places[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
         contact_length=length,

@@ -6,7 +6,7 @@ import scipy.special
 import scipy.stats
 
 from lube import roughness_lines
-from lube.kernels.strips import find_runs
+from lube.kernels.runs import find_runs
 from lube.roughness import (
     PADDING,
     draw_line,

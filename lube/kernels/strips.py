@@ -5,8 +5,7 @@ slides along one fixed line, the sum of the two. Such a stretch of steps is a st
 revolution in pure rolling, some 1 / slip steps at small slip, a single step at large slip. On a
 strip every run of points above the film is met by the windows in the same three ways: its
 beginning enters at the right edge, it is seen whole (or fills the window), its end leaves at the
-left edge. So each run is visited once, point by point, whatever the window's width. Blocks of
-points that lie below the thinnest film are passed over at the speed of memory, and all operating
+left edge. So each run is visited once, point by point, whatever the window's width. All operating
 points share one search for runs: a thicker film's runs lie within a thinner film's.
 """
 
@@ -15,12 +14,10 @@ import numpy as np
 from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
+from lube.kernels.runs import block_maxima, fill_high_stretches, find_runs
 
 LONGEST_STRIP = 2**14
 """Longer strips are cut: what belongs to one then stays in the processor's nearest memory."""
-
-BLOCK = 64
-"""Points whose highest decides on whether any of them is looked at."""
 
 
 @kernel
@@ -56,104 +53,6 @@ def strip_end(step, steps, speed_ratios):
     ):
         end += 1
     return end
-
-
-@kernel
-def add_lines(line_1, line_2, first_1, first_2, line):
-    """Fill the line of a strip with the sum of the two lines from the given indices on.
-
-    Parameters
-    ----------
-    line_1, line_2 : numpy.ndarray
-        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 steps.
-    first_1, first_2 : int
-        Indices that come first, wrapped around.
-    line : numpy.ndarray
-        Filled, int32 steps.
-    """
-    i, k = first_1 % line_1.size, first_2 % line_2.size
-    done = 0
-    while done < line.size:  # in stretches without wrap-around, which the compiler vectorises
-        stretch = min(line_1.size - i, line_2.size - k, line.size - done)
-        for n in range(stretch):
-            line[done + n] = line_1[i + n] + line_2[k + n]
-        done += stretch
-        i = (i + stretch) % line_1.size
-        k = (k + stretch) % line_2.size
-
-
-@kernel
-def high_stretches(line, film, starts, stops):
-    """Find the stretches of blocks in which some point lies above a film.
-
-    Parameters
-    ----------
-    line : numpy.ndarray
-        Heights, int32 steps.
-    film : int
-        Film thickness, steps.
-    starts, stops : numpy.ndarray
-        Filled with the first index and the index after the last of each stretch.
-
-    Returns
-    -------
-    int
-        How many stretches were found.
-    """
-    found = 0
-    inside = False
-    for start in range(0, line.size, BLOCK):
-        stop = min(start + BLOCK, line.size)
-        highest = line[start]
-        for i in range(start, stop):
-            highest = max(highest, line[i])
-        if highest > film:
-            if not inside:
-                starts[found] = start
-                found += 1
-            stops[found - 1] = stop
-        inside = highest > film
-    return found
-
-
-@kernel
-def find_runs(line, film, starts, stops, count, new_starts, new_stops):
-    """Find the runs of points above a film, looking only within given stretches.
-
-    Parameters
-    ----------
-    line : numpy.ndarray
-        Heights, shape (L,), int32 steps.
-    film : int
-        Film thickness, steps.
-    starts, stops : numpy.ndarray
-        First index and index after the last of the stretches to look in, int64.
-    count : int
-        How many stretches there are.
-    new_starts, new_stops : numpy.ndarray
-        Filled with the runs found, in order; length at least (L + 1) // 2.
-
-    Returns
-    -------
-    int
-        How many runs were found.
-    """
-    found = 0
-    for stretch in range(count):
-        inside = False
-        for i in range(starts[stretch], stops[stretch]):
-            if line[i] > film:
-                if not inside:
-                    new_starts[found] = i
-                    inside = True
-            elif inside:
-                new_stops[found] = i
-                found += 1
-                inside = False
-        if inside:
-            new_stops[found] = stops[stretch]
-            found += 1
-    return found
 
 
 @kernel
@@ -272,7 +171,7 @@ def seen_overlap(line, start, stop, film, width, steps):
 
 
 @kernel
-def _strip_point(line, starts, stops, runs, film, width, factor, broken, counts):
+def _strip_point(line, starts, stops, runs, film, width, factor, broken, lengths, counts):
     """Add one operating point's statistics of one strip to its counts."""
     steps = broken.size
     first = (line.size - steps + 1 - width) // 2  # the widest window's margin, less this one's
@@ -288,9 +187,56 @@ def _strip_point(line, starts, stops, runs, film, width, factor, broken, counts)
         last = min(stop - 1, steps - 1)
         counts[0] += last - max(start - width, touched_until)
         touched_until = last
-        counts[2] += visit_run(seen, start, stop, film, width, factor, broken, None)
+        counts[2] += visit_run(seen, start, stop, film, width, factor, broken, lengths)
         counts[3] += seen_overlap(seen, start, stop, film, width, steps)
     counts[1] += np.sum(broken)
+
+
+@kernel
+def _steps_of(lengths, point, begin, end):
+    """Pick where one operating point's lengths at the steps of a strip are kept, if at all."""
+    if lengths is None:
+        return None
+    return lengths[point, begin:end]
+
+
+@kernel
+def _run_strips(line_1, line_2, speed_ratios, steps, films, half_windows, factor, lengths):
+    """Statistics as of `strip_statistics`; fills the lengths of `strip_trace` if wanted."""
+    statistics = np.zeros((films.size, 4), np.int64)
+    thinnest_first = np.argsort(films, kind="mergesort")
+    margin = half_windows.max()
+    buffer = np.empty(min(steps, LONGEST_STRIP) + 2 * margin, np.int32)
+    marks = np.empty(buffer.size - 2 * margin, np.uint8)
+    capacity = buffer.size // 2 + 1
+    starts, stops = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
+    new_starts, new_stops = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
+    if speed_ratios[0] != speed_ratios[1]:
+        maxima_1, maxima_2 = block_maxima(line_1, buffer.size), block_maxima(line_2, buffer.size)
+    else:
+        maxima_1 = maxima_2 = np.empty((0, 0), np.int32)
+    begin = 0
+    while begin < steps:
+        end = strip_end(begin, steps, speed_ratios)
+        line, broken = buffer[: end - begin + 2 * margin], marks[: end - begin]
+        first_1 = (surface_position(begin, speed_ratios[0]) - margin) % line_1.size
+        first_2 = (surface_position(begin, speed_ratios[1]) - margin) % line_2.size
+        thinnest = films[thinnest_first[0]]
+        runs = fill_high_stretches(
+            line_1, line_2, maxima_1, maxima_2, first_1, first_2, thinnest, line, starts, stops
+        )
+        for point in thinnest_first:
+            if runs == 0:  # nor has any thicker film
+                break
+            film, width = films[point], 2 * half_windows[point] + 1
+            runs = find_runs(line, film, starts, stops, runs, new_starts, new_stops)
+            starts, new_starts = new_starts, starts
+            stops, new_stops = new_stops, stops
+            kept = _steps_of(lengths, point, begin, end)
+            counts = statistics[point]
+            _strip_point(line, starts, stops, runs, film, width, factor, broken, kept, counts)
+        begin = end
+    return statistics
 
 
 @kernel
@@ -317,90 +263,25 @@ def strip_statistics(line_1, line_2, speed_ratios, steps, films, half_windows, f
     numpy.ndarray
         Shape (P, 4), int64, as from `scan_statistics`.
     """
-    statistics = np.zeros((films.size, 4), np.int64)
-    order = np.argsort(films, kind="mergesort")
-    margin = half_windows.max()
-    longest = min(steps, LONGEST_STRIP)
-    buffer = np.empty(longest + 2 * margin, np.int32)
-    marks = np.empty(longest, np.uint8)
-    capacity = buffer.size // 2 + 1
-    starts, stops = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
-    new_starts, new_stops = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
-    begin = 0
-    while begin < steps:
-        end = strip_end(begin, steps, speed_ratios)
-        line, broken = buffer[: end - begin + 2 * margin], marks[: end - begin]
-        first_1 = surface_position(begin, speed_ratios[0]) - margin
-        first_2 = surface_position(begin, speed_ratios[1]) - margin
-        add_lines(line_1, line_2, first_1, first_2, line)
-        runs = high_stretches(line, films[order[0]], starts, stops)
-        for point in order:
-            runs = find_runs(line, films[point], starts, stops, runs, new_starts, new_stops)
-            if runs == 0:  # nor has any thicker film
-                break
-            starts, new_starts = new_starts, starts
-            stops, new_stops = new_stops, stops
-            width = 2 * half_windows[point] + 1
-            _strip_point(
-                line, starts, stops, runs, films[point], width, factor, broken, statistics[point]
-            )
-        begin = end
-    return statistics
+    return _run_strips(line_1, line_2, speed_ratios, steps, films, half_windows, factor, None)
 
 
 @kernel
-def strip_trace(line_1, line_2, speed_ratios, steps, film, half_window, factor):
-    """Broken points at every time step, at any slip, for one operating point.
+def strip_trace(line_1, line_2, speed_ratios, steps, films, half_windows, factor):
+    """Broken points at every time step of many operating points, at any slip.
 
     Equal to the broken points of `lube.kernels.scan.scan_trace`.
 
     Parameters
     ----------
-    line_1, line_2 : numpy.ndarray
-        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 steps.
-    speed_ratios : tuple of float
-        Surface speeds over the faster one's.
-    steps : int
-        Number T of time steps.
-    film : int
-        Film thickness, steps.
-    half_window : int
-        Points m beside the window's middle.
-    factor : float
-        From `lube.kernels.layer.layer_factor`.
+    line_1, line_2, speed_ratios, steps, films, half_windows, factor
+        As in `strip_statistics`.
 
     Returns
     -------
     numpy.ndarray
-        Shape (T,), int64: points of broken segments in the window.
+        Shape (P, T), int64: points of broken segments in the window.
     """
-    lengths = np.zeros(steps, np.int64)
-    width = 2 * half_window + 1
-    longest = min(steps, LONGEST_STRIP)
-    buffer = np.empty(longest + 2 * half_window, np.int32)
-    marks = np.empty(longest, np.uint8)
-    capacity = buffer.size // 2 + 1
-    starts, stops = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
-    new_starts, new_stops = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
-    begin = 0
-    while begin < steps:
-        end = strip_end(begin, steps, speed_ratios)
-        line = buffer[: end - begin + 2 * half_window]
-        first_1 = surface_position(begin, speed_ratios[0]) - half_window
-        first_2 = surface_position(begin, speed_ratios[1]) - half_window
-        add_lines(line_1, line_2, first_1, first_2, line)
-        runs = high_stretches(line, film, starts, stops)
-        runs = find_runs(line, film, starts, stops, runs, new_starts, new_stops)
-        for run in range(runs):
-            visit_run(
-                line,
-                new_starts[run],
-                new_stops[run],
-                film,
-                width,
-                factor,
-                marks[: end - begin],
-                lengths[begin:end],
-            )
-        begin = end
+    lengths = np.zeros((films.size, steps), np.int64)
+    _run_strips(line_1, line_2, speed_ratios, steps, films, half_windows, factor, lengths)
     return lengths

@@ -1,34 +1,49 @@
 """How fast the study is, beside the plain versions of the same work in the same run.
 
-    python tests/benchmarks/bench_speed.py
+    snakemake benchmark                                        # measures, saves and draws
+    python tests/benchmarks/bench_speed.py [STUDY [SPEED.NC]]  # measures and tells
 
-Times of a shared machine mean little by themselves; the ratios do. Each figure is the best of
-several runs, the two sides taking turns.
+Times of a shared machine mean little by themselves; the ratios do. Each time is the shortest of
+several runs, the sides of a ratio taking turns.
 """
 
+import multiprocessing
+import os
+import resource
+import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 
 import numpy as np
 import scipy.fft
+import xarray as xr
 
 from lube.film import film_table
+from lube.io import save
 from lube.kernels.layer import layer_factor
 from lube.kernels.scan import scan_statistics
 from lube.kernels.strips import strip_statistics
 from lube.lubricant import lubricant_table
 from lube.roughness import draw_line, draw_realisation
+from lube.schema import label
 from lube.steps import revolution, speed_ratios
 from lube.study import load_study
+from lube.surfaces import line_spec
 
+SLIPS = (0.0, 0.01, 0.1, 0.5, 1.0, 2.0)
+LEAST_LAMBDAS = (0.0, 3.0)
 SCAN_SHARE = 50
 """The literal scan runs over 1/50 of a revolution; its cost is linear in the steps."""
 
+FINER_GRIDS = (1, 2, 4, 8)
+OPERATING_POINTS = (1, 8, 25, 125, 500)
+REALISATIONS = (125, 250, 500, 1000)
 
-def best_times(*sides, runs=5):
-    """Shortest time of each function, taking turns, after one run to compile and warm up."""
-    for side in sides:
-        side()
-    times = np.full((runs, len(sides)), np.inf)
+
+def best_times(*sides, runs):
+    """Shortest time of each function, taking turns."""
+    times = np.empty((runs, len(sides)))
     for run in range(runs):
         for number, side in enumerate(sides):
             begin = time.perf_counter()
@@ -37,69 +52,171 @@ def best_times(*sides, runs=5):
     return times.min(axis=0)
 
 
-def paper_points(study):
-    """Films and half-windows of the paper's 125 operating points, and the layer's factor."""
-    grid, spec = study.operating_grid, study.line_spec
-    oil = lubricant_table(study.lubricants, grid.temperature)
-    film = film_table(oil, study.rollers, grid.force, grid.speed, ["paper"])
+def points_of(study, spec):
+    """Films and half-windows of a study's operating points, thinnest first, and the factor."""
+    grid, layer = study.operating_grid, study.boundary_layer
+    oil = lubricant_table(study.lubricants[:1], grid.temperature)
+    film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas[:1])
     thickness, half_width = np.broadcast_arrays(film.film_thickness, film.contact_half_width)
-    films = np.rint(thickness.ravel() / spec.height_step).astype(np.int64)
-    half_windows = np.floor(half_width.ravel() / spec.spacing).astype(np.int64)
+    order = np.argsort(thickness, axis=None)
+    films = np.rint(thickness.ravel()[order] / spec.height_step).astype(np.int64)
+    half_windows = np.floor(half_width.ravel()[order] / spec.spacing).astype(np.int64)
     factor = layer_factor(
         study.rollers.reduced_modulus,
-        study.boundary_layer.critical_thickness,
-        study.boundary_layer.shear_strength,
+        layer.critical_thickness,
+        layer.shear_strength,
         spec.spacing,
         spec.height_step,
     )
     return films, half_windows, factor
 
 
-def bench_contact(study, slide_to_roll_ratio, least_lambda=0.0):
-    """The strips against the compiled literal scan, one realisation, many points."""
-    pair = draw_realisation(study.line_spec, study.seed, 0)
-    films, half_windows, factor = paper_points(study)
-    composite = study.rollers.composite_rms_roughness / study.roughness.height_step
-    chosen = films >= least_lambda * composite
-    films, half_windows = films[chosen], half_windows[chosen]
-    ratios = speed_ratios(slide_to_roll_ratio)
-    steps = revolution(pair, ratios)
-    # Slip costs the strips more, and is as linear in the steps.
-    share = 1 if slide_to_roll_ratio == 0.0 else SCAN_SHARE
-
-    def strips():
-        return strip_statistics(*pair, ratios, steps // share, films, half_windows, factor)
-
-    def scan():
-        part = steps // SCAN_SHARE
-        return scan_statistics(*pair, ratios, part, films, half_windows, factor)
-
-    fast, slow = best_times(strips, scan, runs=2) * (share, SCAN_SHARE)
-    print(
-        f"slide-to-roll ratio {slide_to_roll_ratio:g}, {films.size:3d} points"
-        f"{f' of lambda above {least_lambda:g}' if least_lambda else ''}: "
-        f"scan {slow:.1f} s, strips {fast:.3f} s, {slow / fast:.0f} times faster"
-    )
-
-
-def bench_synthesis(study):
-    """Drawing one line against a bare single-precision inverse FFT of its size."""
+def measure_slip(study):
+    """Measure the strips against the compiled literal scan, one realisation, at several slips."""
     spec = study.line_spec
-    seed = np.random.SeedSequence(1)
-    waves = np.zeros(spec.points[0] // 2 + 1, np.complex64)
+    pair = draw_realisation(spec, study.seed, 0)
+    films, half_windows, factor = points_of(study, spec)
+    ratio = films * spec.height_step / study.rollers.composite_rms_roughness
+    times = np.full((2, len(LEAST_LAMBDAS), len(SLIPS)), np.nan)
+    counts = [np.count_nonzero(ratio >= least) for least in LEAST_LAMBDAS]
+    for row, count in enumerate(counts):
+        for column, slip in enumerate(SLIPS if count else ()):
+            ratios = speed_ratios(slip)
+            steps = revolution(pair, ratios)
+            chosen = films[-count:], half_windows[-count:], factor  # the thickest
+            strips = partial(strip_statistics, *pair, ratios, steps, *chosen)
+            scan = partial(scan_statistics, *pair, ratios, steps // SCAN_SHARE, *chosen)
+            fast, slow = best_times(strips, scan, runs=2) * (1, SCAN_SHARE)
+            times[:, row, column] = fast, slow
+            print(
+                f"slide-to-roll ratio {slip:<4g} {count:3d} points of lambda > "
+                f"{LEAST_LAMBDAS[row]:g}: scan {slow:6.1f} s, strips {fast:7.3f} s, "
+                f"{slow / fast:.0f} times faster",
+                flush=True,
+            )
+    dims = ("least_lambda", "slide_to_roll_ratio")
+    return {
+        "points_above": ("least_lambda", np.array(counts)),
+        "strip_time": (dims, times[0]),
+        "scan_time": (dims, times[1]),
+        "speedup": (dims, times[1] / times[0]),
+        "least_lambda": np.array(LEAST_LAMBDAS),
+        "slide_to_roll_ratio": np.array(SLIPS),
+    }
+
+
+def measure_synthesis(study):
+    """Measure the drawing of a line against the least there is: its FFT, and to read it once."""
+    spec = study.line_spec
+    points, seed = spec.points[0], np.random.SeedSequence(1)
+    waves = np.zeros(points // 2 + 1, np.complex64)
     waves[1:100] = 1.0
-    line, fft = best_times(
-        lambda: draw_line(spec, 0, seed), lambda: scipy.fft.irfft(waves, spec.points[0]), runs=15
+    drawn, fft, read = best_times(
+        lambda: draw_line(spec, 0, seed),
+        lambda: scipy.fft.irfft(waves, points),
+        np.ones(points, np.int32).max,
+        runs=15,
     )
-    print(f"synthesis of one line of {spec.points[0]} points:")
-    print(f"  bare inverse FFT {1e3 * fft:6.2f} ms")
-    print(f"  whole line       {1e3 * line:6.2f} ms   {line / fft:.2f} times the FFT")
+    print(
+        f"line of {points} points: bare inverse FFT {1e3 * fft:.2f} ms, "
+        f"whole line {1e3 * drawn:.2f} ms, {drawn / fft:.2f} times as long"
+    )
+    return {"line_time": drawn, "transform_time": fft, "reading_time": read}
+
+
+def measure_realisation(study, spec, films, half_windows, factor, realisation=0):
+    """Draw one realisation and run all operating points in pure rolling."""
+    pair = draw_realisation(spec, study.seed, realisation)
+    ratios = speed_ratios(0.0)
+    return strip_statistics(*pair, ratios, pair[0].size, films, half_windows, factor)
+
+
+def measure_grids(study):
+    """Measure the cost of a realisation against the number of points around the roller."""
+    times = []
+    for finer in FINER_GRIDS:
+        texture = study.roughness.model_copy(update={"points": study.roughness.points * finer})
+        spec = line_spec(study.rollers, texture, max(study.operating_grid.force))
+        run = partial(measure_realisation, study, spec, *points_of(study, spec))
+        times.append(best_times(run, runs=3)[0])
+        print(f"realisation of {spec.points[0]:8d} points: {1e3 * times[-1]:.1f} ms", flush=True)
+    counts = study.roughness.points * np.array(FINER_GRIDS)
+    return {"grid_time": ("line_points", times), "line_points": counts}
+
+
+def measure_operating_points(study):
+    """Measure the cost of the contact runs against the number of operating points."""
+    pair = draw_realisation(study.line_spec, study.seed, 0)
+    films, half_windows, factor = points_of(study, study.line_spec)
+    times = []
+    for count in OPERATING_POINTS:
+        # Spread over the study's own films; between two of them where there are more.
+        places = (np.arange(count) + 0.5) / count * films.size - 0.5
+        chosen = [np.interp(places, range(films.size), of) for of in (films, half_windows)]
+        chosen = [np.rint(values).astype(np.int64) for values in chosen]
+        steps = pair[0].size
+        run = partial(strip_statistics, *pair, speed_ratios(0.0), steps, *chosen, factor)
+        times.append(best_times(run, runs=5)[0])
+        print(f"{count:3d} operating points: {1e3 * times[-1]:.1f} ms", flush=True)
+    counts = np.array(OPERATING_POINTS)
+    return {"operating_points_time": ("operating_points", times), "operating_points": counts}
+
+
+def _run_one(job):
+    """Run one realisation in a process of a pool; tell that process's peak memory, bytes."""
+    study, realisation = job
+    points = points_of(study, study.line_spec) if _run_one.points is None else _run_one.points
+    _run_one.points = points
+    measure_realisation(study, study.line_spec, *points, realisation)
+    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+_run_one.points = None
+
+
+def measure_ensemble(study):
+    """Measure synthesis and contact of up to a thousand realisations, on all cores."""
+    cores, times, memory = os.cpu_count(), [], 0
+    with ProcessPoolExecutor(cores, multiprocessing.get_context("spawn")) as pool:
+        list(pool.map(_run_one, [(study, 0)] * 4 * cores))  # processes begun, kernels loaded
+        for count in REALISATIONS:
+            begin = time.perf_counter()
+            jobs = [(study, realisation) for realisation in range(count)]
+            memory = max(memory, *pool.map(_run_one, jobs, chunksize=5))
+            times.append(time.perf_counter() - begin)
+            print(f"{count:4d} realisations on {cores} cores: {times[-1]:.1f} s", flush=True)
+    print(f"peak memory of a process: {memory / 2**20:.0f} MiB")
+    return {
+        "ensemble_time": ("realisations", times),
+        "realisations": np.array(REALISATIONS),
+        "processes": cores,
+        "peak_memory": float(memory),
+    }
+
+
+def measure(study):
+    """Measure everything, as the ``speed`` file of `lube.schema`."""
+    films, half_windows, factor = points_of(study, study.line_spec)
+    # Compiled, or loaded, before anything is timed.
+    pair = draw_realisation(study.line_spec, study.seed, 0)
+    for kernel in (strip_statistics, scan_statistics):
+        for slip in (0.0, 1.0):
+            kernel(*pair, speed_ratios(slip), 10, films, half_windows, factor)
+    parts = (
+        measure_synthesis(study),
+        measure_slip(study),
+        measure_grids(study),
+        measure_operating_points(study),
+        measure_ensemble(study),
+    )
+    dataset = xr.Dataset({name: values for part in parts for name, values in part.items()})
+    coords = list(dataset.dims)
+    return label(dataset.set_coords(coords), "speed")
 
 
 if __name__ == "__main__":
-    paper = load_study("workflow/config/paper.yaml")
-    bench_synthesis(paper)
-    bench_contact(paper, 0.0)
-    for slip in (0.01, 0.1, 0.5, 1.0, 2.0):
-        bench_contact(paper, slip)
-        bench_contact(paper, slip, least_lambda=3.0)
+    study_file, *output = sys.argv[1:] or ["workflow/config/paper.yaml"]
+    the_study = load_study(study_file)
+    speed = measure(the_study)
+    if output:
+        save(speed, output[0], "speed", the_study)

@@ -4,18 +4,14 @@ from functools import partial
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lube.kernels.layer import layer_factor
 from lube.kernels.motion import surface_position
 from lube.kernels.scan import scan_statistics, scan_trace
 from lube.kernels.strips import (
-    BLOCK,
     LONGEST_STRIP,
-    add_lines,
-    find_runs,
-    high_stretches,
     strip_end,
     strip_statistics,
     strip_trace,
@@ -63,21 +59,14 @@ def test_statistics_equal_the_scan(line_1, line_2, points, factor, ratios, steps
 
 
 @settings(max_examples=1500)
-@given(
-    rough_lines,
-    rough_lines,
-    st.integers(-8, 8),
-    half_windows,
-    factors,
-    speed_ratios,
-    st.integers(1, 150),
-)
-def test_trace_equals_the_scan_at_every_step(
-    line_1, line_2, film, half_window, factor, ratios, steps
-):
+@given(rough_lines, rough_lines, operating_points, factors, speed_ratios, st.integers(1, 150))
+def test_trace_equals_the_scan_at_every_step(line_1, line_2, points, factor, ratios, steps):
+    expected = [
+        scan_trace(line_1, line_2, ratios, steps, film, half_window, factor)[:, 1]
+        for film, half_window in points
+    ]
     np.testing.assert_array_equal(
-        strip_trace(line_1, line_2, ratios, steps, film, half_window, factor),
-        scan_trace(line_1, line_2, ratios, steps, film, half_window, factor)[:, 1],
+        statistics_by(strip_trace, line_1, line_2, points, factor, steps, ratios), expected
     )
 
 
@@ -90,7 +79,7 @@ def test_one_revolution_of_pure_rolling_equals_the_scan(line_1, line_2, points, 
     )
 
 
-# Where strips are cut and blocks of points are passed over
+# Where strips are cut
 
 
 @pytest.mark.parametrize("beyond", [-1, 0, 1, LONGEST_STRIP + 1])
@@ -105,22 +94,6 @@ def test_cutting_long_strips_changes_nothing(beyond, ratios):
             statistics_by_strips(*lines, points, factor, steps, ratios),
             statistics_by_scan(*lines, points, factor, steps, ratios),
         )
-
-
-@given(st.integers(1, 5 * BLOCK), st.integers(0, 4 * BLOCK), st.integers(0, 9), st.randoms())
-def test_blocks_that_are_passed_over_hold_nothing(size, high, film, random):
-    line = np.zeros(size, np.int32)
-    for _ in range(high // 20):
-        line[random.randrange(size)] = random.randrange(12)
-    starts, stops = np.empty((2, size // 2 + 1), np.int64)
-    count = high_stretches(line, film, starts, stops)
-    looked_at = np.zeros(size, bool)
-    for start, stop in zip(starts[:count], stops[:count], strict=True):
-        assert start < stop
-        assert line[start:stop].max() > film
-        assert not looked_at[max(start - 1, 0) : stop].any()  # neighbours are one stretch
-        looked_at[start:stop] = True
-    assert not (line > film)[~looked_at].any()
 
 
 @given(speed_ratios, st.integers(1, 400))
@@ -199,39 +172,13 @@ def test_only_heights_over_the_film_matter(line_1, line_2, points, factor, lift)
     )
 
 
-@given(rough_lines, rough_lines, st.integers(1, 150), st.integers(-100, 100), st.integers(-9, 9))
-@example(np.array([1], np.int32), np.array([2, 3], np.int32), 1, 0, 0)
-def test_lines_are_added_as_the_windows_meet_them(line_1, line_2, size, first, ahead):
-    indices = np.arange(first, first + size)
-    expected = line_1[indices % line_1.size] + line_2[(indices + ahead) % line_2.size]
-    line = np.empty(size, np.int32)
-    add_lines(line_1, line_2, first, first + ahead, line)
-    np.testing.assert_array_equal(line, expected)
-
-
-def runs_above(line, film, starts, stops):
-    size = line.size // 2 + 1
-    new_starts, new_stops = np.empty(size, np.int64), np.empty(size, np.int64)
-    count = find_runs(line, film, starts, stops, starts.size, new_starts, new_stops)
-    return new_starts[:count], new_stops[:count]
-
-
-@given(rough_lines, st.integers(-4, 4), st.integers(0, 4))
-def test_runs_of_a_thicker_film_are_found_within_a_thinner_films(line, film, thicker):
-    whole = np.array([0]), np.array([line.size])
-    within = runs_above(line, film + thicker, *runs_above(line, film, *whole))
-    inside = np.concatenate([[False], line > film + thicker, [False]])
-    edges = np.flatnonzero(inside[1:] != inside[:-1])
-    np.testing.assert_array_equal(within, edges.reshape(-1, 2).T)
-
-
 def test_touched_steps_are_at_most_those_of_all_runs_apart():
     """The union bound P <= Q + nu+ 2a, for one line and to the step."""
     line = np.random.default_rng(5).integers(-5, 6, 3000).astype(np.int32)
     flat = np.zeros_like(line)
     for film, half_window in [(0, 3), (3, 3), (4, 10)]:
-        starts, _ = runs_above(line, film, np.array([0]), np.array([line.size]))
-        bound = np.count_nonzero(line > film) + starts.size * 2 * half_window
+        begins = np.count_nonzero((line > film) & ~(np.roll(line, 1) > film))
+        bound = np.count_nonzero(line > film) + begins * 2 * half_window
         touched = statistics_by_strips(line, flat, [(film, half_window)], 1.0)[0, 0]
         assert touched <= bound
     lone = np.zeros(100, np.int32)

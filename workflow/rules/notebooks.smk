@@ -40,7 +40,7 @@ def figure_datasets(figure):
         for target in node.targets
         if isinstance(target, ast.Name)
     ]
-    return [result(f"{name}.nc") for name in assigned if name in DATASETS]
+    return [result(f"{name}.nc") for name in assigned if name in (*DATASETS, *MEASURED)]
 
 
 def wanted(figure):
@@ -63,3 +63,16 @@ with told_in_one_line():
     FIGURE_DATASETS = {figure: figure_datasets(figure) for figure in FIGURES}
     FIGURE_SOURCES = {figure: figure_sources(figure) for figure in FIGURES}
     FIGURE_CELLS = {figure: digest(notebook_cells(figure)) for figure in FIGURES}
+    # Figures of measured times are made when asked for.
+    TIMINGS = [
+        figure
+        for figure in FIGURES
+        if not {Path(path).stem for path in FIGURE_DATASETS[figure]}.isdisjoint(MEASURED)
+    ]
+
+
+def products(figures):
+    """Files made of some figures: pictures and executed notebooks."""
+    for figure in figures:
+        yield from (result(f"figures/{figure}.{suffix}") for suffix in ("png", "pdf"))
+        yield result(f"notebooks/{figure}.ipynb")

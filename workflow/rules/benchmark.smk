@@ -1,0 +1,25 @@
+rule speed:
+    input:
+        script="tests/benchmarks/bench_speed.py",
+        records=record_files(),
+        sources=sources(Path("tests/benchmarks/bench_speed.py").read_text(encoding="utf-8")),
+    output:
+        result("speed.nc"),
+    log:
+        result("logs/speed.log"),
+    params:
+        study=digest(STUDY.origin("speed")),
+        file=config["study_file"],
+    # With nothing beside it.
+    threads: workflow.cores
+    message:
+        "Speed: the study's kernels beside plain versions of the same work, a few minutes"
+    shell:
+        "python {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+
+
+rule benchmark:
+    input:
+        products(TIMINGS),
+    message:
+        "Done: measured times and their figures are in {RESULTS}"
