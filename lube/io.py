@@ -8,8 +8,6 @@ import contextlib
 import hashlib
 import json
 import logging
-import os
-import shutil
 from importlib.metadata import version
 from pathlib import Path
 
@@ -18,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import DataError
+from lube.files import written_whole
 from lube.schema import check
 
 log = logging.getLogger(__name__)
@@ -52,35 +51,11 @@ def save(dataset, path, kind, study, compress=True):
     """
     path = Path(path)
     dataset = check(dataset, kind, path).assign_attrs(_origin(study, kind))
-    part = path.with_name(path.name + ".part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+    with written_whole(path) as part:
         dataset.to_netcdf(
             part, engine="netcdf4", format="NETCDF4", encoding=_encoding(dataset, compress)
         )
-        _force_to_disk(part)
-        os.replace(part, path)
-        _force_to_disk(path.parent)
-    except (OSError, RuntimeError) as error:
-        raise DataError(f"{path}: cannot be written: {_why_not(error, path)}") from error
-    finally:
-        _remove(part)
     log.info("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
-
-
-def _why_not(error, path):
-    """Reason of a failed write; the NetCDF library keeps quiet about a full disk."""
-    folder = next(folder for folder in path.parents if folder.exists())
-    if not os.access(folder, os.W_OK):
-        return f"the folder {folder} is not writable"
-    free = shutil.disk_usage(folder).free / 2**20
-    reason = getattr(error, "strerror", None) or str(error)
-    return f"{reason} ({free:.0f} MiB are free on its disk)"
-
-
-def _remove(part):
-    with contextlib.suppress(OSError):
-        part.unlink(missing_ok=True)
 
 
 def load(path, kind):
@@ -186,11 +161,3 @@ def _chunks(variable):
     if variable.size <= 2**18:
         return variable.shape
     return (1,) * (variable.ndim - 1) + (variable.shape[-1],)
-
-
-def _force_to_disk(path):
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -40,6 +40,7 @@ def begin_job(log_file):
     terminal.addFilter(_NowAndThen())
     logging.basicConfig(level=logging.WARNING, handlers=[file, terminal], format="%(message)s")
     logging.getLogger("lube").setLevel(logging.INFO)
+    logging.raiseExceptions = False  # a log on a full disk has nothing to add to the job's error
     sys.excepthook = _tell
 
 

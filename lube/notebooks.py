@@ -8,13 +8,13 @@ errors and the last is taken out, so that an executed notebook is the same whene
 import ast
 import contextlib
 import os
-from pathlib import Path
 
 import nbformat
 import papermill
 from papermill.exceptions import PapermillExecutionError
 
 from lube.errors import LubeError
+from lube.files import written_whole
 
 # A kernel that is stopped after its last cell reports a KeyboardInterrupt; it alarms for nothing.
 _QUIET_KERNEL = ["--log-level=CRITICAL"]
@@ -36,7 +36,7 @@ def execute_notebook(notebook, output, parameters):
     ------
     LubeError
         If the file is no notebook, has no cell tagged ``parameters``, does not know a
-        parameter, or a cell fails.
+        parameter, a cell fails, or the copy cannot be written.
     """
     _check_parameters(notebook, parameters)
     try:
@@ -53,8 +53,8 @@ def execute_notebook(notebook, output, parameters):
     except PapermillExecutionError as error:
         reason = " ".join(f"{error.ename}: {error.evalue}".split())
         raise LubeError(f"{notebook}: cell {error.cell_index} fails: {reason}") from error
-    Path(output).parent.mkdir(parents=True, exist_ok=True)
-    nbformat.write(_without_times(executed), output)
+    with written_whole(output) as part:
+        nbformat.write(_without_times(executed), part)
 
 
 @contextlib.contextmanager

@@ -4,12 +4,13 @@ Colours are Okabe and Ito's, which readers with any colour vision can tell apart
 quantities get steps of a map that also rises in lightness.
 """
 
-from pathlib import Path
+import io
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from lube.files import written_whole
 from lube.schema import COORDINATES
 from lube.units import convert
 
@@ -266,7 +267,17 @@ def save_figure(figure, stem):
         Figure to save.
     stem : str or Path
         Path without suffix.
+
+    Raises
+    ------
+    DataError
+        If a file cannot be written.
     """
-    Path(stem).parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(f"{stem}.png", metadata={"Software": None})
-    figure.savefig(f"{stem}.pdf", metadata={"CreationDate": None, "Producer": None})
+    # No clock time, no version in the files.
+    unmarked = {"png": {"Software": None}, "pdf": {"CreationDate": None, "Producer": None}}
+    for suffix, metadata in unmarked.items():
+        # Through memory: a full disk in the midst of it ends in Matplotlib's own confusion.
+        picture = io.BytesIO()
+        figure.savefig(picture, format=suffix, metadata=metadata)
+        with written_whole(f"{stem}.{suffix}") as part:
+            part.write_bytes(picture.getbuffer())

@@ -21,7 +21,7 @@ MODULES = {
 LAYERS = [
     {"errors"},
     {"units", "hertz", "formulas", "viscosity", "resistance", "schema", "kernels"},
-    {"fields", "fluids", "steps"},
+    {"fields", "files", "fluids", "steps"},
     {"records", "surfaces"},
     {"study"},
     {"lubricant", "film", "roughness", "contact", "trace", "ensemble"},

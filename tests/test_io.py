@@ -16,7 +16,7 @@ from lube.film import film_table
 from lube.io import CONVENTIONS, load, opened, save
 from lube.lubricant import lubricant_table
 from lube.roughness import roughness_batch, roughness_lines
-from lube.schema import FILES, check
+from lube.schema import COORDINATES, FILES, check, label
 from lube.trace import contact_trace
 
 KINDS = list(FILES)
@@ -27,6 +27,18 @@ def load_as_jobs_do(path, kind):
     """Batches of lines stay whole steps, everything else is in its unit."""
     with opened(path, kind, raw=kind == "roughness_batch") as dataset:
         return dataset.load()
+
+
+def measured_times():
+    """Times as `snakemake benchmark` saves them, each a second."""
+    ones = {"f": 1.0, "i": 1}
+    variables = {
+        name: (row.dims, np.full((2,) * len(row.dims), ones[row.kind]))
+        for name, row in FILES["speed"].items()
+    }
+    dims = {dim for row in FILES["speed"].values() for dim in row.dims}
+    coords = {dim: np.arange(2).astype(COORDINATES[dim].kind + "8") for dim in sorted(dims)}
+    return label(xr.Dataset(variables, coords), "speed")
 
 
 @pytest.fixture(scope="module")
@@ -52,6 +64,7 @@ def datasets(study, make_spec):
         "master_batch": mapped,
         "master": gather_map([mapped]),
         "trace": contact_trace(lines, film, points, layer, study.resistivity),
+        "speed": measured_times(),
     }
 
 

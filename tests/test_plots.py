@@ -6,6 +6,7 @@ import pytest
 import xarray as xr
 
 from lube import plots
+from lube.errors import DataError
 
 matplotlib.use("Agg")
 plt = plots.plt
@@ -84,3 +85,19 @@ def test_a_figure_is_saved_as_the_same_bytes_each_time(tmp_path):
     for suffix in ("png", "pdf"):
         one, two = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("one", "two"))
         assert one == two
+
+
+def test_a_figure_that_cannot_be_written_is_told_and_leaves_the_old_one(tmp_path, monkeypatch):
+    figure, _ = plt.subplots()
+    plots.save_figure(figure, tmp_path / "figure")
+    before = (tmp_path / "figure.png").read_bytes()
+
+    def fail(*arguments):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.replace", fail)
+    with pytest.raises(DataError, match=r"figure.png: cannot be written: No space left"):
+        plots.save_figure(figure, tmp_path / "figure")
+    plt.close(figure)
+    assert (tmp_path / "figure.png").read_bytes() == before
+    assert len(list(tmp_path.iterdir())) == 2

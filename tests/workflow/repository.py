@@ -13,7 +13,15 @@ from pathlib import Path
 import yaml
 
 ROOT = Path(__file__).parents[2]
-COPIED = ("Snakefile", "pyproject.toml", "workflow", "lube", "notebooks", "profiles")
+COPIED = (
+    "Snakefile",
+    "pyproject.toml",
+    "workflow",
+    "lube",
+    "notebooks",
+    "profiles",
+    "tests/benchmarks",
+)
 SMOKE = "workflow/config/smoke.yaml"
 RESULTS = "results/smoke"
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
@@ -34,7 +42,8 @@ class Repository:
 
     @property
     def notebooks(self):
-        return sorted(path.stem for path in (self.folder / "notebooks").glob("*.ipynb"))
+        """Those of the study's figures; the others draw what `snakemake benchmark` measures."""
+        return sorted(path.stem for path in (self.folder / "notebooks").glob("fig*.ipynb"))
 
     def command(self, *arguments, study=SMOKE):
         options = ["--configfile", study] if study else []

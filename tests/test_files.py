@@ -1,0 +1,72 @@
+"""Files are there whole or not at all, whatever happens while they are written."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from lube.errors import DataError
+from lube.files import written_whole
+
+
+@pytest.fixture
+def old(tmp_path):
+    """A file from an earlier run."""
+    path = tmp_path / "folder" / "results.txt"
+    with written_whole(path) as part:
+        part.write_text("old")
+    return path
+
+
+def only_holds(path, text):
+    return path.read_text() == text and list(path.parent.iterdir()) == [path]
+
+
+def test_the_folder_is_made_and_the_file_is_there_alone(old):
+    assert only_holds(old, "old")
+
+
+def test_a_new_file_takes_the_old_ones_place_at_the_end(old):
+    with written_whole(old) as part:
+        part.write_text("new")
+        assert old.read_text() == "old"
+    assert only_holds(old, "new")
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), RuntimeError("HDF")])
+def test_a_failed_write_is_told_and_leaves_the_old_file(old, error):
+    told = r"cannot be written: (No space|HDF).* MiB are free"
+    with pytest.raises(DataError, match=told), written_whole(old) as part:
+        part.write_text("half")
+        raise error
+    assert only_holds(old, "old")
+
+
+def test_other_errors_pass_and_leave_the_old_file(old):
+    with pytest.raises(ValueError, match="ours"), written_whole(old) as part:
+        part.write_text("half")
+        raise ValueError("ours")
+    assert only_holds(old, "old")
+
+
+def test_a_writer_that_writes_nothing_is_an_error(old):
+    with pytest.raises(DataError, match="No such file"), written_whole(old):
+        pass
+    assert only_holds(old, "old")
+
+
+def test_a_folder_that_is_a_file_is_told(old):
+    with pytest.raises(DataError, match="cannot be written"), written_whole(old / "below") as part:
+        part.write_text("new")
+
+
+def test_a_killed_writer_leaves_the_old_file(old):
+    code = (
+        "import os, signal, sys; from lube.files import written_whole\n"
+        "with written_whole(sys.argv[1]) as part:\n"
+        "    part.write_text('half'); os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    killed = subprocess.run([sys.executable, "-c", code, old], env=os.environ, check=False)
+    assert killed.returncode != 0
+    assert old.read_text() == "old"
