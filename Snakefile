@@ -9,7 +9,7 @@ include: "workflow/rules/roughness.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/master.smk"
 include: "workflow/rules/figure.smk"
-include: "workflow/rules/benchmark.smk"
+include: "workflow/rules/speed.smk"
 
 
 rule all:
@@ -19,3 +19,10 @@ rule all:
         products(figure for figure in FIGURES if figure not in TIMINGS),
     message:
         "Done: datasets, figures and executed notebooks are in {RESULTS}"
+
+
+rule benchmark:
+    input:
+        products(TIMINGS),
+    message:
+        "Done: measured times and their figures are in {RESULTS}"

@@ -7,19 +7,14 @@ rule speed:
         result("speed.nc"),
     log:
         result("logs/speed.log"),
+    benchmark:
+        result("benchmarks/speed.tsv")
+    # With nothing beside it.
+    threads: workflow.cores
     params:
         study=digest(STUDY.origin("speed")),
         file=config["study_file"],
-    # With nothing beside it.
-    threads: workflow.cores
     message:
         "Speed: the study's kernels beside plain versions of the same work, a few minutes"
     shell:
         "python {input.script} {params.file:q} {output} 2>&1 | tee {log}"
-
-
-rule benchmark:
-    input:
-        products(TIMINGS),
-    message:
-        "Done: measured times and their figures are in {RESULTS}"
