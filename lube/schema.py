@@ -15,6 +15,8 @@ OPERATING_DIMS = ("lubricant", "film_formula", "temperature", "speed", "force")
 CONTACT_DIMS = ("slide_to_roll_ratio", *OPERATING_DIMS)
 LINE_DIMS = ("realisation", "roller")
 MASTER_DIMS = ("lambda_ratio", "contact_width")
+EXPERIMENT_DIMS = ("slide_to_roll_ratio", "lubricant", "temperature", "speed", "force")
+ORIGINS = ("measured", "simulated")
 
 REGIMES = (
     "isoviscous_rigid",
@@ -73,6 +75,8 @@ COORDINATES = {
     "lambda_ratio": _number(["lambda_ratio"], "1", "lambda ratio"),
     "contact_width": _number(["contact_width"], "m", "contact width"),
     "fit_temperature": _number(["fit_temperature"], "degC", "temperature"),
+    "threshold": _number(["threshold"], "ohm", "threshold of the resistance"),
+    "origin": _text([], "whether the rig's records were measured or simulated"),
     "least_lambda": _number(["least_lambda"], "1", "least lambda ratio of the operating points"),
     "line_points": _number(["line_points"], "1", "points around the first roller", kind="i"),
     "operating_points": _number(["operating_points"], "1", "number of operating points", kind="i"),
@@ -245,6 +249,25 @@ _TRACE = {
     "entrainment_speed": _number(["operating_point"], "m s-1", "entrainment speed"),
 }
 
+_SHARE_DIMS = (*EXPERIMENT_DIMS, "threshold")
+_EXPERIMENT = {
+    "origin": COORDINATES["origin"],
+    "contact_share": _number(_SHARE_DIMS, "1", "share of time with resistance below the threshold"),
+    "contact_share_lower": _number(
+        _SHARE_DIMS, "1", "share of time below the threshold, lower limit of the 95 % interval"
+    ),
+    "contact_share_upper": _number(
+        _SHARE_DIMS, "1", "share of time below the threshold, upper limit of the 95 % interval"
+    ),
+    "true_contact_share": _number(
+        EXPERIMENT_DIMS, "1", "share of time with metal contact in the simulated rig"
+    ),
+    "comparison_threshold": _number([], "ohm", "threshold that is compared with the simulation"),
+    "record": _text(EXPERIMENT_DIMS, "record of the rig"),
+    "duration": _number(EXPERIMENT_DIMS, "s", "duration of the record"),
+    "sampling_interval": _number(EXPERIMENT_DIMS, "s", "time between samples"),
+}
+
 _SLIP_RUN = ("least_lambda", "slide_to_roll_ratio")
 _SPEED = {
     "points_above": _number(["least_lambda"], "1", "number of operating points", kind="i"),
@@ -271,6 +294,7 @@ FILES = {
     "master_batch": _MASTER_RUN,
     "master": {**_MASTER_RUN, **_intervals(MASTER_DIMS)},
     "trace": _TRACE,
+    "experiment": _EXPERIMENT,
     "speed": _SPEED,
 }
 """Variables of each kind of file, by the kind's name."""
@@ -284,6 +308,7 @@ ATTRIBUTES = {
     "contact": _RUN_ATTRIBUTES,
     "master_batch": _RUN_ATTRIBUTES,
     "master": _RUN_ATTRIBUTES,
+    "experiment": ("refused",),
 }
 """Global attributes that the stages read from a file, by kind."""
 
