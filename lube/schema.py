@@ -75,6 +75,8 @@ COORDINATES = {
     "lambda_ratio": _number(["lambda_ratio"], "1", "lambda ratio"),
     "contact_width": _number(["contact_width"], "m", "contact width"),
     "fit_temperature": _number(["fit_temperature"], "degC", "temperature"),
+    "rig_time": _number(["rig_time"], "s", "time"),
+    "bandwidth": _number(["bandwidth"], "Hz", "bandwidth of the amplifier"),
     "threshold": _number(["threshold"], "ohm", "threshold of the resistance"),
     "origin": _text([], "whether the rig's records were measured or simulated"),
     "least_lambda": _number(["least_lambda"], "1", "least lambda ratio of the operating points"),
@@ -229,21 +231,23 @@ _MASTER_RUN = {
     for name, long_name in _PROBABILITIES.items()
 }
 
+_AT_POINTS = {
+    name: Variable(
+        ("operating_point",),
+        COORDINATES[name].units,
+        COORDINATES[name].long_name,
+        kind=COORDINATES[name].kind,
+    )
+    for name in CONTACT_DIMS
+}
+
 _TRACE = {
     **_LAYER,
     "reduced_modulus": _number([], "Pa", "reduced modulus E*"),
     "resistivity": _number([], "ohm m", "resistivity of the rollers' material"),
     "contact_length": _number(["operating_point", "time"], "m", "contact length"),
     "contact_resistance": _number(["operating_point", "time"], "ohm", "contact resistance"),
-    **{
-        name: Variable(
-            ("operating_point",),
-            COORDINATES[name].units,
-            COORDINATES[name].long_name,
-            kind=COORDINATES[name].kind,
-        )
-        for name in CONTACT_DIMS
-    },
+    **_AT_POINTS,
     "film_thickness": _number(["operating_point"], "m", "film thickness"),
     "contact_half_width": _number(["operating_point"], "m", "contact half-width"),
     "entrainment_speed": _number(["operating_point"], "m s-1", "entrainment speed"),
@@ -266,6 +270,22 @@ _EXPERIMENT = {
     "record": _text(EXPERIMENT_DIMS, "record of the rig"),
     "duration": _number(EXPERIMENT_DIMS, "s", "duration of the record"),
     "sampling_interval": _number(EXPERIMENT_DIMS, "s", "time between samples"),
+}
+
+_RIG = {
+    "origin": COORDINATES["origin"],
+    **{name: _AT_POINTS[name] for name in EXPERIMENT_DIMS},
+    "voltage": _number(["operating_point", "rig_time"], "V", "voltage that the rig logs"),
+    "resistance": _number(["operating_point", "rig_time"], "ohm", "resistance between the rollers"),
+    "contact_share": _number(
+        ["operating_point", "bandwidth", "threshold"],
+        "1",
+        "share of time with resistance below the threshold",
+    ),
+    "true_contact_share": _number(["operating_point"], "1", "share of time with metal contact"),
+    "rig_bandwidth": _number([], "Hz", "bandwidth of the study's rig"),
+    "rig_sampling_rate": _number([], "s-1", "sampling rate"),
+    "rig_bias_voltage": _number([], "V", "bias voltage"),
 }
 
 _SLIP_RUN = ("least_lambda", "slide_to_roll_ratio")
@@ -295,6 +315,7 @@ FILES = {
     "master": {**_MASTER_RUN, **_intervals(MASTER_DIMS)},
     "trace": _TRACE,
     "experiment": _EXPERIMENT,
+    "rig": _RIG,
     "speed": _SPEED,
 }
 """Variables of each kind of file, by the kind's name."""

@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from lube.apparatus import RIG_REALISATIONS, Experiment, Rig
 from lube.errors import LubeError, StudyError
 from lube.fields import (
     Resistivity,
@@ -29,6 +30,7 @@ from lube.fields import (
 )
 from lube.formulas import formula
 from lube.records import LubricantRecord, check_temperatures, load_record
+from lube.resistance import divider_voltage
 from lube.surfaces import BoundaryLayer, RollerPair, Roughness, line_spec
 
 _FORERUNNERS = {
@@ -38,6 +40,8 @@ _FORERUNNERS = {
     "contact": ("lubricant", "film", "roughness"),
     "master": ("lubricant", "film", "roughness"),
     "trace": ("lubricant", "film", "roughness"),
+    "experiment": ("lubricant", "film", "roughness"),
+    "rig": ("lubricant", "film", "roughness", "experiment"),
     "speed": ("lubricant", "film", "roughness", "contact"),
 }
 
@@ -120,6 +124,8 @@ class Study(StrictModel):
     traces: tuple[TracePoint, ...] = Field(
         min_length=1, description="operating points recorded over one revolution"
     )
+    rig: Rig = Field(Rig(), description="the rig, simulated or measured on")
+    experiment: Experiment = Field(Experiment(), description="its records and their evaluation")
 
     @property
     def line_spec(self):
@@ -135,14 +141,29 @@ class Study(StrictModel):
         """Return the realisations of the batch that begins with `first`, as a range."""
         return range(first, min(first + self.batch_size, self.realisations))
 
+    @property
+    def slips(self):
+        """Levels of the slide-to-roll ratio."""
+        return self.operating_grid.slide_to_roll_ratio
+
+    @property
+    def rig_slip(self):
+        """Slide-to-roll ratio of the simulated rig: pure rolling if the study has it."""
+        return 0.0 if 0.0 in self.slips else self.slips[0]
+
+    @property
+    def rig_realisations(self):
+        """Realisations of the simulated rig's rollers, one a revolution, as a range."""
+        return range(RIG_REALISATIONS, RIG_REALISATIONS + self.rig.revolutions)
+
     def stage_inputs(self, stage):
         """Return the values of the study that a stage depends on, as plain data.
 
         Parameters
         ----------
         stage : str
-            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master``, ``trace`` or
-            ``speed``, which measures how fast the others are.
+            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master``, ``trace``,
+            ``experiment``, ``rig`` or ``speed``, which measures how fast the others are.
 
         Returns
         -------
@@ -178,6 +199,17 @@ class Study(StrictModel):
             "trace": lines
             | mechanics
             | {"traces": content["traces"], "resistivity": content["resistivity"]},
+            "experiment": lines
+            | mechanics
+            | {
+                "resistivity": content["resistivity"],
+                "length": self.rollers.length,
+                "rig": content["rig"],
+                # The manifest is told by its contents, wherever it lies.
+                "experiment": content["experiment"]
+                | {"manifest": self.experiment.manifest is not None},
+            },
+            "rig": {"traces": content["traces"]},
             "speed": {},
         }
         return inputs[stage]
@@ -239,6 +271,17 @@ class Study(StrictModel):
             raise ValueError(
                 "traces: need one speed and one slide-to-roll ratio for all, as they share a "
                 "time axis"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _check_rig(self):
+        largest = max(self.experiment.thresholds) * self.experiment.release_ratio
+        voltage = divider_voltage(largest, self.rig)
+        if voltage >= self.rig.amplifier_range:
+            raise ValueError(
+                f"rig.amplifier_range: got {self.rig.amplifier_range:g} V, need more than the "
+                f"{voltage:.3g} V that {largest:g} ohm give in this circuit"
             )
         return self
 

@@ -21,10 +21,10 @@ MODULES = {
 LAYERS = [
     {"errors"},
     {"units", "hertz", "formulas", "viscosity", "resistance", "schema", "kernels"},
-    {"fields", "files", "fluids", "steps"},
-    {"records", "surfaces"},
+    {"fields", "files", "fluids", "steps", "rig"},
+    {"apparatus", "records", "surfaces"},
     {"study"},
-    {"lubricant", "film", "roughness", "contact", "trace", "ensemble"},
+    {"lubricant", "film", "roughness", "contact", "trace", "ensemble", "experiment"},
     {"io", "plots", "notebooks", "jobs", "reference"},
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}

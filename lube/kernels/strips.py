@@ -103,7 +103,7 @@ def visit_run(line, start, stop, film, width, factor, broken, lengths):
     broken : numpy.ndarray
         Shape (T,), uint8; set to one at the steps where the layer breaks.
     lengths : numpy.ndarray or None
-        Shape (T,), int64, the broken points at each step, added to; None if not wanted,
+        Shape (T,), int32, the broken points at each step, added to; None if not wanted,
         which the compiler makes a kernel of its own of.
 
     Returns
@@ -280,8 +280,8 @@ def strip_trace(line_1, line_2, speed_ratios, steps, films, half_windows, factor
     Returns
     -------
     numpy.ndarray
-        Shape (P, T), int64: points of broken segments in the window.
+        Shape (P, T), int32: points of broken segments in the window.
     """
-    lengths = np.zeros((films.size, steps), np.int64)
+    lengths = np.zeros((films.size, steps), np.int32)
     _run_strips(line_1, line_2, speed_ratios, steps, films, half_windows, factor, lengths)
     return lengths
