@@ -8,6 +8,7 @@ include: "workflow/rules/film.smk"
 include: "workflow/rules/roughness.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/master.smk"
+include: "workflow/rules/experiment.smk"
 include: "workflow/rules/figure.smk"
 include: "workflow/rules/speed.smk"
 

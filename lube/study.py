@@ -348,7 +348,18 @@ def load_study(path):
     content = read_yaml(path, StudyError)
     if isinstance(content.get("lubricants"), list):
         content = content | {"lubricants": _records(content["lubricants"], path)}
-    return validate(Study, content, path, StudyError)
+    return _with_manifest_found(validate(Study, content, path, StudyError), path)
+
+
+def _with_manifest_found(study, path):
+    """Take the manifest's path from the study's folder."""
+    if study.experiment.manifest is None:
+        return study
+    manifest = Path(path).parent / study.experiment.manifest
+    if not manifest.is_file():
+        raise StudyError(f"{path}: experiment.manifest: no such file: {manifest}")
+    experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
+    return study.model_copy(update={"experiment": experiment})
 
 
 def _records(names, path):

@@ -19,7 +19,16 @@ import lube
 from lube.errors import LubeError
 from lube.study import load_study
 
-DATASETS = ("lubricant", "film", "roughness", "contact", "trace", "master")
+DATASETS = (
+    "lubricant",
+    "film",
+    "roughness",
+    "contact",
+    "trace",
+    "master",
+    "rig",
+    "experiment",
+)
 MEASURED = ("speed",)  # by `snakemake benchmark`; clock times are no part of the study's results
 
 

@@ -1,0 +1,71 @@
+def record_files_of_the_rig():
+    """Manifest and measured records, as far as there are any; what is missing is told later."""
+    if STUDY.experiment.manifest is None:
+        return []
+    from lube.recordings import read_manifest
+
+    with told_in_one_line():
+        entries = read_manifest(STUDY.experiment.manifest).entries
+    files = [STUDY.experiment.manifest, *(entry.file for entry in entries if entry.file)]
+    return sorted(os.path.relpath(file) for file in files)
+
+
+rule rig_lines:
+    input:
+        sources=script_sources("rig_lines"),
+    output:
+        temp(result("batches/rig_lines.nc")),
+    log:
+        result("logs/rig_lines.log"),
+    benchmark:
+        result("benchmarks/rig_lines.tsv")
+    params:
+        study=stage_inputs("roughness"),
+        realisations=(STUDY.rig_realisations[0], STUDY.rig_realisations[-1]),
+    message:
+        "Rig: roughness of the simulated rig's rollers"
+    script:
+        "../scripts/rig_lines.py"
+
+
+rule rig:
+    input:
+        film=result("film.nc"),
+        lines=result("batches/rig_lines.nc"),
+        sources=script_sources("rig"),
+    output:
+        result("rig.nc"),
+    log:
+        result("logs/rig.log"),
+    benchmark:
+        result("benchmarks/rig.tsv")
+    # As of the contact batches: the lines on disk stay few.
+    priority: 1
+    params:
+        study=digest([STUDY.stage_inputs(stage) for stage in ("experiment", "rig")]),
+    message:
+        "Rig: voltage and resistance at the trace points, and what narrower bands would show"
+    script:
+        "../scripts/rig.py"
+
+
+rule experiment:
+    input:
+        film=result("film.nc"),
+        records=record_files_of_the_rig(),
+        lines=[] if STUDY.experiment.manifest else result("batches/rig_lines.nc"),
+        sources=script_sources("experiment"),
+    output:
+        result("experiment.nc"),
+    log:
+        result("logs/experiment.log"),
+    benchmark:
+        result("benchmarks/experiment.tsv")
+    # The longest job of all: begun early, it runs beside the others.
+    priority: 2
+    params:
+        study=stage_inputs("experiment"),
+    message:
+        "Experiment: share of time with contact, from the rig's records"
+    script:
+        "../scripts/experiment.py"
