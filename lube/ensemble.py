@@ -8,14 +8,13 @@ mean +- t s / sqrt(R) in between.
 """
 
 import numpy as np
-import scipy.stats
 import xarray as xr
 
 from lube.errors import DataError
+from lube.intervals import probability_limits
 from lube.schema import label
 from lube.steps import speed_ratios
 
-CONFIDENCE = 0.95
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 
 
@@ -41,46 +40,14 @@ def effective_looks(probabilities):
         return mean * (1.0 - mean) * realisations / probabilities.var(axis=0, ddof=1)
 
 
-def score_interval(mean, looks, quantile):
-    """Wilson's score interval of a probability.
-
-    Parameters
-    ----------
-    mean : numpy.ndarray
-        Estimated probability.
-    looks : numpy.ndarray
-        Number of independent looks behind it.
-    quantile : float
-        Two-sided quantile: 1.96 for 95 % and many realisations, Student's t for few.
-
-    Returns
-    -------
-    lower, upper : numpy.ndarray
-        Limits within 0 and 1 that enclose `mean`.
-
-    References
-    ----------
-    E. B. Wilson, Probable inference, the law of succession, and statistical inference,
-    J. Am. Stat. Assoc. 22 (1927) 209-212.
-    """
-    shrink = 1.0 + quantile**2 / looks
-    centre = (mean + quantile**2 / (2.0 * looks)) / shrink
-    half = (
-        quantile * np.sqrt(mean * (1.0 - mean) / looks + (quantile / (2.0 * looks)) ** 2) / shrink
-    )
-    return np.maximum(centre - half, 0.0), np.minimum(centre + half, 1.0)
-
-
 def probability_interval(probabilities, windows):
     """Mean over realisations and its 95 % interval.
 
-    Where contact was seen never, or always, or the scatter is unknown because there is one
-    realisation only, `windows` stands in for the effective number of looks: so many windows
-    that share no roughness fit into one revolution. Never seen then means a one-sided upper
-    limit, 1 - 0.05^(1/n), the exact binomial one for n windows without contact. No upper
-    limit is below this one, nor a lower one above its mirror image: segments cut by the
-    window's edges break for a few steps in every realisation, so their small scatter says
-    nothing of the whole segments, rare and seen for the whole passage, not met so far.
+    With one realisation the scatter is unknown, and what it has of independent windows stands
+    in for it, as where contact was seen never or always (`lube.intervals`): so many windows
+    that share no roughness fit into one revolution. They also bound the limits, since segments
+    cut by the window's edges break for a few steps in every realisation: their small scatter
+    says nothing of the whole segments, rare and seen for the whole passage, not met so far.
 
     Parameters
     ----------
@@ -96,20 +63,10 @@ def probability_interval(probabilities, windows):
     """
     realisations = probabilities.shape[0]
     mean = probabilities.mean(axis=0)
-    windows = np.broadcast_to(windows * realisations, mean.shape).astype(float)
-    looks = effective_looks(probabilities)
     # Asked of the values themselves: the variance of equal ones need not round to zero.
     scattered = np.ptp(probabilities, axis=0) > 0.0
-    looks = np.where(scattered, looks, windows)
-    degrees = max(realisations - 1, 1)
-    student = scipy.stats.t.ppf(0.5 + CONFIDENCE / 2.0, degrees)
-    normal = scipy.stats.norm.ppf(0.5 + CONFIDENCE / 2.0)
-    lower, upper = score_interval(mean, looks, np.where(scattered, student, normal))
-    bound = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
-    lower = np.select(
-        [mean == 0.0, mean == 1.0], [0.0, 1.0 - bound], np.minimum(lower, 1.0 - bound)
-    )
-    upper = np.select([mean == 0.0, mean == 1.0], [bound, 1.0], np.maximum(upper, bound))
+    looks = np.where(scattered, effective_looks(probabilities), np.nan)
+    lower, upper = probability_limits(mean, looks, max(realisations - 1, 1), windows * realisations)
     return mean, lower, upper
 
 

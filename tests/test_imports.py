@@ -20,15 +20,24 @@ MODULES = {
 # Each module may import those of layers above its own, and the ones named in its own row.
 LAYERS = [
     {"errors"},
-    {"units", "hertz", "formulas", "viscosity", "resistance", "schema", "kernels"},
-    {"fields", "files", "fluids", "steps", "rig"},
+    {"units", "hertz", "formulas", "viscosity", "resistance", "intervals", "schema", "kernels"},
+    {"fields", "files", "fluids", "steps", "rig", "evaluation", "recordings"},
     {"apparatus", "records", "surfaces"},
     {"study"},
     {"lubricant", "film", "roughness", "contact", "trace", "ensemble", "experiment"},
     {"io", "plots", "notebooks", "jobs", "reference"},
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
-FOUNDATIONS = {"errors", "units", "fields", "hertz", "formulas", "viscosity", "resistance"}
+FOUNDATIONS = {
+    "errors",
+    "units",
+    "fields",
+    "hertz",
+    "formulas",
+    "viscosity",
+    "resistance",
+    "intervals",
+}
 STAGES = LAYERS[5]
 
 

@@ -1,0 +1,82 @@
+"""Limits of a probability, from the independent looks at it or, for want of scatter, from windows.
+
+Both the realisations of an ensemble and the stretches of a record scatter about a share of
+time. Either scatter amounts to a number of independent looks, and from there on they are
+treated alike, so that the intervals of simulation and experiment mean the same.
+"""
+
+import numpy as np
+import scipy.stats
+
+CONFIDENCE = 0.95
+
+
+def score_interval(mean, looks, quantile):
+    """Wilson's score interval of a probability.
+
+    Parameters
+    ----------
+    mean : numpy.ndarray
+        Estimated probability.
+    looks : numpy.ndarray
+        Number of independent looks behind it.
+    quantile : float
+        Two-sided quantile: 1.96 for 95 % and many realisations, Student's t for few.
+
+    Returns
+    -------
+    lower, upper : numpy.ndarray
+        Limits within 0 and 1 that enclose `mean`.
+
+    References
+    ----------
+    E. B. Wilson, Probable inference, the law of succession, and statistical inference,
+    J. Am. Stat. Assoc. 22 (1927) 209-212.
+    """
+    shrink = 1.0 + quantile**2 / looks
+    centre = (mean + quantile**2 / (2.0 * looks)) / shrink
+    half = (
+        quantile * np.sqrt(mean * (1.0 - mean) / looks + (quantile / (2.0 * looks)) ** 2) / shrink
+    )
+    return np.maximum(centre - half, 0.0), np.minimum(centre + half, 1.0)
+
+
+def probability_limits(mean, looks, degrees, windows):
+    """Limits of the 95 % interval of a probability, which never is a point.
+
+    Where contact was seen never, or always, or the scatter is unknown, `windows` stands in for
+    the number of looks. Never seen then means a one-sided upper limit, 1 - 0.05^(1/n), the
+    exact binomial one for n windows without contact. No upper limit is below this one, nor a
+    lower one above its mirror image: what was seen often and evenly says nothing of what is
+    rare and was not met so far.
+
+    Parameters
+    ----------
+    mean : numpy.ndarray
+        Estimated probability, shape (...).
+    looks : numpy.ndarray
+        Number of independent looks that the scatter amounts to, shape (...); NaN where there
+        is no scatter to tell.
+    degrees : numpy.ndarray or int
+        Degrees of freedom of that scatter, broadcastable to shape (...).
+    windows : numpy.ndarray or float
+        Independent windows behind the estimate, broadcastable to shape (...).
+
+    Returns
+    -------
+    lower, upper : numpy.ndarray
+        Shape (...) each, within 0 and 1.
+    """
+    windows = np.broadcast_to(windows, np.shape(mean)).astype(float)
+    scattered = ~np.isnan(looks)
+    student = scipy.stats.t.ppf(0.5 + CONFIDENCE / 2.0, degrees)
+    normal = scipy.stats.norm.ppf(0.5 + CONFIDENCE / 2.0)
+    lower, upper = score_interval(
+        mean, np.where(scattered, looks, windows), np.where(scattered, student, normal)
+    )
+    bound = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
+    lower = np.select(
+        [mean == 0.0, mean == 1.0], [0.0, 1.0 - bound], np.minimum(lower, 1.0 - bound)
+    )
+    upper = np.select([mean == 0.0, mean == 1.0], [bound, 1.0], np.maximum(upper, bound))
+    return lower, upper
