@@ -88,9 +88,19 @@ def _keys(schema, path="", definitions=None, skip=None, section=""):
         else:
             meaning = field.get("description", inner.get("description", ""))
             value = "list of names or paths" if name == skip else _value(field, inner)
-            optional = section if name in schema.get("required", []) else " (optional)"
+            optional = section if name in schema.get("required", []) else _by_default(field)
             rows.append((f"`{path}{name}`", value + optional, meaning))
     return rows
+
+
+def _by_default(field):
+    """Say that a key may be left out, and what then stands for it."""
+    default = field.get("default")
+    if default is None:
+        return " (optional)"
+    if isinstance(default, dict):
+        default = f"{', '.join(str(value) for value in default['values'])} {default['units']}"
+    return f" (by default {default})"
 
 
 def _resolve(field, definitions):

@@ -276,6 +276,12 @@ class Study(StrictModel):
 
     @model_validator(mode="after")
     def _check_rig(self):
+        if self.experiment.threshold not in self.experiment.thresholds:
+            told = ", ".join(f"{threshold:g}" for threshold in self.experiment.thresholds)
+            raise ValueError(
+                f"experiment.threshold: got {self.experiment.threshold:g} ohm, need one of "
+                f"experiment.thresholds: {told} ohm"
+            )
         largest = max(self.experiment.thresholds) * self.experiment.release_ratio
         voltage = divider_voltage(largest, self.rig)
         if voltage >= self.rig.amplifier_range:
@@ -357,7 +363,7 @@ def _with_manifest_found(study, path):
         return study
     manifest = Path(path).parent / study.experiment.manifest
     if not manifest.is_file():
-        raise StudyError(f"{path}: experiment.manifest: no such file: {manifest}")
+        raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that is there")
     experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
     return study.model_copy(update={"experiment": experiment})
 

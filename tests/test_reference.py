@@ -39,6 +39,11 @@ def test_every_formula_has_a_row():
         ("| `operating_grid.force` | values and units in N, above 0 |", study_table),
         ("| `lubricants` | list of names or paths |", study_table),
         ("| `traces[].lubricant` | text (optional) |", study_table),
+        ("| `rig.bandwidth` | quantity in Hz, above 0 (by default 50 kHz) |", study_table),
+        (
+            "| `experiment.thresholds` | values and units in ohm, above 0 (by default 10, ",
+            study_table,
+        ),
         ("| `density.at_15_degC` | quantity in kg/m^3, above 0 (section optional) |", record_table),
     ],
 )

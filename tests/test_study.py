@@ -8,6 +8,7 @@ import pytest
 import yaml
 from pydantic import ValidationError
 
+from lube.apparatus import Experiment, Rig
 from lube.errors import LubeError
 from lube.records import SHIPPED_FOLDER
 from lube.study import load_study
@@ -111,7 +112,25 @@ def test_both_shipped_studies_have_the_same_keys():
     assert keys(paper) == keys(smoke)
 
 
+def test_the_defaults_of_the_rig_are_those_of_the_papers_study():
+    study = load_study(PAPER)
+    assert study.rig == Rig()
+    assert study.experiment == Experiment()
+
+
 # What follows from what is written
+
+
+def test_the_rigs_rollers_are_none_of_the_simulation(change):
+    study = load_study(change(("realisations", 10**6)))
+    assert not set(study.rig_realisations) & set(range(study.realisations))
+    assert len(study.rig_realisations) == study.rig.revolutions
+
+
+def test_a_manifest_is_looked_for_beside_its_study(change, tmp_path):
+    (tmp_path / "records.csv").write_text("file\n")
+    path = change(("experiment.manifest", "records.csv"))
+    assert load_study(path).experiment.manifest == str(tmp_path / "records.csv")
 
 
 def test_the_longest_wave_is_the_contact_width_at_the_largest_force(change):
@@ -261,6 +280,8 @@ UNKNOWN_KEYS = [
     ("roughness.colour", 1, "roughness.colour: unknown key"),
     ("boundary_layer.colour", 1, "boundary_layer.colour: unknown key"),
     ("traces.0.load", "800 N", "traces.0.load: unknown key"),
+    ("rig.colour", 1, "rig.colour: unknown key"),
+    ("experiment.colour", 1, "experiment.colour: unknown key"),
 ]
 
 # Every quantity of a study but the levels: its key, its unit, another dimension's unit.
@@ -277,6 +298,13 @@ QUANTITIES = [
     ("boundary_layer.critical_thickness", "nm", "nN"),
     ("boundary_layer.shear_strength", "MPa", "MN"),
     ("resistivity", "uohm*m", "uohm"),
+    ("rig.bias_voltage", "mV", "mA"),
+    ("rig.series_resistance", "kohm", "kV"),
+    ("rig.leak_resistance", "Mohm", "MPa"),
+    ("rig.amplifier_range", "mV", "mm"),
+    ("rig.bandwidth", "kHz", "km"),
+    ("rig.sampling_rate", "kHz", "s"),
+    ("experiment.threshold", "ohm", "V"),
     ("traces.0.force", "N", "kg"),
     ("traces.0.speed", "rpm", "m/s"),
     ("traces.0.temperature", "degC", "W"),
@@ -286,6 +314,7 @@ LEVELS = [
     ("operating_grid.force", "N", "mm"),
     ("operating_grid.speed", "rpm", "N"),
     ("operating_grid.temperature", "degC", "rpm"),
+    ("experiment.thresholds", "ohm", "V"),
 ]
 UNITS = {key: units for key, units, _ in QUANTITIES}
 
@@ -297,6 +326,14 @@ PURE_NUMBERS = [
     ("roughness.hurst_exponent", 0, "got 0, need a value above 0 and below 1"),
     ("roughness.hurst_exponent", 1, "got 1, need a value above 0 and below 1"),
     ("roughness.hurst_exponent", -0.5, "got -0.5, need a value above 0 and below 1"),
+    ("rig.oil_permittivity", 0.5, "got 0.5, need a value at least 1"),
+    ("rig.noise", "-1 uV", "got -1e-06, need a value at least 0 V"),
+    ("rig.lead_resistance", "-1 ohm", "got -1, need a value at least 0 ohm"),
+    ("rig.amplifier_range", "20 mV", "rig.amplifier_range: got 0.02 V, need more than the 0.025 V"),
+    ("experiment.release_ratio", 0.9, "got 0.9, need a value at least 1"),
+    ("experiment.debounce", "-1 s", "got -1, need a value at least 0 s"),
+    ("experiment.threshold", "50 ohm", "got 50 ohm, need one of experiment.thresholds: 10, "),
+    ("experiment.manifest", "none.csv", "need a file that is there"),
     ("roughness.hurst_exponent", INFINITY, "need a finite number"),
     ("roughness.shortest_wavelength", "1.9 points", "got 1.9, need a value at least 2 points"),
     ("operating_grid.slide_to_roll_ratio", [2.5], "got 2.5, need a value at least -2 and at most"),
@@ -434,7 +471,7 @@ def test_temperatures_outside_the_records_range_are_refused(change, temperature)
 
 
 def test_every_key_but_those_with_a_default_is_needed(content, change):
-    for key in content:
+    for key in content.keys() - {"rig", "experiment"}:
         assert f"{key}: missing" in refusal(change((key, REMOVED)))
     for section in ("rollers", "rollers.first", "operating_grid", "roughness", "boundary_layer"):
         place = content
