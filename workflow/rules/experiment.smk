@@ -10,28 +10,9 @@ def record_files_of_the_rig():
     return sorted(os.path.relpath(file) for file in files)
 
 
-rule rig_lines:
-    input:
-        sources=script_sources("rig_lines"),
-    output:
-        temp(result("batches/rig_lines.nc")),
-    log:
-        result("logs/rig_lines.log"),
-    benchmark:
-        result("benchmarks/rig_lines.tsv")
-    params:
-        study=stage_inputs("roughness"),
-        realisations=(STUDY.rig_realisations[0], STUDY.rig_realisations[-1]),
-    message:
-        "Rig: roughness of the simulated rig's rollers"
-    script:
-        "../scripts/rig_lines.py"
-
-
 rule rig:
     input:
         film=result("film.nc"),
-        lines=result("batches/rig_lines.nc"),
         sources=script_sources("rig"),
     output:
         result("rig.nc"),
@@ -39,8 +20,6 @@ rule rig:
         result("logs/rig.log"),
     benchmark:
         result("benchmarks/rig.tsv")
-    # As of the contact batches: the lines on disk stay few.
-    priority: 1
     params:
         study=digest([STUDY.stage_inputs(stage) for stage in ("experiment", "rig")]),
     message:
@@ -53,7 +32,6 @@ rule experiment:
     input:
         film=result("film.nc"),
         records=record_files_of_the_rig(),
-        lines=[] if STUDY.experiment.manifest else result("batches/rig_lines.nc"),
         sources=script_sources("experiment"),
     output:
         result("experiment.nc"),

@@ -1,9 +1,10 @@
 """Make experiment.nc: share of time with contact, from measured records or a simulated rig."""
 
 from lube.experiment import measured_experiment, simulated_experiment
-from lube.io import load, opened, save
+from lube.io import load, save
 from lube.jobs import begin_job
 from lube.recordings import read_manifest
+from lube.roughness import roughness_batch
 from lube.study import load_study
 
 begin_job(snakemake.log[0])
@@ -12,6 +13,6 @@ film = load(snakemake.input.film, "film")
 if study.experiment.manifest:
     experiment = measured_experiment(read_manifest(study.experiment.manifest), film, study)
 else:
-    with opened(snakemake.input.lines, "roughness_batch") as lines:
-        experiment = simulated_experiment(lines, film, study)
+    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
+    experiment = simulated_experiment(lines, film, study)
 save(experiment, snakemake.output[0], "experiment", study)

@@ -1,0 +1,198 @@
+"""The rig's records: simulated ones against the truth they were made of, measured ones as told."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from lube import experiment as stage
+from lube.contact import contact_statistics
+from lube.errors import DataError
+from lube.experiment import measured_experiment, rig_records, simulated_experiment
+from lube.recordings import read_manifest
+from lube.roughness import roughness_batch
+from lube.schema import EXPERIMENT_DIMS
+
+FAST = {"bandwidth": "50 MHz", "sampling_rate": "2 MHz", "noise": "0 V", "lead_resistance": "0 ohm"}
+
+
+def with_rig(study, **values):
+    rig = type(study.rig)(**({"revolutions": 2} | values))
+    return study.model_copy(update={"rig": rig})
+
+
+@pytest.fixture(scope="module")
+def rig_lines(make_spec, study):
+    """The rig's own rollers, two revolutions, on a grid fine enough for some contact."""
+    return roughness_batch(make_spec(60_000), study.seed, with_rig(study).rig_realisations)
+
+
+@pytest.fixture(scope="module")
+def table(film, study):
+    """Film table at the study's levels."""
+    grid = study.operating_grid
+    return film.sel(temperature=list(grid.temperature), speed=[100.0], force=list(grid.force))
+
+
+@pytest.fixture(scope="module")
+def ideal(rig_lines, table, study):
+    """A rig without inertia or noise."""
+    return simulated_experiment(rig_lines, table, with_rig(study, **FAST))
+
+
+def at(dataset, **levels):
+    return dataset.sel(slide_to_roll_ratio=0.0, threshold=100.0, **levels).squeeze()
+
+
+# Simulated records
+
+
+def test_the_truth_is_what_the_contact_stage_finds_of_the_same_rollers(
+    ideal, rig_lines, table, study
+):
+    found = contact_statistics(rig_lines, table, study.boundary_layer)
+    expected = found.breakthrough_probability.mean("realisation").isel(film_formula=0)
+    actual = ideal.true_contact_share.sel(slide_to_roll_ratio=[0.0])
+    np.testing.assert_allclose(
+        actual.values, expected.transpose(*EXPERIMENT_DIMS).values, rtol=1e-12
+    )
+    assert (expected > 0.01).any()
+
+
+def test_a_rig_without_inertia_or_noise_finds_the_truth(ideal):
+    known = at(ideal)
+    np.testing.assert_allclose(known.contact_share, known.true_contact_share, atol=2e-3)
+    assert (known.contact_share_lower <= known.contact_share).all()
+    assert (known.contact_share <= known.contact_share_upper).all()
+
+
+def test_a_slow_rig_misses_contact_most_at_low_thresholds(rig_lines, table, study):
+    slow = simulated_experiment(rig_lines, table, with_rig(study, bandwidth="2 kHz"))
+    shares = slow.contact_share.sel(slide_to_roll_ratio=0.0)
+    assert (shares.diff("threshold") >= 0.0).all()
+    seen = slow.true_contact_share.sel(slide_to_roll_ratio=0.0) > 0.01
+    lowest = shares.isel(threshold=0).where(seen)
+    assert (lowest < slow.true_contact_share.sel(slide_to_roll_ratio=0.0)).where(seen, True).all()
+
+
+def test_records_are_of_the_rigs_slip_and_say_that_they_are_simulated(ideal, study):
+    assert ideal.origin.item() == "simulated"
+    assert ideal.slide_to_roll_ratio.values.tolist() == list(study.slips) == [0.0, 0.1]
+    assert ideal.contact_share.sel(slide_to_roll_ratio=0.1).isnull().all()
+    assert set(ideal.record.sel(slide_to_roll_ratio=0.0).values.ravel()) == {"simulated"}
+    assert ideal.refused == ""
+
+
+def test_how_many_points_are_held_at_once_changes_nothing(
+    ideal, rig_lines, table, study, monkeypatch
+):
+    monkeypatch.setattr(stage, "TOGETHER", 3)
+    again = simulated_experiment(rig_lines, table, with_rig(study, **FAST))
+    xr.testing.assert_identical(again, ideal)
+
+
+def test_the_trace_points_record_belongs_to_the_same_rig(rig_lines, table, study):
+    points = tuple(point for point in study.traces if point.speed == 100.0)
+    study = with_rig(study.model_copy(update={"traces": points}), bandwidth="30 kHz")
+    record = rig_records(rig_lines, table, study)
+    everything = simulated_experiment(rig_lines, table, study)
+    for number, point in enumerate(study.trace_points):
+        levels = {name: point[name] for name in EXPERIMENT_DIMS}
+        here, there = record.isel(operating_point=number), everything.sel(levels)
+        assert here.true_contact_share == there.true_contact_share
+        np.testing.assert_allclose(
+            here.contact_share.sel(bandwidth=3e4), there.contact_share, atol=1e-3
+        )
+    assert record.rig_time.diff("rig_time").values == pytest.approx(1.0 / 2e5)
+    assert (record.contact_share.diff("bandwidth").isel(threshold=0) >= -1e-3).all()
+
+
+# Measured records
+
+
+def write_record(path, resistance, interval=1e-4):
+    rows = [f"{number * interval!r},{value}" for number, value in enumerate(resistance)]
+    path.write_text("time [s],resistance [ohm]\n" + "\n".join(rows) + "\n", encoding="utf-8")
+
+
+@pytest.fixture
+def measured(tmp_path, table, study):
+    """Evaluate a manifest of the given rows, written beside their records."""
+
+    def evaluate(*rows, header="file,force [N],speed [rpm],temperature [degC]", study=study):
+        manifest = tmp_path / "manifest.csv"
+        manifest.write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
+        return measured_experiment(read_manifest(manifest), table, study)
+
+    half = np.where(np.arange(20_000) // 50 % 2, 5.0, 5e4)
+    write_record(tmp_path / "half.csv", half)
+    write_record(tmp_path / "open.csv", np.full(20_000, 1e5))
+    write_record(tmp_path / "broken.csv", [*half[:100], "nan", *half[:100]])
+    return evaluate
+
+
+def test_measured_records_stand_at_their_operating_points(measured):
+    result = measured("half.csv,800,100,40", "open.csv,1600,100,80")
+    assert result.origin.item() == "measured"
+    half, none = at(result, force=800, temperature=40), at(result, force=1600, temperature=80)
+    assert half.contact_share == 0.5
+    assert 0.0 < half.contact_share_lower < 0.5 < half.contact_share_upper < 1.0
+    assert none.contact_share == none.contact_share_lower == 0.0
+    assert 0.0 < none.contact_share_upper < 1.0
+    assert half.record == "half.csv"
+    assert half.duration == pytest.approx(2.0)
+    assert half.sampling_interval == pytest.approx(1e-4)
+    assert np.isnan(half.true_contact_share)
+    assert int(result.contact_share.notnull().any("threshold").sum()) == 2
+
+
+def test_a_speed_in_round_numbers_finds_its_level(measured):
+    result = measured("half.csv,800.5,100.3,40.1")
+    assert at(result, force=800, temperature=40).contact_share == 0.5
+
+
+def test_a_bad_record_is_refused_by_name_and_the_good_ones_stay(measured, caplog):
+    result = measured(
+        "broken.csv,800,100,40",
+        "half.csv,1600,100,40",
+        "half.csv,700,100,40",
+        "half.csv,1600,100,40",
+        "gone.csv,800,100,80",
+    )
+    assert at(result, force=1600, temperature=40).contact_share == 0.5
+    refused = result.refused.splitlines()
+    assert len(refused) == 4
+    assert sum("broken.csv: line 102" in line for line in refused) == 1
+    assert sum("got 700.0, need one of the study's: 800, 1600" in line for line in refused) == 1
+    assert sum("gone.csv" in line for line in refused) == 1
+    assert all(line in caplog.text for line in refused)
+
+
+def test_no_record_at_all_is_an_error(measured):
+    with pytest.raises(DataError, match="no record can be used; the first: .*broken.csv"):
+        measured("broken.csv,800,100,40")
+
+
+def test_a_share_evaluated_elsewhere_stands_at_the_compared_threshold_alone(measured):
+    header = "probability,lower,upper,force [N],speed [rpm],temperature [degC]"
+    result = measured("0.25,0.2,0.3,800,100,40", header=header)
+    here = result.sel(slide_to_roll_ratio=0.0, force=800, temperature=40).squeeze()
+    assert here.contact_share.sel(threshold=100).item() == 0.25
+    assert here.contact_share_lower.sel(threshold=100).item() == 0.2
+    assert here.contact_share.sel(threshold=[10, 1000]).isnull().all()
+
+
+def test_a_voltage_is_judged_by_the_rigs_circuit(measured, tmp_path, study):
+    # 100 ohm are 4.55 mV of the 50 mV, with 0.2 ohm of leads.
+    voltage = np.where(np.arange(5000) // 50 % 4 == 0, 4.5e-3, 4.6e-3)
+    rows = [f"{1e-4 * number!r};{value!r}" for number, value in enumerate(voltage)]
+    text = "\n".join(["t [s];U [V]", *rows]).replace(".", ",") + "\n"
+    (tmp_path / "volts.csv").write_text(text, encoding="utf-8")
+    here = at(measured("volts.csv,800,100,40"), force=800, temperature=40)
+    assert here.contact_share == 0.25
+
+
+def test_a_saturated_record_is_refused(measured, tmp_path, study):
+    rows = [f"{1e-4 * number!r},{0.12 if number % 2 else 0.001}" for number in range(1000)]
+    (tmp_path / "volts.csv").write_text("\n".join(["t [s],U [V]", *rows]), encoding="utf-8")
+    with pytest.raises(DataError, match=r"50.0% of its samples are at or beyond 0.1 V"):
+        measured("volts.csv,800,100,40")
