@@ -220,8 +220,11 @@ class _UniqueKeyLoader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
-def read_yaml(path, error_type):
-    """Read a YAML file that must hold one mapping.
+_YAML_KINDS = {dict: "a mapping of keys to values", list: "a list of mappings"}
+
+
+def read_yaml(path, error_type, kind=dict):
+    """Read a YAML file that must hold one mapping, or one list.
 
     Parameters
     ----------
@@ -229,17 +232,19 @@ def read_yaml(path, error_type):
         File to read.
     error_type : type
         The child of LubeError to raise.
+    kind : type, optional
+        ``dict`` or ``list``.
 
     Returns
     -------
-    dict
-        The mapping, values as YAML gives them.
+    dict or list
+        The content, values as YAML gives them.
 
     Raises
     ------
     LubeError
         Of `error_type`, if the file cannot be read, is not YAML, repeats a key or holds
-        anything but a mapping.
+        anything else.
     """
     try:
         text = Path(path).read_text(encoding="utf-8")
@@ -253,8 +258,8 @@ def read_yaml(path, error_type):
         mark = getattr(error, "problem_mark", None)
         line = f" at line {mark.line + 1}" if mark else ""
         raise error_type(f"{path}: not valid YAML{line}") from None
-    if not isinstance(content, dict):
-        raise error_type(f"{path}: need a mapping of keys to values, got {type(content).__name__}")
+    if not isinstance(content, kind):
+        raise error_type(f"{path}: need {_YAML_KINDS[kind]}, got {type(content).__name__}")
     return content
 
 

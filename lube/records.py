@@ -6,7 +6,6 @@ source, or says ``assumed: ...`` and why. This module only reads and checks; wha
 from a record at a temperature is computed in `lube.lubricant`.
 """
 
-import re
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
@@ -16,6 +15,7 @@ from pydantic import Field, PrivateAttr, StringConstraints, model_validator
 from lube.errors import RangeError, RecordError
 from lube.fields import Slug, StrictModel, quantity, read_yaml, validate
 from lube.fluids import ATMOSPHERIC_PRESSURE, liquid_range
+from lube.tables import HEADER_CELL, delimiter_of, numbered_lines, split_cells
 from lube.viscosity import GOLD_BASES, VISCOSITY_LAWS, ZERO_CELSIUS
 
 SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
@@ -293,15 +293,12 @@ def _check_points(points, where):
                 )
 
 
-_HEADER_CELL = re.compile(r"(\w+)\s*\[\s*([^\]]+?)\s*\]")
-
-
 def read_viscosity_csv(path):
     """Read measured viscosities against temperature.
 
     The first line names the columns with their units: ``temperature [degC]`` and either
     ``kinematic_viscosity [mm^2/s]`` or ``dynamic_viscosity [mPa*s]``. Columns are parted by
-    commas, or by semicolons, and then a decimal comma is understood. Empty lines and lines
+    commas, or by semicolons or tabs, and then a decimal comma is understood. Empty lines and lines
     that begin with ``#`` are passed over.
 
     Parameters
@@ -319,17 +316,17 @@ def read_viscosity_csv(path):
     RecordError
         Which line and column, what came, what is needed.
     """
-    lines = _csv_lines(path)
+    lines = numbered_lines(path, RecordError)
     if not lines:
         raise RecordError(f"{path}: empty, need a line of column names and rows of values")
     (header_line, header), *rows = lines
-    delimiter = ";" if ";" in header else ","
+    delimiter = delimiter_of(header)
     columns = _csv_columns(header, delimiter, f"{path}: line {header_line}")
-    decimal_comma = delimiter == ";" and any("," in text for _, text in rows)
+    decimal_comma = delimiter != "," and any("," in text for _, text in rows)
     points = []
     for number, text in rows:
         where = f"{path}: line {number}"
-        cells = _cells(text, delimiter)
+        cells = split_cells(text, delimiter)
         if len(cells) != len(columns):
             raise RecordError(f"{where}: got {len(cells)} values, need {len(columns)}")
         if decimal_comma:
@@ -350,31 +347,12 @@ def _refuse_points(cells, where):
             raise RecordError(f"{where}: got {cell!r} in a file with decimal commas, need no point")
 
 
-def _csv_lines(path):
-    """Lines that hold something, with their numbers in the file."""
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise RecordError(f"{path}: cannot be read: {reason}") from None
-    numbered = enumerate(text.splitlines(), start=1)
-    return [
-        (number, line)
-        for number, line in numbered
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-
-
-def _cells(line, delimiter):
-    return [cell.strip().strip('"') for cell in line.split(delimiter)]
-
-
 def _csv_columns(header, delimiter, where):
     """Units by column name, in the order of the columns."""
     columns = {}
     needed = "temperature [degC] and kinematic_viscosity [mm^2/s] or dynamic_viscosity [mPa*s]"
-    for cell in _cells(header, delimiter):
-        match = _HEADER_CELL.fullmatch(cell)
+    for cell in split_cells(header, delimiter):
+        match = HEADER_CELL.fullmatch(cell)
         if not match or match[1] not in ViscosityPoint.model_fields or match[1] in columns:
             raise RecordError(f"{where}: got the column {cell!r}, need {needed}")
         columns[match[1]] = match[2]

@@ -8,7 +8,7 @@ from lube import experiment as stage
 from lube.contact import contact_statistics
 from lube.errors import DataError
 from lube.experiment import measured_experiment, rig_records, simulated_experiment
-from lube.recordings import read_manifest
+from lube.manifest import read_manifest
 from lube.roughness import roughness_batch
 from lube.schema import EXPERIMENT_DIMS
 

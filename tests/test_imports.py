@@ -21,9 +21,9 @@ MODULES = {
 LAYERS = [
     {"errors"},
     {"units", "hertz", "formulas", "viscosity", "resistance", "intervals", "schema", "kernels"},
-    {"fields", "files", "fluids", "steps", "rig", "evaluation", "recordings"},
-    {"apparatus", "records", "surfaces"},
-    {"study"},
+    {"fields", "files", "fluids", "steps", "rig", "evaluation", "signals", "tables"},
+    {"apparatus", "records", "surfaces", "manifest", "text_signals", "binary_signals"},
+    {"study", "recordings"},
     {"lubricant", "film", "roughness", "contact", "trace", "ensemble", "experiment"},
     {"io", "plots", "notebooks", "jobs", "reference"},
 ]

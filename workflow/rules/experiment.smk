@@ -2,7 +2,7 @@ def record_files_of_the_rig():
     """Manifest and measured records, as far as there are any; what is missing is told later."""
     if STUDY.experiment.manifest is None:
         return []
-    from lube.recordings import read_manifest
+    from lube.manifest import read_manifest
 
     with told_in_one_line():
         entries = read_manifest(STUDY.experiment.manifest).entries

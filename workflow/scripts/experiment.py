@@ -3,7 +3,7 @@
 from lube.experiment import measured_experiment, simulated_experiment
 from lube.io import load, save
 from lube.jobs import begin_job
-from lube.recordings import read_manifest
+from lube.manifest import read_manifest
 from lube.roughness import roughness_batch
 from lube.study import load_study
 

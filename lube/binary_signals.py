@@ -1,0 +1,251 @@
+"""Records as NetCDF and TDMS files, read in slices.
+
+A NetCDF file holds them as variables with ``units``, a TDMS file as channels with the property
+``unit_string`` or ``NI_UnitDescription``. Whole numbers with a scale are read as what they mean.
+"""
+
+import contextlib
+import os
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+from nptdms import TdmsFile
+
+from lube.errors import DataError, LubeError
+from lube.signals import FIRST_STEPS, Part, Signal, find_signals
+from lube.units import convert, parse_quantity
+
+SLICE = 2**20
+"""Samples read at a time, about."""
+
+
+@dataclass(frozen=True)
+class BinarySignal:
+    """A voltage or resistance in a binary file, and its time if the file has it.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    arrays : callable
+        From the path to a context manager that gives the file's arrays, to be sliced.
+    time : Signal or None
+        Array of the time.
+    measured : Signal
+        Array of the voltage or resistance.
+    told_interval : float or None
+        Sampling interval that the file tells in its attributes, s.
+    """
+
+    path: Path
+    arrays: Callable
+    time: Signal | None
+    measured: Signal
+    told_interval: float | None
+
+    def head(self):
+        """First samples of the record, a `Part`; None if there are none."""
+        return next(self._parts_of(0, FIRST_STEPS + 1), None)
+
+    def parts(self):
+        """Read the record.
+
+        Yields
+        ------
+        Part
+            Some millions of samples at most, but never less than a chunk of the file.
+
+        Raises
+        ------
+        DataError
+            If the file is truncated or damaged.
+        """
+        yield from self._parts_of(0, None)
+
+    def _parts_of(self, begin, end):
+        with self.arrays(self.path) as arrays:
+            values = arrays[self.measured.place].values
+            step = _slice_length(values)
+            for first in range(begin, min(end or len(values), len(values)), step):
+                wanted = slice(first, min(first + step, end or len(values)))
+                times = None
+                if self.time is not None:
+                    times = _read(arrays[self.time.place].values, wanted, self.time)
+                yield Part(_read(values, wanted, self.measured), times, partial(_place, first))
+
+
+def _place(first, index):
+    return f"sample {first + index + 1}"
+
+
+def _slice_length(values):
+    """Whole chunks of a NetCDF variable, so that none is unpacked twice."""
+    chunks = values.chunking() if isinstance(values, netCDF4.Variable) else "contiguous"
+    if chunks == "contiguous" or chunks is None:
+        return SLICE
+    return max(SLICE // chunks[0], 1) * chunks[0]
+
+
+def _read(values, wanted, signal):
+    part = values[wanted]
+    if np.ma.isMaskedArray(part):
+        part = part.astype(float).filled(np.nan)
+    return signal.converted(part)
+
+
+@dataclass(frozen=True)
+class _Array:
+    """One array of a file, with its name, its unit or None, and its attributes."""
+
+    name: str
+    units: str | None
+    values: object
+    attributes: dict
+
+
+@contextlib.contextmanager
+def _told(path, kind):
+    """Tell in one line what a library says of a file that it cannot read."""
+    try:
+        yield
+    except LubeError:
+        raise
+    except Exception as error:  # of many kinds, all meaning one thing
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise DataError(
+            f"{path}: not a whole {kind} file, truncated, damaged or foreign ({reason})"
+        ) from error
+
+
+@contextlib.contextmanager
+def _netcdf_arrays(path):
+    with _told(path, "NetCDF"), netCDF4.Dataset(path) as file:
+        file.set_always_mask(False)
+        shared = {name: file.getncattr(name) for name in file.ncattrs()}
+        yield [
+            _netcdf_array(variable, shared)
+            for variable in file.variables.values()
+            if variable.ndim == 1 and getattr(variable.dtype, "kind", "O") in "fiu"
+        ]
+
+
+def _netcdf_array(variable, shared):
+    attributes = shared | {name: variable.getncattr(name) for name in variable.ncattrs()}
+    units = attributes.get("units")
+    # A time may be told from a date on, which matters nothing here.
+    units = units.split(" since ")[0] if isinstance(units, str) else None
+    return _Array(variable.name, units, variable, attributes)
+
+
+@contextlib.contextmanager
+def _tdms_arrays(path):
+    with _told(path, "TDMS"):
+        _check_segments(path)
+        with TdmsFile.open(path) as file:
+            yield [
+                _tdms_array(channel)
+                for group in file.groups()
+                for channel in group.channels()
+                if channel.dtype.kind in "fiu"
+            ]
+
+
+def _tdms_array(channel):
+    units = channel.properties.get("unit_string") or channel.properties.get("NI_UnitDescription")
+    return _Array(channel.name, units, channel, channel.properties)
+
+
+# National Instruments, The NI TDMS file format (2023): tag, table of contents (whose bit 6 says
+# that big-endian numbers follow), version, and the lengths of the segment and of its metadata.
+_LEAD_IN, _BIG_ENDIAN = 28, 1 << 6
+
+
+def _check_segments(path):
+    """Refuse a TDMS file that ends within a segment: npTDMS reads what there is, in silence."""
+    size, begin = os.path.getsize(path), 0
+    with open(path, "rb") as file:
+        while begin < size:
+            file.seek(begin)
+            lead_in = file.read(_LEAD_IN)
+            if len(lead_in) < _LEAD_IN or not lead_in.startswith(b"TDSm"):
+                raise DataError(f"{path}: no TDMS segment at byte {begin}, truncated or damaged")
+            big = lead_in[4] & _BIG_ENDIAN
+            begin += _LEAD_IN + struct.unpack(">Q" if big else "<Q", lead_in[12:20])[0]
+    if begin != size:
+        raise DataError(f"{path}: ends at byte {size} within a TDMS segment, truncated")
+
+
+def open_netcdf(path):
+    """Find the record in a NetCDF file.
+
+    The variable ``voltage`` or ``resistance`` has its time in a variable as long as itself, or
+    else in an attribute ``sampling_interval``, such as ``10 us``, its own or the file's.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    BinarySignal
+        The record, not read yet.
+
+    Raises
+    ------
+    DataError
+        If the file is truncated, damaged or foreign, holds no voltage or resistance, or a
+        unit is missing or unknown.
+    """
+    return _opened(path, _netcdf_arrays, _netcdf_interval)
+
+
+def open_tdms(path):
+    """Find the record in a TDMS file.
+
+    Its time is a channel as long as itself, or else its property ``wf_increment``.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    BinarySignal
+        The record, not read yet.
+
+    Raises
+    ------
+    DataError
+        As `open_netcdf`.
+    """
+    return _opened(path, _tdms_arrays, _tdms_interval)
+
+
+def _opened(path, opener, interval_of):
+    with opener(path) as arrays:
+        time, measured = find_signals([(array.name, array.units) for array in arrays], path)
+        array = arrays[measured.place]
+        if time is not None and len(arrays[time.place].values) != len(array.values):
+            time = None  # of another record
+        try:
+            interval = interval_of(array.attributes)
+        except LubeError as error:
+            raise DataError(f"{path}: sampling interval of {array.name!r}: {error}") from None
+        return BinarySignal(path, opener, time, measured, interval)
+
+
+def _netcdf_interval(attributes):
+    told = attributes.get("sampling_interval")
+    return None if told is None else parse_quantity(told, "s")
+
+
+def _tdms_interval(properties):
+    told = properties.get("wf_increment")
+    return None if told is None else convert(told, properties.get("wf_xunit_string") or "s", "s")

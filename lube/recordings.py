@@ -1,0 +1,153 @@
+"""Measured records of the rig: CSV, NetCDF and TDMS files, streamed and checked as they are read.
+
+A record is a voltage or a resistance, sampled uniformly: its share of samples in contact is a
+share of time. What breaks that, a gap or a repeated time or a missing value, ends the reading
+with its place in the file; nothing is mended in silence.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from lube.binary_signals import BinarySignal, open_netcdf, open_tdms
+from lube.errors import DataError
+from lube.signals import Clock, first_interval, value_fault
+from lube.text_signals import TextSignal, open_text
+
+_KIND_OF_SUFFIX = {
+    ".csv": "text",
+    ".tsv": "text",
+    ".txt": "text",
+    ".nc": "NetCDF",
+    ".nc4": "NetCDF",
+    ".tdms": "TDMS",
+}
+_KIND_OF_MARK = {b"\x89HDF": "NetCDF", b"CDF": "NetCDF", b"TDSm": "TDMS"}
+_OPENERS = {"text": open_text, "NetCDF": open_netcdf, "TDMS": open_tdms}
+
+# Two tellings of one sampling interval may differ by rounding.
+_AGREEMENT = 0.01
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A record of the rig in a file. Make it with `open_recording`.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    quantity : str
+        ``voltage`` (V) or ``resistance`` (ohm).
+    sampling_interval : float
+        Time between samples, s.
+    """
+
+    path: Path
+    quantity: str
+    sampling_interval: float
+    _signal: TextSignal | BinarySignal = field(repr=False)
+
+    def pieces(self):
+        """Read the record in bounded memory, checking each sample.
+
+        Yields
+        ------
+        numpy.ndarray
+            One-dimensional, float64, the next samples in V or ohm.
+
+        Raises
+        ------
+        DataError
+            At the first sample that is missing or no number, or whose time does not follow on
+            the one before; and if the file turns out to be damaged, or empty. Which line or
+            sample, and why.
+        """
+        clock = Clock(self.sampling_interval)
+        for part in self._signal.parts():
+            faults = [value_fault(part.values, self.quantity)]
+            if part.times is not None:
+                faults.append(clock.fault(part.times))
+            for index, reason in sorted(filter(None, faults)):
+                raise DataError(f"{self.path}: {part.place(index)}: {reason}")
+            yield part.values
+
+
+def open_recording(path, sampling_interval=None):
+    """Open a record of the rig, whose samples are read later.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV file (.csv, .tsv, .txt), NetCDF file (.nc, .nc4) or TDMS file (.tdms).
+    sampling_interval : float, optional
+        Time between samples, s, for a file that does not tell it.
+
+    Returns
+    -------
+    Recording
+        The record.
+
+    Raises
+    ------
+    DataError
+        If the file is missing, not what its name says, empty or damaged; if it holds no
+        voltage or resistance, or a unit is missing or unknown; if the sampling interval is not
+        known, not positive, or told twice and differently.
+    """
+    path = Path(path)
+    signal = _OPENERS[_kind(path)](path)
+    head = signal.head()
+    if head is None:
+        raise DataError(f"{path}: empty record, need samples")
+    interval = _agreed_interval(path, _told_interval(path, signal, head), sampling_interval)
+    return Recording(path, signal.measured.quantity, interval, signal)
+
+
+def _kind(path):
+    """Kind of a file, by its suffix, if its first bytes do not belie it."""
+    if not path.is_file():
+        raise DataError(f"{path}: no such file, need a record of the rig")
+    claimed = _KIND_OF_SUFFIX.get(path.suffix.lower())
+    if claimed is None:
+        raise DataError(
+            f"{path}: got the suffix {path.suffix!r}, need one of {', '.join(_KIND_OF_SUFFIX)}"
+        )
+    try:
+        with open(path, "rb") as file:
+            first = file.read(4096)
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read: {error.strerror}") from None
+    if not first:
+        raise DataError(f"{path}: empty record, the file has no bytes")
+    kinds = (kind for mark, kind in _KIND_OF_MARK.items() if first.startswith(mark))
+    found = next(kinds, "unknown binary data" if b"\0" in first else "text")
+    if found != claimed:
+        raise DataError(f"{path}: named as {claimed} but begins as {found}, need one of the two")
+    return claimed
+
+
+def _told_interval(path, signal, head):
+    """Return what the record's times, or else the file's attributes, tell of the interval, s."""
+    if head.times is None:
+        return signal.told_interval
+    if head.times.size == 1:
+        raise DataError(f"{path}: got a single sample, need two or more to tell the time between")
+    interval = first_interval(head.times)
+    if interval is None:
+        raise DataError(f"{path}: {head.place(1)}: time does not rise, need rising times")
+    return interval
+
+
+def _agreed_interval(path, told, given):
+    """Return the sampling interval that the file tells or, if it tells none, the given one."""
+    for interval in (told, given):
+        if interval is not None and not 0.0 < interval < float("inf"):
+            raise DataError(f"{path}: got a sampling interval of {interval:g} s, need one above 0")
+    if told is None and given is None:
+        raise DataError(f"{path}: no time, need a time column or a sampling interval")
+    if told is not None and given is not None and abs(told - given) > _AGREEMENT * told:
+        raise DataError(
+            f"{path}: its time steps by {told:.6g} s, but the sampling interval was given as "
+            f"{given:.6g} s, need one of them"
+        )
+    return given if told is None else told
