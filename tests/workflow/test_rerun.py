@@ -14,15 +14,21 @@ BATCHES = CONTACT_BATCHES | MASTER_BATCHES | LINE_BATCHES
 
 
 def made(repository, *datasets, batches=()):
-    """The named datasets, the batches, and the figures that use the datasets.
+    """The named datasets, what follows from them, the batches, and the figures that use them.
 
     What makes contact.nc anew makes master.nc: both need the lines, which are temporary, and
-    Snakemake makes again whatever uses a file that it makes again.
+    Snakemake makes again whatever uses a file that it makes again. What concerns both contact
+    and trace, films, lines or layer, concerns the simulated rig as well.
     """
-    if "contact" in datasets:
-        datasets = (*datasets, "master")
-    files = {f"{name}.nc" for name in datasets}
-    return files | set(batches) | figures_of(repository, *datasets)
+    made = set(datasets)
+    if {"contact", "trace"} <= made:
+        made |= {"rig", "experiment"}
+    if "contact" in made:
+        made |= {"master", "comparison", "gauge"}
+    if "experiment" in made:
+        made |= {"comparison", "gauge"}
+    files = {f"{name}.nc" for name in made}
+    return files | set(batches) | figures_of(repository, *made)
 
 
 def everything(repository):
@@ -51,14 +57,14 @@ def test_a_moved_repository_makes_nothing(spare):
 
 
 def test_the_plan_is_what_a_dry_run_announces(spare):
-    study = spare.with_values(resistivity="0.3 uohm*m")
+    study = spare.with_values(kept_realisations=[0, 1])
     announced = spare.run("--dry-run", study=study)
     counted = dict(re.findall(r"^(\w+) +(\d+)$", announced.split("Job stats")[1], re.MULTILINE))
     planned = spare.planned(study)
     figures = {name for name in planned if name.startswith("notebooks/")}
     assert int(counted.get("trace", 0)) == 1
     assert int(counted.get("figure", 0)) == len(figures)
-    assert int(counted["total"]) == len(figures) + 2  # the trace and `all`
+    assert int(counted["total"]) == len(figures) + 3  # the lines, the trace and `all`
 
 
 # A module of lube, a script, a record
@@ -77,7 +83,12 @@ def test_the_plan_is_what_a_dry_run_announces(spare):
         ("kernels/layer", ("contact", "trace"), BATCHES),
         ("ensemble", ("contact",), ()),
         ("trace", ("trace",), ()),
-        ("resistance", ("trace",), ()),
+        ("resistance", ("trace", "rig", "experiment"), ()),
+        ("kernels/circuit", ("rig", "experiment"), ()),
+        ("evaluation", ("rig", "experiment"), ()),
+        ("manifest", ("experiment",), ()),
+        ("comparison", ("comparison",), ()),
+        ("gauge", ("gauge",), ()),
         ("plots", (), ()),
         ("reference", (), ()),
     ],
@@ -201,9 +212,11 @@ def test_a_public_name_of_the_package_is_followed_to_its_module(spare, edit_note
 @pytest.mark.parametrize(
     ("changes", "datasets", "batches"),
     [
-        ({"resistivity": "0.3 uohm*m"}, ("trace",), ()),
+        ({"resistivity": "0.3 uohm*m"}, ("trace", "rig", "experiment"), ()),
+        ({"rig__noise": "30 uV"}, ("rig", "experiment"), ()),
+        ({"experiment__debounce": "1 ms"}, ("rig", "experiment"), ()),
         ({"traces": [{"force": "800 N", "speed": "100 rpm", "temperature": "40 degC"}]},
-         ("trace",), ()),
+         ("trace", "rig"), ()),
         ({"boundary_layer__critical_thickness": "6 nm"}, ("contact", "trace"), BATCHES),
         ({"boundary_layer__shear_strength": "2 MPa"}, ("contact", "trace"), BATCHES),
         ({"seed": 1}, ("roughness", "contact", "trace"), BATCHES),

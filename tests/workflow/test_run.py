@@ -13,7 +13,18 @@ from repository import environment, products_of
 from lube.io import load
 from lube.schema import FILES, check
 
-DATASETS = ("lubricant", "film", "roughness", "contact", "trace", "master")
+DATASETS = (
+    "lubricant",
+    "film",
+    "roughness",
+    "contact",
+    "trace",
+    "master",
+    "rig",
+    "experiment",
+    "comparison",
+    "gauge",
+)
 
 
 def test_every_file_of_the_data_model_is_made(smoke):
@@ -164,7 +175,9 @@ def test_each_job_says_in_words_what_is_made(smoke):
     assert len(messages) == int(re.search(r"^total +(\d+)$", said, re.MULTILINE)[1])
     for message in messages:
         assert re.match(
-            r"(Lubricant|Film|Roughness|Contact|Master curve|Trace|Figure|Done): \S+", message
+            r"(Lubricant|Film|Roughness|Contact|Master curve|Trace|Rig|Experiment|Comparison|Gauge"
+            r"|Figure|Done): \S+",
+            message,
         )
     assert len(set(messages)) == len(messages)
     assert not re.search(r"^(local)?rule \w+:$", said, re.MULTILINE)
