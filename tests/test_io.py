@@ -12,6 +12,7 @@ import xarray as xr
 from lube.contact import contact_map, contact_statistics
 from lube.ensemble import gather, gather_map
 from lube.errors import DataError
+from lube.experiment import rig_records, simulated_experiment
 from lube.film import film_table
 from lube.io import CONVENTIONS, load, opened, save
 from lube.lubricant import lubricant_table
@@ -52,6 +53,7 @@ def datasets(study, make_spec):
     lines = roughness_lines(spec, study.seed, [0, 1])
     batch = roughness_batch(spec, study.seed, [0, 1])
     run = contact_statistics(batch, film, layer)
+    rig_lines = roughness_batch(spec, study.seed, study.rig_realisations[:1])
     mapped = contact_map(batch, film, layer, 5, 3)
     points = [point | {"slide_to_roll_ratio": 0.0} for point in study.trace_points]
     return {
@@ -64,6 +66,8 @@ def datasets(study, make_spec):
         "master_batch": mapped,
         "master": gather_map([mapped]),
         "trace": contact_trace(lines, film, points, layer, study.resistivity),
+        "experiment": simulated_experiment(rig_lines, film, study),
+        "rig": rig_records(rig_lines, film, study),
         "speed": measured_times(),
     }
 
