@@ -1,0 +1,257 @@
+"""The manifest of an experiment: which record, or which share, belongs to which operating point.
+
+A manifest is a CSV file with units in its column names, or a YAML list of mappings whose values
+carry theirs. A row that cannot be used is told, and does not hide the others.
+"""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, StringConstraints, model_validator
+
+from lube.errors import DataError, LubeError
+from lube.fields import StrictModel, pure_number, quantity, read_yaml, validate
+from lube.schema import ORIGINS
+from lube.tables import HEADER_CELL, delimiter_of, numbered_lines, split_cells
+from lube.units import convert
+
+Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
+Share = pure_number(least=0.0, most=1.0)
+
+_UNITS = {"force": "N", "speed": "rpm", "temperature": "degC", "sampling_interval": "s"}
+_TEXTS = ("file", "lubricant", "origin")
+
+
+class _Row(StrictModel):
+    """A row as it is written: an operating point, and its record or its share."""
+
+    file: Text | None = None
+    probability: Share | None = None
+    lower: Share | None = None
+    upper: Share | None = None
+    force: quantity("N", above=0.0)
+    speed: quantity("rpm", above=0.0)
+    temperature: quantity("degC", above=-273.15)
+    lubricant: Text | None = None
+    slide_to_roll_ratio: pure_number(least=-2.0, most=2.0) | None = None
+    sampling_interval: quantity("s", above=0.0) | None = None
+    origin: Literal[ORIGINS] = Field(ORIGINS[0])
+
+    @model_validator(mode="after")
+    def _check_what_is_told(self):
+        if (self.file is None) == (self.probability is None):
+            raise ValueError("need either file or probability")
+        kind, foreign = "probability", ("sampling_interval",)
+        if self.file is not None:
+            kind, foreign = "file", ("lower", "upper")
+        for key in foreign:
+            if getattr(self, key) is not None:
+                raise ValueError(f"{key}: not allowed with {kind}")
+        return self
+
+    @model_validator(mode="after")
+    def _check_interval(self):
+        ends = [self.lower, self.probability, self.upper]
+        told = [share for share in ends if share is not None]
+        if told != sorted(told):
+            raise ValueError(f"probability: got {told}, need lower, probability and upper to rise")
+        return self
+
+    @property
+    def point(self):
+        """Operating point as text, the same for levels that differ by rounding."""
+        levels = (self.force, self.speed, self.temperature, self.slide_to_roll_ratio)
+        return (*(f"{level:.9g}" for level in levels if level is not None), self.lubricant)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One usable row of a manifest.
+
+    Attributes
+    ----------
+    where : str
+        Where it stands, such as ``manifest.csv: line 3``.
+    file : Path or None
+        Record of the rig, which exists; None where the share is given.
+    probability, lower, upper : float or None
+        Share of time in contact, already evaluated, and its limits if given.
+    force, speed, temperature : float
+        Operating point, N, rpm and degC.
+    lubricant : str or None
+        Lubricant, if given.
+    slide_to_roll_ratio : float or None
+        Slide-to-roll ratio, if given.
+    sampling_interval : float or None
+        Time between samples, s, if given.
+    """
+
+    where: str
+    file: Path | None
+    probability: float | None
+    lower: float | None
+    upper: float | None
+    force: float
+    speed: float
+    temperature: float
+    lubricant: str | None
+    slide_to_roll_ratio: float | None
+    sampling_interval: float | None
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What a manifest tells.
+
+    Attributes
+    ----------
+    origin : str
+        ``measured`` or ``simulated``, that of the first usable row; the same for all entries.
+    entries : tuple of Entry
+        The usable rows, in order.
+    refused : tuple of str
+        One line for each row that cannot be used: where it stands, what came, what is needed.
+    """
+
+    origin: str
+    entries: tuple
+    refused: tuple
+
+
+def read_manifest(path):
+    """Read a manifest.
+
+    The columns of a CSV file, or the keys of a YAML list's mappings, are ``force [N]``, ``speed
+    [rpm]``, ``temperature [degC]``, and either ``file``, relative to the manifest's folder, or
+    ``probability`` with or without its limits ``lower`` and ``upper``. There may be
+    ``lubricant``, ``slide_to_roll_ratio``, ``sampling_interval [us]`` and ``origin``, which is
+    ``measured`` by default. In YAML the unit stands with the value: ``force: 800 N``. Commas
+    within numbers are decimal commas.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, with the suffix .csv, .yaml or .yml.
+
+    Returns
+    -------
+    Manifest
+        Its rows, those refused as well.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read, has no usable line of column names, or is no list.
+    """
+    path = Path(path)
+    if path.suffix.lower() in (".yaml", ".yml"):
+        rows = _yaml_rows(path)
+    elif path.suffix.lower() == ".csv":
+        rows = _csv_rows(path)
+    else:
+        raise DataError(f"{path}: got the suffix {path.suffix!r}, need .csv, .yaml or .yml")
+    return _collected(rows, path.parent)
+
+
+def _yaml_rows(path):
+    """Place and content of each row; the content of an unusable one is the reason."""
+    for number, content in enumerate(read_yaml(path, DataError, list), start=1):
+        if not isinstance(content, dict):
+            content = f"need a mapping of keys to values, got {type(content).__name__}"
+        yield f"{path.name}: entry {number}", content
+
+
+def _csv_rows(path):
+    lines = numbered_lines(path, DataError)
+    if not lines:
+        raise DataError(f"{path}: empty, need a line of column names and rows of values")
+    (header_line, header), *rows = lines
+    delimiter = delimiter_of(header)
+    columns = _columns(split_cells(header, delimiter), f"{path}: line {header_line}")
+    for number, text in rows:
+        cells = split_cells(text, delimiter)
+        where = f"{path.name}: line {number}"
+        if len(cells) != len(columns):
+            yield where, f"got {len(cells)} values, need {len(columns)}"
+            continue
+        told = zip(columns.items(), cells, strict=True)
+        yield where, {name: f"{cell} {units or ''}".strip() for (name, units), cell in told if cell}
+
+
+def _columns(cells, where):
+    """Units, or None, by column name, in the order of the columns."""
+    columns = {}
+    for cell in cells:
+        match = HEADER_CELL.fullmatch(cell)
+        name, units = match.groups() if match else (cell, None)
+        if name not in _Row.model_fields or name in columns:
+            raise DataError(
+                f"{where}: got the column {cell!r}, need each once of "
+                f"{', '.join(_Row.model_fields)}, with units such as 'force [N]'"
+            )
+        _check_units(name, units, where)
+        columns[name] = units
+    for name in ("force", "speed", "temperature"):
+        if name not in columns:
+            raise DataError(f"{where}: no column '{name} [{_UNITS[name]}]', need it")
+    return columns
+
+
+def _check_units(name, units, where):
+    target = _UNITS.get(name)
+    if (units is None) != (target is None):
+        needed = f"'{name} [{target}]'" if target else f"{name!r} without a unit"
+        raise DataError(f"{where}: {name}: got the unit {units!r}, need {needed}")
+    try:
+        convert(1.0, units, target)  # None to None is fine
+    except LubeError as error:
+        raise DataError(f"{where}: {name}: {error}") from None
+
+
+def _collected(rows, folder):
+    """Sort rows into those that can be used and those that cannot."""
+    entries, refused, points, origin = [], [], {}, None
+    for where, content in rows:
+        try:
+            row = _row(content, where)
+            file = _file(row, where, folder)
+            if row.origin != (origin or row.origin):
+                raise DataError(
+                    f"{where}: origin: got {row.origin!r} among rows that are {origin}, need "
+                    "one origin in a manifest"
+                )
+            if row.point in points:
+                raise DataError(f"{where}: the same operating point as {points[row.point]}")
+        except DataError as error:
+            refused.append(str(error))
+            continue
+        origin, points[row.point] = row.origin, where
+        told = row.model_dump(exclude={"file", "origin"})
+        entries.append(Entry(where=where, file=file, **told))
+    return Manifest(origin or ORIGINS[0], tuple(entries), tuple(refused))
+
+
+def _row(content, where):
+    if isinstance(content, str):
+        raise DataError(f"{where}: {content}")
+    content = {
+        key: value if key in _TEXTS else _with_point(value)
+        for key, value in content.items()
+        if value is not None
+    }
+    return validate(_Row, content, where, DataError)
+
+
+def _with_point(value):
+    """Turn a decimal comma into a point."""
+    return re.sub(r"^(\s*[+-]?\d*),(?=\d)", r"\1.", value) if isinstance(value, str) else value
+
+
+def _file(row, where, folder):
+    if row.file is None:
+        return None
+    if not (folder / row.file).is_file():
+        raise DataError(f"{where}: file: got {row.file!r}, no such file")
+    return folder / row.file
