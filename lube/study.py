@@ -124,8 +124,10 @@ class Study(StrictModel):
     traces: tuple[TracePoint, ...] = Field(
         min_length=1, description="operating points recorded over one revolution"
     )
-    rig: Rig = Field(Rig(), description="the rig, simulated or measured on")
-    experiment: Experiment = Field(Experiment(), description="its records and their evaluation")
+    rig: Rig = Field(default_factory=Rig, description="the rig, simulated or measured on")
+    experiment: Experiment = Field(
+        default_factory=Experiment, description="its records and their evaluation"
+    )
 
     @property
     def line_spec(self):

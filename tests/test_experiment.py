@@ -168,7 +168,7 @@ def test_a_bad_record_is_refused_by_name_and_the_good_ones_stay(measured, caplog
 
 
 def test_no_record_at_all_is_an_error(measured):
-    with pytest.raises(DataError, match="no record can be used; the first: .*broken.csv"):
+    with pytest.raises(DataError, match=r"no record can be used; the first: .*broken.csv"):
         measured("broken.csv,800,100,40")
 
 
