@@ -114,6 +114,18 @@ def record_files():
     return sorted(os.path.relpath(file) for file in files)
 
 
+def measured_files():
+    """Manifest and measured records, as far as there are any; what is missing is told later."""
+    if STUDY.experiment.manifest is None:
+        return []
+    from lube.manifest import read_manifest
+
+    with told_in_one_line():
+        entries = read_manifest(STUDY.experiment.manifest).entries
+    files = [STUDY.experiment.manifest, *(entry.file for entry in entries if entry.file)]
+    return sorted(os.path.relpath(file) for file in files)
+
+
 def batch_limits(wildcards):
     """First and last realisation of a batch."""
     batch = STUDY.batch(int(wildcards.first))

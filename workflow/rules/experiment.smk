@@ -1,15 +1,3 @@
-def record_files_of_the_rig():
-    """Manifest and measured records, as far as there are any; what is missing is told later."""
-    if STUDY.experiment.manifest is None:
-        return []
-    from lube.manifest import read_manifest
-
-    with told_in_one_line():
-        entries = read_manifest(STUDY.experiment.manifest).entries
-    files = [STUDY.experiment.manifest, *(entry.file for entry in entries if entry.file)]
-    return sorted(os.path.relpath(file) for file in files)
-
-
 rule rig:
     input:
         film=result("film.nc"),
@@ -31,7 +19,7 @@ rule rig:
 rule experiment:
     input:
         film=result("film.nc"),
-        records=record_files_of_the_rig(),
+        records=measured_files(),
         sources=script_sources("experiment"),
     output:
         result("experiment.nc"),
