@@ -194,15 +194,16 @@ def realisation_correlation(probabilities):
     return correlation
 
 
-def fit_factor(log_factors, logits, shares, looks, correlation, realisations):
+def fit_factor(log_factors, logits, shares, weights, looks, correlation, realisations):
     """Fit the one factor that explains the contact shares of all operating points.
 
     At each level of the factor the misfit of all points is added up as in a quasi-likelihood
-    with binomial variances, sum of n l (m - p) with the share m, the model's probability p, the
-    looks n and l = d logit(p) / d ln(factor), and set over its standard error, in which the
-    points are correlated. The factor is where the misfit is zero; its 95 % interval is all that
-    the misfit does not contradict (a score interval). So points where the share is 0 or 1 count
-    as well.
+    with binomial variances: the sum of w l (m - p), with the share m, the model's probability p,
+    the weight w and l = d logit(p) / d ln(factor). It is set over its standard error, in which
+    the points are correlated and m - p has the variance p (1 - p) / n of n looks. The factor is
+    where the misfit is zero; its 95 % interval is all that the misfit does not contradict (a
+    score interval). So points where the share is 0 or 1 count as well. The weights are no part
+    of what is assumed: poor ones widen the interval.
 
     Parameters
     ----------
@@ -212,6 +213,9 @@ def fit_factor(log_factors, logits, shares, looks, correlation, realisations):
         Logits of the model's probability, shape (F, P), falling with the factor.
     shares : numpy.ndarray
         Measured shares, shape (P,).
+    weights : numpy.ndarray
+        Shape (P,); the best are proportional to the looks, but they must not follow the chance
+        of the shares.
     looks : numpy.ndarray
         Independent looks behind the difference of share and model, shape (P,).
     correlation : numpy.ndarray
@@ -233,10 +237,10 @@ def fit_factor(log_factors, logits, shares, looks, correlation, realisations):
     if not shares.size:
         return np.nan, 0.0, np.inf
     model = scipy.special.expit(logits)
-    weights = looks * np.gradient(logits, log_factors, axis=0)
-    errors = weights * np.sqrt(model * (1.0 - model) / looks)
+    pull = weights * np.gradient(logits, log_factors, axis=0)
+    errors = pull * np.sqrt(model * (1.0 - model) / looks)
     variance = np.einsum("fi,ij,fj->f", errors, correlation, errors)
-    misfit = np.sum(weights * (shares - model), axis=1) / np.sqrt(variance)
+    misfit = np.sum(pull * (shares - model), axis=1) / np.sqrt(variance)
     falling = np.minimum.accumulate(misfit)
     quantile = scipy.stats.t.ppf(0.975, max(realisations - 1, 1))
     wanted = np.array([0.0, -quantile, quantile])

@@ -20,7 +20,7 @@ from lube.curves import (
     realisation_correlation,
 )
 from lube.formulas import formula
-from lube.schema import POINT_DIMS, label
+from lube.schema import OPERATING_DIMS, POINT_DIMS, label
 from lube.shares import (
     LIMITS,
     at_comparison_threshold,
@@ -97,16 +97,12 @@ def gauge_film(master, film, experiment):
         As `gauge`.
     """
     shares = _shares(film, experiment)
-    curves = {
-        force: _curves(master, 2.0 * half_width)
-        for force, half_width in zip(
-            film["force"].values, film["contact_half_width"].values, strict=True
-        )
-    }
     records = np.stack([shares[f"contact_share{limit}"].values for limit in LIMITS], axis=-1)
     ratios = np.empty(records.shape)
-    for place in np.ndindex(records.shape[:-1]):
-        ratios[place] = np.exp(film_interval(curves[film["force"].values[place[-1]]], records[place]))
+    for number, half_width in enumerate(film["contact_half_width"].values):
+        curves = _curves(master, 2.0 * half_width)
+        for place in np.ndindex(records.shape[:-2]):
+            ratios[place][number] = np.exp(film_interval(curves, records[place][number]))
     gauged = xr.Dataset(coords=shares.coords)
     for limit, ratio in zip(LIMITS, np.moveaxis(ratios, -1, 0), strict=True):
         gauged[f"gauged_lambda_ratio{limit}"] = (POINT_DIMS, ratio)
@@ -144,13 +140,9 @@ def fit_alpha(master, film, contact, experiment):
     DataError
         As `gauge`.
     """
-
-    def logits(table):
-        ratios = _ratios_by_alpha(table)
-        return _over_forces(table, lambda force: _logits(master, ratios.sel(force=force), force))
-
-    factors = np.log(ALPHA_FACTORS)
-    return _fits("alpha_factor", factors, logits, film, contact, experiment)
+    factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
+    logits = _read_off(lambda width: _curves(master, width)[0], film, _ratios(film, factor))
+    return _fits("alpha_factor", np.log(ALPHA_FACTORS), logits, film, contact, experiment)
 
 
 def fit_layer_strength(master, film, contact, experiment):
@@ -174,3 +166,149 @@ def fit_layer_strength(master, film, contact, experiment):
     DataError
         As `gauge`.
     """
+    strengths = master["layer_strength"].values
+    tried = np.geomspace(strengths[0], strengths[-1], STRENGTH_LEVELS)
+    logits = _strength_logits(master, film, _study_strength(contact))
+    splines = scipy.interpolate.PchipInterpolator(np.log(strengths), logits.values)
+    logits = xr.DataArray(
+        splines(np.log(tried)), dims=("factor", *OPERATING_DIMS), coords=film["lambda_ratio"].coords
+    )
+    name = "fitted_layer_strength"
+    return _fits(name, np.log(tried), logits, film, contact, experiment)
+
+
+def _shares(film, experiment):
+    """Shares in pure rolling at the comparison threshold, on the levels of the film table."""
+    rolling = in_pure_rolling(experiment, "experiment")
+    shares = at_comparison_threshold(on_study_levels(rolling, film), experiment)
+    return shares.transpose(*POINT_DIMS)
+
+
+def _curves(master, width):
+    """Curves of the mean probability and of its limits, at one contact width (m)."""
+    resolution = _resolution(master, width)
+    return tuple(
+        _curve(master[f"breakthrough_probability_{limit}"], width, resolution)
+        for limit in ("mean", "lower", "upper")
+    )
+
+
+def _resolution(master, width):
+    """Share of one window among all that share no roughness and were seen."""
+    windows = master.attrs["travel"] / (width + master.attrs["longest_wavelength"])
+    return 1.0 / (max(windows, 1.0) * master.sizes["realisation"])
+
+
+def _curve(probability, width, resolution):
+    """Curve over the lambda ratio at one contact width of a map over the two.
+
+    Contacts that come along the line independently of one another make -ln(1 - p) grow in
+    proportion to the width, so it is taken as straight between widths.
+    """
+    ratios, widths = (probability[name].values for name in probability.dims)
+    intensity = -np.log1p(-np.minimum(probability.values, 1.0 - 1e-12))
+    here = np.array([np.interp(width, widths, row) for row in intensity])
+    return falling_curve(np.log(ratios), -np.expm1(-here), resolution)
+
+
+def _read_off(curve_at, film, ratios):
+    """Logits of the probability at some lambda ratios, on the curve of each force."""
+    parts = [
+        xr.apply_ufunc(curve_at(2.0 * half_width.item()).logit_at, np.log(ratios.sel(force=force)))
+        for force, half_width in film["contact_half_width"].groupby("force")
+    ]
+    return xr.concat(parts, film["force"], join="exact").transpose(..., *OPERATING_DIMS)
+
+
+def _ratios(film, factor):
+    """Lambda ratios with the pressure-viscosity coefficient times a factor.
+
+    The dimensionless groups follow from the film table: W = pi/8 (a / R*)^2 from Hertz' half-
+    width, U and G from Moes' numbers M = W (2U)^(-1/2) and L = G (2U)^(1/4).
+    """
+    with xr.set_options(arithmetic_join="exact", keep_attrs=False):
+        load = np.pi / 8.0 * (film["contact_half_width"] / film["reduced_radius"]) ** 2
+        speed = 0.5 * (load / film["moes_load"]) ** 2
+        material = factor * film["moes_material"] / (2.0 * speed) ** 0.25
+        names = film["film_formula"]
+        films = [formula(name).evaluate(load, speed, material) for name in names.values]
+        scale = film["reduced_radius"] / film["composite_rms_roughness"]
+        return xr.concat(films, names, join="exact") * scale
+
+
+def _study_strength(contact):
+    """Strength tau0 / h_c of the study's layer, Pa/m: nothing else of the layer matters."""
+    return contact["shear_strength"].item() / contact["critical_thickness"].item()
+
+
+def _strength_logits(master, film, study):
+    """Logits over (layer_strength, operating dimensions).
+
+    The study's layer has the fine map; the coarse one tells how much other layers differ.
+    """
+    maps = master["layer_breakthrough_probability"].mean("realisation")
+    coarse = [_strength_map(maps.sel(layer_strength=s), master, film) for s in maps.layer_strength]
+    coarse = xr.concat(coarse, maps["layer_strength"], join="exact")
+    fine = _read_off(lambda width: _curves(master, width)[0], film, film["lambda_ratio"])
+    logits = fine + coarse - coarse.sel(layer_strength=study, method="nearest", drop=True)
+    return logits.transpose("layer_strength", *OPERATING_DIMS)
+
+
+def _strength_map(probability, master, film):
+    """Logits at the film table's lambda ratios, from the coarse map of one layer strength."""
+
+    def curve_at(width):
+        return _curve(probability, width, _resolution(master, width))
+
+    return _read_off(curve_at, film, film["lambda_ratio"])
+
+
+def _fits(name, log_factors, logits, film, contact, experiment):
+    """Fit a factor, with its limits, for every lubricant and film formula."""
+    shares, contact = _shares(film, experiment), in_pure_rolling(contact, "contact")
+    oils, formulas = film["lubricant"].values, film["film_formula"].values
+    fits = np.empty((oils.size, formulas.size, len(LIMITS)))
+    for o, f in np.ndindex(fits.shape[:-1]):
+        place = {"lubricant": oils[o], "film_formula": formulas[f]}
+        measured = shares.sel(lubricant=oils[o])
+        fits[o, f] = _fit(log_factors, logits.sel(place), contact.sel(place), measured)
+    return xr.Dataset(
+        {
+            name + limit: (("lubricant", "film_formula"), values)
+            for limit, values in zip(LIMITS, np.moveaxis(fits, -1, 0), strict=True)
+        },
+        coords={"lubricant": oils, "film_formula": formulas},
+    )
+
+
+def _fit(log_factors, logits, contact, shares):
+    """Fit a factor to the points of one lubricant, by one film formula."""
+    logits, probabilities = (
+        _points(array).reshape(array.shape[0], -1)
+        for array in (logits, contact["breakthrough_probability"])
+    )
+    measured = [_points(shares[f"contact_share{limit}"]).ravel() for limit in LIMITS]
+    ensemble = [
+        _points(contact[f"breakthrough_probability_{limit}"]).ravel()
+        for limit in ("mean", "lower", "upper")
+    ]
+    used = np.isfinite(sum(measured)) & np.isfinite(logits).all(axis=0)
+    simulated = independent_looks(*ensemble)
+    # The variances of record and ensemble add.
+    looks = 1.0 / (1.0 / independent_looks(*measured) + 1.0 / simulated)
+    return fit_factor(
+        log_factors,
+        logits[:, used],
+        measured[0][used],
+        # Not the records' own looks: their intervals are estimates too, rough ones if a record
+        # is short, and a point that by chance seems sure would decide alone.
+        simulated[used],
+        looks[used],
+        realisation_correlation(probabilities[:, used]),
+        probabilities.shape[0],
+    )
+
+
+def _points(array):
+    """Values over (..., temperature, speed, force)."""
+    return array.transpose(..., *POINT_DIMS[1:]).values

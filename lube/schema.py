@@ -282,9 +282,8 @@ _EXPERIMENT = {
 }
 
 
-
 def _limited(name, dims, units, long_name):
-    """A value and the limits of its 95 % interval."""
+    """Describe a value and the limits of its 95 % interval."""
     meanings = {
         "": "",
         "_lower": ", lower limit of the 95 % interval",
@@ -337,9 +336,7 @@ _FIT_DIMS = ("lubricant", "film_formula")
 _GAUGE = {
     "origin": COORDINATES["origin"],
     "comparison_threshold": _EXPERIMENT["comparison_threshold"],
-    **_limited(
-        "gauged_film_thickness", POINT_DIMS, "m", "film thickness that explains the record"
-    ),
+    **_limited("gauged_film_thickness", POINT_DIMS, "m", "film thickness that explains the record"),
     **_limited("gauged_lambda_ratio", POINT_DIMS, "1", "lambda ratio that explains the record"),
     "film_thickness": _FILM["film_thickness"],
     "lambda_ratio": _FILM["lambda_ratio"],

@@ -38,6 +38,8 @@ _FORERUNNERS = {
     "contact": ("lubricant", "film", "roughness"),
     "master": ("lubricant", "film", "roughness"),
     "trace": ("lubricant", "film", "roughness"),
+    "comparison": ("lubricant", "film", "roughness", "contact"),
+    "gauge": ("lubricant", "film", "roughness", "contact", "master"),
     "speed": ("lubricant", "film", "roughness", "contact"),
 }
 
@@ -141,8 +143,8 @@ class Study(StrictModel):
         Parameters
         ----------
         stage : str
-            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master``, ``trace`` or
-            ``speed``, which measures how fast the others are.
+            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master``, ``trace``,
+            ``comparison``, ``gauge`` or ``speed``, which measures how fast the others are.
 
         Returns
         -------
@@ -178,6 +180,9 @@ class Study(StrictModel):
             "trace": lines
             | mechanics
             | {"traces": content["traces"], "resistivity": content["resistivity"]},
+            # They follow from their forerunners and the records alone.
+            "comparison": {},
+            "gauge": {},
             "speed": {},
         }
         return inputs[stage]

@@ -20,15 +20,17 @@ MODULES = {
 # Each module may import those of layers above its own, and the ones named in its own row.
 LAYERS = [
     {"errors"},
-    {"units", "hertz", "formulas", "viscosity", "resistance", "schema", "kernels"},
-    {"fields", "files", "fluids", "steps"},
+    {"units", "hertz", "formulas", "viscosity", "resistance", "curves", "schema", "kernels"},
+    {"fields", "files", "fluids", "steps", "shares"},
     {"records", "surfaces"},
     {"study"},
-    {"lubricant", "film", "roughness", "contact", "trace", "ensemble"},
+    {"lubricant", "film", "roughness", "contact", "trace", "ensemble", "comparison", "gauge"},
     {"io", "plots", "notebooks", "jobs", "reference"},
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
-FOUNDATIONS = {"errors", "units", "fields", "hertz", "formulas", "viscosity", "resistance"}
+FOUNDATIONS = {
+    *("errors", "units", "fields", "hertz", "formulas", "viscosity", "resistance", "curves")
+}
 STAGES = LAYERS[5]
 
 
