@@ -13,7 +13,7 @@ _HOMES = {
     "lube.errors": ("DataError", "LubeError", "RangeError", "RecordError", "StudyError"),
     "lube.film": ("film_table",),
     "lube.formulas": ("FORMULAS",),
-    "lube.gauge": ("fit_alpha", "fit_layer_strength", "gauge", "gauge_film"),
+    "lube.gauge": ("fit_alpha", "fit_layer_strength", "gauge_film", "gauge_records"),
     "lube.io": ("load", "save"),
     "lube.lubricant": ("lubricant_table",),
     "lube.records": ("load_record", "shipped_records"),

@@ -38,7 +38,7 @@ STRENGTH_LEVELS = 193
 """Strengths of the boundary layer that are tried, between the map's weakest and strongest."""
 
 
-def gauge(master, film, contact, experiment):
+def gauge_records(master, film, contact, experiment):
     """Gauge films, the pressure-viscosity coefficient and the boundary layer.
 
     Parameters
@@ -94,7 +94,7 @@ def gauge_film(master, film, experiment):
     Raises
     ------
     DataError
-        As `gauge`.
+        As `gauge_records`.
     """
     shares = _shares(film, experiment)
     records = np.stack([shares[f"contact_share{limit}"].values for limit in LIMITS], axis=-1)
@@ -138,7 +138,7 @@ def fit_alpha(master, film, contact, experiment):
     Raises
     ------
     DataError
-        As `gauge`.
+        As `gauge_records`.
     """
     factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
     logits = _read_off(lambda width: _curves(master, width)[0], film, _ratios(film, factor))
@@ -164,7 +164,7 @@ def fit_layer_strength(master, film, contact, experiment):
     Raises
     ------
     DataError
-        As `gauge`.
+        As `gauge_records`.
     """
     strengths = master["layer_strength"].values
     tried = np.geomspace(strengths[0], strengths[-1], STRENGTH_LEVELS)

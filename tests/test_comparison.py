@@ -68,8 +68,7 @@ def test_a_perfect_rig_agrees_perfectly(comparison):
     assert comparison["intervals_overlap"].sel(FORMULA).all()
     for level in ("force", "speed", "temperature"):
         means = [
-            comparison.sel(FORMULA)[f"{side}_mean_by_{level}"]
-            for side in ("simulated", "measured")
+            comparison.sel(FORMULA)[f"{side}_mean_by_{level}"] for side in ("simulated", "measured")
         ]
         np.testing.assert_allclose(*means)
 

@@ -204,5 +204,3 @@ def test_the_interval_of_the_factor_covers_it(tie):
         _, lower, upper = fitted(shares, 200.0, correlation)
         covered += lower <= 1.0 <= upper
     assert 0.92 <= covered / 600 <= 0.98
-
-

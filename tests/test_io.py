@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from lube.comparison import compare
 from lube.contact import contact_map, contact_statistics
 from lube.ensemble import gather, gather_map
 from lube.errors import DataError
 from lube.film import film_table
+from lube.gauge import gauge_records
 from lube.io import CONVENTIONS, load, opened, save
 from lube.lubricant import lubricant_table
 from lube.roughness import roughness_batch, roughness_lines
@@ -42,7 +44,7 @@ def measured_times():
 
 
 @pytest.fixture(scope="module")
-def datasets(study, make_spec):
+def datasets(study, make_spec, make_experiment):
     """One dataset of every kind, by the stages themselves, on a coarse grid."""
     grid, layer = study.operating_grid, study.boundary_layer
     # Rollers of two sizes, so that the shorter line is padded.
@@ -54,16 +56,22 @@ def datasets(study, make_spec):
     run = contact_statistics(batch, film, layer)
     mapped = contact_map(batch, film, layer, 5, 3)
     points = [point | {"slide_to_roll_ratio": 0.0} for point in study.trace_points]
+    contact, master = gather([run], film), gather_map([mapped])
+    share = contact["mean_contact_force"].isel(realisation=0, film_formula=0, drop=True)
+    experiment = make_experiment(*(share / share.max() * scale for scale in (0.8, 0.7, 0.9)))
     return {
         "lubricant": oil,
         "film": film,
         "roughness": lines,
         "roughness_batch": batch,
         "contact_batch": run,
-        "contact": gather([run], film),
+        "contact": contact,
         "master_batch": mapped,
-        "master": gather_map([mapped]),
+        "master": master,
         "trace": contact_trace(lines, film, points, layer, study.resistivity),
+        "experiment": experiment,
+        "comparison": compare(contact, experiment),
+        "gauge": gauge_records(master, film, contact, experiment),
         "speed": measured_times(),
     }
 
@@ -100,8 +108,8 @@ def test_there_is_a_dataset_of_every_kind(datasets):
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_saved_is_loaded_with_its_labels(datasets, files, kind):
     loaded = load_as_jobs_do(files / f"{kind}.nc", kind)
-    if kind == "film":  # NetCDF has no truth values
-        loaded["in_validity_range"] = loaded["in_validity_range"].astype(bool)
+    for name in {"in_validity_range", "intervals_overlap"} & set(loaded):
+        loaded[name] = loaded[name].astype(bool)  # NetCDF has no truth values
     xr.testing.assert_equal(loaded, datasets[kind])
     for name, array in datasets[kind].variables.items():
         assert loaded[name].attrs["long_name"] == array.attrs["long_name"]
