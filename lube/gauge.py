@@ -166,13 +166,14 @@ def fit_layer_strength(master, film, contact, experiment):
     DataError
         As `gauge_records`.
     """
-    strengths = master["layer_strength"].values
-    tried = np.geomspace(strengths[0], strengths[-1], STRENGTH_LEVELS)
+    tried = np.geomspace(*master["layer_strength"].values[[0, -1]], STRENGTH_LEVELS)
     logits = _strength_logits(master, film, _study_strength(contact))
-    splines = scipy.interpolate.PchipInterpolator(np.log(strengths), logits.values)
-    logits = xr.DataArray(
-        splines(np.log(tried)), dims=("factor", *OPERATING_DIMS), coords=film["lambda_ratio"].coords
+    # A point at which some layer's contact is too rare for the map is left out.
+    known = logits.notnull().all("layer_strength")
+    spline = scipy.interpolate.PchipInterpolator(
+        np.log(logits["layer_strength"]), logits.fillna(0.0)
     )
+    logits = known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
     name = "fitted_layer_strength"
     return _fits(name, np.log(tried), logits, film, contact, experiment)
 

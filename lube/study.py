@@ -38,8 +38,9 @@ _FORERUNNERS = {
     "contact": ("lubricant", "film", "roughness"),
     "master": ("lubricant", "film", "roughness"),
     "trace": ("lubricant", "film", "roughness"),
-    "comparison": ("lubricant", "film", "roughness", "contact"),
-    "gauge": ("lubricant", "film", "roughness", "contact", "master"),
+    "experiment": ("lubricant", "film", "roughness"),
+    "comparison": ("lubricant", "film", "roughness", "contact", "experiment"),
+    "gauge": ("lubricant", "film", "roughness", "contact", "master", "experiment"),
     "speed": ("lubricant", "film", "roughness", "contact"),
 }
 
@@ -180,7 +181,8 @@ class Study(StrictModel):
             "trace": lines
             | mechanics
             | {"traces": content["traces"], "resistivity": content["resistivity"]},
-            # They follow from their forerunners and the records alone.
+            "experiment": {},
+            # They follow from their forerunners alone.
             "comparison": {},
             "gauge": {},
             "speed": {},
