@@ -9,6 +9,8 @@ include: "workflow/rules/roughness.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/master.smk"
 include: "workflow/rules/experiment.smk"
+include: "workflow/rules/comparison.smk"
+include: "workflow/rules/gauge.smk"
 include: "workflow/rules/figure.smk"
 include: "workflow/rules/speed.smk"
 

@@ -7,12 +7,14 @@ package, as the workflow does at every start, costs nothing.
 import importlib
 
 _HOMES = {
+    "lube.comparison": ("compare",),
     "lube.contact": ("contact_map", "contact_statistics"),
     "lube.ensemble": ("gather", "gather_map", "with_intervals"),
     "lube.errors": ("DataError", "LubeError", "RangeError", "RecordError", "StudyError"),
     "lube.evaluation": ("ContactShare", "share_interval"),
     "lube.film": ("film_table",),
     "lube.formulas": ("FORMULAS",),
+    "lube.gauge": ("fit_alpha", "fit_layer_strength", "gauge_film", "gauge_records"),
     "lube.io": ("load", "save"),
     "lube.lubricant": ("lubricant_table",),
     "lube.manifest": ("read_manifest",),

@@ -11,10 +11,17 @@ import numpy as np
 import xarray as xr
 
 from lube.kernels.strips import strip_statistics
-from lube.schema import OPERATING_DIMS, label
+from lube.schema import LAYER_DIMS, MASTER_DIMS, OPERATING_DIMS, label
 from lube.steps import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
 
 log = logging.getLogger(__name__)
+
+LAYER_FACTORS = 2.0 ** np.arange(-3, 4)
+"""Strengths of the boundary layer that are mapped too, over the study's."""
+LAYER_LEVELS = (12, 3)
+"""Levels of the lambda ratio and of the contact width at which they are."""
+THINNER_FILMS = np.geomspace(0.3, 1.0, 5)[:-1]
+"""Lambda ratios that are mapped below the film table's least, over that one."""
 
 
 def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), revolutions=1):
@@ -58,7 +65,10 @@ def contact_map(lines, film, boundary_layer, lambda_levels=40, width_levels=9):
     """Run the model in pure rolling over all films and windows that a study spans.
 
     A realisation's answer depends on the film thickness and the window alone, whatever force,
-    speed, temperature and oil are behind them: this maps it.
+    speed, temperature and oil are behind them: this maps it. Some films thinner than all of the
+    study's are added, so that a record with more contact than the study foresees can be gauged;
+    few, because there the answer hardly changes. A coarser map holds layers weaker and stronger
+    than the study's, `LAYER_FACTORS` times as strong.
 
     Parameters
     ----------
@@ -72,22 +82,52 @@ def contact_map(lines, film, boundary_layer, lambda_levels=40, width_levels=9):
     -------
     xarray.Dataset
         The ``master_batch`` file of `lube.schema`: probabilities over (realisation,
-        lambda_ratio, contact_width).
+        lambda_ratio, contact_width), and of breakthrough over (realisation, layer_strength,
+        layer_lambda_ratio, layer_contact_width).
     """
-    ratio, half_width = film["lambda_ratio"], film["contact_half_width"]
-    lambda_ratio = _levels("lambda_ratio", np.geomspace, ratio, lambda_levels)
-    contact_width = _levels("contact_width", np.linspace, 2.0 * half_width, width_levels)
-    thickness = lambda_ratio * film["composite_rms_roughness"].item()
-    thickness, half_width = xr.broadcast(thickness, contact_width / 2.0)
-    results = _run(lines, film, boundary_layer, thickness, half_width, (0.0,), 1)
-    mapped = results[["breakthrough_probability", "geometric_contact_probability"]]
-    return label(mapped.isel(slide_to_roll_ratio=0), "master_batch")
+    ratio, width = film["lambda_ratio"], 2.0 * film["contact_half_width"]
+    ratios = _levels(np.geomspace, ratio, lambda_levels)
+    ratios = np.concatenate([ratios[0] * THINNER_FILMS, ratios])
+    widths = _levels(np.linspace, width, width_levels)
+    mapped = _map(lines, film, boundary_layer, ratios, widths, MASTER_DIMS)
+    coarse = (
+        _levels(np.geomspace, ratio, LAYER_LEVELS[0]),
+        _levels(np.linspace, width, LAYER_LEVELS[1]),
+    )
+    mapped["layer_breakthrough_probability"] = _layer_map(lines, film, boundary_layer, *coarse)
+    return label(mapped, "master_batch")
 
 
-def _levels(name, between, values, count):
+def _levels(between, values, count):
     """Levels over the range of some values; one where they are all the same."""
-    levels = np.unique(between(values.min().item(), values.max().item(), count))
-    return xr.DataArray(levels, dims=name, coords={name: levels})
+    return np.unique(between(values.min().item(), values.max().item(), count))
+
+
+def _map(lines, film, boundary_layer, ratios, widths, dims):
+    """Probabilities in pure rolling over (realisation, lambda ratio, contact width)."""
+    ratios, widths = (
+        xr.DataArray(levels, dims=name, coords={name: levels})
+        for name, levels in zip(dims, (ratios, widths), strict=True)
+    )
+    thickness = ratios * film["composite_rms_roughness"].item()
+    thickness, half_width = xr.broadcast(thickness, widths / 2.0)
+    results = _run(lines, film, boundary_layer, thickness, half_width, (0.0,), 1)
+    probabilities = results[["breakthrough_probability", "geometric_contact_probability"]]
+    return probabilities.isel(slide_to_roll_ratio=0)
+
+
+def _layer_map(lines, film, boundary_layer, ratios, widths):
+    """Breakthrough probability over (realisation, layer strength, lambda ratio, width)."""
+    maps = []
+    for factor in LAYER_FACTORS:
+        # Only tau0 / h_c matters, so the shear strength stands for both.
+        strength = factor * boundary_layer.shear_strength
+        layer = boundary_layer.model_copy(update={"shear_strength": strength})
+        maps.append(_map(lines, film, layer, ratios, widths, LAYER_DIMS[1:]))
+    study = boundary_layer.shear_strength / boundary_layer.critical_thickness
+    strengths = xr.DataArray(LAYER_FACTORS * study, dims="layer_strength", name="layer_strength")
+    mapped = xr.concat([each["breakthrough_probability"] for each in maps], strengths, join="exact")
+    return mapped.transpose("realisation", *LAYER_DIMS)
 
 
 def _run(lines, film, boundary_layer, thickness, half_width, slide_to_roll_ratio, revolutions):

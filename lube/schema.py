@@ -15,7 +15,10 @@ OPERATING_DIMS = ("lubricant", "film_formula", "temperature", "speed", "force")
 CONTACT_DIMS = ("slide_to_roll_ratio", *OPERATING_DIMS)
 LINE_DIMS = ("realisation", "roller")
 MASTER_DIMS = ("lambda_ratio", "contact_width")
+LAYER_DIMS = ("layer_strength", "layer_lambda_ratio", "layer_contact_width")
 EXPERIMENT_DIMS = ("slide_to_roll_ratio", "lubricant", "temperature", "speed", "force")
+POINT_DIMS = ("lubricant", "temperature", "speed", "force")
+COMPARISON_DIMS = ("film_formula", *EXPERIMENT_DIMS)
 ORIGINS = ("measured", "simulated")
 
 REGIMES = (
@@ -74,6 +77,11 @@ COORDINATES = {
     "time": _number(["time"], "s", "time"),
     "lambda_ratio": _number(["lambda_ratio"], "1", "lambda ratio"),
     "contact_width": _number(["contact_width"], "m", "contact width"),
+    "layer_strength": _number(
+        ["layer_strength"], "Pa m-1", "strength of the boundary layer, tau0 / h_c"
+    ),
+    "layer_lambda_ratio": _number(["layer_lambda_ratio"], "1", "lambda ratio"),
+    "layer_contact_width": _number(["layer_contact_width"], "m", "contact width"),
     "fit_temperature": _number(["fit_temperature"], "degC", "temperature"),
     "rig_time": _number(["rig_time"], "s", "time"),
     "bandwidth": _number(["bandwidth"], "Hz", "bandwidth of the amplifier"),
@@ -227,8 +235,13 @@ def _intervals(dims):
 
 
 _MASTER_RUN = {
-    name: _mean_over_time(("realisation", *MASTER_DIMS), "1", long_name)
-    for name, long_name in _PROBABILITIES.items()
+    **{
+        name: _mean_over_time(("realisation", *MASTER_DIMS), "1", long_name)
+        for name, long_name in _PROBABILITIES.items()
+    },
+    "layer_breakthrough_probability": _mean_over_time(
+        ("realisation", *LAYER_DIMS), "1", "probability of breakthrough of weak and strong layers"
+    ),
 }
 
 _AT_POINTS = {
@@ -288,6 +301,83 @@ _RIG = {
     "rig_bias_voltage": _number([], "V", "bias voltage"),
 }
 
+
+def _limited(name, dims, units, long_name):
+    """Describe a value and the limits of its 95 % interval."""
+    meanings = {
+        "": "",
+        "_lower": ", lower limit of the 95 % interval",
+        "_upper": ", upper limit of the 95 % interval",
+    }
+    return {
+        name + suffix: _number(dims, units, long_name + meaning)
+        for suffix, meaning in meanings.items()
+    }
+
+
+_AGREEMENT_DIMS = ("film_formula", "threshold")
+_COMPARISON = {
+    "origin": COORDINATES["origin"],
+    "comparison_threshold": _EXPERIMENT["comparison_threshold"],
+    **_limited("simulated_probability", COMPARISON_DIMS, "1", "simulated breakthrough probability"),
+    **_limited("measured_share", EXPERIMENT_DIMS, "1", "share of time below the threshold"),
+    "intervals_overlap": _number(
+        COMPARISON_DIMS,
+        None,
+        "whether the intervals of simulation and record overlap",
+        kind="b",
+        attributes={
+            "flag_values": np.array([0, 1], dtype="int8"),
+            "flag_meanings": "apart overlapping",
+        },
+    ),
+    "bias": _number(_AGREEMENT_DIMS, "1", "mean of simulated probability less measured share"),
+    "rms_difference": _number(_AGREEMENT_DIMS, "1", "rms difference of the probabilities"),
+    "logit_rms_difference": _number(_AGREEMENT_DIMS, "1", "rms difference of the logits"),
+    "rank_correlation": _number(_AGREEMENT_DIMS, "1", "Spearman's rank correlation"),
+    "overlap_share": _number(
+        _AGREEMENT_DIMS, "1", "share of the points with two intervals whose intervals overlap"
+    ),
+    "compared_points": _number(_AGREEMENT_DIMS, "1", "number of points compared", kind="i"),
+    "logit_points": _number(
+        _AGREEMENT_DIMS, "1", "number of points with both probabilities within 0 and 1", kind="i"
+    ),
+    **{
+        f"{name}_by_{level}": _number([*dims, level], "1", f"{long_name} at this {level}")
+        for level in ("force", "speed", "temperature")
+        for name, dims, long_name in (
+            ("simulated_mean", ["film_formula"], "mean simulated probability"),
+            ("measured_mean", [], "mean measured share"),
+        )
+    },
+}
+
+_FIT_DIMS = ("lubricant", "film_formula")
+_GAUGE = {
+    "origin": COORDINATES["origin"],
+    "comparison_threshold": _EXPERIMENT["comparison_threshold"],
+    **_limited("gauged_film_thickness", POINT_DIMS, "m", "film thickness that explains the record"),
+    **_limited("gauged_lambda_ratio", POINT_DIMS, "1", "lambda ratio that explains the record"),
+    "film_thickness": _FILM["film_thickness"],
+    "lambda_ratio": _FILM["lambda_ratio"],
+    **_limited(
+        "alpha_factor",
+        _FIT_DIMS,
+        "1",
+        "factor of the pressure-viscosity coefficient that explains the records",
+    ),
+    **_limited(
+        "fitted_layer_strength",
+        _FIT_DIMS,
+        "Pa m-1",
+        "strength tau0 / h_c of the boundary layer that explains the records",
+    ),
+    "study_layer_strength": _number([], "Pa m-1", "strength tau0 / h_c of the study's layer"),
+    "fitted_points": _number(
+        ["lubricant"], "1", "number of points with a record in pure rolling", kind="i"
+    ),
+}
+
 _SLIP_RUN = ("least_lambda", "slide_to_roll_ratio")
 _SPEED = {
     "points_above": _number(["least_lambda"], "1", "number of operating points", kind="i"),
@@ -316,6 +406,8 @@ FILES = {
     "trace": _TRACE,
     "experiment": _EXPERIMENT,
     "rig": _RIG,
+    "comparison": _COMPARISON,
+    "gauge": _GAUGE,
     "speed": _SPEED,
 }
 """Variables of each kind of file, by the kind's name."""
@@ -330,6 +422,8 @@ ATTRIBUTES = {
     "master_batch": _RUN_ATTRIBUTES,
     "master": _RUN_ATTRIBUTES,
     "experiment": ("refused",),
+    "comparison": ("missing",),
+    "gauge": ("missing",),
 }
 """Global attributes that the stages read from a file, by kind."""
 

@@ -42,6 +42,8 @@ _FORERUNNERS = {
     "trace": ("lubricant", "film", "roughness"),
     "experiment": ("lubricant", "film", "roughness"),
     "rig": ("lubricant", "film", "roughness", "experiment"),
+    "comparison": ("lubricant", "film", "roughness", "contact", "experiment"),
+    "gauge": ("lubricant", "film", "roughness", "contact", "master", "experiment"),
     "speed": ("lubricant", "film", "roughness", "contact"),
 }
 
@@ -165,7 +167,8 @@ class Study(StrictModel):
         ----------
         stage : str
             ``lubricant``, ``film``, ``roughness``, ``contact``, ``master``, ``trace``,
-            ``experiment``, ``rig`` or ``speed``, which measures how fast the others are.
+            ``experiment``, ``rig``, ``comparison``, ``gauge`` or ``speed``, which measures how
+            fast the others are.
 
         Returns
         -------
@@ -212,6 +215,9 @@ class Study(StrictModel):
                 | {"manifest": self.experiment.manifest is not None},
             },
             "rig": {"traces": content["traces"]},
+            # They follow from their forerunners alone.
+            "comparison": {},
+            "gauge": {},
             "speed": {},
         }
         return inputs[stage]

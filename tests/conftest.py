@@ -3,10 +3,12 @@
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from hypothesis import settings
 
 from lube import film_table, line_spec, load_study, roughness_lines
 from lube.lubricant import lubricant_table
+from lube.schema import EXPERIMENT_DIMS, label
 
 # The first example of a test may have to wait for its kernel to be compiled.
 settings.register_profile("lube", deadline=None)
@@ -64,3 +66,32 @@ def coarse_lines(make_spec):
     return roughness_lines(
         make_spec(6000, shortest_wavelength="4.0 points"), seed=11, realisations=[0]
     )
+
+
+@pytest.fixture(scope="session")
+def make_experiment():
+    """An experiment of given shares at 100 ohm; half as much below 10, the same below 1000."""
+
+    def make(share, lower, upper):
+        shares = xr.Dataset({"": share, "_lower": lower, "_upper": upper})
+        shares = shares.drop_vars(set(shares.coords) - set(EXPERIMENT_DIMS))
+        shares = shares.transpose(*EXPERIMENT_DIMS)
+        thresholds = xr.DataArray([10.0, 100.0, 1000.0], dims="threshold")
+        weights = xr.DataArray([0.5, 1.0, 1.0], dims="threshold")
+        variables = {f"contact_share{name}": shares[name] * weights for name in shares}
+        time = shares[""].where(shares[""].isnull(), 1.0)
+        experiment = xr.Dataset(
+            variables
+            | {
+                "true_contact_share": shares[""],
+                "comparison_threshold": 100.0,
+                "record": time.astype(str),
+                "duration": time,
+                "sampling_interval": 1e-5 * time,
+            },
+            {"threshold": thresholds.values, "origin": "simulated"},
+            {"refused": []},
+        )
+        return label(experiment, "experiment")
+
+    return make

@@ -359,15 +359,54 @@ def mapped(lines, film, layer):
 
 
 def test_the_map_spans_all_films_and_windows_of_the_study(mapped, film):
-    for name, values in (
-        ("lambda_ratio", film["lambda_ratio"]),
-        ("contact_width", 2.0 * film["contact_half_width"]),
-    ):
-        levels = mapped[name].values
-        assert levels[[0, -1]] == pytest.approx([values.min().item(), values.max().item()])
-        assert (np.diff(levels) > 0).all()
-    assert mapped.sizes["lambda_ratio"] == 6
+    for prefix in ("", "layer_"):
+        for name, values in (
+            ("lambda_ratio", film["lambda_ratio"]),
+            ("contact_width", 2.0 * film["contact_half_width"]),
+        ):
+            levels = mapped[prefix + name].values
+            least, greatest = values.min().item(), values.max().item()
+            assert (np.diff(levels) > 0).all()
+            assert levels[-1] == pytest.approx(greatest)
+            assert np.isclose(levels, least).any()
+    assert mapped.sizes["lambda_ratio"] == 4 + 6
     assert mapped.sizes["contact_width"] == 4
+
+
+def test_the_map_reaches_films_thinner_than_the_studys(mapped, film):
+    least = film["lambda_ratio"].min().item()
+    thinner = mapped["lambda_ratio"].values[:5]
+    assert thinner[[0, -1]] == pytest.approx([0.3 * least, least])
+
+
+def test_every_layer_of_the_map_is_run_as_a_layer_of_its_own(mapped, lines, film, layer):
+    strengths = mapped["layer_strength"].values
+    study = layer.shear_strength / layer.critical_thickness
+    np.testing.assert_allclose(strengths / study, [1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8])
+    pair = line_pair(lines, 1)
+    for strength in strengths[[0, 3, 6]]:
+        # The thinner layer of the same shear strength, rather than the weaker one.
+        other = BoundaryLayer.model_construct(
+            shear_strength=layer.shear_strength,
+            critical_thickness=layer.shear_strength / strength,
+        )
+        factor = layer_factor_of(lines, film["reduced_modulus"].item(), other)
+        for place in (0, 4):
+            here = mapped.isel(layer_lambda_ratio=place, layer_contact_width=-1)
+            thickness = here["layer_lambda_ratio"] * film["composite_rms_roughness"]
+            half_width = here["layer_contact_width"] / 2.0
+            point = whole_numbers([thickness.item()], [half_width.item()], lines)
+            counts = strip_statistics(*pair, (1.0, 1.0), pair[0].size, *point, factor)[0]
+            found = here["layer_breakthrough_probability"].sel(
+                realisation=1, layer_strength=strength
+            )
+            assert found == pytest.approx(counts[1] / pair[0].size, abs=2e-5)
+
+
+def test_the_stronger_layer_breaks_less(mapped):
+    breaking = mapped["layer_breakthrough_probability"]
+    assert (breaking.diff("layer_strength") <= 0.0).all()
+    assert breaking.isel(layer_strength=0).max() > 2.0 * breaking.isel(layer_strength=-1).max()
 
 
 def test_every_value_of_the_map_is_the_kernels(mapped, lines, film, layer):
@@ -391,10 +430,11 @@ def test_the_map_falls_with_the_film_and_rises_with_the_window(mapped):
     assert geometric.max() > 0.9 and geometric.min() < 0.1
 
 
-def test_one_film_and_one_window_make_a_map_of_one_point(lines, film, layer):
+def test_one_film_and_one_window_make_a_map_of_one_width(lines, film, layer):
     place = {name: [0] for name in ("lubricant", "film_formula", "temperature", "speed", "force")}
     mapped = contact_map(lines, film.isel(place), layer)
-    assert mapped.sizes["lambda_ratio"] == mapped.sizes["contact_width"] == 1
+    assert mapped.sizes["lambda_ratio"] == 4 + 1  # thinner films than the study's are added
+    assert mapped.sizes["layer_lambda_ratio"] == mapped.sizes["contact_width"] == 1
 
 
 def test_the_map_gets_its_intervals(mapped):

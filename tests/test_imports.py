@@ -20,23 +20,23 @@ MODULES = {
 # Each module may import those of layers above its own, and the ones named in its own row.
 LAYERS = [
     {"errors"},
-    {"units", "hertz", "formulas", "viscosity", "resistance", "intervals", "schema", "kernels"},
-    {"fields", "files", "fluids", "steps", "rig", "evaluation", "signals", "tables"},
+    {
+        *("units", "hertz", "formulas", "viscosity", "resistance"),
+        *("curves", "intervals", "schema", "kernels"),
+    },
+    {"fields", "files", "fluids", "steps", "rig", "evaluation", "shares", "signals", "tables"},
     {"apparatus", "records", "surfaces", "manifest", "text_signals", "binary_signals"},
     {"study", "recordings"},
-    {"lubricant", "film", "roughness", "contact", "trace", "ensemble", "experiment"},
+    {
+        *("lubricant", "film", "roughness", "contact", "trace", "ensemble"),
+        *("experiment", "comparison", "gauge"),
+    },
     {"io", "plots", "notebooks", "jobs", "reference"},
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
 FOUNDATIONS = {
-    "errors",
-    "units",
-    "fields",
-    "hertz",
-    "formulas",
-    "viscosity",
-    "resistance",
-    "intervals",
+    *("errors", "units", "fields", "hertz", "formulas", "viscosity", "resistance"),
+    *("curves", "intervals"),
 }
 STAGES = LAYERS[5]
 

@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from lube.comparison import compare
 from lube.contact import contact_map, contact_statistics
 from lube.ensemble import gather, gather_map
 from lube.errors import DataError
 from lube.experiment import rig_records, simulated_experiment
 from lube.film import film_table
+from lube.gauge import gauge_records
 from lube.io import CONVENTIONS, load, opened, save
 from lube.lubricant import lubricant_table
 from lube.roughness import roughness_batch, roughness_lines
@@ -56,18 +58,22 @@ def datasets(study, make_spec):
     rig_lines = roughness_batch(spec, study.seed, study.rig_realisations[:1])
     mapped = contact_map(batch, film, layer, 5, 3)
     points = [point | {"slide_to_roll_ratio": 0.0} for point in study.trace_points]
+    contact, master = gather([run], film), gather_map([mapped])
+    experiment = simulated_experiment(rig_lines, film, study)
     return {
         "lubricant": oil,
         "film": film,
         "roughness": lines,
         "roughness_batch": batch,
         "contact_batch": run,
-        "contact": gather([run], film),
+        "contact": contact,
         "master_batch": mapped,
-        "master": gather_map([mapped]),
+        "master": master,
         "trace": contact_trace(lines, film, points, layer, study.resistivity),
-        "experiment": simulated_experiment(rig_lines, film, study),
+        "experiment": experiment,
         "rig": rig_records(rig_lines, film, study),
+        "comparison": compare(contact, experiment),
+        "gauge": gauge_records(master, film, contact, experiment),
         "speed": measured_times(),
     }
 
@@ -104,8 +110,8 @@ def test_there_is_a_dataset_of_every_kind(datasets):
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_saved_is_loaded_with_its_labels(datasets, files, kind):
     loaded = load_as_jobs_do(files / f"{kind}.nc", kind)
-    if kind == "film":  # NetCDF has no truth values
-        loaded["in_validity_range"] = loaded["in_validity_range"].astype(bool)
+    for name in {"in_validity_range", "intervals_overlap"} & set(loaded):
+        loaded[name] = loaded[name].astype(bool)  # NetCDF has no truth values
     xr.testing.assert_equal(loaded, datasets[kind])
     for name, array in datasets[kind].variables.items():
         assert loaded[name].attrs["long_name"] == array.attrs["long_name"]

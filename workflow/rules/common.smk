@@ -28,6 +28,8 @@ DATASETS = (
     "master",
     "rig",
     "experiment",
+    "comparison",
+    "gauge",
 )
 MEASURED = ("speed",)  # by `snakemake benchmark`; clock times are no part of the study's results
 

@@ -1,0 +1,162 @@
+"""Contact shares of a rig's records, brought to the operating points of a study."""
+
+import numpy as np
+
+from lube.errors import DataError
+from lube.schema import COORDINATES, EXPERIMENT_DIMS
+
+SAME_LEVEL = 1e-9
+"""Relative difference of levels that are the same but for rounding."""
+LIMITS = ("", "_lower", "_upper")
+MOST_LINES = 10
+"""Lines that a log shows of a longer list."""
+
+
+def on_study_levels(experiment, levels):
+    """Contact shares at all levels of a study, NaN where the experiment has none.
+
+    Parameters
+    ----------
+    experiment : xarray.Dataset
+        An ``experiment`` dataset.
+    levels : xarray.Dataset
+        Dataset of the study; the shares get its coordinates to the last bit.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``contact_share`` and its limits over the dimensions of the experiment, with the origin
+        as a coordinate.
+
+    Raises
+    ------
+    DataError
+        If a level of the experiment is not the study's.
+    """
+    shares = experiment[[f"contact_share{limit}" for limit in LIMITS]]
+    for name in set(EXPERIMENT_DIMS) & set(levels.dims):
+        found = _study_levels(name, experiment[name].values, levels[name].values)
+        shares = shares.assign_coords({name: found}).reindex({name: levels[name].values})
+    return shares.assign_coords(origin=experiment["origin"].item())
+
+
+def _study_levels(name, found, wanted):
+    """Levels of the study that some levels are."""
+    study = []
+    for level in found.tolist():
+        same = wanted == level
+        if wanted.dtype.kind == "f":
+            same = np.isclose(wanted, level, rtol=SAME_LEVEL, atol=0.0)
+        if not same.any():
+            raise DataError(
+                f"experiment: {name} {level} is not a level of the study, need one of "
+                f"{', '.join(str(value) for value in wanted.tolist())}"
+            )
+        study.append(wanted[same][0])
+    return np.array(study, wanted.dtype)
+
+
+def at_comparison_threshold(shares, experiment):
+    """Shares at the threshold that is compared with the simulation.
+
+    Parameters
+    ----------
+    shares : xarray.Dataset
+        From `on_study_levels`.
+    experiment : xarray.Dataset
+        The ``experiment`` dataset they are from.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same without the dimension ``threshold``.
+
+    Raises
+    ------
+    DataError
+        If the records were not evaluated at that threshold.
+    """
+    wanted = experiment["comparison_threshold"].item()
+    levels = shares["threshold"].values
+    same = np.isclose(levels, wanted, rtol=SAME_LEVEL, atol=0.0)
+    if not same.any():
+        raise DataError(
+            f"experiment: threshold {wanted:g} ohm is not among those evaluated, "
+            f"{', '.join(f'{level:g}' for level in levels)}"
+        )
+    return shares.isel(threshold=int(np.argmax(same)), drop=True)
+
+
+def in_pure_rolling(dataset, name):
+    """Part of a dataset without slip.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        With the dimension ``slide_to_roll_ratio``.
+    name : str
+        What to call the dataset in an error.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same without that dimension.
+
+    Raises
+    ------
+    DataError
+        If it has slip everywhere.
+    """
+    ratios = dataset["slide_to_roll_ratio"].values
+    if 0.0 not in ratios:
+        raise DataError(f"{name}: got slide-to-roll ratios {ratios.tolist()}, need 0 among them")
+    return dataset.sel(slide_to_roll_ratio=0.0, drop=True)
+
+
+def lines_of(absent, reason):
+    """Tell the operating points where something is missing, a line each.
+
+    Parameters
+    ----------
+    absent : xarray.DataArray
+        True where it is missing, over operating variables.
+    reason : str
+        What is missing, such as ``no record``.
+
+    Returns
+    -------
+    list of str
+        Such as ``800 N, 100 rpm, 40 degC: no record``; lubricant and slip are named where
+        there are several.
+    """
+    told = ["force", "speed", "temperature"]
+    told += [name for name in ("lubricant", "slide_to_roll_ratio") if absent.sizes.get(name, 1) > 1]
+    points = absent.stack(point=absent.dims)
+    return [
+        ", ".join(_level(name, point[name].item()) for name in told) + f": {reason}"
+        for point in points[points.values]["point"]
+    ]
+
+
+def _level(name, value):
+    if name == "slide_to_roll_ratio":
+        return f"slide-to-roll ratio {value:g}"
+    if name == "lubricant":
+        return value
+    return f"{value:.6g} {COORDINATES[name].units}"
+
+
+def log_lines(log, lines):
+    """Warn of some lines, and of a longer list's first ones.
+
+    Parameters
+    ----------
+    log : logging.Logger
+        Log to warn in.
+    lines : list of str
+        What to tell.
+    """
+    for line in lines[:MOST_LINES]:
+        log.warning("%s", line)
+    if len(lines) > MOST_LINES:
+        log.warning("... and %d more", len(lines) - MOST_LINES)

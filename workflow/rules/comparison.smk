@@ -1,0 +1,17 @@
+rule comparison:
+    input:
+        contact=result("contact.nc"),
+        experiment=result("experiment.nc"),
+        sources=script_sources("comparison"),
+    output:
+        result("comparison.nc"),
+    log:
+        result("logs/comparison.log"),
+    benchmark:
+        result("benchmarks/comparison.tsv")
+    params:
+        study=stage_inputs("comparison"),
+    message:
+        "Comparison: simulated breakthrough against the rig's share of time in contact"
+    script:
+        "../scripts/comparison.py"

@@ -1,0 +1,19 @@
+rule gauge:
+    input:
+        film=result("film.nc"),
+        master=result("master.nc"),
+        contact=result("contact.nc"),
+        experiment=result("experiment.nc"),
+        sources=script_sources("gauge"),
+    output:
+        result("gauge.nc"),
+    log:
+        result("logs/gauge.log"),
+    benchmark:
+        result("benchmarks/gauge.tsv")
+    params:
+        study=stage_inputs("gauge"),
+    message:
+        "Gauge: films, pressure-viscosity coefficient and boundary layer from the records"
+    script:
+        "../scripts/gauge.py"
