@@ -13,7 +13,7 @@ from lube.curves import (
     independent_looks,
     realisation_correlation,
 )
-from lube.ensemble import score_interval
+from lube.intervals import score_interval
 
 FILMS = np.log(np.geomspace(0.3, 10.0, 30))
 SHARES = st.floats(1e-3, 0.89)

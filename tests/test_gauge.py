@@ -17,8 +17,9 @@ from lube import (
     gauge_film,
     gauge_records,
 )
-from lube.ensemble import effective_looks, probability_interval, score_interval
+from lube.ensemble import effective_looks, probability_interval
 from lube.errors import DataError
+from lube.intervals import score_interval
 from lube.lubricant import lubricant_table
 from lube.roughness import roughness_batch
 from lube.schema import EXPERIMENT_DIMS, POINT_DIMS, check

@@ -54,7 +54,7 @@ def datasets(study, make_spec):
     film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
     lines = roughness_lines(spec, study.seed, [0, 1])
     batch = roughness_batch(spec, study.seed, [0, 1])
-    run = contact_statistics(batch, film, layer)
+    run = contact_statistics(batch, film, layer, study.slips)
     rig_lines = roughness_batch(spec, study.seed, study.rig_realisations[:1])
     mapped = contact_map(batch, film, layer, 5, 3)
     points = [point | {"slide_to_roll_ratio": 0.0} for point in study.trace_points]
