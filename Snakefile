@@ -10,6 +10,7 @@ include: "workflow/rules/contact.smk"
 include: "workflow/rules/master.smk"
 include: "workflow/rules/figure.smk"
 include: "workflow/rules/speed.smk"
+include: "workflow/rules/reading.smk"
 
 
 rule all:

@@ -39,6 +39,7 @@ _FORERUNNERS = {
     "master": ("lubricant", "film", "roughness"),
     "trace": ("lubricant", "film", "roughness"),
     "speed": ("lubricant", "film", "roughness", "contact"),
+    "reading": (),
 }
 
 
@@ -141,8 +142,9 @@ class Study(StrictModel):
         Parameters
         ----------
         stage : str
-            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master``, ``trace`` or
-            ``speed``, which measures how fast the others are.
+            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master`` or ``trace``;
+            ``speed``, which measures how fast the others are; or ``reading``, which measures
+            how fast records of the rig are read.
 
         Returns
         -------
@@ -179,6 +181,7 @@ class Study(StrictModel):
             | mechanics
             | {"traces": content["traces"], "resistivity": content["resistivity"]},
             "speed": {},
+            "reading": {},
         }
         return inputs[stage]
 

@@ -29,16 +29,16 @@ def load_as_jobs_do(path, kind):
         return dataset.load()
 
 
-def measured_times():
+def measured_times(kind):
     """Times as `snakemake benchmark` saves them, none like another."""
     rng = np.random.default_rng(1)
     variables = {
         name: (row.dims, rng.uniform(1.0, 1e6, (2,) * len(row.dims)).astype(row.kind + "8"))
-        for name, row in FILES["speed"].items()
+        for name, row in FILES[kind].items()
     }
-    dims = {dim for row in FILES["speed"].values() for dim in row.dims}
+    dims = {dim for row in FILES[kind].values() for dim in row.dims}
     coords = {dim: np.arange(2).astype(COORDINATES[dim].kind + "8") for dim in sorted(dims)}
-    return label(xr.Dataset(variables, coords), "speed")
+    return label(xr.Dataset(variables, coords), kind)
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +64,8 @@ def datasets(study, make_spec):
         "master_batch": mapped,
         "master": gather_map([mapped]),
         "trace": contact_trace(lines, film, points, layer, study.resistivity),
-        "speed": measured_times(),
+        "speed": measured_times("speed"),
+        "reading": measured_times("reading"),
     }
 
 

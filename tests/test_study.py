@@ -17,7 +17,7 @@ CONFIG = Path(__file__).parents[1] / "workflow" / "config"
 PAPER = CONFIG / "paper.yaml"
 OIL = "mobilgear-shc-xmp-320"
 REMOVED = object()
-STAGES = ("lubricant", "film", "roughness", "contact", "trace", "speed")
+STAGES = ("lubricant", "film", "roughness", "contact", "trace", "speed", "reading")
 
 
 def with_value(content, key, value):
