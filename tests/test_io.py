@@ -175,7 +175,7 @@ def test_files_say_which_conventions_they_follow_and_where_they_come_from(files,
         assert raw.study_inputs_sha256 == digest
         stage = kind.removesuffix("_batch")
         assert json.loads(raw.study_inputs)[stage] == study.stage_inputs(stage)
-        follows_the_oil = stage != "roughness"
+        follows_the_oil = stage not in ("roughness", "reading")
         assert (study.lubricants[0].name in raw.study_inputs) == follows_the_oil
         assert raw.source.startswith("lube ")
 
