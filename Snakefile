@@ -13,6 +13,7 @@ include: "workflow/rules/comparison.smk"
 include: "workflow/rules/gauge.smk"
 include: "workflow/rules/figure.smk"
 include: "workflow/rules/speed.smk"
+include: "workflow/rules/reading.smk"
 
 
 rule all:

@@ -50,7 +50,7 @@ class BinarySignal:
 
     def head(self):
         """First samples of the record, a `Part`; None if there are none."""
-        return next(self._parts_of(0, FIRST_STEPS + 1), None)
+        return next(self._parts_of(FIRST_STEPS + 1), None)
 
     def parts(self):
         """Read the record.
@@ -58,21 +58,22 @@ class BinarySignal:
         Yields
         ------
         Part
-            Some millions of samples at most, but never less than a chunk of the file.
+            About a million samples, but never less than a chunk of the file.
 
         Raises
         ------
         DataError
             If the file is truncated or damaged.
         """
-        yield from self._parts_of(0, None)
+        yield from self._parts_of(None)
 
-    def _parts_of(self, begin, end):
+    def _parts_of(self, most):
+        """Yield the parts of so many samples at most, or of all."""
         with self.arrays(self.path) as arrays:
             values = arrays[self.measured.place].values
-            step = _slice_length(values)
-            for first in range(begin, min(end or len(values), len(values)), step):
-                wanted = slice(first, min(first + step, end or len(values)))
+            end, step = min(most or len(values), len(values)), _slice_length(values)
+            for first in range(0, end, step):
+                wanted = slice(first, min(first + step, end))
                 times = None
                 if self.time is not None:
                     times = _read(arrays[self.time.place].values, wanted, self.time)

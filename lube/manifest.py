@@ -204,8 +204,10 @@ def _check_units(name, units, where):
     if (units is None) != (target is None):
         needed = f"'{name} [{target}]'" if target else f"{name!r} without a unit"
         raise DataError(f"{where}: {name}: got the unit {units!r}, need {needed}")
+    if target is None:
+        return
     try:
-        convert(1.0, units, target)  # None to None is fine
+        convert(1.0, units, target)
     except LubeError as error:
         raise DataError(f"{where}: {name}: {error}") from None
 

@@ -87,6 +87,8 @@ COORDINATES = {
     "bandwidth": _number(["bandwidth"], "Hz", "bandwidth of the amplifier"),
     "threshold": _number(["threshold"], "ohm", "threshold of the resistance"),
     "origin": _text([], "whether the rig's records were measured or simulated"),
+    "record_reader": _text(["record_reader"], "way to read and evaluate a binary record"),
+    "table_reader": _text(["table_reader"], "way to read a CSV record"),
     "least_lambda": _number(["least_lambda"], "1", "least lambda ratio of the operating points"),
     "line_points": _number(["line_points"], "1", "points around the first roller", kind="i"),
     "operating_points": _number(["operating_points"], "1", "number of operating points", kind="i"),
@@ -394,6 +396,17 @@ _SPEED = {
     "peak_memory": _number([], "byte", "peak memory of a process"),
 }
 
+_READING = {
+    "record_samples": _number([], "1", "samples of the binary record", kind="i"),
+    "record_time": _number(["record_reader"], "s", "time to read and evaluate the record"),
+    "record_memory": _number(["record_reader"], "byte", "peak memory of the process"),
+    "table_rows": _number([], "1", "rows of the CSV record", kind="i"),
+    "table_time": _number(["table_reader"], "s", "time to read the record"),
+    "table_memory": _number(["table_reader"], "byte", "peak memory of the process"),
+    "bare_memory": _number([], "byte", "peak memory of a process that reads nothing"),
+    "thresholds": _number([], "1", "number of thresholds", kind="i"),
+}
+
 FILES = {
     "lubricant": _LUBRICANT,
     "film": _FILM,
@@ -409,6 +422,7 @@ FILES = {
     "comparison": _COMPARISON,
     "gauge": _GAUGE,
     "speed": _SPEED,
+    "reading": _READING,
 }
 """Variables of each kind of file, by the kind's name."""
 

@@ -45,6 +45,7 @@ _FORERUNNERS = {
     "comparison": ("lubricant", "film", "roughness", "contact", "experiment"),
     "gauge": ("lubricant", "film", "roughness", "contact", "master", "experiment"),
     "speed": ("lubricant", "film", "roughness", "contact"),
+    "reading": (),
 }
 
 
@@ -166,9 +167,7 @@ class Study(StrictModel):
         Parameters
         ----------
         stage : str
-            ``lubricant``, ``film``, ``roughness``, ``contact``, ``master``, ``trace``,
-            ``experiment``, ``rig``, ``comparison``, ``gauge`` or ``speed``, which measures how
-            fast the others are.
+            A kind of file of `lube.schema`, such as ``film``; batches go by their stage's name.
 
         Returns
         -------
@@ -219,6 +218,7 @@ class Study(StrictModel):
             "comparison": {},
             "gauge": {},
             "speed": {},
+            "reading": {},
         }
         return inputs[stage]
 

@@ -53,6 +53,7 @@ class TextSignal:
     time: Signal | None
     measured: Signal
 
+    # A CSV file has no place for it but a column of times.
     told_interval = None
 
     def head(self):

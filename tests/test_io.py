@@ -32,16 +32,16 @@ def load_as_jobs_do(path, kind):
         return dataset.load()
 
 
-def measured_times():
+def measured_times(kind):
     """Times as `snakemake benchmark` saves them, none like another."""
     rng = np.random.default_rng(1)
     variables = {
         name: (row.dims, rng.uniform(1.0, 1e6, (2,) * len(row.dims)).astype(row.kind + "8"))
-        for name, row in FILES["speed"].items()
+        for name, row in FILES[kind].items()
     }
-    dims = {dim for row in FILES["speed"].values() for dim in row.dims}
+    dims = {dim for row in FILES[kind].values() for dim in row.dims}
     coords = {dim: np.arange(2).astype(COORDINATES[dim].kind + "8") for dim in sorted(dims)}
-    return label(xr.Dataset(variables, coords), "speed")
+    return label(xr.Dataset(variables, coords), kind)
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,8 @@ def datasets(study, make_spec):
         "rig": rig_records(rig_lines, film, study),
         "comparison": compare(contact, experiment),
         "gauge": gauge_records(master, film, contact, experiment),
-        "speed": measured_times(),
+        "speed": measured_times("speed"),
+        "reading": measured_times("reading"),
     }
 
 
@@ -184,7 +185,7 @@ def test_files_say_which_conventions_they_follow_and_where_they_come_from(files,
         assert raw.study_inputs_sha256 == digest
         stage = kind.removesuffix("_batch")
         assert json.loads(raw.study_inputs)[stage] == study.stage_inputs(stage)
-        follows_the_oil = stage != "roughness"
+        follows_the_oil = stage not in ("roughness", "reading")
         assert (study.lubricants[0].name in raw.study_inputs) == follows_the_oil
         assert raw.source.startswith("lube ")
 

@@ -99,7 +99,7 @@ def test_a_wrong_type_is_refused(kind, name):
     assert f"{name!r} holds" in refusal(dataset, kind)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "reading"])
 def test_swapped_dimensions_are_refused(kind):
     name = next(name for name, row in FILES[kind].items() if len(row.dims) > 1)
     dataset = label(example(kind), kind)

@@ -20,7 +20,7 @@ OIL = "mobilgear-shc-xmp-320"
 REMOVED = object()
 STAGES = (
     *("lubricant", "film", "roughness", "contact", "trace"),
-    *("comparison", "gauge", "speed"),
+    *("experiment", "rig", "comparison", "gauge", "speed", "reading"),
 )
 
 

@@ -208,7 +208,7 @@ def test_logs_of_contact_show_its_progress(smoke):
 
 
 def test_there_is_a_kind_of_file_for_every_dataset():
-    studied = {kind for kind in FILES if not kind.endswith("_batch")} - {"speed"}
+    studied = {kind for kind in FILES if not kind.endswith("_batch")} - {"speed", "reading"}
     assert studied == set(DATASETS)
 
 
@@ -221,5 +221,9 @@ def test_benchmarks_are_measured_saved_and_drawn_when_asked_for(spare):
         assert (values > 0).all(), name
     assert speed.speedup.sel(slide_to_roll_ratio=0, least_lambda=0) > 1.0
     added = {name: now for name, now in spare.products().items() if before.get(name) != now}
-    assert set(added) == {"speed.nc", *products_of("bench01_speed")}
+    reading = load(spare.results / "reading.nc", "reading")
+    for name, values in reading.data_vars.items():
+        assert (values > 0).all(), name
+    figures = [*products_of("bench01_speed"), *products_of("bench02_records")]
+    assert set(added) == {"speed.nc", "reading.nc", *figures}
     assert spare.planned() == set()

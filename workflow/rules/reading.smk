@@ -1,0 +1,20 @@
+rule reading:
+    input:
+        script="tests/benchmarks/bench_records.py",
+        records=record_files(),
+        sources=sources(Path("tests/benchmarks/bench_records.py").read_text(encoding="utf-8")),
+    output:
+        result("reading.nc"),
+    log:
+        result("logs/reading.log"),
+    benchmark:
+        result("benchmarks/reading.tsv")
+    # With nothing beside it.
+    threads: workflow.cores
+    params:
+        study=digest(STUDY.origin("reading")),
+        file=config["study_file"],
+    message:
+        "Reading: records of the rig beside other readers of the same files, a few minutes"
+    shell:
+        "python {input.script} {params.file:q} {output} 2>&1 | tee {log}"
