@@ -13,7 +13,10 @@ from repository import environment, products_of
 from lube.io import load
 from lube.schema import FILES, check
 
-DATASETS = ("lubricant", "film", "roughness", "contact", "trace", "master")
+DATASETS = (
+    *("lubricant", "film", "roughness", "contact", "trace", "master"),
+    *("experiment", "comparison", "gauge"),
+)
 
 
 def test_every_file_of_the_data_model_is_made(smoke):

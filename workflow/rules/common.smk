@@ -19,7 +19,10 @@ import lube
 from lube.errors import LubeError
 from lube.study import load_study
 
-DATASETS = ("lubricant", "film", "roughness", "contact", "trace", "master")
+DATASETS = (
+    *("lubricant", "film", "roughness", "contact", "trace", "master"),
+    *("experiment", "comparison", "gauge"),
+)
 MEASURED = ("speed",)  # by `snakemake benchmark`; clock times are no part of the study's results
 
 
