@@ -14,16 +14,8 @@ from lube.io import load
 from lube.schema import FILES, check
 
 DATASETS = (
-    "lubricant",
-    "film",
-    "roughness",
-    "contact",
-    "trace",
-    "master",
-    "rig",
-    "experiment",
-    "comparison",
-    "gauge",
+    *("lubricant", "film", "roughness", "contact", "trace", "master"),
+    *("rig", "experiment", "comparison", "gauge"),
 )
 
 
