@@ -23,7 +23,7 @@ class Rig(StrictModel, validate_default=True):
         "50 mV", description="voltage over rollers and series resistor"
     )
     series_resistance: _Resistance = Field(
-        "1 kohm", description="resistor in series with the rollers"
+        "100 ohm", description="resistor in series with the rollers"
     )
     lead_resistance: quantity("ohm", least=0.0) = Field(
         "0.2 ohm", description="leads and slip rings, known and subtracted"

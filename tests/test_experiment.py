@@ -182,8 +182,8 @@ def test_a_share_evaluated_elsewhere_stands_at_the_compared_threshold_alone(meas
 
 
 def test_a_voltage_is_judged_by_the_rigs_circuit(measured, tmp_path, study):
-    # 100 ohm are 4.55 mV of the 50 mV, with 0.2 ohm of leads.
-    voltage = np.where(np.arange(5000) // 50 % 4 == 0, 4.5e-3, 4.6e-3)
+    # 100 ohm are 25.02 mV of the 50 mV, with 0.2 ohm of leads.
+    voltage = np.where(np.arange(5000) // 50 % 4 == 0, 25.0e-3, 25.1e-3)
     rows = [f"{1e-4 * number!r};{value!r}" for number, value in enumerate(voltage.tolist())]
     text = "\n".join(["t [s];U [V]", *rows]).replace(".", ",") + "\n"
     (tmp_path / "volts.csv").write_text(text, encoding="utf-8")

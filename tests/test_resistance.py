@@ -53,7 +53,7 @@ def test_more_resistance_is_more_voltage(one, other):
 
 def test_an_open_circuit_shows_the_bias_voltage_and_a_short_that_of_the_leads():
     assert divider_voltage(np.inf, RIG) == RIG.bias_voltage
-    assert divider_voltage(0.0, RIG) == pytest.approx(RIG.bias_voltage * 0.2 / 1000.2)
+    assert divider_voltage(0.0, RIG) == pytest.approx(RIG.bias_voltage * 0.2 / 100.2)
     assert resistance_from_voltage(RIG.bias_voltage, RIG) == np.inf
     assert resistance_from_voltage(2.0 * RIG.bias_voltage, RIG) == np.inf
     assert resistance_from_voltage(0.0, RIG) == pytest.approx(-0.2)

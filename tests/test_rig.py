@@ -79,5 +79,5 @@ def test_a_large_capacitance_hides_how_soon_a_contact_ends():
     rig = Rig(bandwidth="10 MHz", sampling_rate="1.6 MHz", **QUIET)
     small, large = (below(logged(contact, rig, 1, c), rig) for c in (1e-12, 1e-7))
     assert small == pytest.approx(0.01, abs=0.001)
-    # The gap charges over 1 kohm: 100 ohm's 9.1 % of the bias is reached after 0.095 R C.
-    assert large - small == pytest.approx(0.0953 * 1e3 * 1e-7 / 6e-4, rel=0.1)
+    # The gap charges over 100 ohm: the same 100 ohm's half of the bias is reached after ln 2 R C.
+    assert large - small == pytest.approx(np.log(2.0) * 100.2 * 1e-7 / 6e-4, rel=0.1)

@@ -207,16 +207,17 @@ def changed_stages(change):
     return compare
 
 
-LINES = {"roughness", "contact", "trace"}
+MECHANICS = {"contact", "trace", "experiment"}
+LINES = MECHANICS | {"roughness"}
 
 
 @pytest.mark.parametrize(
     ("key", "value", "stages"),
     [
-        ("resistivity", "0.3 uohm*m", {"trace"}),
-        ("boundary_layer.critical_thickness", "6 nm", {"contact", "trace"}),
-        ("boundary_layer.shear_strength", "2 MPa", {"contact", "trace"}),
-        ("operating_grid.slide_to_roll_ratio", [0, 0.05], {"contact", "trace"}),
+        ("resistivity", "0.3 uohm*m", {"trace", "experiment"}),
+        ("boundary_layer.critical_thickness", "6 nm", MECHANICS),
+        ("boundary_layer.shear_strength", "2 MPa", MECHANICS),
+        ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS),
         ("revolutions", 3, {"contact"}),
         ("seed", 1, LINES),
         ("roughness.points", 500_000, LINES),
@@ -229,7 +230,9 @@ LINES = {"roughness", "contact", "trace"}
         ("film_formulas", ["paper"], {"film"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, {"lubricant"}),
-        ("traces.1.temperature", "60 degC", {"trace"}),
+        ("traces.1.temperature", "60 degC", {"trace", "rig"}),
+        ("rig.bandwidth", "10 kHz", {"experiment"}),
+        ("experiment.threshold", "10 ohm", {"experiment"}),
         ("realisations", 128, set()),
         ("batch_size", 16, set()),
         ("kept_realisations", [0, 1], set()),
@@ -332,7 +335,11 @@ PURE_NUMBERS = [
     ("rig.oil_permittivity", 0.5, "got 0.5, need a value at least 1"),
     ("rig.noise", "-1 uV", "got -1e-06, need a value at least 0 V"),
     ("rig.lead_resistance", "-1 ohm", "got -1, need a value at least 0 ohm"),
-    ("rig.amplifier_range", "20 mV", "rig.amplifier_range: got 0.02 V, need more than the 0.025 V"),
+    (
+        "rig.amplifier_range",
+        "20 mV",
+        "rig.amplifier_range: got 0.02 V, need more than the 0.0455 V",
+    ),
     ("experiment.release_ratio", 0.9, "got 0.9, need a value at least 1"),
     ("experiment.debounce", "-1 s", "got -1, need a value at least 0 s"),
     ("experiment.threshold", "50 ohm", "got 50 ohm, need one of experiment.thresholds: 10, "),
