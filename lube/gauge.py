@@ -55,8 +55,8 @@ def gauge_records(master, film, contact, experiment):
     Raises
     ------
     DataError
-        If the records are all with slip, have a level that is not the study's, or were not
-        evaluated at their comparison threshold.
+        If the records have a level that is not the study's, or were not evaluated at their
+        comparison threshold.
     """
     shares = _shares(film, experiment)
     gauged = gauge_film(master, film, experiment)
@@ -180,7 +180,7 @@ def fit_layer_strength(master, film, contact, experiment):
 
 def _shares(film, experiment):
     """Shares in pure rolling at the comparison threshold, on the levels of the film table."""
-    rolling = in_pure_rolling(experiment, "experiment")
+    rolling = in_pure_rolling(experiment)
     shares = at_comparison_threshold(on_study_levels(rolling, film), experiment)
     return shares.transpose(*POINT_DIMS)
 
@@ -266,7 +266,7 @@ def _strength_map(probability, master, film):
 
 def _fits(name, log_factors, logits, film, contact, experiment):
     """Fit a factor, with its limits, for every lubricant and film formula."""
-    shares, contact = _shares(film, experiment), in_pure_rolling(contact, "contact")
+    shares, contact = _shares(film, experiment), in_pure_rolling(contact)
     oils, formulas = film["lubricant"].values, film["film_formula"].values
     fits = np.empty((oils.size, formulas.size, len(LIMITS)))
     for o, f in np.ndindex(fits.shape[:-1]):

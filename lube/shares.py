@@ -87,30 +87,20 @@ def at_comparison_threshold(shares, experiment):
     return shares.isel(threshold=int(np.argmax(same)), drop=True)
 
 
-def in_pure_rolling(dataset, name):
+def in_pure_rolling(dataset):
     """Part of a dataset without slip.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         With the dimension ``slide_to_roll_ratio``.
-    name : str
-        What to call the dataset in an error.
 
     Returns
     -------
     xarray.Dataset
-        The same without that dimension.
-
-    Raises
-    ------
-    DataError
-        If it has slip everywhere.
+        The same without that dimension; numbers are NaN if there is slip everywhere.
     """
-    ratios = dataset["slide_to_roll_ratio"].values
-    if 0.0 not in ratios:
-        raise DataError(f"{name}: got slide-to-roll ratios {ratios.tolist()}, need 0 among them")
-    return dataset.sel(slide_to_roll_ratio=0.0, drop=True)
+    return dataset.reindex(slide_to_roll_ratio=[0.0]).isel(slide_to_roll_ratio=0, drop=True)
 
 
 def lines_of(absent, reason):

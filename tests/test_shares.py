@@ -92,10 +92,12 @@ def test_a_threshold_that_was_not_evaluated_is_refused(experiment, film):
 
 
 def test_pure_rolling_is_picked_or_missed(experiment):
-    assert "slide_to_roll_ratio" not in in_pure_rolling(experiment, "experiment").coords
-    slipping = experiment.assign_coords(slide_to_roll_ratio=[0.1])
-    message = refusal(in_pure_rolling, slipping, "experiment")
-    assert message == "experiment: got slide-to-roll ratios [0.1], need 0 among them"
+    rolling = in_pure_rolling(experiment)
+    assert "slide_to_roll_ratio" not in rolling.coords
+    assert rolling.contact_share.notnull().any()
+    slipping = in_pure_rolling(experiment.assign_coords(slide_to_roll_ratio=[0.1]))
+    assert slipping.contact_share.sizes == rolling.contact_share.sizes
+    assert slipping.contact_share.isnull().all()
 
 
 # Lists of points
