@@ -32,6 +32,9 @@ NEAR = 0.005
 SATURATED = 0.001
 """Share of a record's samples at the amplifier's limits from which on it is refused."""
 
+REVOLUTIONS = ("revolution_share", "revolution_share_lower", "revolution_share_upper")
+"""Share of time below the compared threshold in each revolution alone, and its limits."""
+
 BANDWIDTHS = (1e3, 3e3, 1e4, 3e4, 1e5, 3e5)
 """Bandwidths in Hz that the rig's records are tried with, other things equal."""
 
@@ -142,21 +145,28 @@ def simulated_experiment(lines, film, study):
         The ``experiment`` file of `lube.schema`, of the origin ``simulated``.
     """
     simulated, rig, slip = SimulatedRig(lines, study), study.rig, study.rig_slip
+    q_min = lines.attrs["q_min"]
     places = _places(film.isel(film_formula=0), slip)
     interval = 1.0 / rig.sampling_rate
     counters = [_counter(study.experiment, rig, "voltage", interval) for _ in places]
     touched = np.zeros((len(places), 2))  # steps in contact, and all
+    alone = [[] for _ in places]  # each revolution as a record of its own
     for count, realisation in enumerate(lines["realisation"].values.tolist(), start=1):
         for number, contact in enumerate(simulated.contacts(places, realisation, slip)):
             noise_of = (realisation, number + 1)
             voltage = simulated.voltage(contact, places[number], slip, noise_of, rig)
             counters[number].add(voltage)
+            revolution_alone = _counter(study.experiment, rig, "voltage", interval)
+            revolution_alone.add(voltage)
+            alone[number].append(_shares(places[number], revolution_alone, interval, q_min))
             touched[number] += np.count_nonzero(contact), contact.size
         log.info("simulated rig: revolution %d of %d", count, lines.sizes["realisation"])
+    compared = study.experiment.thresholds.index(study.experiment.threshold)
     rows = [
-        _row(place, counter, interval, "simulated", lines.attrs["q_min"])
+        _row(place, counter, interval, "simulated", q_min)
         | {"true_contact_share": steps[0] / steps[1]}
-        for place, counter, steps in zip(places, counters, touched, strict=True)
+        | dict(zip(REVOLUTIONS, np.array(shares)[..., compared].T, strict=True))
+        for place, counter, steps, shares in zip(places, counters, touched, alone, strict=True)
     ]
     return _experiment(rows, film, study, "simulated", [])
 
@@ -290,21 +300,26 @@ def _or_nan(value):
     return np.nan if value is None else value
 
 
-def _row(place, counter, interval, record, q_min):
-    """Share, interval and origin of one record."""
+def _shares(place, counter, interval, q_min):
+    """Share below each threshold, and the limits of its interval, each of shape (K,)."""
     duration = counter.sizes.sum() * interval
     slower = place["entrainment_speed"] * (1.0 - abs(place["slide_to_roll_ratio"]) / 2.0)
     # Windows a longest wavelength apart share no roughness.
     reach = 2.0 * place["contact_half_width"] + 2.0 * np.pi / q_min
     windows = max(duration * slower / reach, 1.0)
-    share, lower, upper = share_interval(counter.below, counter.sizes, windows)
+    return share_interval(counter.below, counter.sizes, windows)
+
+
+def _row(place, counter, interval, record, q_min):
+    """Share, interval and origin of one record."""
+    share, lower, upper = _shares(place, counter, interval, q_min)
     return {
         **place,
         "contact_share": share,
         "contact_share_lower": lower,
         "contact_share_upper": upper,
         "record": record,
-        "duration": duration,
+        "duration": counter.sizes.sum() * interval,
         "sampling_interval": interval,
     }
 
@@ -319,15 +334,18 @@ def _experiment(rows, film, study, origin, refused):
     shares = ("contact_share", "contact_share_lower", "contact_share_upper")
     values = {name: np.full(shape, np.nan) for name in numbers}
     values |= {name: np.full((*shape, thresholds.size), np.nan) for name in shares}
+    revolutions = max(np.size(row.get(REVOLUTIONS[0], np.nan)) for row in rows)
+    values |= {name: np.full((*shape, revolutions), np.nan) for name in REVOLUTIONS}
     records = np.full(shape, "", object)
     for row in rows:
         index = tuple(levels.tolist().index(row[name]) for name, levels in coords.items())
         records[index] = row["record"]
-        for name in (*numbers, *shares):
+        for name in values:
             values[name][index] = row.get(name, np.nan)
     dataset = xr.Dataset(
         {name: (EXPERIMENT_DIMS, values[name]) for name in numbers}
         | {name: ((*EXPERIMENT_DIMS, "threshold"), values[name]) for name in shares}
+        | {name: ((*EXPERIMENT_DIMS, "revolution"), values[name]) for name in REVOLUTIONS}
         | {"record": (EXPERIMENT_DIMS, records.astype(str))},
         coords=coords | {"threshold": thresholds, "origin": origin},
         attrs={"refused": "\n".join(refused)},

@@ -63,6 +63,7 @@ def gauge_records(master, film, contact, experiment):
     strength = fit_layer_strength(master, film, contact, experiment)
     gauged = gauged.merge(fit_alpha(master, film, contact, experiment)).merge(strength)
     gauged["film_thickness"], gauged["lambda_ratio"] = film["film_thickness"], film["lambda_ratio"]
+    gauged["interval_coverage"] = gauge_coverage(master, film, experiment)
     gauged["study_layer_strength"] = _study_strength(contact)
     gauged["comparison_threshold"] = experiment["comparison_threshold"].item()
     recorded = shares["contact_share"].notnull()
@@ -109,6 +110,41 @@ def gauge_film(master, film, experiment):
         thickness = ratio * film["composite_rms_roughness"].item()
         gauged[f"gauged_film_thickness{limit}"] = (POINT_DIMS, thickness)
     return gauged
+
+
+def gauge_coverage(master, film, experiment):
+    """Tell how often the interval of a gauged film holds the true one.
+
+    Each revolution of a simulated rig has a roughness of its own, so each is gauged as the
+    record of another rig. The truth is the film of the table's first formula, which the
+    simulated rig runs with.
+
+    Parameters
+    ----------
+    master, film, experiment : xarray.Dataset
+        Datasets of these kinds, of one study.
+
+    Returns
+    -------
+    xarray.DataArray
+        Share of the revolutions, over (lubricant, temperature, speed, force); NaN of measured
+        records, whose true film nobody knows.
+    """
+    rolling = on_study_levels(in_pure_rolling(experiment), film, "revolution_share")
+    dims = (*POINT_DIMS, "revolution")
+    records = np.stack(
+        [rolling[f"revolution_share{limit}"].transpose(*dims).values for limit in LIMITS], axis=-1
+    )
+    true = np.log(film["lambda_ratio"].isel(film_formula=0).transpose(*POINT_DIMS).values)
+    held = np.full(records.shape[:-1], np.nan)
+    for number, half_width in enumerate(film["contact_half_width"].values):
+        curves = _curves(master, 2.0 * half_width)
+        for *place, revolution in np.ndindex(records.shape[:-3] + records.shape[-2:-1]):
+            index = (*place, number, revolution)
+            _, lower, upper = film_interval(curves, records[index])
+            if not np.isnan(lower):
+                held[index] = lower <= true[index[:-1]] <= upper
+    return xr.DataArray(held.mean(axis=-1), dims=POINT_DIMS)
 
 
 def fit_alpha(master, film, contact, experiment):

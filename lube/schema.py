@@ -282,6 +282,18 @@ _EXPERIMENT = {
         EXPERIMENT_DIMS, "1", "share of time with metal contact in the simulated rig"
     ),
     "comparison_threshold": _number([], "ohm", "threshold that is compared with the simulation"),
+    **{
+        f"revolution_share{suffix}": _number(
+            [*EXPERIMENT_DIMS, "revolution"],
+            "1",
+            "share of time below the compared threshold, one revolution alone" + meaning,
+        )
+        for suffix, meaning in (
+            ("", ""),
+            ("_lower", ", lower limit of the 95 % interval"),
+            ("_upper", ", upper limit of the 95 % interval"),
+        )
+    },
     "record": _text(EXPERIMENT_DIMS, "record of the rig"),
     "duration": _number(EXPERIMENT_DIMS, "s", "duration of the record"),
     "sampling_interval": _number(EXPERIMENT_DIMS, "s", "time between samples"),
@@ -375,6 +387,11 @@ _GAUGE = {
         "strength tau0 / h_c of the boundary layer that explains the records",
     ),
     "study_layer_strength": _number([], "Pa m-1", "strength tau0 / h_c of the study's layer"),
+    "interval_coverage": _number(
+        POINT_DIMS,
+        "1",
+        "share of revolutions, each gauged as a record of its own, whose interval holds the film",
+    ),
     "fitted_points": _number(
         ["lubricant"], "1", "number of points with a record in pure rolling", kind="i"
     ),

@@ -12,8 +12,8 @@ MOST_LINES = 10
 """Lines that a log shows of a longer list."""
 
 
-def on_study_levels(experiment, levels):
-    """Contact shares at all levels of a study, NaN where the experiment has none.
+def on_study_levels(experiment, levels, share="contact_share"):
+    """Shares at all levels of a study, NaN where the experiment has none.
 
     Parameters
     ----------
@@ -21,19 +21,21 @@ def on_study_levels(experiment, levels):
         An ``experiment`` dataset.
     levels : xarray.Dataset
         Dataset of the study; the shares get its coordinates to the last bit.
+    share : str, optional
+        Which share: ``contact_share`` of whole records, or ``revolution_share``.
 
     Returns
     -------
     xarray.Dataset
-        ``contact_share`` and its limits over the dimensions of the experiment, with the origin
-        as a coordinate.
+        The share and its limits over the dimensions of the experiment, with the origin as a
+        coordinate.
 
     Raises
     ------
     DataError
         If a level of the experiment is not the study's.
     """
-    shares = experiment[[f"contact_share{limit}" for limit in LIMITS]]
+    shares = experiment[[f"{share}{limit}" for limit in LIMITS]]
     for name in set(EXPERIMENT_DIMS) & set(levels.dims):
         found = _study_levels(name, experiment[name].values, levels[name].values)
         shares = shares.assign_coords({name: found}).reindex({name: levels[name].values})

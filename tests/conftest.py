@@ -88,6 +88,10 @@ def make_experiment():
                 "record": time.astype(str),
                 "duration": time,
                 "sampling_interval": 1e-5 * time,
+            }
+            | {
+                f"revolution_share{name}": shares[name].expand_dims(revolution=2, axis=-1)
+                for name in shares
             },
             {"threshold": thresholds.values, "origin": "simulated"},
             {"refused": []},

@@ -65,6 +65,16 @@ def test_a_rig_without_inertia_or_noise_finds_the_truth(ideal):
     assert (known.contact_share <= known.contact_share_upper).all()
 
 
+def test_each_revolution_is_a_record_of_its_own(ideal):
+    known = at(ideal)
+    np.testing.assert_allclose(
+        known.revolution_share.mean("revolution"), known.contact_share, atol=1e-4
+    )
+    assert (known.revolution_share_lower <= known.revolution_share).all()
+    assert (known.revolution_share <= known.revolution_share_upper).all()
+    assert (known.revolution_share_upper >= 0.5 * known.contact_share_upper).all()
+
+
 def test_a_slow_rig_misses_contact_most_at_low_thresholds(rig_lines, table, study):
     slow = simulated_experiment(rig_lines, table, with_rig(study, bandwidth="2 kHz"))
     shares = slow.contact_share.sel(slide_to_roll_ratio=0.0)

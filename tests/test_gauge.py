@@ -297,3 +297,23 @@ def test_intervals_cover_what_is_common_to_all_points(
         truth = 1.0 if fit is fit_alpha else layer.shear_strength / layer.critical_thickness
         found.append(covered(fitted[f"{name}_lower"], fitted[f"{name}_upper"], truth))
     assert 0.88 <= np.mean(found) <= 0.995
+
+
+def test_coverage_counts_the_revolutions_whose_interval_holds_the_film(
+    ensembles, film, rigs, make_experiment
+):
+    master, contact = ensembles[0]
+    experiment = make_experiment(rigs[0], rigs[0] * 0.0, rigs[0] * 0.0 + 1.0)
+    held = gauge_records(master, film, contact, experiment).interval_coverage
+    known = rigs[0].isel(slide_to_roll_ratio=0, drop=True).notnull()
+    # Limits 0 and 1 leave every film possible.
+    assert (held.where(known, 1.0) == 1.0).all()
+    wrong = make_experiment(*(rigs[0] * 0.0 + share for share in (0.99, 0.98, 0.995)))
+    assert (gauge_records(master, film, contact, wrong).interval_coverage < 1.0).any()
+    unknown = experiment.assign(
+        {name: experiment[name] * np.nan for name in experiment if name.startswith("revolution")}
+    )
+    unknown = unknown.assign(
+        {name: unknown[name].assign_attrs(experiment[name].attrs) for name in unknown.data_vars}
+    )
+    assert gauge_records(master, film, contact, unknown).interval_coverage.isnull().all()

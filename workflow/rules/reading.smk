@@ -17,4 +17,4 @@ rule reading:
     message:
         "Reading: records of the rig beside other readers of the same files, a few minutes"
     shell:
-        "python {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{sys.executable:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"

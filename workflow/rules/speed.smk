@@ -17,4 +17,4 @@ rule speed:
     message:
         "Speed: the study's kernels beside plain versions of the same work, a few minutes"
     shell:
-        "python {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{sys.executable:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
