@@ -40,7 +40,7 @@ class Rig(StrictModel, validate_default=True):
     bandwidth: quantity("Hz", above=0.0) = Field(
         "50 kHz", description="-3 dB frequency of the first-order low-pass"
     )
-    sampling_rate: quantity("Hz", above=0.0) = Field("200 kHz", description="samples per second")
+    sampling_rate: quantity("Hz", above=0.0) = Field("100 kHz", description="samples per second")
     resolution: Annotated[StrictInt, Field(ge=2, le=32)] = Field(
         16, description="bits of the converter, over the range of both signs"
     )
@@ -48,7 +48,7 @@ class Rig(StrictModel, validate_default=True):
         "20 uV", description="rms noise at the amplifier's input"
     )
     revolutions: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
-        16, description="of each record, each with a roughness of its own"
+        12, description="of each record, each with a roughness of its own"
     )
 
     @property

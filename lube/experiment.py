@@ -150,22 +150,22 @@ def simulated_experiment(lines, film, study):
     interval = 1.0 / rig.sampling_rate
     counters = [_counter(study.experiment, rig, "voltage", interval) for _ in places]
     touched = np.zeros((len(places), 2))  # steps in contact, and all
+    compared = study.experiment.model_copy(update={"thresholds": (study.experiment.threshold,)})
     alone = [[] for _ in places]  # each revolution as a record of its own
     for count, realisation in enumerate(lines["realisation"].values.tolist(), start=1):
         for number, contact in enumerate(simulated.contacts(places, realisation, slip)):
             noise_of = (realisation, number + 1)
             voltage = simulated.voltage(contact, places[number], slip, noise_of, rig)
             counters[number].add(voltage)
-            revolution_alone = _counter(study.experiment, rig, "voltage", interval)
-            revolution_alone.add(voltage)
-            alone[number].append(_shares(places[number], revolution_alone, interval, q_min))
+            turn = _counter(compared, rig, "voltage", interval)
+            turn.add(voltage)
+            alone[number].append(np.ravel(_shares(places[number], turn, interval, q_min)))
             touched[number] += np.count_nonzero(contact), contact.size
         log.info("simulated rig: revolution %d of %d", count, lines.sizes["realisation"])
-    compared = study.experiment.thresholds.index(study.experiment.threshold)
     rows = [
         _row(place, counter, interval, "simulated", q_min)
         | {"true_contact_share": steps[0] / steps[1]}
-        | dict(zip(REVOLUTIONS, np.array(shares)[..., compared].T, strict=True))
+        | dict(zip(REVOLUTIONS, np.transpose(shares), strict=True))
         for place, counter, steps, shares in zip(places, counters, touched, alone, strict=True)
     ]
     return _experiment(rows, film, study, "simulated", [])
