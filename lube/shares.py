@@ -36,7 +36,7 @@ def on_study_levels(experiment, levels, share="contact_share"):
         If a level of the experiment is not the study's.
     """
     shares = experiment[[f"{share}{limit}" for limit in LIMITS]]
-    for name in set(EXPERIMENT_DIMS) & set(levels.dims):
+    for name in filter(levels.dims.__contains__, EXPERIMENT_DIMS):
         found = _study_levels(name, experiment[name].values, levels[name].values)
         shares = shares.assign_coords({name: found}).reindex({name: levels[name].values})
     return shares.assign_coords(origin=experiment["origin"].item())

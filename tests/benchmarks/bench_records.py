@@ -149,16 +149,16 @@ def alone(work, *arguments):
         return pool.submit(work, *arguments).result()
 
 
-def measure_ways(names, folder):
+def measure_ways(names, folder, turns):
     """Shortest time and largest memory of each way, the ways taking turns."""
-    turns = np.array([[alone(run_way, name, folder) for name in names] for _ in range(TURNS)])
-    times, memories = turns[..., 0].min(axis=0), turns[..., 1].max(axis=0)
+    measured = np.array([[alone(run_way, name, folder) for name in names] for _ in range(turns)])
+    times, memories = measured[..., 0].min(axis=0), measured[..., 1].max(axis=0)
     for name, seconds, memory in zip(names, times, memories, strict=True):
         print(f"{name:<24s} {seconds:7.3f} s, at most {memory / 2**20:5.0f} MiB", flush=True)
     return times, memories
 
 
-def measure(samples, rows, folder):
+def measure(samples, rows, turns, folder):
     """Measure everything, as the ``reading`` file of `lube.schema`."""
     need = samples * BYTES_PER_SAMPLE + rows * BYTES_PER_ROW
     if shutil.disk_usage(folder).free < need:
@@ -169,9 +169,9 @@ def measure(samples, rows, folder):
     alone(write_tdms, folder / "record.tdms", samples)
     alone(write_csv, folder / "record.csv", rows)
     print(f"{samples:g} samples, {len(LIMITS)} thresholds, one core:")
-    record_times, record_memories = measure_ways(list(RECORD_WAYS), folder)
+    record_times, record_memories = measure_ways(list(RECORD_WAYS), folder, turns)
     print(f"CSV of {rows:g} rows:")
-    table_times, table_memories = measure_ways(list(TABLE_WAYS), folder)
+    table_times, table_memories = measure_ways(list(TABLE_WAYS), folder, turns)
     dataset = xr.Dataset(
         {
             "record_samples": samples,
@@ -191,7 +191,8 @@ def measure(samples, rows, folder):
 if __name__ == "__main__":
     study_file, *output = sys.argv[1:] or ["workflow/config/paper.yaml"]
     the_study = load_study(study_file)
-    sizes = (SMOKE_SAMPLES, SMOKE_ROWS) if the_study.name == "smoke" else (SAMPLES, ROWS)
+    toy = the_study.name == "smoke"
+    sizes = (SMOKE_SAMPLES, SMOKE_ROWS, 1) if toy else (SAMPLES, ROWS, TURNS)
     beside = Path(output[0]).parent if output else None
     with tempfile.TemporaryDirectory(dir=beside) as scratch:
         reading = measure(*sizes, Path(scratch))
