@@ -94,6 +94,30 @@ def test_a_study_unlike_the_papers_goes_through_all_notebooks(spare):
         assert warnings_in(notebook) == []
 
 
+def test_measured_records_take_the_simulated_rigs_place(spare):
+    rows = [f"{1e-4 * number:.4f},{5 if number % 500 < 50 else 5e4}" for number in range(5000)]
+    record = "\n".join(["time [s],resistance [ohm]", *rows])
+    (spare / "run.csv").write_text(record, encoding="utf-8")
+    manifest = (
+        "file,force [N],speed [rpm],temperature [degC]\nrun.csv,800,100,40\nno.csv,1600,100,40"
+    )
+    (spare / "records.csv").write_text(manifest, encoding="utf-8")
+    study = spare.with_values(experiment__manifest="records.csv")
+    planned = spare.planned(study)
+    assert {"experiment.nc", "comparison.nc", "gauge.nc"} <= planned
+    assert not {"contact.nc", "trace.nc", "film.nc"} & planned
+    said = spare.run("results/smoke/comparison.nc", study=study)
+    assert "Refused: records.csv: line 3: file: got 'no.csv'" in said
+    experiment = load(spare.results / "experiment.nc", "experiment")
+    compared = load(spare.results / "comparison.nc", "comparison")
+    assert experiment.origin.item() == compared.origin.item() == "measured"
+    place = {"slide_to_roll_ratio": 0.0, "force": 800, "speed": 100, "temperature": 40}
+    assert compared.measured_share.sel(place).item() == 0.1
+    assert int(compared.measured_share.notnull().sum()) == 1
+    spare.append("run.csv", "\n0.5,5")
+    assert "experiment.nc" in spare.planned(study)  # a record's change is seen
+
+
 def test_datasets_say_which_study_and_version_made_them(smoke):
     for kind in DATASETS:
         attributes = load(smoke.results / f"{kind}.nc", kind).attrs
