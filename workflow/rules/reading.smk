@@ -14,7 +14,8 @@ rule reading:
     params:
         study=digest(STUDY.origin("reading")),
         file=config["study_file"],
+        python=sys.executable,
     message:
         "Reading: records of the rig beside other readers of the same files, a few minutes"
     shell:
-        "{sys.executable:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{params.python:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"

@@ -14,7 +14,8 @@ rule speed:
     params:
         study=digest(STUDY.origin("speed")),
         file=config["study_file"],
+        python=sys.executable,
     message:
         "Speed: the study's kernels beside plain versions of the same work, a few minutes"
     shell:
-        "{sys.executable:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{params.python:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
