@@ -95,7 +95,8 @@ def block_maxima(line, reach):
     done = 0
     while done < highest.size:
         stretch = min(line.size, highest.size - done)
-        highest[done : done + stretch] = line[:stretch]
+        for i in range(stretch):
+            highest[done + i] = line[i]
         done += stretch
     known = 1  # points that each maximum is taken of so far
     while known < BLOCK:

@@ -201,11 +201,20 @@ def _steps_of(lengths, point, begin, end):
 
 
 @kernel
-def _run_strips(line_1, line_2, speed_ratios, steps, films, half_windows, factor, lengths):
+def _run_strips(
+    line_1,
+    line_2,
+    speed_ratios,
+    steps,
+    films,
+    half_windows,
+    factor,
+    thinnest_first,
+    margin,
+    lengths,
+):
     """Statistics as of `strip_statistics`; fills the lengths of `strip_trace` if wanted."""
     statistics = np.zeros((films.size, 4), np.int64)
-    thinnest_first = np.argsort(films, kind="mergesort")
-    margin = half_windows.max()
     buffer = np.empty(min(steps, LONGEST_STRIP) + 2 * margin, np.int32)
     marks = np.empty(buffer.size - 2 * margin, np.uint8)
     capacity = buffer.size // 2 + 1
@@ -239,7 +248,6 @@ def _run_strips(line_1, line_2, speed_ratios, steps, films, half_windows, factor
     return statistics
 
 
-@kernel
 def strip_statistics(line_1, line_2, speed_ratios, steps, films, half_windows, factor):
     """Contact statistics of many operating points at any slip.
 
@@ -263,10 +271,11 @@ def strip_statistics(line_1, line_2, speed_ratios, steps, films, half_windows, f
     numpy.ndarray
         Shape (P, 4), int64, as from `scan_statistics`.
     """
-    return _run_strips(line_1, line_2, speed_ratios, steps, films, half_windows, factor, None)
+    motion = line_1, line_2, speed_ratios, steps
+    plan = _plan(films, half_windows)
+    return _run_strips(*motion, films, half_windows, factor, *plan, None)
 
 
-@kernel
 def strip_trace(line_1, line_2, speed_ratios, steps, films, half_windows, factor):
     """Broken points at every time step of many operating points, at any slip.
 
@@ -283,5 +292,15 @@ def strip_trace(line_1, line_2, speed_ratios, steps, films, half_windows, factor
         Shape (P, T), int32: points of broken segments in the window.
     """
     lengths = np.zeros((films.size, steps), np.int32)
-    _run_strips(line_1, line_2, speed_ratios, steps, films, half_windows, factor, lengths)
+    motion = line_1, line_2, speed_ratios, steps
+    plan = _plan(films, half_windows)
+    _run_strips(*motion, films, half_windows, factor, *plan, lengths)
     return lengths
+
+
+def _plan(films, half_windows):
+    """Operating points by rising film, and the margin that the widest window needs.
+
+    Left to NumPy: to compile a sort takes longer than to compile the kernel.
+    """
+    return np.argsort(films, kind="stable"), int(half_windows.max())
