@@ -5,10 +5,7 @@ same bytes.
 """
 
 import contextlib
-import hashlib
-import json
 import logging
-from importlib.metadata import version
 from pathlib import Path
 
 import netCDF4  # noqa: F401  (named here because xarray would report its absence late)
@@ -17,14 +14,13 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.files import written_whole
+from lube.provenance import check_config, global_attributes
 from lube.schema import check
 
 log = logging.getLogger(__name__)
 
-CONVENTIONS = "CF-1.11, ACDD-1.3"
 
-
-def save(dataset, path, kind, study, compress=True):
+def save(dataset, path, kind, study, inputs=(), compress=True):
     """Save a dataset, refusing one that does not fit its kind.
 
     The file is written beside its final place, forced to disk, and renamed: a reader finds
@@ -40,6 +36,8 @@ def save(dataset, path, kind, study, compress=True):
         A key of `lube.schema.FILES`.
     study : Study
         The study it belongs to; the values that the result follows from are written along.
+    inputs : iterable of str or Path, optional
+        Files that the result was made from; their fingerprints are written along.
     compress : bool, optional
         False for files that live for minutes only.
 
@@ -50,7 +48,7 @@ def save(dataset, path, kind, study, compress=True):
         not writable, the disk is full. An older file at `path` then stays as it was.
     """
     path = Path(path)
-    dataset = check(dataset, kind, path).assign_attrs(_origin(study, kind))
+    dataset = check(dataset, kind, path).assign_attrs(global_attributes(study, kind, inputs))
     with written_whole(path) as part:
         dataset.to_netcdf(
             part, engine="netcdf4", format="NETCDF4", encoding=_encoding(dataset, compress)
@@ -58,7 +56,7 @@ def save(dataset, path, kind, study, compress=True):
     log.info("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
 
 
-def load(path, kind):
+def load(path, kind, study=None):
     """Load a dataset of a known kind into memory.
 
     Parameters
@@ -67,6 +65,9 @@ def load(path, kind):
         File to read.
     kind : str
         A key of `lube.schema.FILES`.
+    study : Study, optional
+        The study that the file must belong to, with all values it follows from; any if not
+        given.
 
     Returns
     -------
@@ -76,22 +77,21 @@ def load(path, kind):
     Raises
     ------
     DataError
-        If the file is missing, truncated, damaged, or not of this kind; its path is named.
+        If the file is missing, truncated, damaged, not of this kind, or follows from other
+        values than the study's; its path is named.
     """
-    with opened(path, kind, raw=False) as dataset:
+    with opened(path, kind, study, raw=False) as dataset:
         return dataset.load()
 
 
 @contextlib.contextmanager
-def opened(path, kind, raw=True):
+def opened(path, kind, study=None, raw=True):
     """Open a dataset of a known kind, whose values are read as they are used.
 
     Parameters
     ----------
-    path : str or Path
-        File to read.
-    kind : str
-        A key of `lube.schema.FILES`.
+    path, kind, study
+        As in `load`.
     raw : bool, optional
         Leave packed heights as whole steps.
 
@@ -110,26 +110,15 @@ def opened(path, kind, raw=True):
         raise DataError(f"{path}: no such file, need a {kind} dataset")
     try:
         with xr.open_dataset(path, engine="netcdf4", mask_and_scale=not raw) as dataset:
-            yield check(dataset, kind, path)
+            check(dataset, kind, path)
+            if study is not None:
+                check_config(dataset, study, kind, path)
+            yield dataset
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise DataError(
             f"{path}: not a whole NetCDF file, truncated, damaged or foreign ({reason})"
         ) from error
-
-
-def _origin(study, kind):
-    """Global attributes that tell where a file comes from."""
-    stage = kind.removesuffix("_batch")
-    inputs = json.dumps(study.origin(stage), sort_keys=True)
-    return {
-        "Conventions": CONVENTIONS,
-        "title": f"Mixed lubrication study {study.name}: {stage}",
-        "study": study.name,
-        "study_inputs": inputs,
-        "study_inputs_sha256": hashlib.sha256(inputs.encode()).hexdigest(),
-        "source": f"lube {version('lube')}",
-    }
 
 
 def _encoding(dataset, compress):
@@ -139,6 +128,9 @@ def _encoding(dataset, compress):
         # CF forbids fill values on coordinates, and no other variable has gaps but those
         # where NaN says so itself.
         encoding[name] = {"_FillValue": None}
+        if variable.dtype.kind in "UOT":
+            # As characters, like all older software: strings of no fixed length get no checksum.
+            encoding[name] |= {"dtype": "S1", "fletcher32": True}
         if variable.dtype.kind in "fib" and variable.ndim > 0:
             encoding[name] |= {
                 "zlib": compress,

@@ -8,9 +8,11 @@ import io
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from lube.files import written_whole
+from lube.provenance import stamp
 from lube.schema import COORDINATES
 from lube.units import convert
 
@@ -63,6 +65,9 @@ _AXIS_UNITS = {
     "rpm": "r/min",
     "ohm": "Ω",
 }
+
+
+_STAMP_STRIP = 0.12  # inches
 
 
 def use_style():
@@ -258,26 +263,42 @@ def interval_bars(axes, x, mean, lower, upper, **style):
     )
 
 
-def save_figure(figure, stem):
-    """Save a figure as PNG and PDF, the same bytes each time.
+def save_figure(figure, stem, *shown):
+    """Save a figure as PNG and PDF, the same bytes each time, with a stamp of its origin.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        Figure to save.
+        Figure to save; in constrained layout, as `use_style` sets it, the stamp gets a strip of
+        its own.
     stem : str or Path
         Path without suffix.
+    *shown : xarray.Dataset
+        What the figure shows, as loaded, or selections of it.
 
     Raises
     ------
     DataError
-        If a file cannot be written.
+        If the datasets are not of one study, or a file cannot be written.
     """
+    told = stamp(shown)
+    _write_below(figure, told)
     # No clock time, no version in the files.
-    unmarked = {"png": {"Software": None}, "pdf": {"CreationDate": None, "Producer": None}}
+    unmarked = {
+        "png": {"Software": None, "Description": told},
+        "pdf": {"CreationDate": None, "Producer": None, "Subject": told},
+    }
     for suffix, metadata in unmarked.items():
         # Through memory: a full disk in the midst of it ends in Matplotlib's own confusion.
         picture = io.BytesIO()
         figure.savefig(picture, format=suffix, metadata=metadata)
         with written_whole(f"{stem}.{suffix}") as part:
             part.write_bytes(picture.getbuffer())
+
+
+def _write_below(figure, line):
+    """Write a small line into a strip of its own below a figure."""
+    strip = _STAMP_STRIP / figure.get_figheight()
+    if isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
+        figure.get_layout_engine().set(rect=(0.0, strip, 1.0, 1.0 - strip))
+    figure.text(0.006, 0.25 * strip, line, fontsize=5, color="#8A8A8A", va="bottom")

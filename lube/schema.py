@@ -38,12 +38,15 @@ class Variable:
     dims : tuple of str
         Its dimensions, in order.
     units : str or None
-        Unit in UDUNITS notation, ``"1"`` for a pure number, None for text.
+        Unit in UDUNITS notation, ``"1"`` for a pure number or a flag, None for text.
     long_name : str
         What it is, in words fit for an axis.
     kind : str
         Allowed NumPy kinds: ``f`` float64, ``i`` integer, ``b`` true/false (stored as int8),
         ``U`` text.
+    content : str
+        What it is by ACDD's and ISO 19115-1's words for ``coverage_content_type``; ``record``
+        stands for what the rig's records tell, measured or simulated.
     attributes : dict
         Further CF attributes.
     """
@@ -52,6 +55,7 @@ class Variable:
     units: str | None
     long_name: str
     kind: str = "f"
+    content: str = "modelResult"
     attributes: dict = field(default_factory=dict)
 
 
@@ -59,8 +63,38 @@ def _number(dims, units, long_name, **more):
     return Variable(tuple(dims), units, long_name, **more)
 
 
-def _text(dims, long_name, **more):
-    return Variable(tuple(dims), None, long_name, kind="U", **more)
+def _text(dims, long_name):
+    return Variable(tuple(dims), None, long_name, kind="U", content="auxiliaryInformation")
+
+
+def _flag(dims, long_name, meanings, kind="b"):
+    """Describe a variable of few whole values, each with its meaning."""
+    attributes = {
+        "flag_values": np.arange(len(meanings), dtype="int8"),
+        "flag_meanings": " ".join(meanings),
+    }
+    return Variable(tuple(dims), "1", long_name, kind, "qualityInformation", attributes)
+
+
+def _limited(name, dims, units, long_name, value="", meaning="", **more):
+    """Describe a value, whose name may end in `value`, and the limits of its 95 % interval."""
+    return {
+        name + value: _number(dims, units, long_name + meaning, **more),
+        **{
+            f"{name}_{side}": _number(
+                dims,
+                units,
+                f"{long_name}, {side} limit of the 95 % interval",
+                content="qualityInformation",
+            )
+            for side in ("lower", "upper")
+        },
+    }
+
+
+# What is a mean says of what. A realisation is CF's "realization".
+_OVER_TIME = {"cell_methods": "time: mean"}
+_OVER_ALL = {"cell_methods": "time: mean realization: mean"}
 
 
 COORDINATES = {
@@ -129,14 +163,23 @@ _LUBRICANT = {
     "fitted_kinematic_viscosity": _number(
         ["lubricant", "viscosity_law", "fit_temperature"], "m2 s-1", "fitted kinematic viscosity"
     ),
-    "data_temperature": _number(["lubricant", "data_point"], "degC", "temperature of the datum"),
+    "data_temperature": _number(
+        ["lubricant", "data_point"],
+        "degC",
+        "temperature of the datum",
+        content="referenceInformation",
+    ),
     "data_kinematic_viscosity": _number(
-        ["lubricant", "data_point"], "m2 s-1", "kinematic viscosity of the datum"
+        ["lubricant", "data_point"],
+        "m2 s-1",
+        "kinematic viscosity of the datum",
+        content="referenceInformation",
     ),
     "fit_residual": _number(
         ["lubricant", "viscosity_law", "data_point"],
         "1",
         "relative residual, fit over datum less one",
+        content="qualityInformation",
     ),
 }
 
@@ -151,25 +194,13 @@ _FILM = {
     "entrainment_speed": _number(["speed"], "m s-1", "entrainment speed"),
     "moes_load": _number(["lubricant", "temperature", "speed", "force"], "1", "Moes load number M"),
     "moes_material": _number(["lubricant", "temperature", "speed"], "1", "Moes material number L"),
-    "regime": _number(
-        ["lubricant", "temperature", "speed", "force"],
-        None,
-        "regime of lubrication",
-        kind="i",
-        attributes={
-            "flag_values": np.arange(len(REGIMES), dtype="int8"),
-            "flag_meanings": " ".join(REGIMES),
-        },
+    "regime": _flag(
+        ["lubricant", "temperature", "speed", "force"], "regime of lubrication", REGIMES, kind="i"
     ),
-    "in_validity_range": _number(
+    "in_validity_range": _flag(
         OPERATING_DIMS,
-        None,
         "whether the film formula is within its range of validity",
-        kind="b",
-        attributes={
-            "flag_values": np.array([0, 1], dtype="int8"),
-            "flag_meanings": "outside inside",
-        },
+        ("outside", "inside"),
     ),
     "inlet_shear_heating_factor": _number(
         ["lubricant", "temperature", "speed"],
@@ -198,8 +229,8 @@ _ROUGHNESS_BATCH = {
 }
 
 
-def _mean_over_time(dims, units, long_name):
-    return _number(dims, units, long_name, attributes={"cell_methods": "time: mean"})
+def _mean_over_time(dims, units, long_name, **more):
+    return _number(dims, units, long_name, attributes=_OVER_TIME, **more)
 
 
 _RUN_DIMS = ("realisation", *CONTACT_DIMS)
@@ -225,15 +256,19 @@ _CONTACT_RUN = {
 
 
 def _intervals(dims):
-    return {
-        f"{name}_{suffix}": _number(dims, "1", long_name + meaning)
-        for name, long_name in _PROBABILITIES.items()
-        for suffix, meaning in (
-            ("mean", ", mean over realisations"),
-            ("lower", ", lower limit of the 95 % interval"),
-            ("upper", ", upper limit of the 95 % interval"),
+    limited = (
+        _limited(
+            name,
+            dims,
+            "1",
+            long_name,
+            "_mean",
+            ", mean over realisations",
+            attributes=_OVER_ALL,
         )
-    }
+        for name, long_name in _PROBABILITIES.items()
+    )
+    return {name: variable for each in limited for name, variable in each.items()}
 
 
 _MASTER_RUN = {
@@ -271,29 +306,26 @@ _TRACE = {
 _SHARE_DIMS = (*EXPERIMENT_DIMS, "threshold")
 _EXPERIMENT = {
     "origin": COORDINATES["origin"],
-    "contact_share": _number(_SHARE_DIMS, "1", "share of time with resistance below the threshold"),
-    "contact_share_lower": _number(
-        _SHARE_DIMS, "1", "share of time below the threshold, lower limit of the 95 % interval"
+    **_limited(
+        "contact_share",
+        _SHARE_DIMS,
+        "1",
+        "share of time with resistance below the threshold",
+        content="record",
+        attributes=_OVER_TIME,
     ),
-    "contact_share_upper": _number(
-        _SHARE_DIMS, "1", "share of time below the threshold, upper limit of the 95 % interval"
-    ),
-    "true_contact_share": _number(
+    "true_contact_share": _mean_over_time(
         EXPERIMENT_DIMS, "1", "share of time with metal contact in the simulated rig"
     ),
     "comparison_threshold": _number([], "ohm", "threshold that is compared with the simulation"),
-    **{
-        f"revolution_share{suffix}": _number(
-            [*EXPERIMENT_DIMS, "revolution"],
-            "1",
-            "share of time below the compared threshold, one revolution alone" + meaning,
-        )
-        for suffix, meaning in (
-            ("", ""),
-            ("_lower", ", lower limit of the 95 % interval"),
-            ("_upper", ", upper limit of the 95 % interval"),
-        )
-    },
+    **_limited(
+        "revolution_share",
+        [*EXPERIMENT_DIMS, "revolution"],
+        "1",
+        "share of time below the compared threshold, one revolution alone",
+        content="record",
+        attributes=_OVER_TIME,
+    ),
     "record": _text(EXPERIMENT_DIMS, "record of the rig"),
     "duration": _number(EXPERIMENT_DIMS, "s", "duration of the record"),
     "sampling_interval": _number(EXPERIMENT_DIMS, "s", "time between samples"),
@@ -304,46 +336,43 @@ _RIG = {
     **{name: _AT_POINTS[name] for name in EXPERIMENT_DIMS},
     "voltage": _number(["operating_point", "rig_time"], "V", "voltage that the rig logs"),
     "resistance": _number(["operating_point", "rig_time"], "ohm", "resistance between the rollers"),
-    "contact_share": _number(
+    "contact_share": _mean_over_time(
         ["operating_point", "bandwidth", "threshold"],
         "1",
         "share of time with resistance below the threshold",
     ),
-    "true_contact_share": _number(["operating_point"], "1", "share of time with metal contact"),
+    "true_contact_share": _mean_over_time(
+        ["operating_point"], "1", "share of time with metal contact"
+    ),
     "rig_bandwidth": _number([], "Hz", "bandwidth of the study's rig"),
     "rig_sampling_rate": _number([], "s-1", "sampling rate"),
     "rig_bias_voltage": _number([], "V", "bias voltage"),
 }
 
 
-def _limited(name, dims, units, long_name):
-    """Describe a value and the limits of its 95 % interval."""
-    meanings = {
-        "": "",
-        "_lower": ", lower limit of the 95 % interval",
-        "_upper": ", upper limit of the 95 % interval",
-    }
-    return {
-        name + suffix: _number(dims, units, long_name + meaning)
-        for suffix, meaning in meanings.items()
-    }
-
-
 _AGREEMENT_DIMS = ("film_formula", "threshold")
 _COMPARISON = {
     "origin": COORDINATES["origin"],
     "comparison_threshold": _EXPERIMENT["comparison_threshold"],
-    **_limited("simulated_probability", COMPARISON_DIMS, "1", "simulated breakthrough probability"),
-    **_limited("measured_share", EXPERIMENT_DIMS, "1", "share of time below the threshold"),
-    "intervals_overlap": _number(
+    **_limited(
+        "simulated_probability",
         COMPARISON_DIMS,
-        None,
+        "1",
+        "simulated breakthrough probability",
+        attributes=_OVER_ALL,
+    ),
+    **_limited(
+        "measured_share",
+        EXPERIMENT_DIMS,
+        "1",
+        "share of time below the threshold",
+        content="record",
+        attributes=_OVER_TIME,
+    ),
+    "intervals_overlap": _flag(
+        COMPARISON_DIMS,
         "whether the intervals of simulation and record overlap",
-        kind="b",
-        attributes={
-            "flag_values": np.array([0, 1], dtype="int8"),
-            "flag_meanings": "apart overlapping",
-        },
+        ("apart", "overlapping"),
     ),
     "bias": _number(_AGREEMENT_DIMS, "1", "mean of simulated probability less measured share"),
     "rms_difference": _number(_AGREEMENT_DIMS, "1", "rms difference of the probabilities"),
@@ -443,6 +472,30 @@ FILES = {
 }
 """Variables of each kind of file, by the kind's name."""
 
+SUMMARIES = {
+    "lubricant": "Viscosity, density and pressure-viscosity coefficient of each lubricant at each "
+    "temperature; the fitted viscosity laws and their residuals.",
+    "film": "Film thickness, lambda ratio, Hertz contact, Moes numbers, regime and validity, for "
+    "every film formula.",
+    "roughness": "The kept roughness lines, with their moments beside those of the spectrum.",
+    "contact": "The answer: probabilities, contact length and contact force of every realisation, "
+    "and means with intervals.",
+    "master": "The same probabilities over lambda ratio and contact width, whatever is behind "
+    "them: the master curve; and, coarser, for weaker and stronger layers.",
+    "trace": "Contact length and resistance at every time step of one revolution, at the points "
+    "the study names.",
+    "experiment": "Share of time that the rig's resistance is below a threshold, for several "
+    "thresholds, with intervals; its coordinate `origin` says whether the rig was measured or "
+    "simulated.",
+    "rig": "What a simulated rig logs at those points, and what narrower bands would find.",
+    "comparison": "Simulation against experiment, point by point, and figures of their agreement.",
+    "gauge": "The other way round: the film, the pressure-viscosity coefficient and the boundary "
+    "layer that would explain the records.",
+    "speed": "Measured times of the study's kernels, each beside a plain version of the same work.",
+    "reading": "Measured times of reading long records, beside other readers of the same files.",
+}
+"""What is in each kind of file, in a sentence."""
+
 _LINE_ATTRIBUTES = ("q_min", "q_max", "spacing", "points", "height_step")
 _RUN_ATTRIBUTES = ("travel", "longest_wavelength")
 ATTRIBUTES = {
@@ -491,8 +544,19 @@ def label(dataset, kind):
         attributes = {"long_name": expected.long_name, **expected.attributes}
         if expected.units is not None:
             attributes["units"] = expected.units
+        attributes["coverage_content_type"] = _content(name, expected, labelled)
         labelled[name].attrs = attributes
     return check(labelled, kind)
+
+
+def _content(name, expected, dataset):
+    """ACDD's word for what a variable holds."""
+    if name in COORDINATES:
+        return "coordinate"
+    if expected.content == "record":
+        measured = dataset["origin"].item() == "measured"
+        return "physicalMeasurement" if measured else "modelResult"
+    return expected.content
 
 
 def check(dataset, kind, where="dataset"):

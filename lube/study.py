@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from lube.about import About
 from lube.apparatus import RIG_REALISATIONS, Experiment, Rig
 from lube.errors import LubeError, StudyError
 from lube.fields import (
@@ -97,6 +98,7 @@ class Study(StrictModel):
     """A whole study, checked and in SI units (but the rig's rpm and degC)."""
 
     name: Slug = Field(description="results go to results/<name>")
+    about: About = Field(default_factory=About, description="whose results they are")
     seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)] = Field(
         description="seed of all randomness"
     )

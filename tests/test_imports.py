@@ -25,13 +25,14 @@ LAYERS = [
         *("curves", "intervals", "schema", "kernels"),
     },
     {"fields", "files", "fluids", "steps", "rig", "evaluation", "shares", "signals", "tables"},
-    {"apparatus", "records", "surfaces", "manifest", "text_signals", "binary_signals"},
+    {"about", "apparatus", "records", "surfaces", "manifest", "text_signals", "binary_signals"},
     {"study", "recordings"},
     {
         *("lubricant", "film", "roughness", "contact", "trace", "ensemble"),
         *("experiment", "comparison", "gauge"),
     },
-    {"io", "plots", "notebooks", "jobs", "reference"},
+    {"provenance", "notebooks", "jobs", "reference"},
+    {"io", "plots"},
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
 FOUNDATIONS = {

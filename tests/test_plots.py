@@ -4,9 +4,11 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from PIL import Image
 
 from lube import plots
 from lube.errors import DataError
+from lube.provenance import global_attributes, stamp
 
 matplotlib.use("Agg")
 plt = plots.plt
@@ -75,21 +77,53 @@ def test_panels_are_lettered_before_their_titles():
     plt.close(figure)
 
 
-def test_a_figure_is_saved_as_the_same_bytes_each_time(tmp_path):
+@pytest.fixture(scope="module")
+def shown(study):
+    """An empty dataset with the origin of a film table."""
+    return xr.Dataset(attrs=global_attributes(study, "film"))
+
+
+def test_a_figure_is_saved_as_the_same_bytes_each_time(tmp_path, shown):
     plots.use_style()
     for name in ("one", "two"):
         figure, axes = plt.subplots()
         axes.plot([1, 2], [1, 4])
-        plots.save_figure(figure, tmp_path / name)
+        plots.save_figure(figure, tmp_path / name, shown)
         plt.close(figure)
     for suffix in ("png", "pdf"):
         one, two = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("one", "two"))
         assert one == two
 
 
-def test_a_figure_that_cannot_be_written_is_told_and_leaves_the_old_one(tmp_path, monkeypatch):
+def test_a_figure_bears_the_stamp_of_what_it_shows_below_everything_else(tmp_path, shown):
+    plots.use_style()
+    figure, axes = plt.subplots()
+    axes.set_xlabel("Force (N)")
+    plots.save_figure(figure, tmp_path / "figure", shown)
+    (written,) = figure.texts
+    assert written.get_text() == stamp([shown])
+    figure.canvas.draw()
+    label, line = axes.xaxis.label.get_window_extent(), written.get_window_extent()
+    assert line.y1 <= label.y0
+    assert line.y0 >= 0
+    plt.close(figure)
+    with Image.open(tmp_path / "figure.png") as picture:
+        assert picture.text["Description"] == stamp([shown])
+
+
+def test_a_figure_of_no_dataset_is_refused(tmp_path):
     figure, _ = plt.subplots()
-    plots.save_figure(figure, tmp_path / "figure")
+    with pytest.raises(DataError, match="a figure needs the datasets that it shows"):
+        plots.save_figure(figure, tmp_path / "figure")
+    plt.close(figure)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_figure_that_cannot_be_written_is_told_and_leaves_the_old_one(
+    tmp_path, shown, monkeypatch
+):
+    figure, _ = plt.subplots()
+    plots.save_figure(figure, tmp_path / "figure", shown)
     before = (tmp_path / "figure.png").read_bytes()
 
     def fail(*arguments):
@@ -97,7 +131,7 @@ def test_a_figure_that_cannot_be_written_is_told_and_leaves_the_old_one(tmp_path
 
     monkeypatch.setattr("os.replace", fail)
     with pytest.raises(DataError, match=r"figure.png: cannot be written: No space left"):
-        plots.save_figure(figure, tmp_path / "figure")
+        plots.save_figure(figure, tmp_path / "figure", shown)
     plt.close(figure)
     assert (tmp_path / "figure.png").read_bytes() == before
     assert len(list(tmp_path.iterdir())) == 2

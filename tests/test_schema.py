@@ -64,8 +64,7 @@ def test_label_replaces_what_arithmetic_left_and_keeps_the_values(kind):
 def test_every_variable_is_described(row):
     assert row.long_name
     assert row.kind in "fibU"
-    # A number without unit is a text, a flag, or "1".
-    assert (row.units is None) == (row.kind == "U" or "flag_meanings" in row.attributes)
+    assert (row.units is None) == (row.kind == "U")
 
 
 @pytest.mark.parametrize(

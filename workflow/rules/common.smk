@@ -62,9 +62,10 @@ def digest(content):
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def stage_inputs(stage):
-    """Fingerprint of the study's values that a stage depends on."""
-    return digest(STUDY.stage_inputs(stage))
+def stage_inputs(*stages):
+    """Fingerprint of the study's values that a file depends on, and of what it says of itself."""
+    values = [STUDY.stage_inputs(stage) for stage in stages]
+    return digest([*values, STUDY.about.in_files])
 
 
 def imported_modules(code):

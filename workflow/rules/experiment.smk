@@ -9,7 +9,7 @@ rule rig:
     benchmark:
         result("benchmarks/rig.tsv")
     params:
-        study=digest([STUDY.stage_inputs(stage) for stage in ("experiment", "rig")]),
+        study=stage_inputs("experiment", "rig"),
     message:
         "Rig: voltage and resistance at the trace points, and what narrower bands would show"
     script:

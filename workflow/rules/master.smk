@@ -22,6 +22,7 @@ rule master_batch:
 
 rule master:
     input:
+        film=result("film.nc"),
         batches=[result(f"batches/master_{first}.nc") for first in STUDY.batches],
         sources=script_sources("master"),
     output:

@@ -7,5 +7,6 @@ from lube.study import load_study
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
-contact, experiment = (load(snakemake.input[kind], kind) for kind in ("contact", "experiment"))
-save(compare(contact, experiment), snakemake.output[0], "comparison", study)
+inputs = {kind: snakemake.input[kind] for kind in ("contact", "experiment")}
+contact, experiment = (load(path, kind, study) for kind, path in inputs.items())
+save(compare(contact, experiment), snakemake.output[0], "comparison", study, inputs.values())

@@ -7,6 +7,7 @@ from lube.study import load_study
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
-batches = [load(path, "contact_batch") for path in snakemake.input.batches]
-contact = gather(batches, load(snakemake.input.film, "film"))
-save(contact, snakemake.output[0], "contact", study)
+batches = [load(path, "contact_batch", study) for path in snakemake.input.batches]
+contact = gather(batches, load(snakemake.input.film, "film", study))
+# The batches are left out: how many there are changes nothing.
+save(contact, snakemake.output[0], "contact", study, [snakemake.input.film])

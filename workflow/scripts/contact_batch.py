@@ -7,8 +7,8 @@ from lube.study import load_study
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
-film = load(snakemake.input.film, "film")
-with opened(snakemake.input.lines, "roughness_batch") as lines:
+film = load(snakemake.input.film, "film", study)
+with opened(snakemake.input.lines, "roughness_batch", study) as lines:
     ratios = study.operating_grid.slide_to_roll_ratio
     run = contact_statistics(lines, film, study.boundary_layer, ratios, study.revolutions)
-save(run, snakemake.output[0], "contact_batch", study)
+save(run, snakemake.output[0], "contact_batch", study, [snakemake.input.film])

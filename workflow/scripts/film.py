@@ -8,6 +8,6 @@ from lube.study import load_study
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
 grid = study.operating_grid
-lubricant = load(snakemake.input.lubricant, "lubricant")
+lubricant = load(snakemake.input.lubricant, "lubricant", study)
 table = film_table(lubricant, study.rollers, grid.force, grid.speed, study.film_formulas)
-save(table, snakemake.output[0], "film", study)
+save(table, snakemake.output[0], "film", study, [snakemake.input.lubricant])

@@ -8,5 +8,6 @@ from lube.study import load_study
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
 kinds = ("master", "film", "contact", "experiment")
-datasets = (load(snakemake.input[kind], kind) for kind in kinds)
-save(gauge_records(*datasets), snakemake.output[0], "gauge", study)
+inputs = {kind: snakemake.input[kind] for kind in kinds}
+datasets = (load(path, kind, study) for kind, path in inputs.items())
+save(gauge_records(*datasets), snakemake.output[0], "gauge", study, inputs.values())

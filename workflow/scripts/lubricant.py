@@ -8,4 +8,4 @@ from lube.study import load_study
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
 table = lubricant_table(study.lubricants, study.operating_grid.temperature)
-save(table, snakemake.output[0], "lubricant", study)
+save(table, snakemake.output[0], "lubricant", study, snakemake.input.records)

@@ -7,5 +7,5 @@ from lube.study import load_study
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
-batches = [load(path, "master_batch") for path in snakemake.input.batches]
-save(gather_map(batches), snakemake.output[0], "master", study)
+batches = [load(path, "master_batch", study) for path in snakemake.input.batches]
+save(gather_map(batches), snakemake.output[0], "master", study, [snakemake.input.film])

@@ -7,7 +7,7 @@ from lube.study import load_study
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
-film = load(snakemake.input.film, "film")
-with opened(snakemake.input.lines, "roughness_batch") as lines:
+film = load(snakemake.input.film, "film", study)
+with opened(snakemake.input.lines, "roughness_batch", study) as lines:
     run = contact_map(lines, film, study.boundary_layer)
-save(run, snakemake.output[0], "master_batch", study)
+save(run, snakemake.output[0], "master_batch", study, [snakemake.input.film])

@@ -9,5 +9,5 @@ from lube.study import load_study
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
 lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
-records = rig_records(lines, load(snakemake.input.film, "film"), study)
-save(records, snakemake.output[0], "rig", study)
+records = rig_records(lines, load(snakemake.input.film, "film", study), study)
+save(records, snakemake.output[0], "rig", study, [snakemake.input.film])

@@ -1,0 +1,67 @@
+"""Whose study it is and under which licence: what its files and its archive say of themselves."""
+
+import datetime
+from typing import Annotated, Literal
+
+from pydantic import Field, StringConstraints
+
+from lube.fields import StrictModel
+
+PAPER = "Mixed and boundary lubrication in rolling contact: experiment and simulation"
+"""Title of the paper whose model and operating points the study takes."""
+
+LICENCES = {
+    "CC-BY-4.0": "https://creativecommons.org/licenses/by/4.0/",
+    "CC-BY-SA-4.0": "https://creativecommons.org/licenses/by-sa/4.0/",
+    "CC0-1.0": "https://creativecommons.org/publicdomain/zero/1.0/",
+}
+"""Licences for data that Zenodo and its like know, by their SPDX names."""
+
+_Line = Annotated[
+    str,
+    StringConstraints(strip_whitespace=True, min_length=1, pattern=r"^[^\x00-\x1f\x7f]{1,2000}$"),
+]
+
+
+class Creator(StrictModel):
+    """Someone who made a study."""
+
+    name: _Line = Field(description="as it is cited: `Family, Given`")
+    affiliation: _Line | None = Field(None, description="institution")
+    orcid: Annotated[str, StringConstraints(pattern=r"^\d{4}-\d{4}-\d{4}-\d{3}[\dX]$")] | None = (
+        Field(None, description="ORCID iD, such as 0000-0002-1825-0097")
+    )
+
+
+class About(StrictModel):
+    """Title, makers and licence of a study's results."""
+
+    title: _Line | None = Field(None, description="title of the results; else the study's name")
+    summary: _Line = Field(
+        "Share of time with metal contact between two rough rollers that roll under load with oil "
+        "between them: elastohydrodynamic film thickness, rough lines by the Method of "
+        "Dimensionality Reduction, and the break-up of a boundary layer.",
+        description="what the results are, in a sentence or two",
+    )
+    creators: tuple[Creator, ...] = Field(
+        (), description="who made them; an archive needs one at least"
+    )
+    licence: Literal[tuple(LICENCES)] = Field("CC-BY-4.0", description="licence of the results")
+    keywords: tuple[_Line, ...] = Field(
+        (
+            *("tribology", "mixed lubrication", "boundary lubrication"),
+            *("elastohydrodynamic lubrication", "rolling contact", "surface roughness"),
+        ),
+        description="keywords",
+    )
+    date: datetime.date | None = Field(
+        None, description="day of publication, for the archive; else that of the code's commit"
+    )
+    doi: Annotated[str, StringConstraints(pattern=r"^10\.\d{4,9}/[^\s]+$")] | None = Field(
+        None, description="DOI that the repository reserved for the archive"
+    )
+
+    @property
+    def in_files(self):
+        """What every file of the study says; the rest concerns the archive alone."""
+        return self.model_dump(mode="json", exclude={"date", "doi"})

@@ -1,0 +1,305 @@
+"""Where a result comes from, written so that a stranger can check it years later.
+
+Every file says which values of the study it follows from and their fingerprint, what other files
+went into it and theirs, and the code and libraries that made it. No clock time is among it:
+the same study makes the same bytes.
+"""
+
+import functools
+import hashlib
+import json
+import subprocess
+from importlib.metadata import version
+from pathlib import Path
+
+from lube.about import LICENCES, PAPER
+from lube.errors import DataError
+from lube.schema import SUMMARIES
+
+CONVENTIONS = "CF-1.11, ACDD-1.3"
+LIBRARIES = ("numpy", "scipy", "numba", "CoolProp", "xarray", "netCDF4")
+"""Libraries whose version may change the numbers, or the bytes that hold them."""
+UNKNOWN = "unknown"
+SHORT = 10
+"""Digits of a fingerprint where people read it."""
+
+_ROOT = Path(__file__).parents[1]
+
+
+def global_attributes(study, kind, inputs=()):
+    """Attributes of a file that tell where it comes from.
+
+    Parameters
+    ----------
+    study : Study
+        The study it belongs to.
+    kind : str
+        A key of `lube.schema.FILES`.
+    inputs : iterable of str or Path, optional
+        Files that it was made from.
+
+    Returns
+    -------
+    dict
+        Global attributes by CF's and ACDD's names, and the study's own beside them.
+    """
+    stage, about = kind.removesuffix("_batch"), study.about
+    config = config_text(study, kind)
+    hashes = fingerprints(inputs)
+    made_from = ", ".join(hashes) or "the study's values alone"
+    code = f"lube {version('lube')}, commit {commit()}"
+    return {
+        "Conventions": CONVENTIONS,
+        "title": f"{about.title or f'Mixed lubrication study {study.name}'}: {stage}",
+        "summary": f"{SUMMARIES[stage]} {about.summary}",
+        "keywords": ", ".join(about.keywords),
+        "study": study.name,
+        "study_seed": study.seed,
+        "config": config,
+        "config_sha256": digest(config),
+        "inputs_sha256": json.dumps(hashes, sort_keys=True),
+        "source": f"simulation by lube {version('lube')}",
+        "code_commit": commit(),
+        "software": ", ".join(f"{name} {version(name)}" for name in LIBRARIES),
+        "history": f"{code}: made from {made_from}",
+        "license": f"{about.licence} {LICENCES[about.licence]}",
+        "creator_name": "; ".join(one.name for one in about.creators) or "not named",
+        "creator_institution": "; ".join(one.affiliation or "-" for one in about.creators) or "-",
+        "references": f"The model is that of: {PAPER}",
+    }
+
+
+def config_text(study, kind):
+    """Values of a study that a file follows from, in SI units (but rpm and degC).
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    kind : str
+        A key of `lube.schema.FILES`.
+
+    Returns
+    -------
+    str
+        JSON: from stage to its values, those of the stages before it included.
+    """
+    return json.dumps(study.origin(kind.removesuffix("_batch")), sort_keys=True)
+
+
+def check_config(dataset, study, kind, where):
+    """Refuse a file that follows from other values than the study's.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The opened file.
+    study : Study
+        The study that wants to use it.
+    kind : str
+        A key of `lube.schema.FILES`.
+    where : str or Path
+        The file's path, for the message.
+
+    Raises
+    ------
+    DataError
+        With the first value that differs, and what to do.
+    """
+    wanted = config_text(study, kind)
+    if dataset.attrs.get("config_sha256") != digest(wanted):
+        raise DataError(
+            f"{where}: belongs to other values than this study's: "
+            f"{_difference(dataset.attrs.get('config'), wanted)}; "
+            "take it away and run snakemake again"
+        )
+
+
+def merged_config(datasets):
+    """Values that some files of one study follow from together.
+
+    Parameters
+    ----------
+    datasets : iterable of xarray.Dataset
+        Loaded files, or selections of them.
+
+    Returns
+    -------
+    str
+        JSON as from `config_text`; that of a single file is its own.
+
+    Raises
+    ------
+    DataError
+        If two files disagree about a stage's values, so that they cannot be of one study, or
+        one of them tells no values.
+    """
+    merged, told_by = {}, {}
+    for dataset in datasets:
+        title = dataset.attrs.get("title", "a dataset without a title")
+        if "config" not in dataset.attrs:
+            raise DataError(f"{title}: its attribute 'config' is missing, so its study is unknown")
+        for stage, values in json.loads(dataset.attrs["config"]).items():
+            if merged.setdefault(stage, values) != values:
+                pair = [json.dumps({stage: one}) for one in (merged[stage], values)]
+                raise DataError(
+                    f"{told_by[stage]!r} and {title!r} are not of one study: {_difference(*pair)}"
+                )
+            told_by.setdefault(stage, title)
+    return json.dumps(merged, sort_keys=True)
+
+
+def stamp(datasets):
+    """One short line that leads from a figure back to what it was made from.
+
+    Parameters
+    ----------
+    datasets : sequence of xarray.Dataset
+        What the figure shows.
+
+    Returns
+    -------
+    str
+        For each study: its name, the fingerprint of its values behind the figure, and the
+        code's commit.
+
+    Raises
+    ------
+    DataError
+        If there is none, or as `merged_config`.
+    """
+    if not datasets:
+        raise DataError("a figure needs the datasets that it shows, as loaded: got none")
+    studies = {}
+    for dataset in datasets:
+        studies.setdefault(dataset.attrs.get("study"), []).append(dataset)
+    return "; ".join(
+        f"study {name} · config {digest(merged_config(of))[:SHORT]} · "
+        f"commit {', '.join(sorted({_short_commit(dataset) for dataset in of}))}"
+        for name, of in studies.items()
+    )
+
+
+def _short_commit(dataset):
+    name, plus, _ = dataset.attrs["code_commit"].partition("+")
+    return name[:SHORT] + plus
+
+
+def _difference(came, wanted):
+    """First value by which two configurations differ, in words."""
+    if came is None:
+        return "it does not say which"
+    came, wanted = (dict(_leaves(json.loads(text))) for text in (came, wanted))
+    for key in sorted({*came, *wanted}):
+        if came.get(key) != wanted.get(key):
+            return f"{key} is {came.get(key, 'not there')}, need {wanted.get(key, 'no such value')}"
+    return "its fingerprint config_sha256 is not that of its values"
+
+
+def _leaves(content, path=""):
+    """Single values of nested mappings and lists, by their dotted keys."""
+    if isinstance(content, dict):
+        parts = content.items()
+    elif isinstance(content, list):
+        parts = enumerate(content)
+    else:
+        yield path, content
+        return
+    for name, value in parts:
+        yield from _leaves(value, f"{path}.{name}" if path else str(name))
+
+
+def digest(content):
+    """SHA-256 of a text or bytes, in hexadecimal digits."""
+    return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()
+
+
+def fingerprint(path):
+    """SHA-256 of a file, in hexadecimal digits.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, of any size: it is streamed.
+
+    Returns
+    -------
+    str
+        64 digits.
+
+    Raises
+    ------
+    DataError
+        If it cannot be read.
+    """
+    try:
+        with open(path, "rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def fingerprints(paths):
+    """SHA-256 of some files, by names that do not depend on where the study lies.
+
+    Parameters
+    ----------
+    paths : iterable of str or Path
+        The files.
+
+    Returns
+    -------
+    dict
+        From file name to digits, in the names' order. Where two files share a name, as many of
+        their folders stand before it as tell them apart.
+    """
+    paths = sorted({Path(path).resolve() for path in paths})
+    names = {path: path.name for path in paths}
+    depth = 1
+    while len(set(names.values())) < len(paths):
+        depth += 1
+        names = {path: "/".join(path.parts[-depth:]) for path in paths}
+    return {name: fingerprint(path) for path, name in sorted(names.items(), key=lambda it: it[1])}
+
+
+@functools.cache
+def commit():
+    """Commit of the code that runs.
+
+    Returns
+    -------
+    str
+        Hexadecimal digits, with ``+changes`` behind them if the code differs from the commit;
+        in an unpacked archive, what its file ``COMMIT`` says; else ``unknown``.
+    """
+    try:
+        told = (_ROOT / "COMMIT").read_text(encoding="utf-8").strip()
+    except OSError:
+        told = UNKNOWN
+    if not (_ROOT / ".git").exists():
+        return told
+    head = _git("rev-parse", "HEAD")
+    changed = _git("status", "--porcelain", "--untracked-files=no", "lube", "workflow/scripts")
+    return told if head is None else head + ("+changes" if changed else "")
+
+
+@functools.cache
+def commit_date():
+    """Day of the commit of the code that runs, such as 2026-11-21, or None."""
+    return _git("show", "--no-patch", "--format=%cs", "HEAD") if (_ROOT / ".git").exists() else None
+
+
+def _git(*arguments):
+    """Ask Git; None where there is no Git, or it refuses."""
+    try:
+        said = subprocess.run(
+            ["git", "--no-optional-locks", *arguments],
+            cwd=_ROOT,
+            capture_output=True,
+            text=True,
+            timeout=30,
+            check=True,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return said.stdout.strip()

@@ -1,0 +1,215 @@
+"""Where a result comes from: fingerprints that agree, and differences told in words."""
+
+import hashlib
+import json
+import shutil
+import subprocess
+
+import pytest
+import xarray as xr
+
+from lube import provenance
+from lube.errors import DataError
+from lube.provenance import (
+    LIBRARIES,
+    check_config,
+    commit,
+    config_text,
+    digest,
+    fingerprints,
+    global_attributes,
+    merged_config,
+    stamp,
+)
+from lube.schema import FILES, SUMMARIES
+
+
+def made_by(study, kind):
+    """A dataset of which nothing matters but its origin."""
+    return xr.Dataset(attrs=global_attributes(study, kind))
+
+
+@pytest.fixture
+def stronger(study):
+    """The study with a stronger boundary layer."""
+    layer = study.boundary_layer.model_copy(update={"shear_strength": 2e6})
+    return study.model_copy(update={"boundary_layer": layer})
+
+
+# What a file says
+
+
+def test_every_kind_of_file_has_its_summary():
+    assert set(SUMMARIES) == {kind for kind in FILES if not kind.endswith("_batch")}
+
+
+@pytest.mark.parametrize("kind", FILES)
+def test_the_values_are_the_studys_and_their_fingerprint_holds(study, kind):
+    attributes = global_attributes(study, kind)
+    stage = kind.removesuffix("_batch")
+    config = json.loads(attributes["config"])
+    assert config[stage] == json.loads(json.dumps(study.stage_inputs(stage)))
+    expected = hashlib.sha256(attributes["config"].encode()).hexdigest()
+    assert attributes["config_sha256"] == expected
+    assert attributes["study_seed"] == study.seed
+
+
+def test_files_name_the_makers_and_the_libraries_behind_the_numbers(study):
+    creators = [{"name": "Popov, V.", "affiliation": "Berlin"}, {"name": "Li, Q."}]
+    about = study.about.model_validate({"title": "My rollers", "creators": creators})
+    attributes = global_attributes(study.model_copy(update={"about": about}), "film")
+    assert attributes["title"] == "My rollers: film"
+    assert attributes["creator_name"] == "Popov, V.; Li, Q."
+    assert attributes["creator_institution"] == "Berlin; -"
+    assert attributes["license"].startswith("CC-BY-4.0 https://")
+    assert all(f"{name} " in attributes["software"] for name in LIBRARIES)
+
+
+def test_values_that_change_no_result_change_no_fingerprint(study):
+    larger = study.model_copy(update={"batch_size": 3, "name": "other"})
+    assert config_text(larger, "contact") == config_text(study, "contact")
+
+
+def test_inputs_are_told_by_name_and_fingerprint(study, tmp_path):
+    for folder in ("monday", "tuesday"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "run.csv").write_text(folder)
+    (tmp_path / "list.csv").write_text("file")
+    paths = sorted(tmp_path.rglob("*.csv"))
+    expected = {
+        name: hashlib.sha256(text.encode()).hexdigest()
+        for name, text in {
+            f"{tmp_path.name}/list.csv": "file",
+            "monday/run.csv": "monday",
+            "tuesday/run.csv": "tuesday",
+        }.items()
+    }
+    assert fingerprints(paths) == expected
+    attributes = global_attributes(study, "experiment", paths)
+    assert json.loads(attributes["inputs_sha256"]) == expected
+    assert attributes["history"].endswith("made from " + ", ".join(sorted(expected)))
+
+
+def test_names_of_inputs_do_not_depend_on_where_they_lie(tmp_path):
+    for place in ("here", "elsewhere"):
+        (tmp_path / place).mkdir()
+        (tmp_path / place / "film.nc").write_text("film")
+    told = [fingerprints([tmp_path / place / "film.nc"]) for place in ("here", "elsewhere")]
+    assert told[0] == told[1] == {"film.nc": digest("film")}
+
+
+def test_an_input_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(DataError, match=r"gone.csv: cannot be read: No such file"):
+        fingerprints([tmp_path / "gone.csv"])
+
+
+# Files of other values
+
+
+def test_a_file_of_the_same_values_is_taken(study):
+    check_config(made_by(study, "contact"), study, "contact", "contact.nc")
+
+
+def test_a_file_of_other_values_is_refused_with_the_first_difference(study, stronger):
+    told = (
+        r"contact.nc: belongs to other values than this study's: contact.boundary_layer."
+        r"shear_strength is 2000000.0, need 1000000.0; take it away and run snakemake again"
+    )
+    with pytest.raises(DataError, match=told):
+        check_config(made_by(stronger, "contact"), study, "contact", "contact.nc")
+    check_config(made_by(stronger, "film"), study, "film", "film.nc")  # no layer in a film
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (lambda attributes: attributes.clear(), "it does not say which"),
+        (lambda attributes: attributes.update(config_sha256="0"), "not that of its values"),
+    ],
+)
+def test_a_file_without_honest_values_is_refused(study, spoil, told):
+    dataset = made_by(study, "film")
+    spoil(dataset.attrs)
+    with pytest.raises(DataError, match=told):
+        check_config(dataset, study, "film", "film.nc")
+
+
+# Figures
+
+
+def test_the_values_behind_one_file_are_its_own(study):
+    assert merged_config([made_by(study, "film")]) == config_text(study, "film")
+
+
+def test_a_file_that_holds_anothers_values_adds_nothing(study):
+    contact, film = (made_by(study, kind) for kind in ("contact", "film"))
+    assert merged_config([film, contact]) == config_text(study, "contact")
+
+
+def test_files_of_two_studies_make_no_figure_unless_they_say_so(study, stronger):
+    pair = [made_by(study, "trace"), made_by(stronger, "trace")]
+    told = "not of one study: trace.boundary_layer.shear_strength is 1000000.0, need 2000000.0"
+    with pytest.raises(DataError, match=told):
+        stamp(pair)
+    pair[1] = made_by(stronger.model_copy(update={"name": "strong"}), "trace")
+    assert [part.split(" · ")[0] for part in stamp(pair).split("; ")] == [
+        "study smoke",
+        "study strong",
+    ]
+
+
+def test_a_stamp_leads_to_study_values_and_code(study):
+    film = made_by(study, "film")
+    digits = digest(config_text(study, "film"))[:10]
+    film.attrs["code_commit"] = "0123456789abcdef+changes"
+    assert stamp([film]) == f"study smoke · config {digits} · commit 0123456789+"
+
+
+def test_a_dataset_from_elsewhere_cannot_be_stamped():
+    with pytest.raises(DataError, match="attribute 'config' is missing, so its study is unknown"):
+        stamp([xr.Dataset()])
+
+
+# The code's commit
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    """A folder taken for that of the code."""
+    monkeypatch.setattr(provenance, "_ROOT", tmp_path)
+    commit.cache_clear()
+    yield tmp_path
+    commit.cache_clear()
+
+
+def git(place, *arguments):
+    identity = ("-c", "user.name=A", "-c", "user.email=a@b")
+    command = ["git", *identity, *arguments]
+    done = subprocess.run(command, cwd=place, capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+def test_code_outside_git_has_no_commit(place):
+    assert commit() == "unknown"
+
+
+def test_code_of_an_archive_says_its_commit(place):
+    (place / "COMMIT").write_text("abc\n")
+    assert commit() == "abc"
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="needs Git")
+def test_code_that_differs_from_its_commit_says_so(place):
+    (place / "lube").mkdir()
+    (place / "workflow" / "scripts").mkdir(parents=True)
+    for name in ("lube/film.py", "workflow/scripts/film.py", "README.md"):
+        (place / name).write_text("1")
+    git(place, "init")
+    git(place, "add", ".")
+    git(place, "commit", "-m", "first")
+    (place / "README.md").write_text("2")
+    head = git(place, "rev-parse", "HEAD")
+    assert commit() == head
+    (place / "lube" / "film.py").write_text("2")
+    commit.cache_clear()
+    assert commit() == f"{head}+changes"
