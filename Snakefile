@@ -14,13 +14,14 @@ include: "workflow/rules/gauge.smk"
 include: "workflow/rules/figure.smk"
 include: "workflow/rules/speed.smk"
 include: "workflow/rules/reading.smk"
+include: "workflow/rules/archive.smk"
 
 
 rule all:
     default_target: True
     input:
         [result(f"{kind}.nc") for kind in DATASETS],
-        products(figure for figure in FIGURES if figure not in TIMINGS),
+        products(ARCHIVED),
     message:
         "Done: datasets, figures and executed notebooks are in {RESULTS}"
 

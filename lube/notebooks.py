@@ -73,7 +73,24 @@ def _kernel_kept_quiet():
         os.close(terminal)
 
 
-def _check_parameters(notebook, parameters):
+def parameters_of(notebook):
+    """Names that a notebook takes: those assigned in its cell tagged ``parameters``.
+
+    Parameters
+    ----------
+    notebook : str or Path
+        The notebook.
+
+    Returns
+    -------
+    list of str
+        The names in order.
+
+    Raises
+    ------
+    LubeError
+        If the file is no notebook, or has no such cell.
+    """
     try:
         cells = nbformat.read(notebook, as_version=4).cells
     except ValueError:
@@ -81,7 +98,11 @@ def _check_parameters(notebook, parameters):
     tagged = [cell for cell in cells if "parameters" in cell.metadata.get("tags", [])]
     if not tagged:
         raise LubeError(f"{notebook}: no cell is tagged 'parameters', need one with the paths")
-    known = _assigned_names(tagged[0].source)
+    return _assigned_names(tagged[0].source)
+
+
+def _check_parameters(notebook, parameters):
+    known = parameters_of(notebook)
     for name in parameters:
         if name not in known:
             raise LubeError(

@@ -5,25 +5,21 @@ went into it and theirs, and the code and libraries that made it. No clock time 
 the same study makes the same bytes.
 """
 
-import functools
 import hashlib
 import json
-import subprocess
 from importlib.metadata import version
 from pathlib import Path
 
 from lube.about import LICENCES, PAPER
 from lube.errors import DataError
+from lube.repository import commit
 from lube.schema import SUMMARIES
 
 CONVENTIONS = "CF-1.11, ACDD-1.3"
 LIBRARIES = ("numpy", "scipy", "numba", "CoolProp", "xarray", "netCDF4")
 """Libraries whose version may change the numbers, or the bytes that hold them."""
-UNKNOWN = "unknown"
 SHORT = 10
 """Digits of a fingerprint where people read it."""
-
-_ROOT = Path(__file__).parents[1]
 
 
 def global_attributes(study, kind, inputs=()):
@@ -260,46 +256,3 @@ def fingerprints(paths):
         depth += 1
         names = {path: "/".join(path.parts[-depth:]) for path in paths}
     return {name: fingerprint(path) for path, name in sorted(names.items(), key=lambda it: it[1])}
-
-
-@functools.cache
-def commit():
-    """Commit of the code that runs.
-
-    Returns
-    -------
-    str
-        Hexadecimal digits, with ``+changes`` behind them if the code differs from the commit;
-        in an unpacked archive, what its file ``COMMIT`` says; else ``unknown``.
-    """
-    try:
-        told = (_ROOT / "COMMIT").read_text(encoding="utf-8").strip()
-    except OSError:
-        told = UNKNOWN
-    if not (_ROOT / ".git").exists():
-        return told
-    head = _git("rev-parse", "HEAD")
-    changed = _git("status", "--porcelain", "--untracked-files=no", "lube", "workflow/scripts")
-    return told if head is None else head + ("+changes" if changed else "")
-
-
-@functools.cache
-def commit_date():
-    """Day of the commit of the code that runs, such as 2026-11-21, or None."""
-    return _git("show", "--no-patch", "--format=%cs", "HEAD") if (_ROOT / ".git").exists() else None
-
-
-def _git(*arguments):
-    """Ask Git; None where there is no Git, or it refuses."""
-    try:
-        said = subprocess.run(
-            ["git", "--no-optional-locks", *arguments],
-            cwd=_ROOT,
-            capture_output=True,
-            text=True,
-            timeout=30,
-            check=True,
-        )
-    except (OSError, subprocess.SubprocessError):
-        return None
-    return said.stdout.strip()

@@ -19,7 +19,7 @@ MODULES = {
 
 # Each module may import those of layers above its own, and the ones named in its own row.
 LAYERS = [
-    {"errors"},
+    {"errors", "repository"},
     {
         *("units", "hertz", "formulas", "viscosity", "resistance"),
         *("curves", "intervals", "schema", "kernels"),
@@ -32,7 +32,10 @@ LAYERS = [
         *("experiment", "comparison", "gauge"),
     },
     {"provenance", "notebooks", "jobs", "reference"},
-    {"io", "plots"},
+    {"io", "plots", "citation"},
+    {"archive", "explain"},
+    {"verify"},
+    {"command"},
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
 FOUNDATIONS = {

@@ -2,18 +2,14 @@
 
 import hashlib
 import json
-import shutil
-import subprocess
 
 import pytest
 import xarray as xr
 
-from lube import provenance
 from lube.errors import DataError
 from lube.provenance import (
     LIBRARIES,
     check_config,
-    commit,
     config_text,
     digest,
     fingerprints,
@@ -168,48 +164,3 @@ def test_a_stamp_leads_to_study_values_and_code(study):
 def test_a_dataset_from_elsewhere_cannot_be_stamped():
     with pytest.raises(DataError, match="attribute 'config' is missing, so its study is unknown"):
         stamp([xr.Dataset()])
-
-
-# The code's commit
-
-
-@pytest.fixture
-def place(tmp_path, monkeypatch):
-    """A folder taken for that of the code."""
-    monkeypatch.setattr(provenance, "_ROOT", tmp_path)
-    commit.cache_clear()
-    yield tmp_path
-    commit.cache_clear()
-
-
-def git(place, *arguments):
-    identity = ("-c", "user.name=A", "-c", "user.email=a@b")
-    command = ["git", *identity, *arguments]
-    done = subprocess.run(command, cwd=place, capture_output=True, text=True, check=True)
-    return done.stdout.strip()
-
-
-def test_code_outside_git_has_no_commit(place):
-    assert commit() == "unknown"
-
-
-def test_code_of_an_archive_says_its_commit(place):
-    (place / "COMMIT").write_text("abc\n")
-    assert commit() == "abc"
-
-
-@pytest.mark.skipif(shutil.which("git") is None, reason="needs Git")
-def test_code_that_differs_from_its_commit_says_so(place):
-    (place / "lube").mkdir()
-    (place / "workflow" / "scripts").mkdir(parents=True)
-    for name in ("lube/film.py", "workflow/scripts/film.py", "README.md"):
-        (place / name).write_text("1")
-    git(place, "init")
-    git(place, "add", ".")
-    git(place, "commit", "-m", "first")
-    (place / "README.md").write_text("2")
-    head = git(place, "rev-parse", "HEAD")
-    assert commit() == head
-    (place / "lube" / "film.py").write_text("2")
-    commit.cache_clear()
-    assert commit() == f"{head}+changes"

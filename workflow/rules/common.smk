@@ -122,6 +122,17 @@ def measured_files():
     return sorted(os.path.relpath(file) for file in files)
 
 
+def archived_texts():
+    """What people wrote and an archive holds: the study's file, its records, the code."""
+    from lube.citation import check_about
+    from lube.repository import code_files
+
+    with told_in_one_line():
+        check_about(STUDY)
+    manifest = filter(None, [STUDY.experiment.manifest])
+    return [config["study_file"], *record_files(), *manifest, *code_files()]
+
+
 def batch_limits(wildcards):
     """First and last realisation of a batch."""
     batch = STUDY.batch(int(wildcards.first))

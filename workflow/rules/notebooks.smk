@@ -69,6 +69,7 @@ with told_in_one_line():
         for figure in FIGURES
         if not {Path(path).stem for path in FIGURE_DATASETS[figure]}.isdisjoint(MEASURED)
     ]
+    ARCHIVED = [figure for figure in FIGURES if figure not in TIMINGS]
 
 
 def products(figures):

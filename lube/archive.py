@@ -1,0 +1,251 @@
+"""The archive of a study: everything a stranger needs to check it and draw its figures again.
+
+An archive is a folder, and the same folder as a zip. It holds the datasets, figures and executed
+notebooks, the study as written and as understood, the lubricant records, the code, the exact
+versions of its libraries, a fingerprint of every file, and metadata for those who cite and
+catalogue it. Nothing in it tells the hour: the same results make the same archive.
+"""
+
+import json
+import os
+import platform
+import shutil
+import tempfile
+import zipfile
+from importlib.metadata import distributions
+from pathlib import Path
+
+from lube.about import LICENCES, PAPER
+from lube.citation import citation_file, crate_metadata, title, zenodo_metadata
+from lube.errors import DataError
+from lube.files import written_whole
+from lube.provenance import config_text, digest, fingerprint
+from lube.repository import ROOT, code_files, commit
+from lube.schema import SUMMARIES
+
+SUMS = "SHA256SUMS"
+"""Name of the file of fingerprints, as ``sha256sum --check`` reads it."""
+VALUES = "study/values.json"
+"""Name of the file with the study's values, as they were understood."""
+
+
+def make_archive(study, study_file, results, kinds, figures, folder):
+    """Gather a study's results into an archive.
+
+    Parameters
+    ----------
+    study : Study
+        The study; it names its creators.
+    study_file : str or Path
+        Its YAML file.
+    results : str or Path
+        Folder of its results.
+    kinds : sequence of str
+        Datasets to take, by the kinds of `lube.schema`.
+    figures : sequence of str
+        Figures to take.
+    folder : str or Path
+        The archive; its zip goes beside it. What was there before is replaced when the new one
+        is whole.
+
+    Raises
+    ------
+    DataError
+        If a result is missing, or the archive cannot be written.
+    """
+    folder = Path(folder)
+    contents = archive_contents(study, study_file, results, kinds, figures)
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder.parent, prefix=".part-") as scratch:
+            new = Path(scratch) / folder.name
+            _fill(new, contents, study)
+            _zip(new, folder.with_name(folder.name + ".zip"))
+            if folder.exists():
+                os.rename(folder, Path(scratch) / "old")
+            os.rename(new, folder)
+    except OSError as error:
+        what = error.filename or folder
+        raise DataError(f"{folder}: cannot be archived: {what}: {error.strerror}") from error
+
+
+def archive_contents(study, study_file, results, kinds, figures):
+    """List what goes into an archive, but for its catalogue and its fingerprints.
+
+    Parameters
+    ----------
+    study, study_file, results, kinds, figures
+        As in `make_archive`.
+
+    Returns
+    -------
+    dict
+        From the name below the archive's root to the file to copy, or the text to write.
+    """
+    results = Path(results)
+    datasets = {f"data/{kind}.nc": results / f"{kind}.nc" for kind in kinds}
+    drawn = [f"figures/{figure}.{suffix}" for figure in figures for suffix in ("pdf", "png")]
+    drawn += [f"notebooks/{figure}.ipynb" for figure in figures]
+    written = _written(study, Path(study_file))
+    records = sorted({Path(file) for record in study.lubricants for file in record.files})
+    return {
+        **datasets,
+        **{name: results / name for name in drawn},
+        **{f"study/{name}": path for name, path in written.items()},
+        **{f"lubricants/{path.name}": path for path in records},
+        **{f"code/{name}": ROOT / name for name in code_files()},
+        "code/COMMIT": commit() + "\n",
+        VALUES: _values(study, Path(study_file), kinds),
+        "versions.txt": exact_versions(),
+        "CITATION.cff": citation_file(study),
+        ".zenodo.json": zenodo_metadata(study),
+        "README.md": _readme(study, kinds, next(iter(written))),
+    }
+
+
+def _written(study, study_file):
+    """Files that people wrote, by their places towards one another: the study's file first."""
+    shipped = ROOT / "lube" / "lubricants"
+    files = [Path(file).resolve() for record in study.lubricants for file in record.files]
+    own = [file for file in files if not file.is_relative_to(shipped)]
+    if study.experiment.manifest is not None:
+        own.append(Path(study.experiment.manifest).resolve())
+    written = [study_file.resolve(), *sorted(set(own))]
+    folder = os.path.commonpath([path.parent for path in written])
+    return {path.relative_to(folder).as_posix(): path for path in written}
+
+
+def _values(study, study_file, kinds):
+    """Tell the study as it was understood: the values behind each dataset, their fingerprints."""
+    texts = {kind: config_text(study, kind) for kind in kinds}
+    values = {}
+    for text in texts.values():
+        values |= json.loads(text)
+    content = {
+        "study": study.name,
+        "study_file": next(iter(_written(study, study_file))),
+        "seed": study.seed,
+        "realisations": study.realisations,
+        "about": study.about.in_files,
+        "config_sha256": {kind: digest(text) for kind, text in texts.items()},
+        "values": values,
+    }
+    return json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+
+
+def exact_versions():
+    """Versions of Python and of all installed packages, fit for ``pip install -c``.
+
+    Returns
+    -------
+    str
+        One a line.
+    """
+    system = f"# Python {platform.python_version()}, {platform.system()} {platform.machine()}\n"
+    installed = {f"{found.name}=={found.version}" for found in distributions()}
+    kept = sorted((line for line in installed if not line.startswith("lube==")), key=str.lower)
+    return system + "\n".join(kept) + "\n"
+
+
+def files_of(folder):
+    """List all files below a folder.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The folder.
+
+    Returns
+    -------
+    list of str
+        Their paths below it, with slashes, in order.
+    """
+    folder = Path(folder)
+    return sorted(
+        path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()
+    )
+
+
+def _fill(folder, contents, study):
+    """Write an archive's folder, its catalogue and its fingerprints."""
+    for name, content in contents.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if isinstance(content, Path):
+            shutil.copyfile(content, path)
+        else:
+            path.write_text(content, encoding="utf-8")
+    sizes = {name: (folder / name).stat().st_size for name in files_of(folder)}
+    catalogue = crate_metadata(study, sizes)
+    (folder / "ro-crate-metadata.json").write_text(catalogue, encoding="utf-8")
+    sums = [f"{fingerprint(folder / name)}  {name}\n" for name in files_of(folder)]
+    (folder / SUMS).write_text("".join(sums), encoding="utf-8")
+
+
+def _zip(folder, path):
+    """Pack a folder, the same bytes each time."""
+    with written_whole(path) as part, zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name in files_of(folder):
+            entry = zipfile.ZipInfo(f"{folder.name}/{name}")  # of the year 1980
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = 0o644 << 16
+            packed.writestr(entry, (folder / name).read_bytes())
+
+
+def _readme(study, kinds, study_file):
+    """One page for a stranger who opens the archive."""
+    about = study.about
+    rows = "\n".join(f"| `data/{kind}.nc` | {SUMMARIES[kind]} |" for kind in kinds)
+    makers = "; ".join(
+        creator.name + (f" ({creator.affiliation})" if creator.affiliation else "")
+        for creator in about.creators
+    )
+    records = (
+        "\nThe measured records themselves are not in this archive; `data/experiment.nc` holds "
+        "their fingerprints in its attribute `inputs_sha256`.\n"
+        if study.experiment.manifest is not None
+        else ""
+    )
+    return f"""\
+# {title(study)}
+
+{makers}. Licence of the results: [{about.licence}]({LICENCES[about.licence]}); of the code: see
+`code/LICENSE`. To cite, see `CITATION.cff`.
+
+{about.summary}
+The model is that of the paper *{PAPER}*.
+
+| here | what it is |
+| --- | --- |
+{rows}
+| `figures/`, `notebooks/` | each figure as PNG and PDF, and the executed notebook that drew it |
+| `study/{study_file}` | the study as it was written |
+| `{VALUES}` | its values as they were understood: SI units, but r/min and °C |
+| `lubricants/` | the records of its lubricants, with their sources |
+| `code/` | the code, commit `{commit()}`, with its workflow and the figures' notebooks |
+| `versions.txt` | the exact versions of Python and of all packages |
+| `{SUMS}` | the SHA-256 of every file |
+| `ro-crate-metadata.json`, `.zenodo.json` | what each file is, for catalogues |
+{records}
+The NetCDF files follow the CF and ACDD conventions; each says in its attributes what it follows
+from. With xarray alone:
+
+```python
+import xarray as xr
+
+contact = xr.open_dataset("data/contact.nc")
+```
+
+With Python 3.11 or newer, the same packages as then, and nothing computed anew but the drawings:
+
+```bash
+python3 -m venv ../lube-env && . ../lube-env/bin/activate
+pip install -c versions.txt ./code
+lube verify .                     # fingerprints, contents, and how the files hang together
+lube figures . --to ../figures    # draws every figure again and compares it byte for byte
+lube explain data/contact.nc      # where one number comes from; makes it again, to the last bit
+```
+
+Without Python, `sha256sum --check {SUMS}` checks the fingerprints. To compute everything anew, go
+to `code/` and follow its README with `--configfile ../study/{study_file}`.
+"""

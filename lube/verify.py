@@ -1,0 +1,195 @@
+"""Whether a study's files, or an archive of them, are what they were and hang together.
+
+Every check yields one line for each thing that is wrong; silence is a good answer.
+"""
+
+import contextlib
+import json
+import os
+import tempfile
+import zipfile
+from pathlib import Path
+
+from lube.archive import SUMS, VALUES, files_of
+from lube.errors import DataError, LubeError
+from lube.io import opened
+from lube.notebooks import execute_notebook, parameters_of
+from lube.provenance import fingerprint
+from lube.study import load_study
+
+_BYPRODUCTS = ("code/build/", "code/lube.egg-info/", "__pycache__")
+"""What appears in an archive's folder when its code is installed and run."""
+
+
+@contextlib.contextmanager
+def unpacked(path):
+    """Open an archive, zipped or not.
+
+    Parameters
+    ----------
+    path : str or Path
+        Folder or zip.
+
+    Yields
+    ------
+    Path
+        Its folder; that of a zip is there for the time being.
+
+    Raises
+    ------
+    DataError
+        If it is neither, or not there.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise DataError(f"{path}: no such archive; `snakemake archive` makes it")
+    if path.is_dir():
+        yield path
+        return
+    with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
+        try:
+            with zipfile.ZipFile(path) as packed:
+                packed.extractall(scratch)  # which keeps every entry below the folder
+        except (OSError, zipfile.BadZipFile, ValueError, NotImplementedError) as error:
+            raise DataError(f"{path}: neither an archive's folder nor its zip ({error})") from None
+        inside = [folder for folder in Path(scratch).iterdir() if folder.is_dir()]
+        if len(inside) != 1:
+            raise DataError(f"{path}: not an archive: it holds {len(inside)} folders, need one")
+        yield inside[0]
+
+
+def verify_archive(folder):
+    """Check an archive: fingerprints, datasets, and how they hang together.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The unpacked archive.
+
+    Returns
+    -------
+    list of str
+        What is wrong, a line each; empty if all is well.
+
+    Raises
+    ------
+    DataError
+        If it is no archive.
+    """
+    folder = Path(folder)
+    if not (folder / SUMS).is_file():
+        raise DataError(f"{folder}: not an archive: {SUMS} is missing")
+    wrong = list(_wrong_sums(folder))
+    if wrong:
+        return wrong  # anything else would only repeat it
+    told = json.loads((folder / VALUES).read_text(encoding="utf-8"))
+    study_file = folder / "study" / told["study_file"]
+    kinds = list(told["config_sha256"])
+    inputs = {path.name: path for path in folder.glob("lubricants/*")}
+    return [*verify_datasets(folder / "data", study_file, kinds, inputs)]
+
+
+def _wrong_sums(folder):
+    """Compare every file with its fingerprint."""
+    lines = (folder / SUMS).read_text(encoding="utf-8").splitlines()
+    sums = dict(reversed(line.split("  ", 1)) for line in lines if "  " in line)
+    there = set(files_of(folder)) - {SUMS}
+    for name, expected in sums.items():
+        if name not in there:
+            yield f"{name}: missing"
+        elif fingerprint(folder / name) != expected:
+            yield f"{name}: not what it was: its SHA-256 is not the one in {SUMS}"
+    for name in sorted(there - set(sums)):
+        if not any(known in name for known in _BYPRODUCTS):
+            yield f"{name}: does not belong to the archive: not in {SUMS}"
+
+
+def verify_datasets(folder, study_file, kinds, inputs=None):
+    """Check a study's datasets: each whole and by its schema, all of one study.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Folder of the datasets.
+    study_file : str or Path
+        The study that they must follow from.
+    kinds : iterable of str
+        Which datasets there must be.
+    inputs : dict, optional
+        Further files that may have been used, by name.
+
+    Yields
+    ------
+    str
+        What is wrong, a line each.
+    """
+    folder, inputs = Path(folder), inputs or {}
+    try:
+        study = load_study(study_file)
+    except LubeError as error:
+        yield str(error)
+        return
+    kinds = list(kinds)
+    inputs = {**inputs, **{f"{kind}.nc": folder / f"{kind}.nc" for kind in kinds}}
+    for kind in kinds:
+        path = folder / f"{kind}.nc"
+        try:
+            with opened(path, kind, study) as dataset:
+                dataset.load()  # every chunk has a checksum
+                yield from _wrong_inputs(dataset, path, inputs)
+        except DataError as error:
+            yield str(error)
+
+
+def _wrong_inputs(dataset, path, inputs):
+    """Compare what a dataset says of the files it was made from with those files."""
+    for name, expected in json.loads(dataset.attrs["inputs_sha256"]).items():
+        if name in inputs and inputs[name].is_file() and fingerprint(inputs[name]) != expected:
+            yield f"{path}: was made from another {name} than {inputs[name]}"
+
+
+def redraw(folder, target):
+    """Draw every figure of an archive again, from its datasets and notebooks alone.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The unpacked archive.
+    target : str or Path
+        Where the new figures go.
+
+    Yields
+    ------
+    str, bool
+        Name of a file, such as ``fig02_film.png``, and whether it equals the archived one, byte
+        for byte.
+
+    Raises
+    ------
+    LubeError
+        If a notebook cannot be executed.
+    """
+    folder, target = Path(folder).resolve(), Path(target).resolve()
+    with _code_first(folder / "code"):
+        for picture in sorted((folder / "figures").glob("*.png")):
+            notebook = folder / "code/notebooks" / f"{picture.stem}.ipynb"
+            paths = {name: folder / "data" / f"{name}.nc" for name in parameters_of(notebook)}
+            paths |= {"figure": target / picture.stem}
+            parameters = {name: str(path) for name, path in paths.items()}
+            execute_notebook(notebook, target / notebook.name, parameters)
+            for suffix in (".png", ".pdf"):
+                new, old = (place / (picture.stem + suffix) for place in (target, picture.parent))
+                yield new.name, new.read_bytes() == old.read_bytes()
+
+
+@contextlib.contextmanager
+def _code_first(code):
+    """Let notebooks use the archived code, whatever else is installed."""
+    before = os.environ.get("PYTHONPATH")
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(code), before]))
+    try:
+        yield
+    finally:
+        del os.environ["PYTHONPATH"]
+        if before is not None:
+            os.environ["PYTHONPATH"] = before
