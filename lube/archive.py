@@ -16,10 +16,10 @@ from importlib.metadata import distributions
 from pathlib import Path
 
 from lube.about import LICENCES, PAPER
-from lube.citation import citation_file, crate_metadata, title, zenodo_metadata
+from lube.citation import citation_file, crate_metadata, zenodo_metadata
 from lube.errors import DataError
 from lube.files import written_whole
-from lube.provenance import config_text, digest, fingerprint
+from lube.provenance import config_text, digest, fingerprint, title_of
 from lube.repository import ROOT, code_files, commit
 from lube.schema import SUMMARIES
 
@@ -192,6 +192,14 @@ def _zip(folder, path):
             packed.writestr(entry, (folder / name).read_bytes())
 
 
+def _example(study):
+    """How to explain a number of the study."""
+    grid = study.operating_grid
+    levels = {name: getattr(grid, name)[-1] for name in ("force", "speed", "temperature")}
+    named = " ".join(f"--{name} {level:g}" for name, level in levels.items())
+    return f"lube explain data/contact.nc {named} --realisation 0"
+
+
 def _readme(study, kinds, study_file):
     """One page for a stranger who opens the archive."""
     about = study.about
@@ -207,7 +215,7 @@ def _readme(study, kinds, study_file):
         else ""
     )
     return f"""\
-# {title(study)}
+# {title_of(study)}
 
 {makers}. Licence of the results: [{about.licence}]({LICENCES[about.licence]}); of the code: see
 `code/LICENSE`. To cite, see `CITATION.cff`.
@@ -243,7 +251,12 @@ python3 -m venv ../lube-env && . ../lube-env/bin/activate
 pip install -c versions.txt ./code
 lube verify .                     # fingerprints, contents, and how the files hang together
 lube figures . --to ../figures    # draws every figure again and compares it byte for byte
-lube explain data/contact.nc      # where one number comes from; makes it again, to the last bit
+```
+
+To see where a number comes from, and make it again to the last bit:
+
+```bash
+{_example(study)}
 ```
 
 Without Python, `sha256sum --check {SUMS}` checks the fingerprints. To compute everything anew, go

@@ -13,6 +13,7 @@ from rocrate.rocrate import ROCrate
 
 from lube.about import LICENCES, PAPER
 from lube.errors import StudyError
+from lube.provenance import title_of
 from lube.repository import commit_date
 from lube.schema import SUMMARIES
 
@@ -78,11 +79,6 @@ def check_about(study):
     publication_date(study)
 
 
-def title(study):
-    """Title of a study's results."""
-    return study.about.title or f"Mixed lubrication study {study.name}"
-
-
 def citation_file(study):
     """Text of CITATION.cff, by the Citation File Format 1.2.0.
 
@@ -101,7 +97,7 @@ def citation_file(study):
         "cff-version": "1.2.0",
         "message": "If you use these results, please cite them and the paper whose model they use.",
         "type": "dataset",
-        "title": title(study),
+        "title": title_of(study),
         "authors": [_cff_person(creator) for creator in about.creators],
         "abstract": about.summary,
         "keywords": list(about.keywords),
@@ -145,7 +141,7 @@ def zenodo_metadata(study):
     about = study.about
     content = {
         "upload_type": "dataset",
-        "title": title(study),
+        "title": title_of(study),
         "description": f"<p>{html.escape(about.summary)}</p><p>The model is that of: {PAPER}.</p>",
         "creators": [creator.model_dump(exclude_none=True) for creator in about.creators],
         "publication_date": publication_date(study).isoformat(),
@@ -175,7 +171,7 @@ def crate_metadata(study, files):
         JSON-LD by RO-Crate 1.3.
     """
     about, crate = study.about, ROCrate(version=RO_CRATE)
-    crate.name, crate.description = title(study), about.summary
+    crate.name, crate.description = title_of(study), about.summary
     crate.datePublished = publication_date(study)
     crate.keywords = ", ".join(about.keywords)
     crate.license = crate.add(_licence(crate, about.licence))

@@ -46,7 +46,7 @@ def global_attributes(study, kind, inputs=()):
     code = f"lube {version('lube')}, commit {commit()}"
     return {
         "Conventions": CONVENTIONS,
-        "title": f"{about.title or f'Mixed lubrication study {study.name}'}: {stage}",
+        "title": f"{title_of(study)}, {stage}",
         "summary": f"{SUMMARIES[stage]} {about.summary}",
         "keywords": ", ".join(about.keywords),
         "study": study.name,
@@ -63,6 +63,11 @@ def global_attributes(study, kind, inputs=()):
         "creator_institution": "; ".join(one.affiliation or "-" for one in about.creators) or "-",
         "references": f"The model is that of: {PAPER}",
     }
+
+
+def title_of(study):
+    """Title of a study's results."""
+    return study.about.title or f"Mixed lubrication study {study.name}"
 
 
 def config_text(study, kind):

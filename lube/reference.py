@@ -93,10 +93,15 @@ def _keys(schema, path="", definitions=None, skip=None, section=""):
     return rows
 
 
+_LONGEST = 60  # letters of a default that is told
+
+
 def _by_default(field):
     """Say that a key may be left out, and what then stands for it."""
     default = field.get("default")
-    if default is None:
+    if isinstance(default, list):
+        default = ", ".join(default) or None
+    if default is None or len(str(default)) > _LONGEST:
         return " (optional)"
     if isinstance(default, dict):
         default = f"{', '.join(str(value) for value in default['values'])} {default['units']}"

@@ -134,7 +134,7 @@ def verify_datasets(folder, study_file, kinds, inputs=None):
     for kind in kinds:
         path = folder / f"{kind}.nc"
         try:
-            with opened(path, kind, study) as dataset:
+            with opened(path, kind, study, raw=False) as dataset:
                 dataset.load()  # every chunk has a checksum
                 yield from _wrong_inputs(dataset, path, inputs)
         except DataError as error:
