@@ -17,19 +17,22 @@ MODULES = {
     if path.name != "__init__.py"
 }
 
-# Each module may import those of layers above its own, and the ones named in its own row.
+# Each module may import those of the layers above its own.
 LAYERS = [
     {"errors"},
     {
         *("units", "hertz", "formulas", "viscosity", "resistance"),
         *("curves", "intervals", "schema", "kernels"),
     },
-    {"fields", "files", "fluids", "steps", "rig", "evaluation", "shares", "signals", "tables"},
-    {"apparatus", "records", "surfaces", "manifest", "text_signals", "binary_signals"},
+    {
+        *("fields", "files", "fluids", "steps", "points", "evaluation", "shares"),
+        *("signals", "tables"),
+    },
+    {"apparatus", "records", "surfaces", "rig", "manifest", "text_signals", "binary_signals"},
     {"study", "recordings"},
     {
         *("lubricant", "film", "roughness", "contact", "trace", "ensemble"),
-        *("experiment", "comparison", "gauge"),
+        *("experiment", "rig_records", "comparison", "gauge"),
     },
     {"io", "plots", "notebooks", "jobs", "reference"},
 ]
