@@ -21,11 +21,11 @@ MODULES = {
 LAYERS = [
     {"errors"},
     {
-        *("units", "hertz", "formulas", "viscosity", "resistance"),
+        *("units", "hertz", "groups", "regimes", "inlet_heating", "viscosity", "resistance"),
         *("curves", "intervals", "schema", "kernels"),
     },
     {
-        *("fields", "files", "fluids", "steps", "points", "evaluation", "shares"),
+        *("formulas", "fields", "files", "fluids", "steps", "points", "evaluation", "shares"),
         *("signals", "tables"),
     },
     {"apparatus", "records", "surfaces", "rig", "manifest", "text_signals", "binary_signals"},
@@ -38,8 +38,8 @@ LAYERS = [
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
 FOUNDATIONS = {
-    *("errors", "units", "fields", "hertz", "formulas", "viscosity", "resistance"),
-    *("curves", "intervals"),
+    *("errors", "units", "fields", "hertz", "groups", "regimes", "formulas", "inlet_heating"),
+    *("viscosity", "resistance", "curves", "intervals"),
 }
 STAGES = LAYERS[5]
 
