@@ -117,8 +117,9 @@ class _SimulatedRecord:
 
     def _compared_share(self, voltage):
         """Share below the compared threshold, and its limits."""
-        compared = self._study.experiment
-        counter = self._counter(compared.model_copy(update={"thresholds": (compared.threshold,)}))
+        experiment = self._study.experiment
+        thresholds = {"thresholds": (experiment.threshold,)}
+        counter = self._counter(experiment.model_copy(update=thresholds))
         counter.add(voltage)
         duration = counter.samples * self._interval
         return np.ravel(_shares(counter, duration, self._point, self._q_min))
