@@ -209,22 +209,8 @@ def open_netcdf(path):
 def open_tdms(path):
     """Find the record in a TDMS file.
 
-    Its time is a channel as long as itself, or else its property ``wf_increment``.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    BinarySignal
-        The record, not read yet.
-
-    Raises
-    ------
-    DataError
-        As `open_netcdf`.
+    Its time is a channel as long as itself, or else its property ``wf_increment``. What goes in,
+    what comes out and what is refused is as in `open_netcdf`.
     """
     return _opened(path, _tdms_arrays, _tdms_interval)
 

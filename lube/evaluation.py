@@ -10,6 +10,7 @@ import numpy as np
 from lube.errors import RangeError
 from lube.intervals import probability_limits
 from lube.kernels.threshold import count_below, follow_contact
+from lube.resistance import divider_voltage
 
 BLOCKS = 64
 """So many blocks at most; whenever they are full, each two become one."""
@@ -92,6 +93,11 @@ class ContactShare:
         self._doublings += 1
 
     @property
+    def samples(self):
+        """Samples counted so far."""
+        return self._samples
+
+    @property
     def below(self):
         """Samples in contact, shape (K, B), int64: at each limit, in each block."""
         return self._counts[:, : self.sizes.size].copy()
@@ -101,6 +107,33 @@ class ContactShare:
         """Samples in each block, shape (B,), int64; the last may be shorter."""
         firsts = np.arange(0, self._samples, 1 << self._doublings)
         return np.diff(firsts, append=self._samples)
+
+
+def record_counter(experiment, rig, quantity, sampling_interval):
+    """Begin to count the time that a record of the rig lies below a study's thresholds.
+
+    Parameters
+    ----------
+    experiment : Experiment
+        Thresholds (ohm), release ratio and debounce (s).
+    rig : Rig
+        The circuit, which tells a resistance's voltage.
+    quantity : str
+        What the record holds, ``voltage`` (V) or ``resistance`` (ohm).
+    sampling_interval : float
+        Time between its samples, s.
+
+    Returns
+    -------
+    ContactShare
+        With limits in the record's own unit, in the order of the thresholds.
+    """
+    limits = np.array(experiment.thresholds)
+    releases = limits * experiment.release_ratio
+    if quantity == "voltage":
+        limits, releases = divider_voltage(limits, rig), divider_voltage(releases, rig)
+    hold = round(experiment.debounce / sampling_interval)
+    return ContactShare(limits, None if experiment.release_ratio == 1.0 else releases, hold)
 
 
 def _pairs(counts):

@@ -3,8 +3,10 @@
 import numpy as np
 import xarray as xr
 
-from lube import formulas as ehl
-from lube import hertz, schema
+from lube import groups, hertz, schema
+from lube.formulas import formula
+from lube.inlet_heating import inlet_shear_heating_factor
+from lube.regimes import regime
 
 
 def film_table(lubricant, rollers, force, speed, formulas):
@@ -39,13 +41,13 @@ def film_table(lubricant, rollers, force, speed, formulas):
     DataError
         If the result does not fit the schema, for want of a dimension or coordinate.
     """
-    rows = [ehl.formula(name) for name in formulas]
+    rows = [formula(name) for name in formulas]
     # Grids that differ in one value would otherwise be cut to their intersection.
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = _hertz_contact(rollers, _axis("force", force), _axis("speed", speed))
-        groups = _dimensionless_groups(lubricant, rollers, contact)
-        table = contact.merge(_regime(*groups), join="exact")
-        table = table.merge(_film(rows, rollers, groups, table), join="exact")
+        numbers = _dimensionless_groups(lubricant, rollers, contact)
+        table = contact.merge(_regime(*numbers), join="exact")
+        table = table.merge(_film(rows, rollers, numbers, table), join="exact")
         table["inlet_shear_heating_factor"] = _inlet_shear_heating(lubricant, contact)
     return schema.label(table.transpose(*schema.OPERATING_DIMS), "film")
 
@@ -72,29 +74,31 @@ def _hertz_contact(rollers, force, speed):
 def _dimensionless_groups(lubricant, rollers, contact):
     film_modulus = 2.0 * rollers.reduced_modulus
     scale = (film_modulus, rollers.reduced_radius)
-    load = ehl.dimensionless_load(contact["force"] / rollers.length, *scale)
-    speed = ehl.dimensionless_speed(
+    load = groups.dimensionless_load(contact["force"] / rollers.length, *scale)
+    speed = groups.dimensionless_speed(
         lubricant["dynamic_viscosity"], contact["entrainment_speed"], *scale
     )
-    material = ehl.dimensionless_material(lubricant["pressure_viscosity_coefficient"], film_modulus)
+    material = groups.dimensionless_material(
+        lubricant["pressure_viscosity_coefficient"], film_modulus
+    )
     return load, speed, material
 
 
 def _regime(load, speed, material):
-    moes_load, moes_material = ehl.moes_numbers(load, speed, material)
-    regime = xr.apply_ufunc(ehl.regime, load, speed, material, join="exact")
+    moes_load, moes_material = groups.moes_numbers(load, speed, material)
+    flag = xr.apply_ufunc(regime, load, speed, material, join="exact")
     return xr.Dataset(
         {
             "moes_load": moes_load,
             "moes_material": moes_material,
-            "regime": regime.astype("int8"),  # the type of its flag_values, as CF demands
+            "regime": flag.astype("int8"),  # the type of its flag_values, as CF demands
         }
     )
 
 
-def _film(rows, rollers, groups, table):
+def _film(rows, rollers, numbers, table):
     names = xr.DataArray([row.name for row in rows], dims="film_formula", name="film_formula")
-    film = xr.concat([row.evaluate(*groups) for row in rows], dim=names, join="exact")
+    film = xr.concat([row.evaluate(*numbers) for row in rows], dim=names, join="exact")
     film = film * rollers.reduced_radius
     valid = [row.holds(table["moes_load"], table["moes_material"]) for row in rows]
     return xr.Dataset(
@@ -109,7 +113,7 @@ def _film(rows, rollers, groups, table):
 
 
 def _inlet_shear_heating(lubricant, contact):
-    return ehl.inlet_shear_heating_factor(
+    return inlet_shear_heating_factor(
         lubricant["dynamic_viscosity"],
         lubricant["temperature_viscosity_coefficient"],
         contact["entrainment_speed"],

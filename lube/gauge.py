@@ -25,6 +25,7 @@ from lube.shares import (
     LIMITS,
     at_comparison_threshold,
     in_pure_rolling,
+    limited,
     lines_of,
     log_lines,
     on_study_levels,
@@ -224,10 +225,12 @@ def _shares(film, experiment):
 def _curves(master, width):
     """Curves of the mean probability and of its limits, at one contact width (m)."""
     resolution = _resolution(master, width)
-    return tuple(
-        _curve(master[f"breakthrough_probability_{limit}"], width, resolution)
-        for limit in ("mean", "lower", "upper")
-    )
+    return tuple(_curve(each, width, resolution) for each in _mean_and_limits(master))
+
+
+def _mean_and_limits(dataset):
+    """Mean probability over the realisations, and its limits."""
+    return [dataset[f"breakthrough_probability_{each}"] for each in ("mean", "lower", "upper")]
 
 
 def _resolution(master, width):
@@ -309,11 +312,9 @@ def _fits(name, log_factors, logits, film, contact, experiment):
         place = {"lubricant": oils[o], "film_formula": formulas[f]}
         measured = shares.sel(lubricant=oils[o])
         fits[o, f] = _fit(log_factors, logits.sel(place), contact.sel(place), measured)
+    found = limited(name, np.moveaxis(fits, -1, 0))
     return xr.Dataset(
-        {
-            name + limit: (("lubricant", "film_formula"), values)
-            for limit, values in zip(LIMITS, np.moveaxis(fits, -1, 0), strict=True)
-        },
+        {each: (("lubricant", "film_formula"), values) for each, values in found.items()},
         coords={"lubricant": oils, "film_formula": formulas},
     )
 
@@ -325,10 +326,7 @@ def _fit(log_factors, logits, contact, shares):
         for array in (logits, contact["breakthrough_probability"])
     )
     measured = [_points(shares[f"contact_share{limit}"]).ravel() for limit in LIMITS]
-    ensemble = [
-        _points(contact[f"breakthrough_probability_{limit}"]).ravel()
-        for limit in ("mean", "lower", "upper")
-    ]
+    ensemble = [_points(array).ravel() for array in _mean_and_limits(contact)]
     used = np.isfinite(sum(measured)) & np.isfinite(logits).all(axis=0)
     simulated = independent_looks(*ensemble)
     # The variances of record and ensemble add.

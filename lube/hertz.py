@@ -69,12 +69,8 @@ def maximum_pressure(force, length, reduced_radius, reduced_modulus):
 
     Parameters
     ----------
-    force : float or numpy.ndarray
-        Normal force F_N, N.
-    length : float
-        Length L' of the cylinders' contact, m.
-    reduced_radius, reduced_modulus : float
-        R* in m and E* in Pa.
+    force, length, reduced_radius, reduced_modulus
+        As in `contact_half_width`.
 
     Returns
     -------

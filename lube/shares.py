@@ -8,8 +8,27 @@ from lube.schema import COORDINATES, EXPERIMENT_DIMS
 SAME_LEVEL = 1e-9
 """Relative difference of levels that are the same but for rounding."""
 LIMITS = ("", "_lower", "_upper")
+"""What the names of a value and of the limits of its 95 % interval end with."""
 MOST_LINES = 10
 """Lines that a log shows of a longer list."""
+
+
+def limited(name, values):
+    """Name a value and the limits of its interval.
+
+    Parameters
+    ----------
+    name : str
+        Name of the value.
+    values : sequence
+        Value, lower and upper limit.
+
+    Returns
+    -------
+    dict
+        The three by their names.
+    """
+    return {f"{name}{limit}": value for limit, value in zip(LIMITS, values, strict=True)}
 
 
 def on_study_levels(experiment, levels, share="contact_share"):

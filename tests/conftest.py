@@ -8,6 +8,7 @@ from hypothesis import settings
 
 from lube import film_table, line_spec, load_study, roughness_lines
 from lube.lubricant import lubricant_table
+from lube.roughness import roughness_batch
 from lube.schema import EXPERIMENT_DIMS, label
 
 # The first example of a test may have to wait for its kernel to be compiled.
@@ -66,6 +67,30 @@ def coarse_lines(make_spec):
     return roughness_lines(
         make_spec(6000, shortest_wavelength="4.0 points"), seed=11, realisations=[0]
     )
+
+
+@pytest.fixture(scope="session")
+def with_rig():
+    """A study whose simulated rig has other values, and two revolutions."""
+
+    def change(study, **values):
+        rig = type(study.rig)(**({"revolutions": 2} | values))
+        return study.model_copy(update={"rig": rig})
+
+    return change
+
+
+@pytest.fixture(scope="session")
+def rig_lines(make_spec, study, with_rig):
+    """The rig's own rollers, two revolutions, on a grid fine enough for some contact."""
+    return roughness_batch(make_spec(60_000), study.seed, with_rig(study).rig_realisations)
+
+
+@pytest.fixture(scope="session")
+def rig_film(film, study):
+    """Film table at the study's levels, of one speed."""
+    grid = study.operating_grid
+    return film.sel(temperature=list(grid.temperature), speed=[100.0], force=list(grid.force))
 
 
 @pytest.fixture(scope="session")

@@ -8,8 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from kernels.test_threshold import plain_contact
 
+from lube.apparatus import Experiment, Rig
 from lube.errors import RangeError
-from lube.evaluation import BLOCKS, LEAST_BLOCKS, ContactShare, share_interval
+from lube.evaluation import BLOCKS, LEAST_BLOCKS, ContactShare, record_counter, share_interval
+from lube.resistance import divider_voltage
 
 LIMITS = [1.0, 2.5, 4.0]
 records = st.lists(st.integers(0, 6), max_size=400).map(lambda levels: np.array(levels, float))
@@ -37,7 +39,7 @@ def test_counts_do_not_depend_on_how_the_record_is_cut(values, places, hold, rel
 @given(records, st.integers(0, 4), st.sampled_from([None, [1.0, 3.0, 6.0]]))
 def test_every_block_holds_exactly_its_samples(values, hold, releases):
     counter = count([values], LIMITS, releases, hold)
-    assert counter.sizes.sum() == values.size
+    assert counter.sizes.sum() == counter.samples == values.size
     edges = np.concatenate([[0], np.cumsum(counter.sizes)])
     for limit, release, row in zip(LIMITS, releases or LIMITS, counter.below, strict=True):
         contact = plain_contact(values, limit, release, hold)
@@ -94,6 +96,37 @@ def test_a_record_without_samples_has_no_blocks():
 def test_impossible_limits_are_refused(options, told):
     with pytest.raises(RangeError, match=told):
         ContactShare(*options)
+
+
+# A study's thresholds
+
+RESISTANCES = np.geomspace(1.0, 1e4, 997)
+
+
+@pytest.mark.parametrize("release_ratio", [1, 2.5])
+def test_a_voltage_is_counted_as_the_resistance_that_it_tells_of(release_ratio):
+    rig, experiment = Rig(), Experiment(release_ratio=release_ratio)
+    falling_and_rising = np.concatenate([RESISTANCES[::-1], RESISTANCES])
+    counts = []
+    for quantity, record in (
+        ("resistance", falling_and_rising),
+        ("voltage", divider_voltage(falling_and_rising, rig)),
+    ):
+        counter = record_counter(experiment, rig, quantity, 1e-5)
+        counter.add(record)
+        counts.append(counter.below.sum(axis=1).tolist())
+    assert counts[0] == counts[1]
+    limits = np.array(experiment.thresholds)[:, None]
+    below = [np.sum(edge > RESISTANCES, axis=1) for edge in (limits, release_ratio * limits)]
+    assert counts[0] == sum(below).tolist()
+
+
+@pytest.mark.parametrize(("debounce", "seen"), [("0 s", 3), ("30 us", 3), ("40 us", 0)])
+def test_a_change_shorter_than_the_debounce_does_not_count(debounce, seen):
+    experiment = Experiment(debounce=debounce)
+    counter = record_counter(experiment, Rig(), "resistance", 1e-5)
+    counter.add(np.array([1e5, 1.0, 1.0, 1.0, 1e5, 1e5, 1e5, 1e5, 1e5]))
+    assert counter.below.sum(axis=1).tolist() == [seen] * len(experiment.thresholds)
 
 
 # Intervals

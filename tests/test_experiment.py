@@ -2,41 +2,20 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 
-from lube import experiment as stage
 from lube.contact import contact_statistics
 from lube.errors import DataError
-from lube.experiment import measured_experiment, rig_records, simulated_experiment
+from lube.experiment import measured_experiment, simulated_experiment
 from lube.manifest import read_manifest
-from lube.roughness import roughness_batch
 from lube.schema import EXPERIMENT_DIMS
 
 FAST = {"bandwidth": "50 MHz", "sampling_rate": "2 MHz", "noise": "0 V", "lead_resistance": "0 ohm"}
 
 
-def with_rig(study, **values):
-    rig = type(study.rig)(**({"revolutions": 2} | values))
-    return study.model_copy(update={"rig": rig})
-
-
 @pytest.fixture(scope="module")
-def rig_lines(make_spec, study):
-    """The rig's own rollers, two revolutions, on a grid fine enough for some contact."""
-    return roughness_batch(make_spec(60_000), study.seed, with_rig(study).rig_realisations)
-
-
-@pytest.fixture(scope="module")
-def table(film, study):
-    """Film table at the study's levels."""
-    grid = study.operating_grid
-    return film.sel(temperature=list(grid.temperature), speed=[100.0], force=list(grid.force))
-
-
-@pytest.fixture(scope="module")
-def ideal(rig_lines, table, study):
+def ideal(rig_lines, rig_film, study, with_rig):
     """A rig without inertia or noise."""
-    return simulated_experiment(rig_lines, table, with_rig(study, **FAST))
+    return simulated_experiment(rig_lines, rig_film, with_rig(study, **FAST))
 
 
 def at(dataset, **levels):
@@ -47,9 +26,9 @@ def at(dataset, **levels):
 
 
 def test_the_truth_is_what_the_contact_stage_finds_of_the_same_rollers(
-    ideal, rig_lines, table, study
+    ideal, rig_lines, rig_film, study
 ):
-    found = contact_statistics(rig_lines, table, study.boundary_layer)
+    found = contact_statistics(rig_lines, rig_film, study.boundary_layer)
     expected = found.breakthrough_probability.mean("realisation").isel(film_formula=0)
     actual = ideal.true_contact_share.sel(slide_to_roll_ratio=[0.0])
     np.testing.assert_allclose(
@@ -75,8 +54,8 @@ def test_each_revolution_is_a_record_of_its_own(ideal):
     assert (known.revolution_share_upper >= 0.5 * known.contact_share_upper).all()
 
 
-def test_a_slow_rig_misses_contact_most_at_low_thresholds(rig_lines, table, study):
-    slow = simulated_experiment(rig_lines, table, with_rig(study, bandwidth="2 kHz"))
+def test_a_slow_rig_misses_contact_most_at_low_thresholds(rig_lines, rig_film, study, with_rig):
+    slow = simulated_experiment(rig_lines, rig_film, with_rig(study, bandwidth="2 kHz"))
     shares = slow.contact_share.sel(slide_to_roll_ratio=0.0)
     assert (shares.diff("threshold") >= 0.0).all()
     seen = slow.true_contact_share.sel(slide_to_roll_ratio=0.0) > 0.01
@@ -92,30 +71,6 @@ def test_records_are_of_the_rigs_slip_and_say_that_they_are_simulated(ideal, stu
     assert ideal.refused == ""
 
 
-def test_how_many_points_are_held_at_once_changes_nothing(
-    ideal, rig_lines, table, study, monkeypatch
-):
-    monkeypatch.setattr(stage, "TOGETHER", 3)
-    again = simulated_experiment(rig_lines, table, with_rig(study, **FAST))
-    xr.testing.assert_identical(again, ideal)
-
-
-def test_the_trace_points_record_belongs_to_the_same_rig(rig_lines, table, study):
-    points = tuple(point for point in study.traces if point.speed == 100.0)
-    study = with_rig(study.model_copy(update={"traces": points}), bandwidth="30 kHz")
-    record = rig_records(rig_lines, table, study)
-    everything = simulated_experiment(rig_lines, table, study)
-    for number, point in enumerate(study.trace_points):
-        levels = {name: point[name] for name in EXPERIMENT_DIMS}
-        here, there = record.isel(operating_point=number), everything.sel(levels)
-        assert here.true_contact_share == there.true_contact_share
-        np.testing.assert_allclose(
-            here.contact_share.sel(bandwidth=3e4), there.contact_share, atol=1e-3
-        )
-    assert record.rig_time.diff("rig_time").values == pytest.approx(1e-5)
-    assert (record.contact_share.diff("bandwidth").isel(threshold=0) >= -1e-3).all()
-
-
 # Measured records
 
 
@@ -125,13 +80,13 @@ def write_record(path, resistance, interval=1e-4):
 
 
 @pytest.fixture
-def measured(tmp_path, table, study):
+def measured(tmp_path, rig_film, study):
     """Evaluate a manifest of the given rows, written beside their records."""
 
     def evaluate(*rows, header="file,force [N],speed [rpm],temperature [degC]", study=study):
         manifest = tmp_path / "manifest.csv"
         manifest.write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
-        return measured_experiment(read_manifest(manifest), table, study)
+        return measured_experiment(read_manifest(manifest), rig_film, study)
 
     half = np.where(np.arange(20_000) // 50 % 2, 5.0, 5e4)
     write_record(tmp_path / "half.csv", half)

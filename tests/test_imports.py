@@ -17,19 +17,25 @@ MODULES = {
     if path.name != "__init__.py"
 }
 
-# Each module may import those of layers above its own, and the ones named in its own row.
+# Each module may import those of the layers above its own.
 LAYERS = [
     {"errors", "repository"},
     {
-        *("units", "hertz", "formulas", "viscosity", "resistance"),
+        *("units", "hertz", "groups", "regimes", "inlet_heating", "viscosity", "resistance"),
         *("curves", "intervals", "schema", "kernels"),
     },
-    {"fields", "files", "fluids", "steps", "rig", "evaluation", "shares", "signals", "tables"},
-    {"about", "apparatus", "records", "surfaces", "manifest", "text_signals", "binary_signals"},
+    {
+        *("formulas", "fields", "files", "fluids", "steps", "points", "evaluation", "shares"),
+        *("signals", "tables"),
+    },
+    {
+        *("about", "apparatus", "records", "surfaces", "rig", "manifest"),
+        *("text_signals", "binary_signals"),
+    },
     {"study", "recordings"},
     {
         *("lubricant", "film", "roughness", "contact", "trace", "ensemble"),
-        *("experiment", "comparison", "gauge"),
+        *("experiment", "rig_records", "comparison", "gauge"),
     },
     {"provenance", "notebooks", "jobs", "reference"},
     {"io", "plots", "citation"},
@@ -39,8 +45,8 @@ LAYERS = [
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
 FOUNDATIONS = {
-    *("errors", "units", "fields", "hertz", "formulas", "viscosity", "resistance"),
-    *("curves", "intervals"),
+    *("errors", "units", "fields", "hertz", "groups", "regimes", "formulas", "inlet_heating"),
+    *("viscosity", "resistance", "curves", "intervals"),
 }
 STAGES = LAYERS[5]
 

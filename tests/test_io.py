@@ -15,12 +15,13 @@ from lube.comparison import compare
 from lube.contact import contact_map, contact_statistics
 from lube.ensemble import gather, gather_map
 from lube.errors import DataError
-from lube.experiment import rig_records, simulated_experiment
+from lube.experiment import simulated_experiment
 from lube.film import film_table
 from lube.gauge import gauge_records
 from lube.io import load, opened, save
 from lube.lubricant import lubricant_table
 from lube.provenance import global_attributes
+from lube.rig_records import rig_records
 from lube.roughness import roughness_batch, roughness_lines
 from lube.schema import COORDINATES, FILES, check, label
 from lube.trace import contact_trace

@@ -1,11 +1,14 @@
-"""What a simulated rig logs: the right voltages, in whole steps, with the noise it says."""
+"""The simulated rig: its contacts, and the right voltages, in whole steps, with their noise."""
 
 import numpy as np
 import pytest
 
+from lube import rig as module
 from lube.apparatus import Rig
+from lube.contact import contact_statistics
+from lube.points import operating_points
 from lube.resistance import divider_voltage, resistance_from_voltage
-from lube.rig import logged_voltage
+from lube.rig import SimulatedRig, logged_voltage
 
 TIME_STEP, SPOT, CAPACITANCE = 6e-7, 0.64, 2.7e-10
 QUIET = {"noise": "0 V", "resolution": 32}
@@ -81,3 +84,57 @@ def test_a_large_capacitance_hides_how_soon_a_contact_ends():
     assert small == pytest.approx(0.01, abs=0.001)
     # The gap charges over 100 ohm: the same 100 ohm's half of the bias is reached after ln 2 R C.
     assert large - small == pytest.approx(np.log(2.0) * 100.2 * 1e-7 / 6e-4, rel=0.1)
+
+
+# A rig with rollers of its own
+
+
+@pytest.fixture(scope="module")
+def points(rig_film):
+    return operating_points(rig_film.isel(film_formula=0), 0.1)
+
+
+@pytest.fixture(scope="module")
+def revolutions(rig_lines, study, points):
+    return list(SimulatedRig(rig_lines, study, points).revolutions())
+
+
+def test_every_revolution_passes_all_points_in_order(revolutions, rig_lines, points):
+    numbers = [number for number, _ in revolutions]
+    assert numbers == [*range(len(points))] * rig_lines.sizes["realisation"]
+    assert all(revolution.point is points[number] for number, revolution in revolutions)
+
+
+def test_its_contacts_are_those_of_the_contact_stage(revolutions, rig_lines, rig_film, study):
+    found = contact_statistics(rig_lines, rig_film, study.boundary_layer, [0.1])
+    expected = found.breakthrough_probability.isel(film_formula=0)
+    expected = expected.transpose("realisation", ..., "temperature", "speed", "force")
+    shares = [np.mean(revolution.contact > 0) for _, revolution in revolutions]
+    np.testing.assert_allclose(shares, expected.values.ravel(), rtol=1e-12)
+    assert max(shares) > 0.01
+
+
+def test_the_faster_surface_passes_one_grid_point_each_time_step(revolutions, rig_lines, study):
+    _, revolution = revolutions[0]
+    faster = 1.05 * revolution.point.entrainment_speed
+    assert revolution.time_step == pytest.approx(rig_lines.attrs["spacing"] / faster)
+    turn = 2.0 * np.pi * study.rollers.first.radius / faster
+    assert revolution.contact.size * revolution.time_step == pytest.approx(turn)
+
+
+def test_noise_is_of_its_revolution_and_point_and_no_other(revolutions, study, points):
+    one, same, beside, later = (
+        revolutions[number][1].voltage(study.rig) for number in (0, 0, 1, len(points))
+    )
+    np.testing.assert_array_equal(one, same)
+    assert not np.array_equal(one, beside) and not np.array_equal(one, later)
+
+
+def test_how_many_points_are_held_at_once_changes_nothing(
+    revolutions, rig_lines, study, points, monkeypatch
+):
+    monkeypatch.setattr(module, "TOGETHER", 3)
+    again = SimulatedRig(rig_lines, study, points).revolutions()
+    for (number, revolution), (expected, other) in zip(again, revolutions, strict=True):
+        assert number == expected
+        np.testing.assert_array_equal(revolution.contact, other.contact)

@@ -7,10 +7,11 @@ import pytest
 import xarray as xr
 
 from lube.errors import DataError
-from lube.schema import EXPERIMENT_DIMS
+from lube.schema import EXPERIMENT_DIMS, FILES
 from lube.shares import (
     at_comparison_threshold,
     in_pure_rolling,
+    limited,
     lines_of,
     log_lines,
     on_study_levels,
@@ -98,6 +99,16 @@ def test_pure_rolling_is_picked_or_missed(experiment):
     slipping = in_pure_rolling(experiment.assign_coords(slide_to_roll_ratio=[0.1]))
     assert slipping.contact_share.sizes == rolling.contact_share.sizes
     assert slipping.contact_share.isnull().all()
+
+
+def test_a_value_and_its_limits_are_named_as_in_the_schema():
+    named = limited("contact_share", [0.5, 0.4, 0.6])
+    assert named == {
+        "contact_share": 0.5,
+        "contact_share_lower": 0.4,
+        "contact_share_upper": 0.6,
+    }
+    assert set(named) <= set(FILES["experiment"])
 
 
 # Lists of points

@@ -107,16 +107,10 @@ def scan_statistics(line_1, line_2, speed_ratios, steps, films, half_windows, fa
 
     Parameters
     ----------
-    line_1, line_2 : numpy.ndarray
-        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 steps.
-    speed_ratios : tuple of float
-        Surface speeds over the faster one's.
-    steps : int
-        Number T of time steps.
+    line_1, line_2, speed_ratios, steps, factor
+        As in `scan_trace`.
     films, half_windows : numpy.ndarray
         Film thickness in steps and points beside the window's middle, shape (P,), int64.
-    factor : float
-        From `lube.kernels.layer.layer_factor`.
 
     Returns
     -------

@@ -52,12 +52,8 @@ def follow_contact(values, seen, doublings, limits, releases, hold, states, coun
 
     Parameters
     ----------
-    values : numpy.ndarray
-        Shape (N,), the piece.
-    seen : int
-        Samples of the record before this piece.
-    doublings : int
-        Binary logarithm of the samples in a block.
+    values, seen, doublings
+        As in `count_below`.
     limits, releases : numpy.ndarray
         Shape (K,), in the unit of `values`.
     hold : int

@@ -1,8 +1,8 @@
 """Make rig.nc: what the simulated rig logs at the trace points."""
 
-from lube.experiment import rig_records
 from lube.io import load, save
 from lube.jobs import begin_job
+from lube.rig_records import rig_records
 from lube.roughness import roughness_batch
 from lube.study import load_study
 
