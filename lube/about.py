@@ -1,9 +1,10 @@
 """Whose study it is and under which licence: what its files and its archive say of themselves."""
 
 import datetime
+import re
 from typing import Annotated, Literal
 
-from pydantic import Field, StringConstraints
+from pydantic import AfterValidator, Field, StringConstraints
 
 from lube.fields import StrictModel
 
@@ -17,10 +18,21 @@ LICENCES = {
 }
 """Licences for data that Zenodo and its like know, by their SPDX names."""
 
-_Line = Annotated[
-    str,
-    StringConstraints(strip_whitespace=True, min_length=1, pattern=r"^[^\x00-\x1f\x7f]{1,2000}$"),
-]
+
+def _text(pattern, needed):
+    """Field type for a text of a given form."""
+
+    def check(text):
+        if not re.fullmatch(pattern, text):
+            raise ValueError(f"got {text[:60]!r}, need {needed}")
+        return text
+
+    return Annotated[str, StringConstraints(strip_whitespace=True), AfterValidator(check)]
+
+
+_Line = _text(r"[^\x00-\x1f\x7f]{1,2000}", "one line of text, 2000 letters at most")
+_Orcid = _text(r"\d{4}-\d{4}-\d{4}-\d{3}[\dX]", "an ORCID iD such as 0000-0002-1825-0097")
+_Doi = _text(r"10\.\d{4,9}/\S{1,200}", "a DOI such as 10.5281/zenodo.1234567")
 
 
 class Creator(StrictModel):
@@ -28,9 +40,7 @@ class Creator(StrictModel):
 
     name: _Line = Field(description="as it is cited: `Family, Given`")
     affiliation: _Line | None = Field(None, description="institution")
-    orcid: Annotated[str, StringConstraints(pattern=r"^\d{4}-\d{4}-\d{4}-\d{3}[\dX]$")] | None = (
-        Field(None, description="ORCID iD, such as 0000-0002-1825-0097")
-    )
+    orcid: _Orcid | None = Field(None, description="ORCID iD, such as 0000-0002-1825-0097")
 
 
 class About(StrictModel):
@@ -57,9 +67,7 @@ class About(StrictModel):
     date: datetime.date | None = Field(
         None, description="day of publication, for the archive; else that of the code's commit"
     )
-    doi: Annotated[str, StringConstraints(pattern=r"^10\.\d{4,9}/[^\s]+$")] | None = Field(
-        None, description="DOI that the repository reserved for the archive"
-    )
+    doi: _Doi | None = Field(None, description="DOI that the repository reserved for the archive")
 
     @property
     def in_files(self):

@@ -185,6 +185,8 @@ def crate_metadata(study, files):
         for folder in sorted({_folder_of(path) for path in files} - {""})
     }
     for path, size in sorted(files.items()):
+        if _folder_of(path) == "code/":
+            continue  # described as a whole
         entity = crate.add(File(crate, None, path, properties=_described(path, size)))
         if _folder_of(path):
             folders[_folder_of(path)].append_to("hasPart", entity)
@@ -197,7 +199,8 @@ _FOLDERS = {
     "notebooks/": "the executed notebook of each figure",
     "study/": "the study as it was written, and its values as they were understood",
     "lubricants/": "the records of its lubricants",
-    "code/": "the code that made everything, its workflow and the figures' notebooks",
+    "code/": "the code that made everything, its workflow and the figures' notebooks: lube, "
+    "under the licence in its file LICENSE",
 }
 
 

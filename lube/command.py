@@ -39,6 +39,7 @@ def _parser():
     verify.set_defaults(run=_verify)
     figures = commands.add_parser("figures", help="draw an archive's figures again and compare")
     figures.add_argument("path", help="its folder or zip")
+    figures.add_argument("figure", nargs="*", help="such as fig02_film; else all of them")
     figures.add_argument("--to", required=True, help="folder for the new figures")
     figures.set_defaults(run=_figures)
     explain = commands.add_parser("explain", help="trace a number of contact.nc and make it again")
@@ -73,7 +74,7 @@ def _figures(options):
 
     compared = []
     with unpacked(options.path) as folder:
-        for name, same in redraw(folder, options.to):
+        for name, same in redraw(folder, options.to, options.figure):
             print(f"{name}: {'the same bytes' if same else 'NOT the same'}", flush=True)
             compared.append(same)
     print(f"{sum(compared)} of {len(compared)} the same, byte for byte")

@@ -148,8 +148,8 @@ def _wrong_inputs(dataset, path, inputs):
             yield f"{path}: was made from another {name} than {inputs[name]}"
 
 
-def redraw(folder, target):
-    """Draw every figure of an archive again, from its datasets and notebooks alone.
+def redraw(folder, target, figures=()):
+    """Draw figures of an archive again, from its datasets and notebooks alone.
 
     Parameters
     ----------
@@ -157,6 +157,8 @@ def redraw(folder, target):
         The unpacked archive.
     target : str or Path
         Where the new figures go.
+    figures : iterable of str, optional
+        Which figures, such as ``fig02_film``; all if none is named.
 
     Yields
     ------
@@ -167,19 +169,22 @@ def redraw(folder, target):
     Raises
     ------
     LubeError
-        If a notebook cannot be executed.
+        If there is no such figure, or its notebook cannot be executed.
     """
     folder, target = Path(folder).resolve(), Path(target).resolve()
+    archived = sorted(path.stem for path in (folder / "figures").glob("*.png"))
+    for figure in figures:
+        if figure not in archived:
+            raise DataError(f"got {figure}, need a figure of the archive: {', '.join(archived)}")
     with _code_first(folder / "code"):
-        for picture in sorted((folder / "figures").glob("*.png")):
-            notebook = folder / "code/notebooks" / f"{picture.stem}.ipynb"
+        for figure in figures or archived:
+            notebook = folder / "code/notebooks" / f"{figure}.ipynb"
             paths = {name: folder / "data" / f"{name}.nc" for name in parameters_of(notebook)}
-            paths |= {"figure": target / picture.stem}
+            paths |= {"figure": target / figure}
             parameters = {name: str(path) for name, path in paths.items()}
             execute_notebook(notebook, target / notebook.name, parameters)
-            for suffix in (".png", ".pdf"):
-                new, old = (place / (picture.stem + suffix) for place in (target, picture.parent))
-                yield new.name, new.read_bytes() == old.read_bytes()
+            for name in (f"{figure}.png", f"{figure}.pdf"):
+                yield name, (target / name).read_bytes() == (folder / "figures" / name).read_bytes()
 
 
 @contextlib.contextmanager

@@ -54,7 +54,7 @@ def test_files_name_the_makers_and_the_libraries_behind_the_numbers(study):
     creators = [{"name": "Popov, V.", "affiliation": "Berlin"}, {"name": "Li, Q."}]
     about = study.about.model_validate({"title": "My rollers", "creators": creators})
     attributes = global_attributes(study.model_copy(update={"about": about}), "film")
-    assert attributes["title"] == "My rollers: film"
+    assert attributes["title"] == "My rollers, film"
     assert attributes["creator_name"] == "Popov, V.; Li, Q."
     assert attributes["creator_institution"] == "Berlin; -"
     assert attributes["license"].startswith("CC-BY-4.0 https://")
