@@ -12,6 +12,7 @@ _HOMES = {
     "lube.ensemble": ("gather", "gather_map", "with_intervals"),
     "lube.errors": ("DataError", "LubeError", "RangeError", "RecordError", "StudyError"),
     "lube.evaluation": ("ContactShare", "share_interval"),
+    "lube.explanation": ("explain",),
     "lube.film": ("film_table",),
     "lube.formulas": ("FORMULAS",),
     "lube.gauge": ("fit_alpha", "fit_layer_strength", "gauge_film", "gauge_records"),

@@ -82,7 +82,7 @@ def _figures(options):
 
 
 def _explain(options):
-    from lube.explain import explain, in_words
+    from lube.explanation import explain, in_words
 
     names = ("force", "speed", "temperature", "slide_to_roll_ratio", "lubricant", "film_formula")
     levels = {name: getattr(options, name) for name in names}

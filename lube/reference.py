@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lube.formulas import FORMULAS
 from lube.records import LubricantRecord
+from lube.schema import MEASURED, SUMMARIES
 from lube.study import Study
 
 
@@ -47,7 +48,26 @@ def formula_table():
     return _table(("name", "film", "source", "taken to hold for"), rows)
 
 
-TABLES = {"study": study_table, "record": record_table, "formulas": formula_table}
+def file_table():
+    """Table of the datasets, from the schema.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    rows = [
+        (f"`{kind}.nc`", summary) for kind, summary in SUMMARIES.items() if kind not in MEASURED
+    ]
+    return _table(("file", "what is in it"), rows)
+
+
+TABLES = {
+    "files": file_table,
+    "study": study_table,
+    "record": record_table,
+    "formulas": formula_table,
+}
 
 
 def with_tables(text):

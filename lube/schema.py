@@ -496,6 +496,9 @@ SUMMARIES = {
 }
 """What is in each kind of file, in a sentence."""
 
+MEASURED = ("speed", "reading")
+"""Files of measured clock times, by `snakemake benchmark`; they are no part of the results."""
+
 _LINE_ATTRIBUTES = ("q_min", "q_max", "spacing", "points", "height_step")
 _RUN_ATTRIBUTES = ("travel", "longest_wavelength")
 ATTRIBUTES = {

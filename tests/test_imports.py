@@ -39,7 +39,7 @@ LAYERS = [
     },
     {"provenance", "notebooks", "jobs", "reference"},
     {"io", "plots", "citation"},
-    {"archive", "explain"},
+    {"archive", "explanation"},
     {"verify"},
     {"command"},
 ]

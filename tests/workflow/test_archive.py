@@ -1,13 +1,11 @@
 """The archive of the smoke study, as a stranger finds it: whole, checkable, and drawn again."""
 
-import json
 import shutil
 import subprocess
 import sys
 import zipfile
 
 import pytest
-import yaml
 from crates import issues_of
 from repository import environment
 
@@ -159,10 +157,10 @@ def test_a_forged_study_is_found_out_by_the_values_in_the_files(spoilt):
     study.write_text(study.read_text().replace("shear_strength: 1 MPa", "shear_strength: 2 MPa"))
     with_true_sums(spoilt)
     wrong = verify_archive(spoilt)
-    assert [line.split(": ")[0].rpartition("/")[2] for line in wrong] == [
+    assert {line.split(": ")[0].rpartition("/")[2] for line in wrong} == {
         *("contact.nc", "trace.nc", "master.nc", "rig.nc"),
         *("experiment.nc", "comparison.nc", "gauge.nc"),
-    ]
+    }
     assert "shear_strength is 1000000.0, need 2000000.0" in wrong[0]
 
 
@@ -213,18 +211,3 @@ def test_a_study_without_makers_is_refused_before_any_job(smoke):
     assert "The study cannot start. about.creators: missing" in finished.stdout
     assert "Traceback" not in finished.stdout
     assert smoke.snapshot() == before
-
-
-def test_records_of_ones_own_keep_their_place_beside_the_study(spare):
-    (spare / "oils").mkdir()
-    shipped = spare / "lube/lubricants/mobilgear-shc-xmp-320.yaml"
-    record = yaml.safe_load(shipped.read_text("utf-8")) | {"name": "mine"}
-    (spare / "oils/mine.yaml").write_text(yaml.safe_dump(record), encoding="utf-8")
-    study = spare.with_values(lubricants=["oils/mine.yaml"])
-    spare.run("archive", study=study)
-    archive = spare.results / "archive/smoke"
-    assert {"study/mine.yaml", "study/oils/mine.yaml", "lubricants/mine.yaml"} <= set(
-        files_of(archive)
-    )
-    assert json.loads((archive / VALUES).read_text())["study_file"] == "mine.yaml"
-    assert verify_archive(archive) == []

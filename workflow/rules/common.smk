@@ -17,14 +17,10 @@ os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, [str(ROOT), elsewhere]
 
 import lube
 from lube.errors import LubeError
+from lube.schema import MEASURED, SUMMARIES
 from lube.study import load_study
 
-DATASETS = (
-    *("lubricant", "film", "roughness", "contact", "trace", "master"),
-    *("rig", "experiment", "comparison", "gauge"),
-)
-# By `snakemake benchmark`; clock times are no part of the study's results.
-MEASURED = ("speed", "reading")
+DATASETS = [kind for kind in SUMMARIES if kind not in MEASURED]
 
 
 @contextmanager

@@ -9,7 +9,7 @@ import xarray as xr
 from lube.contact import contact_statistics
 from lube.ensemble import gather
 from lube.errors import DataError
-from lube.explain import explain, in_words
+from lube.explanation import explain, in_words
 from lube.film import film_table
 from lube.io import save
 from lube.lubricant import lubricant_table

@@ -1,0 +1,76 @@
+"""What goes into an archive, and where; the whole of one is in workflow/test_archive.py."""
+
+import json
+from pathlib import Path
+
+import pytest
+import yaml
+
+from lube.archive import VALUES, archive_contents, exact_versions, make_archive
+from lube.errors import DataError
+from lube.provenance import config_text, digest
+from lube.study import load_study
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def own(tmp_path):
+    """A study with a lubricant record and a list of measured records of its own."""
+    shipped = ROOT / "lube/lubricants/mobilgear-shc-xmp-320.yaml"
+    record = yaml.safe_load(shipped.read_text("utf-8")) | {"name": "mine"}
+    study = yaml.safe_load((ROOT / "workflow/config/smoke.yaml").read_text("utf-8"))
+    study["lubricants"] = ["mobilgear-shc-xmp-320", "../oils/mine.yaml"]
+    study["experiment"]["manifest"] = "records/list.csv"
+    for name in ("oils", "studies/records"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "oils/mine.yaml").write_text(yaml.safe_dump(record), encoding="utf-8")
+    (tmp_path / "studies/records/list.csv").write_text("file, force [N]\n", encoding="utf-8")
+    (tmp_path / "studies/study.yaml").write_text(yaml.safe_dump(study), encoding="utf-8")
+    return tmp_path / "studies/study.yaml"
+
+
+def test_what_people_wrote_keeps_its_place_towards_one_another(own, tmp_path):
+    contents = archive_contents(load_study(own), own, tmp_path / "results", ["film"], [])
+    written = {name for name in contents if name.startswith(("study/", "lubricants/"))}
+    assert written == {
+        *("study/studies/study.yaml", "study/studies/records/list.csv", "study/oils/mine.yaml"),
+        *("lubricants/mine.yaml", "lubricants/mobilgear-shc-xmp-320.yaml", VALUES),
+    }
+    assert contents["study/oils/mine.yaml"].samefile(tmp_path / "oils/mine.yaml")
+    assert json.loads(contents[VALUES])["study_file"] == "studies/study.yaml"
+    assert "measured records themselves are not in this archive" in contents["README.md"]
+
+
+def test_the_values_are_those_behind_the_files(study, tmp_path):
+    file = ROOT / "workflow/config/smoke.yaml"
+    told = json.loads(archive_contents(study, file, tmp_path, ["film", "contact"], [])[VALUES])
+    assert told["config_sha256"] == {
+        kind: digest(config_text(study, kind)) for kind in ("film", "contact")
+    }
+    assert set(told["values"]) == {"lubricant", "film", "roughness", "contact"}
+
+
+def test_results_are_taken_as_datasets_pictures_and_notebooks(study, tmp_path):
+    file = ROOT / "workflow/config/smoke.yaml"
+    contents = archive_contents(study, file, tmp_path, ["film"], ["fig02_film"])
+    assert contents["data/film.nc"] == tmp_path / "film.nc"
+    for name in ("figures/fig02_film.png", "figures/fig02_film.pdf", "notebooks/fig02_film.ipynb"):
+        assert contents[name] == tmp_path / name
+
+
+def test_versions_are_fit_for_pip():
+    system, *lines = exact_versions().splitlines()
+    assert system.startswith("# Python 3.")
+    assert all(line.count("==") == 1 for line in lines)
+    assert not [line for line in lines if line.startswith("lube==")]
+
+
+def test_a_missing_result_is_named_and_the_old_archive_stays(study, tmp_path):
+    (tmp_path / "archive").mkdir()
+    (tmp_path / "archive/README.md").write_text("old")
+    file = ROOT / "workflow/config/smoke.yaml"
+    with pytest.raises(DataError, match=r"archive: cannot be archived: .*film.nc: No such file"):
+        make_archive(study, file, tmp_path, ["film"], [], tmp_path / "archive")
+    assert (tmp_path / "archive/README.md").read_text() == "old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["archive"]
