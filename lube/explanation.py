@@ -4,7 +4,6 @@ The file itself says which values of the study it follows from; with the film ta
 that is all it takes to draw the roughness anew and run the model on it.
 """
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from lube.contact import contact_statistics
 from lube.ensemble import with_intervals
 from lube.errors import DataError
 from lube.io import load
-from lube.provenance import fingerprint
+from lube.provenance import fingerprint, told_by
 from lube.roughness import roughness_batch
 from lube.schema import CONTACT_DIMS
 from lube.surfaces import BoundaryLayer, LineSpec
@@ -91,7 +90,7 @@ def explain(path, realisation=0, **levels):
             known = f"{cell['realisation'].values[0]} to {cell['realisation'].values[-1]}"
             raise DataError(f"{path}: realisation: got {realisation}, need {known}")
         cell = cell.sel(realisation=[realisation])
-    values = json.loads(contact.attrs["config"])
+    values = told_by(contact, "config", path)
     oil, point = (
         table.sel({name: cell[name].values for name in CONTACT_DIMS if name in table.dims})
         for table in (lubricant, film)
@@ -106,7 +105,7 @@ def _beside(path, dataset, kind):
     """Load the file beside another, which must be the one that the other was made from."""
     other = path.with_name(f"{kind}.nc")
     loaded = load(other, kind)
-    if fingerprint(other) != json.loads(dataset.attrs["inputs_sha256"]).get(other.name):
+    if fingerprint(other) != told_by(dataset, "inputs_sha256", path).get(other.name):
         raise DataError(f"{other}: not the file that {path} was made from")
     return loaded
 

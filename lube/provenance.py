@@ -5,6 +5,7 @@ went into it and theirs, and the code and libraries that made it. No clock time 
 the same study makes the same bytes.
 """
 
+import contextlib
 import hashlib
 import json
 from importlib.metadata import version
@@ -135,19 +136,48 @@ def merged_config(datasets):
         If two files disagree about a stage's values, so that they cannot be of one study, or
         one of them tells no values.
     """
-    merged, told_by = {}, {}
+    merged, first = {}, {}
     for dataset in datasets:
         title = dataset.attrs.get("title", "a dataset without a title")
-        if "config" not in dataset.attrs:
-            raise DataError(f"{title}: its attribute 'config' is missing, so its study is unknown")
-        for stage, values in json.loads(dataset.attrs["config"]).items():
+        for stage, values in told_by(dataset, "config", title).items():
             if merged.setdefault(stage, values) != values:
                 pair = [json.dumps({stage: one}) for one in (merged[stage], values)]
                 raise DataError(
-                    f"{told_by[stage]!r} and {title!r} are not of one study: {_difference(*pair)}"
+                    f"{first[stage]!r} and {title!r} are not of one study: {_difference(*pair)}"
                 )
-            told_by.setdefault(stage, title)
+            first.setdefault(stage, title)
     return json.dumps(merged, sort_keys=True)
+
+
+def told_by(dataset, name, where):
+    """Read what a file says of its origin in JSON.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The loaded file.
+    name : str
+        ``config`` or ``inputs_sha256``.
+    where : str or Path
+        The file's path or title, for the message.
+
+    Returns
+    -------
+    dict
+        From stage to its values, or from file to its fingerprint.
+
+    Raises
+    ------
+    DataError
+        If it does not say.
+    """
+    with contextlib.suppress(KeyError, TypeError, ValueError):
+        told = json.loads(dataset.attrs[name])
+        if isinstance(told, dict):
+            return told
+    raise DataError(
+        f"{where}: its attribute {name!r} is missing or damaged, so its origin is unknown"
+    )
 
 
 def stamp(datasets):

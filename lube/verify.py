@@ -14,7 +14,7 @@ from lube.archive import SUMS, VALUES, files_of
 from lube.errors import DataError, LubeError
 from lube.io import opened
 from lube.notebooks import execute_notebook, parameters_of
-from lube.provenance import fingerprint
+from lube.provenance import fingerprint, told_by
 from lube.study import load_study
 
 _BYPRODUCTS = ("code/build/", "code/lube.egg-info/", "__pycache__")
@@ -82,9 +82,11 @@ def verify_archive(folder):
     wrong = list(_wrong_sums(folder))
     if wrong:
         return wrong  # anything else would only repeat it
-    told = json.loads((folder / VALUES).read_text(encoding="utf-8"))
-    study_file = folder / "study" / told["study_file"]
-    kinds = list(told["config_sha256"])
+    try:
+        told = json.loads((folder / VALUES).read_text(encoding="utf-8"))
+        study_file, kinds = folder / "study" / told["study_file"], list(told["config_sha256"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return [f"{VALUES}: missing or damaged"]
     inputs = {path.name: path for path in folder.glob("lubricants/*")}
     return [*verify_datasets(folder / "data", study_file, kinds, inputs)]
 
@@ -143,7 +145,7 @@ def verify_datasets(folder, study_file, kinds, inputs=None):
 
 def _wrong_inputs(dataset, path, inputs):
     """Compare what a dataset says of the files it was made from with those files."""
-    for name, expected in json.loads(dataset.attrs["inputs_sha256"]).items():
+    for name, expected in told_by(dataset, "inputs_sha256", path).items():
         if name in inputs and inputs[name].is_file() and fingerprint(inputs[name]) != expected:
             yield f"{path}: was made from another {name} than {inputs[name]}"
 

@@ -162,5 +162,5 @@ def test_a_stamp_leads_to_study_values_and_code(study):
 
 
 def test_a_dataset_from_elsewhere_cannot_be_stamped():
-    with pytest.raises(DataError, match="attribute 'config' is missing, so its study is unknown"):
+    with pytest.raises(DataError, match="attribute 'config' is missing or damaged, so its origin"):
         stamp([xr.Dataset()])
