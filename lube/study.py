@@ -6,6 +6,8 @@ tells which values a stage depends on, so that a change re-runs that stage and n
 """
 
 import math
+import os
+from collections import Counter
 from pathlib import Path
 from typing import Annotated
 
@@ -16,7 +18,7 @@ from pydantic import (
 )
 
 from lube.apparatus import RIG_REALISATIONS, Experiment, Rig
-from lube.errors import LubeError, StudyError
+from lube.errors import LubeError, StudyError, shown
 from lube.fields import (
     Resistivity,
     Slug,
@@ -334,7 +336,7 @@ def _same(level, wanted):
 
 
 def _refuse_repeats(key, values):
-    repeated = sorted({str(value) for value in values if list(values).count(value) > 1})
+    repeated = sorted(str(value) for value, times in Counter(values).items() if times > 1)
     if repeated:
         raise ValueError(f"{key}: {repeated[0]} is repeated, need each once")
 
@@ -370,7 +372,7 @@ def _with_manifest_found(study, path):
     if study.experiment.manifest is None:
         return study
     manifest = Path(path).parent / study.experiment.manifest
-    if not manifest.is_file():
+    if not os.path.isfile(manifest):  # whatever its name holds
         raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that is there")
     experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
     return study.model_copy(update={"experiment": experiment})
@@ -380,7 +382,7 @@ def _records(names, path):
     """Load the records that a study names, by a shipped name or a path from the study's folder."""
     for name in names:
         if not isinstance(name, str):
-            raise StudyError(f"{path}: lubricants: got {name!r}, need names or paths of records")
+            raise StudyError(f"{path}: lubricants: got {shown(name)}, need names or paths of records")
     try:
         return tuple(load_record(name, folder=Path(path).parent) for name in names)
     except LubeError as error:

@@ -21,7 +21,7 @@ MODULES = {
 LAYERS = [
     {"errors"},
     {
-        *("units", "hertz", "formulas", "viscosity", "resistance"),
+        *("units", "texts", "hertz", "formulas", "viscosity", "resistance"),
         *("curves", "intervals", "schema", "kernels"),
     },
     {"fields", "files", "fluids", "steps", "rig", "evaluation", "shares", "signals", "tables"},
@@ -35,7 +35,7 @@ LAYERS = [
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
 FOUNDATIONS = {
-    *("errors", "units", "fields", "hertz", "formulas", "viscosity", "resistance"),
+    *("errors", "units", "texts", "fields", "hertz", "formulas", "viscosity", "resistance"),
     *("curves", "intervals"),
 }
 STAGES = LAYERS[5]
