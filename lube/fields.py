@@ -24,7 +24,6 @@ from lube.errors import LONGEST_VALUE, LubeError, shown
 from lube.texts import read_text
 from lube.units import convert, parse_number, parse_quantity
 
-
 MOST_LEVELS = 1000
 """Levels of an operating variable, at most."""
 
@@ -86,8 +85,7 @@ def _sensible(number, units):
     if number != 0.0 and not LEAST_MAGNITUDE <= abs(number) <= MOST_MAGNITUDE:
         unit = f" {units}" if units else ""
         raise LubeError(
-            f"got {number:g}{unit}, need a magnitude from {LEAST_MAGNITUDE:g} to "
-            f"{MOST_MAGNITUDE:g}"
+            f"got {number:g}{unit}, need a magnitude from {LEAST_MAGNITUDE:g} to {MOST_MAGNITUDE:g}"
         )
     return number
 
@@ -322,6 +320,7 @@ _NEEDED = {
     "model_type": "need keys with their values",
     "tuple_type": "need a list such as [a, b]",
     "too_short": "need at least {min_length}",
+    "too_long": "need at most {max_length}",
     "int_type": "need a whole number",
     "string_type": "need text",
     "string_pattern_mismatch": "need lower-case letters, digits, '-' or '_', 63 at most",

@@ -347,7 +347,9 @@ def _refuse_points(cells, where):
     """Where numbers have a decimal comma, a point is one of thousands, or a mistake."""
     for cell in cells:
         if "." in cell:
-            raise RecordError(f"{where}: got {shown(cell)} in a file with decimal commas, need no point")
+            raise RecordError(
+                f"{where}: got {shown(cell)} in a file with decimal commas, need no point"
+            )
 
 
 def _csv_columns(header, delimiter, where):

@@ -33,6 +33,7 @@ from lube.fields import (
 from lube.formulas import formula
 from lube.records import LubricantRecord, check_temperatures, load_record
 from lube.resistance import divider_voltage
+from lube.sizes import check_sizes
 from lube.surfaces import BoundaryLayer, RollerPair, Roughness, line_spec
 
 _FORERUNNERS = {
@@ -49,6 +50,9 @@ _FORERUNNERS = {
     "speed": ("lubricant", "film", "roughness", "contact"),
     "reading": (),
 }
+
+
+MOST_LUBRICANTS = 100
 
 
 class OperatingGrid(StrictModel):
@@ -117,7 +121,9 @@ class Study(StrictModel):
     )
     rollers: RollerPair
     lubricants: tuple[LubricantRecord, ...] = Field(
-        min_length=1, description="names of shipped records, or paths of your own YAML records"
+        min_length=1,
+        max_length=MOST_LUBRICANTS,
+        description="names of shipped records, or paths of your own YAML records",
     )
     film_formulas: tuple[str, ...] = Field(
         min_length=1, description="names from the registry of film formulas"
@@ -127,7 +133,9 @@ class Study(StrictModel):
     boundary_layer: BoundaryLayer
     resistivity: Resistivity = Field(description="resistivity of the rollers' material (Eq. 1)")
     traces: tuple[TracePoint, ...] = Field(
-        min_length=1, description="operating points recorded over one revolution"
+        min_length=1,
+        max_length=1000,
+        description="operating points recorded over one revolution",
     )
     rig: Rig = Field(default_factory=Rig, description="the rig, simulated or measured on")
     experiment: Experiment = Field(
@@ -267,8 +275,8 @@ class Study(StrictModel):
     @model_validator(mode="after")
     def _check_lines(self):
         try:
-            spec = self.line_spec
-            _check_windows(self.rollers, spec, self.operating_grid.force)
+            _check_windows(self.rollers, self.line_spec, self.operating_grid.force)
+            check_sizes(self)
         except LubeError as error:
             raise ValueError(str(error)) from None
         return self
@@ -380,9 +388,13 @@ def _with_manifest_found(study, path):
 
 def _records(names, path):
     """Load the records that a study names, by a shipped name or a path from the study's folder."""
+    if len(names) > MOST_LUBRICANTS:
+        raise StudyError(f"{path}: lubricants: got {len(names)}, need {MOST_LUBRICANTS} at most")
     for name in names:
         if not isinstance(name, str):
-            raise StudyError(f"{path}: lubricants: got {shown(name)}, need names or paths of records")
+            raise StudyError(
+                f"{path}: lubricants: got {shown(name)}, need names or paths of records"
+            )
     try:
         return tuple(load_record(name, folder=Path(path).parent) for name in names)
     except LubeError as error:

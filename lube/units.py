@@ -98,7 +98,9 @@ def convert(number, units, target):
         reason = "unknown unit" if "Undefined" in kind else "wrong dimension or unit"
         raise LubeError(f"{reason} {shown(units)}, need a unit of the kind {target!r}") from None
     if target == "rpm" and not _ANGLE.search(units):
-        raise LubeError(f"{shown(units)} names no angle, need a unit such as 'rpm', 'turn/s' or 'rad/s'")
+        raise LubeError(
+            f"{shown(units)} names no angle, need a unit such as 'rpm', 'turn/s' or 'rad/s'"
+        )
     return converted
 
 

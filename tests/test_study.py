@@ -125,7 +125,7 @@ def test_the_defaults_of_the_rig_are_those_of_the_papers_study():
 
 
 def test_the_rigs_rollers_are_none_of_the_simulation(change):
-    study = load_study(change(("realisations", 10**6)))
+    study = load_study(change(("realisations", 10**6), ("batch_size", 100)))
     assert not set(study.rig_realisations) & set(range(study.realisations))
     assert len(study.rig_realisations) == study.rig.revolutions
 
