@@ -334,7 +334,7 @@ def _tell(mistake):
     key = ".".join(" ".join(str(part).split())[:LONGEST_VALUE] for part in mistake["loc"]) or "file"
     came = shown(mistake.get("input"))
     match mistake["type"]:
-        case "extra_forbidden":
+        case "extra_forbidden" | "invalid_key":
             return f"{key}: unknown key"
         case "missing":
             return f"{key}: missing, and it has no default"

@@ -261,8 +261,8 @@ def _record_path(name_or_path, folder):
         return Path(folder or ".") / name_or_path
     if str(name_or_path) not in shipped_records():
         raise RecordError(
-            f"lubricant: got {shown(str(name_or_path))}, need one of {', '.join(shipped_records())}, "
-            "or the path of a .yaml file"
+            f"lubricant: got {shown(str(name_or_path))}, need one of "
+            f"{', '.join(shipped_records())}, or the path of a .yaml file"
         )
     return SHIPPED_FOLDER / f"{name_or_path}.yaml"
 
