@@ -323,6 +323,8 @@ _NEEDED = {
     "too_long": "need at most {max_length}",
     "int_type": "need a whole number",
     "string_type": "need text",
+    "string_unicode": "need text",
+    "string_too_short": "need some text",
     "string_pattern_mismatch": "need lower-case letters, digits, '-' or '_', 63 at most",
     "greater_than_equal": "need at least {ge}",
     "less_than_equal": "need at most {le}",

@@ -11,8 +11,6 @@ import datetime
 import json
 import math
 import os
-import re
-import signal
 from collections import Counter
 from pathlib import Path
 
@@ -23,8 +21,9 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from nptdms import ChannelObject, TdmsWriter
+from refusals import attempt, check_line, in_time
 
-from lube.errors import LONGEST_LINE, LubeError
+from lube.errors import LubeError
 from lube.manifest import read_manifest
 from lube.recordings import open_recording
 from lube.records import SHIPPED_FOLDER, check_temperatures, load_record
@@ -32,55 +31,11 @@ from lube.study import Study, load_study
 
 CONFIG = Path(__file__).parents[1] / "workflow" / "config"
 TIMES_AS_MANY = int(os.environ.get("LUBE_FUZZ", "1"))
-LONGEST_WAIT = 20
-"""Seconds after which a case hangs; the slowest takes one on an idle machine."""
 
 STAGES = (
     *("lubricant", "film", "roughness", "contact", "trace", "master"),
     *("experiment", "rig", "comparison", "gauge", "speed", "reading"),
 )
-TOLD = re.compile(
-    "need|unknown key|missing|cannot be read|not valid|repeated|not allowed|must be|truncated"
-)
-
-
-# How a case is run
-
-
-class Hang(BaseException):
-    """A case takes too long. No `except Exception` takes it for an error of the file."""
-
-
-@contextlib.contextmanager
-def in_time():
-    def give_up(*_):
-        raise Hang
-
-    before = signal.signal(signal.SIGALRM, give_up)
-    signal.alarm(LONGEST_WAIT)
-    try:
-        yield
-    finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
-
-
-def check_line(message):
-    """A message is one line, fit for any terminal, and says what is needed."""
-    assert message.isprintable()
-    assert len(message) < LONGEST_LINE + 10
-    assert TOLD.search(message), message
-
-
-def attempt(read, path, *arguments):
-    """What is read of a file; None if it is refused in one line that names it."""
-    with in_time():
-        try:
-            return read(path, *arguments)
-        except LubeError as error:
-            check_line(str(error))
-            assert str(error).startswith(f"{path}: ")
-            return None
 
 
 def fuzz(cases, examples, check):
@@ -108,41 +63,22 @@ def fuzz(cases, examples, check):
 NUMBERS = [0, -1, 2, 10**12, 2**63, 2**64, 10**30, -(10**400), 0.5, 1e-320, 1e308, -0.0]
 NUMBERS += [math.nan, math.inf, -math.inf, "1e400", "1e3", "0x10", "1_000", "٣", "1:30", "1.0e+5"]
 FORMULAS = ["600/7", "9**9**9", "1/0", "600/0.7", "__import__('os')", "1/" + "7" * 400, "1+1"]
-TEXTS = [
-    "",
-    " ",
-    "yes",
-    "null",
-    "~",
-    "-",
-    "\0",
-    "\ud800",
-    "a\nb",
-    "\u202e",
-    "\x1b[31m",
+TEXTS = ["", " ", "yes", "null", "~", "-", "\0", "\ud800", "a\nb", "\u202e", "\x1b[31m", "１０ mm"]
+TEXTS += [
+    "{wildcard}",
+    "%n%s",
+    "$(touch x)",
+    "../../x",
+    "/dev/zero",
+    "con",
     "x" * 20_000,
+    "µ" * 300,
 ]
-TEXTS += ["{wildcard}", "%n%s", "$(touch x)", "../../x", "/dev/zero", "con", "µ" * 300, "１０ mm"]
-UNITS = [
-    "mm",
-    "m",
-    "N",
-    "GPa",
-    "degC",
-    "K",
-    "rpm",
-    "ohm",
-    "Hz",
-    "s",
-    "V",
-    "parsec",
-    "",
-    "m**9**9**9",
-]
+UNITS = ["mm", "m", "N", "GPa", "degC", "K", "rpm", "ohm", "Hz", "s", "V"]
+UNITS += ["parsec", "", "m**9**9**9", "mm; import os", "dBm", "nm/N", "delta_degC"]
 LISTS = [[], {}, [[]], [None], {"values": [], "units": "N"}, {"a": {"b": {"c": [1]}}}]
 LISTS += [{"values": [1e-300, 1e300], "units": "N"}, {"values": list(range(1, 3000)), "units": "N"}]
 OTHERS = [None, True, False, datetime.date(2018, 11, 9), b"\xff\0", {"x"}, list(range(3000))]
-
 FACTORS = [1, 1, 1, 1.01, 0.9, 2, 2, 0.5, 10, 1e6, 1e-6, 1e40, 1e-40, -1, 0]
 
 hostile = st.one_of(
@@ -361,18 +297,12 @@ def test_a_spoilt_record_is_valid_or_told_in_one_line(tmp_path):
 def test_a_spoilt_table_of_viscosities_is_read_or_told_in_one_line(tmp_path):
     content = copy.deepcopy(RECORD_CONTENTS[0])
     content["viscosity"] = {"source": "assumed: fuzz", "csv": "table.csv"}
-    (tmp_path / "oil.yaml").write_bytes(written(content))
+    path = tmp_path / "oil.yaml"
+    path.write_bytes(written(content))
 
     def is_read(table):
         (tmp_path / "table.csv").write_bytes(table)
-        with in_time():
-            try:
-                load_record(tmp_path / "oil.yaml")
-            except LubeError as error:
-                check_line(str(error))
-                assert str(error).startswith(f"{tmp_path / 'table.csv'}: ")
-                return False
-        return True
+        return attempt(lambda _: load_record(path), tmp_path / "table.csv") is not None
 
     fuzz(spoilt([TABLE, TABLE.replace(b".", b",").replace(b", ", b";")]), 200, is_read)
 
@@ -382,7 +312,7 @@ def test_a_spoilt_table_of_viscosities_is_read_or_told_in_one_line(tmp_path):
 LIST = b"""file, probability, force [N], speed [rpm], temperature [degC], lubricant
 run.csv,    , 800, 100, 40, oil
        , 0.5, 800, 100, 50, oil
-"../run.csv",, 8e2, 600/7, 60, "oil"
+"./run.csv",, 8e2, 600/7, 60, "oil"
 """
 LIST_CONTENT = [
     {"file": "run.csv", "force": "800 N", "speed": "100 rpm", "temperature": "40 degC"},
@@ -408,7 +338,7 @@ def list_is_read(path, content):
     path.write_bytes(content)
     found = attempt(read_manifest, path)
     for line in [] if found is None else found.refused:
-        check_line(line.replace("no such file", "need one").replace("the same oper", "need"))
+        check_line(line)
         assert line.startswith(path.name)
     return found is not None and not found.refused
 

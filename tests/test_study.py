@@ -529,6 +529,13 @@ def test_the_automatic_wavelength_is_offered_where_a_length_is_refused(change):
     assert AUTOMATIC_WAVELENGTH in message
 
 
+@pytest.mark.parametrize("name", ["x" * 300 + ".csv", "a\0b.csv", "a\nb.csv", "."])
+def test_a_manifest_that_cannot_be_is_refused(change, name):
+    message = refusal(change(("experiment.manifest", name)))
+    assert "experiment.manifest: got " in message
+    assert message.isprintable()
+
+
 def test_a_study_file_that_is_no_study_is_named(tmp_path):
     assert "absent.yaml: cannot be read" in refusal(tmp_path / "absent.yaml")
     (tmp_path / "empty.yaml").touch()
