@@ -6,8 +6,8 @@ import signal
 
 from lube.errors import LONGEST_LINE, LubeError
 
-LONGEST_WAIT = 20
-"""Seconds after which a case hangs; the slowest takes one on an idle machine."""
+LONGEST_WAIT = 60
+"""Seconds after which a case hangs; the slowest takes one, on a busy machine some more."""
 
 NEEDED = re.compile(
     "need|must be|unknown key|missing|not allowed|repeated|"
