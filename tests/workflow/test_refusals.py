@@ -41,6 +41,13 @@ def test_a_mistaken_study_ends_in_one_line_before_any_job(smoke, changes, told):
     assert told in refusal(smoke, study=smoke.with_values(**changes))
 
 
+def test_a_name_that_snakemake_takes_for_a_wildcard_is_refused(spare):
+    shipped = (spare / "lube/lubricants/mobilgear-shc-xmp-320.yaml").read_text("utf-8")
+    (spare / "{oil}.yaml").write_text(shipped, encoding="utf-8")
+    message = refusal(spare, study=spare.with_values(lubricants=["{oil}.yaml"]))
+    assert "{oil}.yaml: got a name with braces, need one without" in message
+
+
 def test_values_on_the_command_line_are_refused(smoke):
     assert "--config is not used" in refusal(smoke, "--config", "seed=3", study=SMOKE)
 
