@@ -55,7 +55,8 @@ def fuzz(cases, examples, check):
     run()
     assert set(tally) == {True, False}
     assert tally.total() >= examples
-    assert min(tally.values()) >= 0.1 * examples, tally
+    # New cases may by chance be mostly of one kind; those of every run are not.
+    assert TIMES_AS_MANY > 1 or min(tally.values()) >= 0.1 * examples, tally
 
 
 # What mistaken files hold
@@ -64,16 +65,8 @@ NUMBERS = [0, -1, 2, 10**12, 2**63, 2**64, 10**30, -(10**400), 0.5, 1e-320, 1e30
 NUMBERS += [math.nan, math.inf, -math.inf, "1e400", "1e3", "0x10", "1_000", "٣", "1:30", "1.0e+5"]
 FORMULAS = ["600/7", "9**9**9", "1/0", "600/0.7", "__import__('os')", "1/" + "7" * 400, "1+1"]
 TEXTS = ["", " ", "yes", "null", "~", "-", "\0", "\ud800", "a\nb", "\u202e", "\x1b[31m", "１０ mm"]
-TEXTS += [
-    "{wildcard}",
-    "%n%s",
-    "$(touch x)",
-    "../../x",
-    "/dev/zero",
-    "con",
-    "x" * 20_000,
-    "µ" * 300,
-]
+TEXTS += ["{wildcard}", "%n%s", "$(touch x)", "../../x", "/dev/zero", "con", "µ" * 20_000]
+KEYS = ["name", "seed", "viscosity", "force", "colour", 3, None, "a\nb"]
 UNITS = ["mm", "m", "N", "GPa", "degC", "K", "rpm", "ohm", "Hz", "s", "V"]
 UNITS += ["parsec", "", "m**9**9**9", "mm; import os", "dBm", "nm/N", "delta_degC"]
 LISTS = [[], {}, [[]], [None], {"values": [], "units": "N"}, {"a": {"b": {"c": [1]}}}]
@@ -122,9 +115,7 @@ def mistaken(draw, contents):
             case "remove":
                 del place[last]
             case "move" if isinstance(place, dict):
-                place[draw(st.sampled_from([*content, "colour", 3, None, "a\nb"]))] = place.pop(
-                    last
-                )
+                place[draw(st.sampled_from(KEYS))] = place.pop(last)
             case "move":
                 place.append(copy.deepcopy(value))
             case "nest":
@@ -275,7 +266,7 @@ def record_is_valid(path, content):
         return False
     with in_time(), contextlib.suppress(LubeError):
         check_temperatures(record, [20.0, 40.0])
-    assert record.definition_text if hasattr(record, "definition_text") else record.law_used
+    assert record.pressure_viscosity.definition_text and record.law_used
     json.dumps(record.model_dump(mode="json"), allow_nan=False)
     return True
 
