@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, StringConstraints
 
+from lube.errors import shown
 from lube.fields import StrictModel
 
 PAPER = "Mixed and boundary lubrication in rolling contact: experiment and simulation"
@@ -24,7 +25,7 @@ def _text(pattern, needed):
 
     def check(text):
         if not re.fullmatch(pattern, text):
-            raise ValueError(f"got {text[:60]!r}, need {needed}")
+            raise ValueError(f"got {shown(text)}, need {needed}")
         return text
 
     return Annotated[str, StringConstraints(strip_whitespace=True), AfterValidator(check)]

@@ -16,9 +16,9 @@ import netCDF4
 import numpy as np
 from nptdms import TdmsFile
 
-from lube.errors import DataError, LubeError
+from lube.errors import DataError, LubeError, shown
 from lube.signals import FIRST_STEPS, Part, Signal, find_signals
-from lube.units import convert, parse_quantity
+from lube.units import convert, parse_number, parse_quantity
 
 SLICE = 2**20
 """Samples read at a time, about."""
@@ -158,7 +158,8 @@ def _tdms_arrays(path):
 
 def _tdms_array(channel):
     units = channel.properties.get("unit_string") or channel.properties.get("NI_UnitDescription")
-    return _Array(channel.name, units, channel, channel.properties)
+    # A property may be of any type.
+    return _Array(channel.name, units and str(units), channel, channel.properties)
 
 
 # National Instruments, The NI TDMS file format (2023): tag, table of contents (whose bit 6 says
@@ -224,7 +225,7 @@ def _opened(path, opener, interval_of):
         try:
             interval = interval_of(array.attributes)
         except LubeError as error:
-            raise DataError(f"{path}: sampling interval of {array.name!r}: {error}") from None
+            raise DataError(f"{path}: sampling interval of {shown(array.name)}: {error}") from None
         return BinarySignal(path, opener, time, measured, interval)
 
 
@@ -235,4 +236,6 @@ def _netcdf_interval(attributes):
 
 def _tdms_interval(properties):
     told = properties.get("wf_increment")
-    return None if told is None else convert(told, properties.get("wf_xunit_string") or "s", "s")
+    if told is None:
+        return None
+    return convert(parse_number(told), str(properties.get("wf_xunit_string") or "s"), "s")

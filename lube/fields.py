@@ -8,7 +8,6 @@ reader that refuses repeated keys, and the one line that reports a refused value
 import math
 from contextlib import contextmanager
 from itertools import pairwise
-from pathlib import Path
 from typing import Annotated
 
 import yaml
@@ -21,8 +20,15 @@ from pydantic import (
     WithJsonSchema,
 )
 
-from lube.errors import LubeError
+from lube.errors import LONGEST_VALUE, LubeError, shown
+from lube.texts import read_text
 from lube.units import convert, parse_number, parse_quantity
+
+MOST_LEVELS = 1000
+"""Levels of an operating variable, at most."""
+
+LEAST_MAGNITUDE, MOST_MAGNITUDE = 1e-30, 1e30
+"""Between these lies, in SI, all that a study is made of, and what follows from it is finite."""
 
 
 class StrictModel(BaseModel):
@@ -74,6 +80,16 @@ def bounded(number, units, above=-math.inf, below=math.inf, least=-math.inf, mos
     return number
 
 
+def _sensible(number, units):
+    """Refuse what no machine part has, and whose powers overflow."""
+    if number != 0.0 and not LEAST_MAGNITUDE <= abs(number) <= MOST_MAGNITUDE:
+        unit = f" {units}" if units else ""
+        raise LubeError(
+            f"got {number:g}{unit}, need a magnitude from {LEAST_MAGNITUDE:g} to {MOST_MAGNITUDE:g}"
+        )
+    return number
+
+
 def _in_words(limits):
     """``{"above": 0.0, "most": 0.5}`` -> ``above 0 and at most 0.5``."""
     words = {"above": "above", "below": "below", "least": "at least", "most": "at most"}
@@ -104,7 +120,7 @@ def quantity(units, **limits):
     """
 
     def parse(value):
-        return bounded(parse_quantity(value, units), units, **limits)
+        return _sensible(bounded(parse_quantity(value, units), units, **limits), units)
 
     schema = {"type": "string", "format": _described(f"quantity in {units}", limits)}
     return Annotated[float, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]
@@ -125,7 +141,7 @@ def pure_number(**limits):
     """
 
     def parse(value):
-        return bounded(parse_number(value), None, **limits)
+        return _sensible(bounded(parse_number(value), None, **limits), None)
 
     schema = {"type": "number", "format": _described("number", limits)}
     return Annotated[float, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]
@@ -154,7 +170,7 @@ def levels(units, **limits):
         if units is not None:
             numbers = [float(convert(number, value["units"], units)) for number in numbers]
         for number in numbers:
-            bounded(number, units, **limits)
+            _sensible(bounded(number, units, **limits), units)
         for lower, upper in pairwise(numbers):
             if upper <= lower:
                 raise LubeError(f"got {upper:g} after {lower:g}, need rising levels, each once")
@@ -173,12 +189,14 @@ def _level_list(value, units):
     else:
         needed = f"values and their unit, such as {{values: [1, 2], units: {units}}}"
         if not isinstance(value, dict) or set(value) != {"values", "units"}:
-            raise LubeError(f"got {value!r}, need {needed}")
+            raise LubeError(f"got {shown(value)}, need {needed}")
         if not isinstance(value["units"], str):
-            raise LubeError(f"got units {value['units']!r}, need {needed}")
+            raise LubeError(f"got units {shown(value['units'])}, need {needed}")
         numbers = value["values"]
     if not isinstance(numbers, list) or not numbers:
-        raise LubeError(f"got {value!r}, need {needed}")
+        raise LubeError(f"got {shown(value)}, need {needed}")
+    if len(numbers) > MOST_LEVELS:
+        raise LubeError(f"got {len(numbers)} levels, need {MOST_LEVELS} at most")
     return numbers
 
 
@@ -205,17 +223,21 @@ Pressure = quantity("Pa", above=0.0)
 Resistivity = quantity("ohm*m", above=0.0)
 
 
-class _UniqueKeyLoader(yaml.SafeLoader):
-    """Safe YAML, without its habit of letting the last of two equal keys win."""
+class _PlainLoader(yaml.SafeLoader):
+    """Safe YAML, without its habit of letting the last of two equal keys win, and without `<<`."""
 
     def construct_mapping(self, node, deep=False):
         seen = set()
         for key_node, _ in node.value:
+            line = f"line {key_node.start_mark.line + 1}"
+            if key_node.tag == "tag:yaml.org,2002:merge":
+                # Merges of merges grow without end, and hide what a section holds.
+                raise LubeError(f"{line}: got '<<', need the keys written out")
+            if not isinstance(key_node, yaml.ScalarNode):
+                raise LubeError(f"{line}: a key must be a word")
             key = self.construct_object(key_node, deep=True)
-            if isinstance(key, (list, dict)):
-                raise LubeError(f"line {key_node.start_mark.line + 1}: a key must be a word")
             if key in seen:
-                raise LubeError(f"line {key_node.start_mark.line + 1}: key {key!r} is repeated")
+                raise LubeError(f"{line}: key {shown(key)} is repeated")
             seen.add(key)
         return super().construct_mapping(node, deep)
 
@@ -246,18 +268,16 @@ def read_yaml(path, error_type, kind=dict):
         Of `error_type`, if the file cannot be read, is not YAML, repeats a key or holds
         anything else.
     """
+    text = read_text(path, error_type)
     try:
-        text = Path(path).read_text(encoding="utf-8")
-        content = yaml.load(text, Loader=_UniqueKeyLoader)
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise error_type(f"{path}: cannot be read: {reason}") from None
+        content = yaml.load(text, Loader=_PlainLoader)
     except LubeError as error:
         raise error_type(f"{path}: {error}") from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
+    except Exception as error:  # the YAML library raises many kinds, all meaning one thing
         mark = getattr(error, "problem_mark", None)
         line = f" at line {mark.line + 1}" if mark else ""
-        raise error_type(f"{path}: not valid YAML{line}") from None
+        reason = getattr(error, "problem", None) or "a value is none of its kind"
+        raise error_type(f"{path}: not valid YAML{line}: {reason}") from None
     if not isinstance(content, kind):
         raise error_type(f"{path}: need {_YAML_KINDS[kind]}, got {type(content).__name__}")
     return content
@@ -300,8 +320,11 @@ _NEEDED = {
     "model_type": "need keys with their values",
     "tuple_type": "need a list such as [a, b]",
     "too_short": "need at least {min_length}",
+    "too_long": "need at most {max_length}",
     "int_type": "need a whole number",
     "string_type": "need text",
+    "string_unicode": "need text",
+    "string_too_short": "need some text",
     "string_pattern_mismatch": "need lower-case letters, digits, '-' or '_', 63 at most",
     "greater_than_equal": "need at least {ge}",
     "less_than_equal": "need at most {le}",
@@ -310,11 +333,10 @@ _NEEDED = {
 
 def _tell(mistake):
     """Say in one line which key is mistaken, what came and what is needed."""
-    key = ".".join(" ".join(str(part).split()) for part in mistake["loc"]) or "file"
-    came = repr(mistake.get("input"))
-    came = came if len(came) <= 60 else came[:57] + "..."
+    key = ".".join(" ".join(str(part).split())[:LONGEST_VALUE] for part in mistake["loc"]) or "file"
+    came = shown(mistake.get("input"))
     match mistake["type"]:
-        case "extra_forbidden":
+        case "extra_forbidden" | "invalid_key":
             return f"{key}: unknown key"
         case "missing":
             return f"{key}: missing, and it has no default"

@@ -4,6 +4,7 @@ A manifest is a CSV file with units in its column names, or a YAML list of mappi
 carry theirs. A row that cannot be used is told, and does not hide the others.
 """
 
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StringConstraints, model_validator
 
-from lube.errors import DataError, LubeError
+from lube.errors import DataError, LubeError, shown
 from lube.fields import StrictModel, pure_number, quantity, read_yaml, validate
 from lube.schema import ORIGINS
 from lube.tables import HEADER_CELL, delimiter_of, numbered_lines, split_cells
@@ -188,7 +189,7 @@ def _columns(cells, where):
         name, units = match.groups() if match else (cell, None)
         if name not in _Row.model_fields or name in columns:
             raise DataError(
-                f"{where}: got the column {cell!r}, need each once of "
+                f"{where}: got the column {shown(cell)}, need each once of "
                 f"{', '.join(_Row.model_fields)}, with units such as 'force [N]'"
             )
         _check_units(name, units, where)
@@ -203,7 +204,7 @@ def _check_units(name, units, where):
     target = _UNITS.get(name)
     if (units is None) != (target is None):
         needed = f"'{name} [{target}]'" if target else f"{name!r} without a unit"
-        raise DataError(f"{where}: {name}: got the unit {units!r}, need {needed}")
+        raise DataError(f"{where}: {name}: got the unit {shown(units)}, need {needed}")
     if target is None:
         return
     try:
@@ -254,6 +255,6 @@ def _with_point(value):
 def _file(row, where, folder):
     if row.file is None:
         return None
-    if not (folder / row.file).is_file():
-        raise DataError(f"{where}: file: got {row.file!r}, no such file")
+    if not os.path.isfile(folder / row.file):  # whatever its name holds
+        raise DataError(f"{where}: file: got {shown(row.file)}, no such file")
     return folder / row.file

@@ -5,6 +5,7 @@ share of time. What breaks that, a gap or a repeated time or a missing value, en
 with its place in the file; nothing is mended in silence.
 """
 
+import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -105,7 +106,7 @@ def open_recording(path, sampling_interval=None):
 
 def _kind(path):
     """Kind of a file, by its suffix, if its first bytes do not belie it."""
-    if not path.is_file():
+    if not os.path.isfile(path):  # whatever its name holds
         raise DataError(f"{path}: no such file, need a record of the rig")
     claimed = _KIND_OF_SUFFIX.get(path.suffix.lower())
     if claimed is None:

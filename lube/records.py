@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, PrivateAttr, StringConstraints, model_validator
 
-from lube.errors import RangeError, RecordError
+from lube.errors import RangeError, RecordError, shown
 from lube.fields import Slug, StrictModel, quantity, read_yaml, validate
 from lube.fluids import ATMOSPHERIC_PRESSURE, liquid_range
 from lube.tables import HEADER_CELL, delimiter_of, numbered_lines, split_cells
@@ -261,8 +261,8 @@ def _record_path(name_or_path, folder):
         return Path(folder or ".") / name_or_path
     if str(name_or_path) not in shipped_records():
         raise RecordError(
-            f"lubricant: got {str(name_or_path)!r}, need one of {', '.join(shipped_records())}, "
-            "or the path of a .yaml file"
+            f"lubricant: got {shown(str(name_or_path))}, need one of "
+            f"{', '.join(shipped_records())}, or the path of a .yaml file"
         )
     return SHIPPED_FOLDER / f"{name_or_path}.yaml"
 
@@ -270,10 +270,13 @@ def _record_path(name_or_path, folder):
 def _beside(record_path, name):
     """Path of a data file, which must lie in its record's folder."""
     folder = record_path.parent
-    inside = (folder / name).resolve().is_relative_to(folder.resolve())
+    try:
+        inside = (folder / name).resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError, ValueError):  # no name of a file, or links in a ring
+        inside = False
     if Path(name).is_absolute() or not inside:
         raise RecordError(
-            f"{record_path}: viscosity.csv: got {name!r}, need a file in the record's folder"
+            f"{record_path}: viscosity.csv: got {shown(name)}, need a file in the record's folder"
         )
     return folder / name
 
@@ -344,7 +347,9 @@ def _refuse_points(cells, where):
     """Where numbers have a decimal comma, a point is one of thousands, or a mistake."""
     for cell in cells:
         if "." in cell:
-            raise RecordError(f"{where}: got {cell!r} in a file with decimal commas, need no point")
+            raise RecordError(
+                f"{where}: got {shown(cell)} in a file with decimal commas, need no point"
+            )
 
 
 def _csv_columns(header, delimiter, where):
@@ -354,7 +359,7 @@ def _csv_columns(header, delimiter, where):
     for cell in split_cells(header, delimiter):
         match = HEADER_CELL.fullmatch(cell)
         if not match or match[1] not in ViscosityPoint.model_fields or match[1] in columns:
-            raise RecordError(f"{where}: got the column {cell!r}, need {needed}")
+            raise RecordError(f"{where}: got the column {shown(cell)}, need {needed}")
         columns[match[1]] = match[2]
     if "temperature" not in columns or len(columns) != 2:
         raise RecordError(f"{where}: got the columns {', '.join(columns)}, need {needed}")

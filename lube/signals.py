@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lube.errors import DataError, LubeError
+from lube.errors import DataError, LubeError, shown
 from lube.kernels.uniform import first_uneven, first_unsound
 from lube.units import convert
 
@@ -28,6 +28,7 @@ _ENDINGS = {
 }
 _SYMBOLS = {"t": "time", "U": "voltage", "u": "voltage", "R": "resistance", "r": "resistance"}
 _HEADER = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\)|/\s*([^/\s]+))")
+_LONGEST_HEADER = 200
 _LOOSE_UNIT = re.compile("(ohm|volt|second)s?$", re.IGNORECASE)
 
 
@@ -89,9 +90,11 @@ def header_cell(cell):
     units : str or None
         The unit, None if there is none.
     """
-    match = _HEADER.fullmatch(cell.strip())
+    cell = cell.strip()
+    # A longer one is none, and would keep the pattern busy for hours.
+    match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST_HEADER else None
     if match is None:
-        return cell.strip(), None
+        return cell, None
     name, *units = match.groups()
     return name, next(filter(None, units), None)
 
@@ -123,7 +126,7 @@ def find_signals(columns, where):
     """
     measured = _find(columns, MEASURED, where)
     if measured is None:
-        names = ", ".join(repr(name) for name, _ in columns[:5]) or "nothing"
+        names = ", ".join(shown(name) for name, _ in columns[:5]) or "nothing"
         raise DataError(
             f"{where}: got {names}, need a voltage or a resistance with its unit, such as "
             "'voltage [V]'"
@@ -162,12 +165,12 @@ def _quantity_of_unit(_, units):
 def _factor(name, units, quantity, where):
     if not units:
         raise DataError(
-            f"{where}: {name!r} has no unit, need one such as '{name} [{UNITS[quantity]}]'"
+            f"{where}: {shown(name)} has no unit, need one such as '{name} [{UNITS[quantity]}]'"
         )
     try:
         return convert(1.0, _plain(units), UNITS[quantity])
     except LubeError as error:
-        raise DataError(f"{where}: {name!r}: {error}") from None
+        raise DataError(f"{where}: {shown(name)}: {error}") from None
 
 
 def _plain(units):

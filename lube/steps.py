@@ -114,6 +114,8 @@ def whole_numbers(film_thickness, half_width, lines):
     films, half_windows : numpy.ndarray
         h0 rounded to height steps, and floor(a / dx); int64.
     """
-    films = np.rint(np.asarray(film_thickness) / lines.attrs["height_step"])
+    # Lines never reach through so many steps, and more than 2**63 would wrap round to few.
+    steps = np.minimum(np.asarray(film_thickness) / lines.attrs["height_step"], 2.0**40)
+    films = np.rint(steps)
     half_windows = np.floor(np.asarray(half_width) / lines.attrs["spacing"])
     return films.astype(np.int64), half_windows.astype(np.int64)

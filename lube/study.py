@@ -6,6 +6,8 @@ tells which values a stage depends on, so that a change re-runs that stage and n
 """
 
 import math
+import os
+from collections import Counter
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +19,7 @@ from pydantic import (
 
 from lube.about import About
 from lube.apparatus import RIG_REALISATIONS, Experiment, Rig
-from lube.errors import LubeError, StudyError
+from lube.errors import LubeError, StudyError, shown
 from lube.fields import (
     Resistivity,
     Slug,
@@ -32,6 +34,7 @@ from lube.fields import (
 from lube.formulas import formula
 from lube.records import LubricantRecord, check_temperatures, load_record
 from lube.resistance import divider_voltage
+from lube.sizes import check_sizes
 from lube.surfaces import BoundaryLayer, RollerPair, Roughness, line_spec
 
 _FORERUNNERS = {
@@ -48,6 +51,9 @@ _FORERUNNERS = {
     "speed": ("lubricant", "film", "roughness", "contact"),
     "reading": (),
 }
+
+
+MOST_LUBRICANTS = 100
 
 
 class OperatingGrid(StrictModel):
@@ -117,7 +123,9 @@ class Study(StrictModel):
     )
     rollers: RollerPair
     lubricants: tuple[LubricantRecord, ...] = Field(
-        min_length=1, description="names of shipped records, or paths of your own YAML records"
+        min_length=1,
+        max_length=MOST_LUBRICANTS,
+        description="names of shipped records, or paths of your own YAML records",
     )
     film_formulas: tuple[str, ...] = Field(
         min_length=1, description="names from the registry of film formulas"
@@ -127,7 +135,9 @@ class Study(StrictModel):
     boundary_layer: BoundaryLayer
     resistivity: Resistivity = Field(description="resistivity of the rollers' material (Eq. 1)")
     traces: tuple[TracePoint, ...] = Field(
-        min_length=1, description="operating points recorded over one revolution"
+        min_length=1,
+        max_length=1000,
+        description="operating points recorded over one revolution",
     )
     rig: Rig = Field(default_factory=Rig, description="the rig, simulated or measured on")
     experiment: Experiment = Field(
@@ -267,8 +277,8 @@ class Study(StrictModel):
     @model_validator(mode="after")
     def _check_lines(self):
         try:
-            spec = self.line_spec
-            _check_windows(self.rollers, spec, self.operating_grid.force)
+            _check_windows(self.rollers, self.line_spec, self.operating_grid.force)
+            check_sizes(self)
         except LubeError as error:
             raise ValueError(str(error)) from None
         return self
@@ -336,7 +346,7 @@ def _same(level, wanted):
 
 
 def _refuse_repeats(key, values):
-    repeated = sorted({str(value) for value in values if list(values).count(value) > 1})
+    repeated = sorted(str(value) for value, times in Counter(values).items() if times > 1)
     if repeated:
         raise ValueError(f"{key}: {repeated[0]} is repeated, need each once")
 
@@ -372,7 +382,7 @@ def _with_manifest_found(study, path):
     if study.experiment.manifest is None:
         return study
     manifest = Path(path).parent / study.experiment.manifest
-    if not manifest.is_file():
+    if not os.path.isfile(manifest):  # whatever its name holds
         raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that is there")
     experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
     return study.model_copy(update={"experiment": experiment})
@@ -380,9 +390,13 @@ def _with_manifest_found(study, path):
 
 def _records(names, path):
     """Load the records that a study names, by a shipped name or a path from the study's folder."""
+    if len(names) > MOST_LUBRICANTS:
+        raise StudyError(f"{path}: lubricants: got {len(names)}, need {MOST_LUBRICANTS} at most")
     for name in names:
         if not isinstance(name, str):
-            raise StudyError(f"{path}: lubricants: got {name!r}, need names or paths of records")
+            raise StudyError(
+                f"{path}: lubricants: got {shown(name)}, need names or paths of records"
+            )
     try:
         return tuple(load_record(name, folder=Path(path).parent) for name in names)
     except LubeError as error:

@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field, StrictInt, WithJsonSchema
 from lube.errors import LubeError, StudyError
 from lube.fields import Length, Pressure, StrictModel, bounded, pure_number
 from lube.hertz import contact_half_width, reduced_modulus, reduced_radius
+from lube.sizes import MOST_POINTS
 from lube.units import parse_number, parse_quantity
 
 AUTOMATIC_WAVELENGTH = "contact width at the largest force"
@@ -88,7 +89,7 @@ def _points_of(wavelength):
 class Roughness(StrictModel):
     """How the roughness lines of both rollers are drawn."""
 
-    points: Annotated[StrictInt, Field(ge=64, le=2**24)] = Field(
+    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)] = Field(
         description="points N around the first roller"
     )
     hurst_exponent: pure_number(above=0.0, below=1.0) = Field(description="Hurst exponent H")

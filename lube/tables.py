@@ -2,9 +2,10 @@
 
 import csv
 import re
-from pathlib import Path
 
-HEADER_CELL = re.compile(r"(\w+)\s*\[\s*([^\]]+?)\s*\]")
+from lube.texts import read_text
+
+HEADER_CELL = re.compile(r"(\w+)\s*\[\s*([^\]\s](?:[^\]]*[^\]\s])?)\s*\]")
 """A column's name and unit: ``temperature [degC]``."""
 
 
@@ -28,12 +29,7 @@ def numbered_lines(path, error_type):
     LubeError
         Of `error_type`, if the file cannot be read or is not UTF-8 text.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise error_type(f"{path}: cannot be read: {reason}") from None
-    numbered = enumerate(text.splitlines(), start=1)
+    numbered = enumerate(read_text(path, error_type).splitlines(), start=1)
     return [
         (number, line)
         for number, line in numbered
@@ -61,5 +57,8 @@ def split_cells(line, delimiter):
     list of str
         The cells.
     """
-    cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+    try:
+        cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+    except csv.Error:  # at a carriage return within the line, or a cell of 100 000 characters
+        cells = [line]
     return [cell.strip() for cell in cells]

@@ -9,11 +9,14 @@ import functools
 import math
 import re
 
-from lube.errors import LubeError
+from lube.errors import LubeError, shown
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _FRACTION = re.compile(rf"({_NUMBER})\s*/\s*(\d+)")
-_QUANTITY = re.compile(rf"\s*({_NUMBER}(?:\s*/\s*\d+)?)\s*(\S.*?)?\s*", re.DOTALL)
+_QUANTITY = re.compile(rf"({_NUMBER}(?:\s*/\s*\d+)?)\s*(\S.*)?", re.DOTALL)
+
+# A long run of digits would keep the patterns busy for hours.
+_LONGEST = 100
 
 # Units are products and quotients of names with one-digit exponents. Pint would read far
 # more, arithmetic that never ends included; a file from elsewhere must not reach that.
@@ -50,14 +53,16 @@ def parse_number(value):
         If `value` is not a number or not finite.
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise LubeError(f"got {value!r}, need a number")
+        raise LubeError(f"got {shown(value)}, need a number")
+    if isinstance(value, str) and len(value) > _LONGEST:
+        raise LubeError(f"got {shown(value)}, need a number of {_LONGEST} characters at most")
     try:
         fraction = _FRACTION.fullmatch(value.strip()) if isinstance(value, str) else None
         number = float(fraction[1]) / float(fraction[2]) if fraction else float(value)
     except (ValueError, ZeroDivisionError, OverflowError):
-        raise LubeError(f"got {value!r}, need a number") from None
+        raise LubeError(f"got {shown(value)}, need a number") from None
     if not math.isfinite(number):
-        raise LubeError(f"got {value!r}, need a finite number")
+        raise LubeError(f"got {shown(value)}, need a finite number")
     return number
 
 
@@ -91,9 +96,11 @@ def convert(number, units, target):
     except Exception as error:  # pint's parser raises many kinds, all meaning one thing
         kind = type(error).__name__
         reason = "unknown unit" if "Undefined" in kind else "wrong dimension or unit"
-        raise LubeError(f"{reason} {units!r}, need a unit of the kind {target!r}") from None
+        raise LubeError(f"{reason} {shown(units)}, need a unit of the kind {target!r}") from None
     if target == "rpm" and not _ANGLE.search(units):
-        raise LubeError(f"{units!r} names no angle, need a unit such as 'rpm', 'turn/s' or 'rad/s'")
+        raise LubeError(
+            f"{shown(units)} names no angle, need a unit such as 'rpm', 'turn/s' or 'rad/s'"
+        )
     return converted
 
 
@@ -117,13 +124,13 @@ def parse_quantity(value, target):
     LubeError
         If the text has no number or no unit, or the unit's dimension is wrong.
     """
-    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    match = _QUANTITY.fullmatch(value.strip()) if isinstance(value, str) else None
     if match is None:
-        raise LubeError(f"got {value!r}, need a number with its unit, such as '1 {target}'")
+        raise LubeError(f"got {shown(value)}, need a number with its unit, such as '1 {target}'")
     number, units = match.groups()
     if units is None:
-        raise LubeError(f"got {value!r} without a unit, need one such as '{number} {target}'")
+        raise LubeError(f"got {shown(value)} without a unit, need one such as '{number} {target}'")
     converted = float(convert(parse_number(number), units, target))
     if not math.isfinite(converted):
-        raise LubeError(f"got {value!r}, need a finite number")
+        raise LubeError(f"got {shown(value)}, need a finite number")
     return converted

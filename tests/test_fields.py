@@ -1,13 +1,16 @@
 """Fields of the YAML files: SI inside, units outside, mistakes told in one line."""
 
+from typing import Annotated
+
 import pytest
-from pydantic import ValidationError, create_model
+from pydantic import Field, StrictInt, ValidationError, create_model
 
 from lube.errors import LubeError, RecordError, StudyError
 from lube.fields import (
     Length,
     Pressure,
     Resistivity,
+    Slug,
     StrictModel,
     bounded,
     collected,
@@ -23,6 +26,9 @@ def value_of(field, written):
     """What a model keeps of one written value."""
     model = create_model("Model", __base__=StrictModel, field=(field, ...))
     return validate(model, {"field": written}, "file.yaml", StudyError).field
+
+
+Count = Annotated[StrictInt, Field(ge=0, le=10)]
 
 
 def refusal(field, written):
@@ -169,7 +175,21 @@ def test_yaml_is_read_as_plain_values(write):
         ("", "need a mapping of keys to values, got NoneType"),
         (b"\xff\xfe\x00", "it is not UTF-8 text"),
         ("a: " + "[" * 5000, "not valid YAML"),
+        ("a: \t- b", "at line 1: found character '\\t' that cannot start any token"),
+        ("? !!set {a}\n: 1\n", "line 1: a key must be a word"),
+        ("a: {b: 1}\n<<: {c: 2}\n", "line 2: got '<<', need the keys written out"),
+        ("a: &a {b: 1}\nc:\n  <<: [*a, *a]\n", "line 3: got '<<', need the keys"),
+        ("a: *b\n", "at line 1: found undefined alias 'b'"),
+        ("a: !!int ''\n", "not valid YAML: a value is none of its kind"),
+        ("a: !!float ''\n", "not valid YAML: a value is none of its kind"),
+        ("a: !!bool maybe\n", "not valid YAML: a value is none of its kind"),
+        ("a: !!timestamp soon\n", "not valid YAML: a value is none of its kind"),
+        ("a: 2018-13-45\n", "not valid YAML: a value is none of its kind"),
+        ("a: " + "9" * 5000 + "\n", "not valid YAML: a value is none of its kind"),
+        ("a: " + "1:" * 3000 + "1.5\n", "not valid YAML: a value is none of its kind"),
+        ("a: " + "x" * 2**18, "need a file of 262144 bytes at most"),
     ],
+    ids=lambda value: ascii(value)[:30],
 )
 def test_a_file_that_is_no_mapping_is_refused_in_one_line(write, content, told):
     path = write(content)
@@ -178,6 +198,50 @@ def test_a_file_that_is_no_mapping_is_refused_in_one_line(write, content, told):
     assert str(caught.value).startswith(f"{path}: ")
     assert told in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("0x" + "f" * 6000, "[" + "1, " * 9999 + "1]", "{" + "x" * 999 + ": 1}", "2018-11-09"),
+        *("!!binary /w==", "&a [*a]", "{a: &a {b: *a}}", '"\\ud800"', '"\\0\\e[2J\\u202e"', ".nan"),
+    ],
+    ids=lambda text: text[:20],
+)
+@pytest.mark.parametrize("field", [Length, Slug, levels("N"), levels(None), pure_number(), Count])
+def test_whatever_stands_for_a_value_is_told_in_one_short_line(write, field, text):
+    content = read_yaml(write(f"field: {text}"), StudyError)["field"]
+    message = refusal(field, content)
+    assert message.isprintable()
+    assert len(message) < 300
+
+
+def test_laughs_that_no_memory_holds_are_told_in_one_line(write):
+    laughs = [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 30)]
+    content = read_yaml(write("\n".join(["a0: &a0 ha", *laughs])), StudyError)
+    for field in (Length, Slug, levels("N"), levels(None), tuple[int, ...]):
+        assert len(refusal(field, content["a29"])) < 300
+        assert len(refusal(field, content)) < 300
+
+
+@pytest.mark.parametrize("number", [1e-31, -1e31, 1e300])
+def test_magnitudes_that_nothing_has_are_refused(number):
+    needed = "need a magnitude from 1e-30 to 1e+30"
+    assert needed in refusal(quantity("N"), f"{number} N")
+    assert needed in refusal(pure_number(), number)
+    assert needed in refusal(levels("N"), {"values": [number], "units": "N"})
+    assert value_of(quantity("N"), "0 N") == 0.0
+
+
+def test_levels_have_an_end():
+    assert "got 1001 levels, need 1000 at most" in refusal(levels(None), list(range(1001)))
+
+
+def test_a_key_that_is_no_text_is_unknown():
+    model = create_model("Model", __base__=StrictModel)
+    for key in (3, None, True, 2.5):
+        with pytest.raises(StudyError, match="unknown key"):
+            validate(model, {key: 1}, "file.yaml", StudyError)
 
 
 def test_a_missing_file_is_named(tmp_path):

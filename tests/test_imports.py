@@ -21,12 +21,12 @@ MODULES = {
 LAYERS = [
     {"errors", "repository"},
     {
-        *("units", "hertz", "groups", "regimes", "inlet_heating", "viscosity", "resistance"),
-        *("curves", "intervals", "schema", "kernels"),
+        *("units", "texts", "hertz", "groups", "regimes", "inlet_heating", "viscosity"),
+        *("resistance", "curves", "intervals", "schema", "kernels"),
     },
     {
         *("formulas", "fields", "files", "fluids", "steps", "points", "evaluation", "shares"),
-        *("signals", "tables"),
+        *("signals", "tables", "sizes"),
     },
     {
         *("about", "apparatus", "records", "surfaces", "rig", "manifest"),
@@ -45,7 +45,17 @@ LAYERS = [
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
 FOUNDATIONS = {
-    *("errors", "units", "fields", "hertz", "groups", "regimes", "formulas", "inlet_heating"),
+    *(
+        "errors",
+        "units",
+        "texts",
+        "fields",
+        "hertz",
+        "groups",
+        "regimes",
+        "formulas",
+        "inlet_heating",
+    ),
     *("viscosity", "resistance", "curves", "intervals"),
 }
 STAGES = LAYERS[5]

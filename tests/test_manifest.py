@@ -115,6 +115,15 @@ def test_a_row_that_cannot_be_used_is_told_and_hides_no_other(folder, row, told)
     assert "\n" not in line
 
 
+@pytest.mark.parametrize("name", ["x" * 300, "x/" * 3000, "a\0b", "."])
+def test_a_name_that_no_record_has_is_told(folder, name):
+    (line,) = manifest(folder, HEADER, f"{name},,,,0.8,100,50,").refused
+    assert line.startswith("manifest.csv: line 2: file: got ")
+    assert line.endswith("no such file")
+    assert len(line) < 200
+    assert line.isprintable()
+
+
 @pytest.mark.parametrize(
     ("row", "told"),
     [

@@ -443,6 +443,36 @@ def test_a_tdms_file_damaged_within_is_refused(tmp_path, volts):
     assert "no TDMS segment at byte 1028" in refusal(path)
 
 
+@pytest.mark.parametrize("told", ["soon", True, np.datetime64("2018-11-09")])
+def test_a_tdms_property_that_is_no_number_is_no_interval(tmp_path, volts, told):
+    path = write_tdms(tmp_path / "r.tdms", volts, unit_string="V", wf_increment=told)
+    assert "sampling interval of 'Voltage': got" in refusal(path)
+
+
+def test_a_tdms_unit_that_is_no_text_is_told(tmp_path, volts):
+    path = write_tdms(tmp_path / "r.tdms", volts, unit_string=5, wf_increment=INTERVAL)
+    assert "'Voltage': '5' is no unit" in refusal(path)
+
+
+def test_a_name_that_no_file_has(tmp_path):
+    for name in ("x" * 300, "a\0b", "\ud800"):
+        with pytest.raises(DataError, match="no such file") as caught:
+            open_recording(tmp_path / f"{name}.csv")
+        assert str(caught.value).isprintable()
+
+
+def test_a_carriage_return_within_a_line_is_told(tmp_path):
+    (tmp_path / "r.csv").write_bytes(b"t [s],U [V]\n0,1\n1,2\r3,oops\n")
+    assert refusal(tmp_path / "r.csv").startswith("line 3: got 1 values, need 2")
+    (tmp_path / "r.csv").write_bytes(b"t [s],U\r [V]\n0,1\n")
+    assert "need a unit" in refusal(tmp_path / "r.csv")
+
+
+def test_a_head_without_end_is_told_at_once(tmp_path):
+    (tmp_path / "r.csv").write_bytes(b"a" + b" " * 10**5 + b"b,c\n0,1\n")
+    assert "need a voltage" in refusal(tmp_path / "r.csv")
+
+
 @pytest.mark.parametrize("interval", [0.0, -1e-5, np.nan, np.inf])
 def test_a_sampling_interval_that_is_none(tmp_path, volts, interval):
     path = write_csv(tmp_path / "r.csv", [volts], "U [V]")

@@ -274,6 +274,18 @@ def test_csv_files_outside_the_records_folder_are_refused(write, name):
     assert f"viscosity.csv: got {name!r}, need a file in the record's folder" in message
 
 
+@pytest.mark.parametrize("name", ["ring.csv", '"a\\0b"', "x" * 300])
+def test_a_csv_file_that_cannot_be_is_refused(write, tmp_path, name):
+    (tmp_path / "ring.csv").symlink_to("ring.csv")
+    message = refusal(write(CSV_OIL.replace("data.csv", name)))
+    assert "need a file in the record's folder" in message or "File name too long" in message
+
+
+def test_a_cell_without_end_is_refused(write):
+    write(HEADER + "40," + "1" * 200_000 + "\n", "data.csv")
+    assert "line 2: got 1 values, need 2" in refusal(write(CSV_OIL))
+
+
 @pytest.mark.parametrize("temperature", [39.9, 100.1, float("nan")])
 def test_temperatures_outside_the_data_are_refused_by_name_value_and_range(write, temperature):
     with pytest.raises(RangeError, match=rf"my-oil: got {temperature:g} degC, need 40 to 100 degC"):

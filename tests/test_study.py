@@ -125,7 +125,7 @@ def test_the_defaults_of_the_rig_are_those_of_the_papers_study():
 
 
 def test_the_rigs_rollers_are_none_of_the_simulation(change):
-    study = load_study(change(("realisations", 10**6)))
+    study = load_study(change(("realisations", 10**6), ("batch_size", 100)))
     assert not set(study.rig_realisations) & set(range(study.realisations))
     assert len(study.rig_realisations) == study.rig.revolutions
 
@@ -527,6 +527,13 @@ def test_a_record_without_sources_is_refused(change):
 def test_the_automatic_wavelength_is_offered_where_a_length_is_refused(change):
     message = refusal(change(("roughness.longest_wavelength", "as long as can be")))
     assert AUTOMATIC_WAVELENGTH in message
+
+
+@pytest.mark.parametrize("name", ["x" * 300 + ".csv", "a\0b.csv", "a\nb.csv", "."])
+def test_a_manifest_that_cannot_be_is_refused(change, name):
+    message = refusal(change(("experiment.manifest", name)))
+    assert "experiment.manifest: got " in message
+    assert message.isprintable()
 
 
 def test_a_study_file_that_is_no_study_is_named(tmp_path):

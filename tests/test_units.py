@@ -132,3 +132,22 @@ def test_a_number_that_is_not_finite_is_refused(value):
 @pytest.mark.parametrize("value", [True, None, [1], "one", "1/0", "1/2/3", "1 m", ""])
 def test_what_is_no_number_is_refused(value):
     assert refusal(parse_number, value) == f"got {value!r}, need a number"
+
+
+@pytest.mark.parametrize(
+    "text", ["1" * 10**5, "1" * 10**5 + "/3", "0." + "0" * 10**5 + "x", "1e" + "9" * 200]
+)
+def test_a_number_without_end_is_refused_at_once(text):
+    assert "need a number of 100 characters at most" in refusal(parse_number, text)
+    assert "need a" in refusal(parse_quantity, f"{text} m", "m")
+
+
+def test_a_quantity_with_blanks_without_end_is_refused_at_once():
+    assert "need" in refusal(parse_quantity, "1 m" + " " * 10**5 + "x", "m")
+    assert parse_quantity("1" + " " * 10**5 + "m", "m") == 1.0
+
+
+def test_a_number_that_python_cannot_write_out_is_refused():
+    assert (
+        refusal(parse_number, 16**6000) == "got a whole number of some 7225 digits, need a number"
+    )

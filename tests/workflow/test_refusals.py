@@ -1,10 +1,12 @@
 """Bad input: one clear line before any job, non-zero exit, nothing overwritten."""
 
 import json
+import os
+from pathlib import Path
 
 import pytest
 import yaml
-from repository import SMOKE
+from repository import COPIED, SMOKE
 
 PROFILE_NOTE = "Using workflow specific profile"
 
@@ -39,6 +41,13 @@ def test_a_mistaken_study_ends_in_one_line_before_any_job(smoke, changes, told):
     assert told in refusal(smoke, study=smoke.with_values(**changes))
 
 
+def test_a_name_that_snakemake_takes_for_a_wildcard_is_refused(spare):
+    shipped = (spare / "lube/lubricants/mobilgear-shc-xmp-320.yaml").read_text("utf-8")
+    (spare / "{oil}.yaml").write_text(shipped, encoding="utf-8")
+    message = refusal(spare, study=spare.with_values(lubricants=["{oil}.yaml"]))
+    assert "{oil}.yaml: got a name with braces, need one without" in message
+
+
 def test_values_on_the_command_line_are_refused(smoke):
     assert "--config is not used" in refusal(smoke, "--config", "seed=3", study=SMOKE)
 
@@ -52,16 +61,54 @@ def test_two_studies_at_once_are_refused(smoke):
 
 @pytest.mark.parametrize(
     ("text", "told"),
-    [("name: [1\n", "not valid JSON or YAML"), ("- name\n", "with keys at top level")],
+    [
+        (b"name: [1\n", "not valid YAML at line 2"),
+        (b"- name\n", "need a mapping of keys to values"),
+        (b"\xff\xfe", "it is not UTF-8 text"),
+        (b"a: " + b"[" * 5000, "not valid YAML"),
+    ],
+    ids=["torn", "list", "binary", "deep"],
 )
-def test_what_is_no_yaml_mapping_is_refused_by_snakemake_itself(smoke, text, told):
-    (smoke / "broken.yaml").write_text(text, encoding="utf-8")
-    before = smoke.snapshot()
-    finished = smoke.snakemake(study="broken.yaml")
-    assert finished.returncode != 0
-    assert told in finished.stdout
-    assert "Traceback" not in finished.stdout
-    assert smoke.snapshot() == before
+def test_what_is_no_yaml_mapping_is_refused(smoke, text, told):
+    (smoke / "broken.yaml").write_bytes(text)
+    assert told in refusal(smoke, study="broken.yaml")
+
+
+def test_a_study_that_is_no_file_is_refused_at_once(smoke):
+    os.mkfifo(smoke / "pipe.yaml")
+    assert "no folder, pipe or device" in refusal(smoke, study="pipe.yaml")
+    assert "No such file" in refusal(smoke, study="absent.yaml")
+
+
+@pytest.mark.parametrize(
+    "template", ["seed: ?{touch} or 1\n", '__definitions__: ["{touch}"]\nseed: 1.5\n']
+)
+def test_no_python_in_a_study_is_executed(smoke, template):
+    canary = smoke / "canary"
+    text = template.format(touch=f"__import__('pathlib').Path('{canary}').touch()")
+    study = (smoke / SMOKE).read_text("utf-8").replace("seed: 20181109\n", text)
+    (smoke / "evil.yaml").write_text(f"__use_yte__: true\n{study}", encoding="utf-8")
+    assert "evil.yaml: seed: got" in refusal(smoke, study="evil.yaml")
+    assert not canary.exists()
+
+
+def test_both_profiles_keep_snakemake_from_reading_the_study(smoke):
+    """Snakemake would evaluate a --configfile that says `__use_yte__`."""
+    ours, slurm = (
+        yaml.safe_load((smoke / f"profiles/{name}/config.yaml").read_text("utf-8"))
+        for name in ("default", "slurm")
+    )
+    assert ours["__use_yte__"] is slurm["__use_yte__"] is True
+    assert ours["__definitions__"] == slurm["__definitions__"]
+
+
+def test_a_study_writes_nothing_outside_its_results(smoke):
+    """Beside the copied repository there is what was run for, and what Snakemake keeps."""
+    copied = {path.parts[0] for path in map(Path, COPIED)}
+    made = {path.name for path in smoke.folder.iterdir()} - copied
+    ours = {"said", "mine.yaml", "broken.yaml", "evil.yaml", "pipe.yaml"}
+    assert made - ours <= {"results", ".snakemake"}
+    assert [path.name for path in (smoke / "results").iterdir()] == ["smoke"]
 
 
 def test_a_record_without_sources_is_refused(spare):

@@ -100,10 +100,19 @@ def script_sources(name):
     return sources((ROOT / f"workflow/scripts/{name}.py").read_text(encoding="utf-8"))
 
 
+def input_paths(files):
+    """Paths of files that a study names, told from here so that the tree can be moved."""
+    paths = sorted({os.path.relpath(file) for file in files})
+    with told_in_one_line():
+        for path in paths:
+            if "{" in path or "}" in path:  # which Snakemake would take for a wildcard
+                raise LubeError(f"{path}: got a name with braces, need one without")
+    return paths
+
+
 def record_files():
-    """Files of the study's lubricant records, told from here so that the tree can be moved."""
-    files = {file for record in STUDY.lubricants for file in record.files}
-    return sorted(os.path.relpath(file) for file in files)
+    """Files of the study's lubricant records."""
+    return input_paths(file for record in STUDY.lubricants for file in record.files)
 
 
 def measured_files():
@@ -114,8 +123,8 @@ def measured_files():
 
     with told_in_one_line():
         entries = read_manifest(STUDY.experiment.manifest).entries
-    files = [STUDY.experiment.manifest, *(entry.file for entry in entries if entry.file)]
-    return sorted(os.path.relpath(file) for file in files)
+    files = (entry.file for entry in entries if entry.file)
+    return input_paths([STUDY.experiment.manifest, *files])
 
 
 def archived_texts():
