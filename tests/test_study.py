@@ -481,7 +481,7 @@ def test_temperatures_outside_the_records_range_are_refused(change, temperature)
 
 
 def test_every_key_but_those_with_a_default_is_needed(content, change):
-    for key in content.keys() - {"rig", "experiment"}:
+    for key in content.keys() - {"about", "rig", "experiment"}:
         assert f"{key}: missing" in refusal(change((key, REMOVED)))
     for section in ("rollers", "rollers.first", "operating_grid", "roughness", "boundary_layer"):
         place = content
