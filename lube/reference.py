@@ -21,7 +21,7 @@ def study_table():
     str
         Markdown.
     """
-    return _table(("key", "value", "meaning"), _keys(Study.model_json_schema(), skip="lubricants"))
+    return _table(("key", "value", "meaning"), study_keys())
 
 
 def record_table():
@@ -32,7 +32,7 @@ def record_table():
     str
         Markdown.
     """
-    return _table(("key", "value", "meaning"), _keys(LubricantRecord.model_json_schema()))
+    return _table(("key", "value", "meaning"), record_keys())
 
 
 def formula_table():
@@ -45,6 +45,28 @@ def formula_table():
     """
     rows = [(f"`{row.name}`", row.place, row.source, row.validity) for row in FORMULAS.values()]
     return _table(("name", "film", "source", "taken to hold for"), rows)
+
+
+def study_keys():
+    """Keys of a study, from its schema.
+
+    Returns
+    -------
+    list of tuple of str
+        Key with dots, between backticks; what may stand there; meaning.
+    """
+    return _keys(Study.model_json_schema(), skip="lubricants")
+
+
+def record_keys():
+    """Keys of a lubricant record, from its schema.
+
+    Returns
+    -------
+    list of tuple of str
+        As of `study_keys`.
+    """
+    return _keys(LubricantRecord.model_json_schema())
 
 
 TABLES = {"study": study_table, "record": record_table, "formulas": formula_table}

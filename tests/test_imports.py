@@ -22,9 +22,20 @@ LAYERS = [
     {"errors"},
     {
         *("units", "hertz", "formulas", "viscosity", "resistance"),
-        *("curves", "intervals", "schema", "kernels"),
+        *("curves", "intervals", "schema", "kernels", "pages"),
     },
-    {"fields", "files", "fluids", "steps", "rig", "evaluation", "shares", "signals", "tables"},
+    {
+        "markdown",
+        "fields",
+        "files",
+        "fluids",
+        "steps",
+        "rig",
+        "evaluation",
+        "shares",
+        "signals",
+        "tables",
+    },
     {"apparatus", "records", "surfaces", "manifest", "text_signals", "binary_signals"},
     {"study", "recordings"},
     {
@@ -32,6 +43,7 @@ LAYERS = [
         *("experiment", "comparison", "gauge"),
     },
     {"io", "plots", "notebooks", "jobs", "reference"},
+    {"configuration", "overview"},
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
 FOUNDATIONS = {
@@ -127,6 +139,7 @@ def loaded_after(statement):
         ("import lube", {"numpy", "xarray", "numba", "pydantic", "pint"}),
         ("import lube.study", {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp"}),
         ("from lube.study import load_study; import lube.jobs", {"xarray", "papermill"}),
+        ("import lube.markdown", {"numpy", "docutils"}),
     ],
 )
 def test_what_snakemake_imports_at_every_start_is_light(statement, heavy):
