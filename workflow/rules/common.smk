@@ -25,6 +25,8 @@ DATASETS = (
 )
 # By `snakemake benchmark`; clock times are no part of the study's results.
 MEASURED = ("speed", "reading")
+# Where the report has its pages, apart from the figures.
+ABOUT_THE_STUDY = "About the study"
 
 
 @contextmanager
