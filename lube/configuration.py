@@ -1,6 +1,5 @@
 """The configuration of a study as the report shows it: as written, and as it was understood."""
 
-import json
 import re
 from html import escape
 
@@ -88,19 +87,27 @@ def _told(value, unit):
 
 def _stage(stage, values):
     rows = [
-        (f"<code>{escape(key)}</code>", escape(_in_short(value))) for key, value in _flat(values)
+        (f"<code>{escape(key)}</code>", escape(_in_short(value)))
+        for key, value in _flat(values)
+        if value is not None
     ]
-    told = html_table(("value", ""), rows, kind="keys")
-    return f"<details><summary>{escape(stage)}</summary>\n{told}\n</details>"
+    table = html_table(("key", "value"), rows, kind="keys")
+    return f"<details><summary>{escape(stage)}</summary>\n{table}\n</details>"
 
 
-def _flat(values, path=""):
-    for key, value in values.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{path}{key}.")
-        else:
-            yield f"{path}{key}", value
+def _flat(value, path=""):
+    """All values behind a nested one, with their keys; only lists of plain values stay lists."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _flat(inner, f"{path}.{key}" if path else key)
+    elif isinstance(value, list) and any(isinstance(one, dict) for one in value):
+        for number, inner in enumerate(value):
+            yield from _flat(inner, f"{path}[{number}]")
+    else:
+        yield path, value
 
 
 def _in_short(value):
-    return f"{value:.9g}" if isinstance(value, float) else json.dumps(value, ensure_ascii=False)
+    if isinstance(value, list):
+        return ", ".join(map(_in_short, value))
+    return f"{value:.9g}" if isinstance(value, float) else str(value)

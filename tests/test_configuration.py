@@ -50,4 +50,5 @@ def test_every_stage_shows_what_it_was_given(shown, study):
     for stage in STAGES:
         assert f"<summary>{stage}</summary>" in shown
     assert rows(shown)["seed"] == str(study.seed)
+    assert rows(shown)["lubricants[0].viscosity.points[1].temperature"] == "100"
     assert float(rows(shown)["lines.q_max"]) == pytest.approx(study.line_spec.q_max)

@@ -3,8 +3,10 @@
 import base64
 import json
 import re
+import shutil
 
 import pytest
+from repository import products_of
 
 from lube.markdown import plain, title_and_text, to_html
 
@@ -127,7 +129,10 @@ def test_a_notebook_without_words_or_chapter_is_shown_all_the_same(spare):
     notebook["cells"] = notebook["cells"][1:]
     path.write_text(json.dumps(notebook), encoding="utf-8")
     target = "results/smoke/figures/fig99_mine.png"
-    spare.run(target)
+    for name in products_of(spare.notebooks[0]):
+        mine = name.replace(spare.notebooks[0], "fig99_mine")
+        shutil.copy(spare.results / name, spare.results / mine)
+    spare.run("--touch", target)  # instead of a run of the notebook, which takes long
     spare.run(target, "--report", "mine.html")
     report = (spare / "mine.html").read_text("utf-8")
     assert data(report, "results")[target]["labels"]["Shows"] == "fig99_mine"
