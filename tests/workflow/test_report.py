@@ -113,7 +113,7 @@ def test_the_pages_tell_configuration_assumptions_and_run_times(smoke, held):
         assert f"<code>{job}</code>" in times
 
 
-def test_the_readme_and_the_style_make_the_pages_and_nothing_else(spare):
+def test_the_readme_makes_the_pages_and_nothing_else(spare):
     spare.append("README.md", "changed")
     assert spare.planned_pages() == {
         f"report/{name}.html"

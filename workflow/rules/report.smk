@@ -3,7 +3,8 @@ rule pages:
         film=result("film.nc"),
         contact=result("contact.nc"),
         comparison=result("comparison.nc"),
-        study=config["study_file"],
+        # Told from here, so that the tree can be moved.
+        study=os.path.relpath(config["study_file"]),
         readme="README.md",
         style="workflow/report/page.css",
         sources=script_sources("pages"),
