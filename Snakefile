@@ -1,6 +1,9 @@
 # Mixed lubrication of rough rollers: the whole study. See README.md.
 
 
+report: "workflow/report/study.rst"
+
+
 include: "workflow/rules/common.smk"
 include: "workflow/rules/notebooks.smk"
 include: "workflow/rules/lubricant.smk"
@@ -14,6 +17,7 @@ include: "workflow/rules/gauge.smk"
 include: "workflow/rules/figure.smk"
 include: "workflow/rules/speed.smk"
 include: "workflow/rules/reading.smk"
+include: "workflow/rules/report.smk"
 include: "workflow/rules/archive.smk"
 
 
@@ -22,6 +26,7 @@ rule all:
     input:
         [result(f"{kind}.nc") for kind in DATASETS],
         products(ARCHIVED),
+        [result(f"report/{page}.html") for page in ("configuration", "assumptions", "run_times")],
     message:
         "Done: datasets, figures and executed notebooks are in {RESULTS}"
 

@@ -22,7 +22,7 @@ def study_table():
     str
         Markdown.
     """
-    return _table(("key", "value", "meaning"), _keys(Study.model_json_schema(), skip="lubricants"))
+    return _table(("key", "value", "meaning"), study_keys())
 
 
 def record_table():
@@ -33,7 +33,7 @@ def record_table():
     str
         Markdown.
     """
-    return _table(("key", "value", "meaning"), _keys(LubricantRecord.model_json_schema()))
+    return _table(("key", "value", "meaning"), record_keys())
 
 
 def formula_table():
@@ -60,6 +60,28 @@ def file_table():
         (f"`{kind}.nc`", summary) for kind, summary in SUMMARIES.items() if kind not in MEASURED
     ]
     return _table(("file", "what is in it"), rows)
+
+
+def study_keys():
+    """Keys of a study, from its schema.
+
+    Returns
+    -------
+    list of tuple of str
+        Key with dots, between backticks; what may stand there; meaning.
+    """
+    return _keys(Study.model_json_schema(), skip="lubricants")
+
+
+def record_keys():
+    """Keys of a lubricant record, from its schema.
+
+    Returns
+    -------
+    list of tuple of str
+        As of `study_keys`.
+    """
+    return _keys(LubricantRecord.model_json_schema())
 
 
 TABLES = {

@@ -27,6 +27,14 @@ _UNITS = re.compile(rf"(?:1|{_FACTOR})(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
 _ANGLE = re.compile("rpm|turn|revolution|cycle|rad|deg")
 
 
+# How a number is printed: with a prefix, in the unit of the trade, or with the unit's own sign.
+_PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+_PREFIXED = {"m", "s", "Pa", "V", "Hz", "ohm", "ohm*m"}
+_USUAL = {"m^2/s": (1e6, "mm²/s"), "1/Pa": (1e9, "1/GPa")}
+_SIGNS = {"ohm": "Ω", "ohm*m": "Ω m", "degC": "°C", "rpm": "r/min", "Pa*s": "Pa s",
+          "kg/m^3": "kg/m³"}  # fmt: skip
+
+
 @functools.cache
 def _registry():
     import pint  # imported on first use: it costs more than the rest of the package
@@ -134,3 +142,31 @@ def parse_quantity(value, target):
     if not math.isfinite(converted):
         raise LubeError(f"got {shown(value)}, need a finite number")
     return converted
+
+
+def with_unit(value, unit):
+    """Print a number with its unit, scaled so that it is easily read.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    unit : str
+        Its unit, as in a study's schema; empty for a pure number.
+
+    Returns
+    -------
+    str
+        Such as ``0.2 µm``, ``210 GPa``, ``86 r/min``.
+    """
+    if unit in _USUAL:
+        factor, sign = _USUAL[unit]
+        return f"{value * factor:.6g} {sign}"
+    prefix = ""
+    if unit in _PREFIXED and value:
+        # Roughness is told in micrometres: 0.2 µm reads better than 200 nm.
+        size = abs(value) * (10.0 if unit == "m" and abs(value) < 1e-6 else 1.0)
+        power = 3 * math.floor(math.log10(size * (1.0 + 1e-9)) / 3)
+        power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
+        value, prefix = value / 10.0**power, _PREFIXES[power]
+    return f"{value:.6g} {prefix}{_SIGNS.get(unit, unit)}".strip()

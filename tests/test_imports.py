@@ -22,10 +22,20 @@ LAYERS = [
     {"errors", "repository"},
     {
         *("units", "texts", "hertz", "groups", "regimes", "inlet_heating", "viscosity"),
-        *("resistance", "curves", "intervals", "schema", "kernels"),
+        *("resistance", "curves", "intervals", "schema", "kernels", "pages"),
     },
     {
-        *("formulas", "fields", "files", "fluids", "steps", "points", "evaluation", "shares"),
+        *(
+            "formulas",
+            "markdown",
+            "fields",
+            "files",
+            "fluids",
+            "steps",
+            "points",
+            "evaluation",
+            "shares",
+        ),
         *("signals", "tables", "sizes"),
     },
     {
@@ -39,7 +49,7 @@ LAYERS = [
     },
     {"provenance", "notebooks", "jobs", "reference"},
     {"io", "plots", "citation"},
-    {"archive", "explanation"},
+    {"archive", "explanation", "configuration", "overview"},
     {"verify"},
     {"command"},
 ]
@@ -147,6 +157,7 @@ def loaded_after(statement):
         ("import lube", {"numpy", "xarray", "numba", "pydantic", "pint"}),
         ("import lube.study", {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp"}),
         ("from lube.study import load_study; import lube.jobs", {"xarray", "papermill"}),
+        ("import lube.markdown", {"numpy", "docutils"}),
     ],
 )
 def test_what_snakemake_imports_at_every_start_is_light(statement, heavy):

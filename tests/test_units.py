@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lube.errors import LubeError
-from lube.units import convert, parse_number, parse_quantity
+from lube.units import convert, parse_number, parse_quantity, with_unit
 
 finite = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e200, max_value=1e200)
 positive = st.floats(min_value=1e-200, max_value=1e200)
@@ -151,3 +151,36 @@ def test_a_number_that_python_cannot_write_out_is_refused():
     assert (
         refusal(parse_number, 16**6000) == "got a whole number of some 7225 digits, need a number"
     )
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "printed"),
+    [
+        (0.05, "m", "50 mm"),
+        (2e-7, "m", "0.2 µm"),
+        (5e-9, "m", "5 nm"),
+        (1e-12, "m", "1 pm"),
+        (2.1e11, "Pa", "210 GPa"),
+        (1e6, "Pa", "1 MPa"),
+        (100.0, "ohm", "100 Ω"),
+        (1e3, "ohm", "1 kΩ"),
+        (1.9999999999999998e-05, "V", "20 µV"),
+        (-0.05, "V", "-50 mV"),
+        (0.0, "s", "0 s"),
+        (1600.0, "N", "1600 N"),
+        (600 / 7, "rpm", "85.7143 r/min"),
+        (40.0, "degC", "40 °C"),
+        (4.2e-4, "m", "420 µm"),
+        (3.35e-4, "m^2/s", "335 mm²/s"),
+        (1.6e-8, "1/Pa", "16 1/GPa"),
+        (0.16, "W/m/K", "0.16 W/m/K"),
+        (0.7, "", "0.7"),
+    ],
+)
+def test_a_number_is_printed_with_a_unit_that_reads_easily(value, unit, printed):
+    assert with_unit(value, unit) == printed
+
+
+@given(st.floats(min_value=1e-12, max_value=1e12))
+def test_what_is_printed_is_read_again(value):
+    assert parse_quantity(with_unit(value, "Pa"), "Pa") == pytest.approx(value, rel=1e-5)

@@ -15,6 +15,7 @@ import yaml
 ROOT = Path(__file__).parents[2]
 COPIED = (
     "Snakefile",
+    "README.md",
     "pyproject.toml",
     "workflow",
     "lube",
@@ -68,7 +69,15 @@ class Repository:
         return finished.stdout
 
     def planned(self, study=SMOKE):
-        """Results that the next run would make, by Snakemake's own dry plan."""
+        """Results that the next run would make, but for the report's pages, which follow all."""
+        return {name for name in self._planned(study) if not name.startswith("report/")}
+
+    def planned_pages(self, study=SMOKE):
+        """Pages of the report that the next run would make."""
+        return {name for name in self._planned(study) if name.startswith("report/")}
+
+    def _planned(self, study):
+        """All files that the next run would make, by Snakemake's own dry plan."""
         rows = [line.split("\t") for line in self.run("--summary", study=study).splitlines()]
         made = {row[0] for row in rows if row[-1] == "update pending"}
         return {str(Path(name).relative_to(RESULTS)) for name in made}

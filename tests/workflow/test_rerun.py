@@ -64,7 +64,8 @@ def test_the_plan_is_what_a_dry_run_announces(spare):
     figures = {name for name in planned if name.startswith("notebooks/")}
     assert int(counted.get("trace", 0)) == 1
     assert int(counted.get("figure", 0)) == len(figures)
-    assert int(counted["total"]) == len(figures) + 3  # the lines, the trace and `all`
+    # The lines, the trace, both jobs of the report's pages, and `all`.
+    assert int(counted["total"]) == len(figures) + 5
 
 
 # A module of lube, a script, a record

@@ -195,7 +195,7 @@ def test_each_job_says_in_words_what_is_made(smoke):
     for message in messages:
         assert re.match(
             r"(Lubricant|Film|Roughness|Contact|Master curve|Trace|Rig|Experiment|Comparison|Gauge"
-            r"|Figure|Done): \S+",
+            r"|Figure|Report|Done): \S+",
             message,
         )
     assert len(set(messages)) == len(messages)

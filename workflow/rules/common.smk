@@ -21,6 +21,8 @@ from lube.schema import MEASURED, SUMMARIES
 from lube.study import load_study
 
 DATASETS = [kind for kind in SUMMARIES if kind not in MEASURED]
+# Where the report has its pages, apart from the figures.
+ABOUT_THE_STUDY = "About the study"
 
 
 @contextmanager

@@ -5,7 +5,8 @@ rule figure:
         datasets=lambda wildcards: FIGURE_DATASETS[wildcards.figure],
         sources=lambda wildcards: FIGURE_SOURCES[wildcards.figure],
     output:
-        multiext(result("figures/{figure}"), ".png", ".pdf"),
+        in_report(result("figures/{figure}.png")),
+        in_report(result("figures/{figure}.pdf")),
         notebook=result("notebooks/{figure}.ipynb"),
     log:
         result("logs/{figure}.log"),

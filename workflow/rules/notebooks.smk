@@ -1,4 +1,10 @@
-# What the figures' notebooks depend on, read from their cells before any job.
+# What the figures' notebooks depend on and say, read from their cells before any job.
+import functools
+
+from lube.markdown import plain, title_and_text, to_html
+
+
+@functools.cache
 def notebook_cells(figure):
     """Cells of a figure's notebook, reduced to what decides on it; outputs do not."""
     path = Path(f"notebooks/{figure}.ipynb")
@@ -58,6 +64,42 @@ def figure_sources(figure):
     return sorted({*sources(code), *script_sources("figure")})
 
 
+def figure_text(figure):
+    """Title and text of a figure, in Markdown, from its notebook's first cell."""
+    first = notebook_cells(figure)[:1]
+    text = "".join(cell["source"] for cell in first if cell["type"] == "markdown")
+    title, text = title_and_text(text)
+    return title or figure, text
+
+
+def figure_chapter(figure):
+    """Chapter of the report that a figure stands in, by its tag such as `chapter-oil-and-film`."""
+    tags = [tag for cell in notebook_cells(figure) for tag in cell["tags"]]
+    named = [tag.removeprefix("chapter-") for tag in tags if tag.startswith("chapter-")]
+    return " ".join((named or ["further-figures"])[0].split("-")).capitalize()
+
+
+def chapter(wildcards):
+    """A figure's chapter with its number: the report sorts by it, as the figures are numbered."""
+    name = figure_chapter(wildcards.figure)
+    return f"{1 + CHAPTERS.index(name)} {name}"
+
+
+def in_report(path):
+    """Show a file of a figure in the report, among its chapter, with its notebook's words."""
+    return report(
+        path,
+        caption="../report/figure.rst",
+        category=chapter,
+        labels=lambda wildcards: {
+            "Figure": wildcards.figure.split("_")[0],
+            "Shows": plain(figure_text(wildcards.figure)[0]),
+            # The report shows the first by the alphabet, and lets switch to the other.
+            "Format": "PNG" if path.endswith("png") else "pdf",
+        },
+    )
+
+
 with told_in_one_line():
     FIGURES = sorted(path.stem for path in Path("notebooks").glob("*.ipynb") if wanted(path.stem))
     FIGURE_DATASETS = {figure: figure_datasets(figure) for figure in FIGURES}
@@ -70,6 +112,17 @@ with told_in_one_line():
         if not {Path(path).stem for path in FIGURE_DATASETS[figure]}.isdisjoint(MEASURED)
     ]
     ARCHIVED = [figure for figure in FIGURES if figure not in TIMINGS]
+    # In the order of their figures, measured times last.
+    CHAPTERS = list(
+        dict.fromkeys(map(figure_chapter, sorted(FIGURES, key=lambda one: (one in TIMINGS, one))))
+    )
+
+# What the report's templates are given.
+config["report"] = {
+    "study": STUDY.name,
+    "folder": result("report"),
+    "captions": {figure: to_html(figure_text(figure)[1]) for figure in FIGURES},
+}
 
 
 def products(figures):
@@ -77,3 +130,14 @@ def products(figures):
     for figure in figures:
         yield from (result(f"figures/{figure}.{suffix}") for suffix in ("png", "pdf"))
         yield result(f"notebooks/{figure}.ipynb")
+
+
+def benchmarks_of_steps():
+    """Files with time and memory of all jobs, by the steps of the study."""
+    steps = {}
+    for kind in DATASETS:
+        if kind in ("roughness", "contact", "master"):
+            steps[f"{kind}, in batches"] = [f"{kind}_{first}" for first in STUDY.batches]
+        steps[kind] = [kind]
+    steps["figures"] = [figure for figure in FIGURES if figure not in TIMINGS]
+    return {step: [result(f"benchmarks/{job}.tsv") for job in jobs] for step, jobs in steps.items()}

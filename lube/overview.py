@@ -1,0 +1,300 @@
+"""What the report says of a study first: its numbers, its answers, its assumptions and limits.
+
+Words that stand in the README are taken from there, and from nowhere else.
+"""
+
+import math
+import platform
+from html import escape
+from importlib.metadata import version
+
+from lube.markdown import section, to_html
+from lube.pages import html_table
+from lube.provenance import LIBRARIES
+from lube.repository import commit
+from lube.units import with_unit
+
+ASSUMPTIONS = "What the paper leaves open"
+LIMITS = "Honest limits"
+FILES = "What you get"
+ARCHITECTURE = "How it is built"
+
+
+def facts(study):
+    """Tell the numbers of a study.
+
+    Parameters
+    ----------
+    study : lube.study.Study
+        The study.
+
+    Returns
+    -------
+    str
+        HTML: a table of two columns.
+    """
+    grid, roughness, spec = study.operating_grid, study.roughness, study.line_spec
+    wavelengths = [with_unit(_rounded(2.0 * math.pi / q), "m") for q in (spec.q_max, spec.q_min)]
+    points = math.prod(len(levels) for levels in grid.model_dump().values())
+    rows = [
+        ("Rollers", _rollers(study.rollers)),
+        ("Lubricant", ", ".join(record.title for record in study.lubricants)),
+        ("Film formulas", ", ".join(study.film_formulas)),
+        ("Operating points", f"{points}: {_grid(grid)}"),
+        ("Roughness lines", f"{roughness.points:,} points around the roller, Hurst exponent "
+         f"{roughness.hurst_exponent:g}, wavelengths {wavelengths[0]} to {wavelengths[1]}"),
+        ("Boundary layer", "critical thickness "
+         f"{with_unit(study.boundary_layer.critical_thickness, 'm')}, shear strength "
+         f"{with_unit(study.boundary_layer.shear_strength, 'Pa')}"),
+        ("Realisations", f"{study.realisations} pairs of roughness lines, "
+         f"{_counted(study.revolutions, 'revolution')} each; seed {study.seed}"),
+        ("Experiment", _experiment(study)),
+        ("Made by", "; ".join(creator.name for creator in study.about.creators) or "not named"),
+        ("Code", f"commit {commit()}"),
+        ("Software", _software()),
+    ]  # fmt: skip
+    return _pairs(rows)
+
+
+def _rollers(rollers):
+    told = [
+        f"radius {with_unit(one.radius, 'm')}, {with_unit(one.young_modulus, 'Pa')}, Poisson's "
+        f"ratio {one.poisson_ratio:g}, rms roughness {with_unit(one.rms_roughness, 'm')}"
+        for one in (rollers.first, rollers.second)
+    ]
+    alike = rollers.first == rollers.second
+    each = f"two alike, {told[0]}" if alike else f"first {told[0]}; second {told[1]}"
+    return f"{each}; contact line {with_unit(rollers.length, 'm')} long"
+
+
+def _grid(grid):
+    units = {"force": "N", "speed": "rpm", "temperature": "degC"}
+    told = [_levels(getattr(grid, name), unit) for name, unit in units.items()]
+    slips = _levels(grid.slide_to_roll_ratio, "")
+    return "; ".join([*told, f"slide-to-roll ratio {slips}"])
+
+
+def _levels(levels, unit):
+    """Name all levels, or the ends of many."""
+    numbers = [f"{_rounded(level):g}" for level in levels[:-1]]
+    if len(numbers) > 11:
+        numbers = [f"{len(levels)} levels from {numbers[0]}"]
+    join = " to " if len(levels) > 12 else " and "
+    last = with_unit(_rounded(levels[-1]), unit)
+    return f"{', '.join(numbers)}{join}{last}" if numbers else last
+
+
+def _software():
+    libraries = [f"{name} {version(name)}" for name in ("lube", *LIBRARIES, "snakemake")]
+    return ", ".join([*libraries, f"Python {platform.python_version()}"])
+
+
+def _counted(number, noun):
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def _experiment(study):
+    threshold = with_unit(study.experiment.threshold, "ohm")
+    if study.experiment.manifest is not None:
+        return f"measured records; below {threshold} counts as contact"
+    turns = _counted(study.rig.revolutions, "revolution")
+    return (
+        f"a simulated rig, {turns} a record, each with a roughness of its own; below {threshold} "
+        "counts as contact. No measured value enters this study."
+    )
+
+
+def findings(study, film, contact, comparison):
+    """Tell the answers of a study in a few lines.
+
+    Parameters
+    ----------
+    study : lube.study.Study
+        The study.
+    film, contact, comparison : xarray.Dataset
+        Its datasets of these names.
+
+    Returns
+    -------
+    str
+        HTML: sentences, and a table of the points that the study names for its traces.
+    """
+    chosen = {
+        "lubricant": study.lubricants[0].name,
+        "film_formula": study.film_formulas[0],
+        "slide_to_roll_ratio": study.rig_slip,
+    }
+    sentences = [
+        _range_of(contact["breakthrough_probability_mean"].sel(chosen)),
+        _outside(_at(film["in_validity_range"], chosen)),
+        _agreement(comparison, chosen),
+    ]
+    items = "\n".join(f"<li>{sentence}</li>" for sentence in sentences if sentence)
+    points = _points(study.trace_points, film, contact, comparison)
+    return f"<p>{_which(study)}</p>\n<ul>\n{items}\n</ul>\n{points}"
+
+
+def _which(study):
+    """Say of which part of the study the sentences below tell."""
+    return (
+        f"With {escape(study.lubricants[0].title)}, the film formula "
+        f"<code>{escape(study.film_formulas[0])}</code> and slide-to-roll ratio {study.rig_slip:g}:"
+    )
+
+
+def _at(variable, point):
+    """Take a variable at a point, as far as it depends on it."""
+    return variable.sel({name: level for name, level in point.items() if name in variable.dims})
+
+
+def _range_of(mean):
+    """Say how often metal touches metal, and where most."""
+    touched = mean.values[mean.values > 0.0]
+    if not touched.size:
+        return f"Metal touched metal at none of {mean.size} operating points."
+    place = mean.isel(mean.argmax(mean.dims))
+    at = {name: float(place[name]) for name in mean.dims}
+    never = mean.size - touched.size
+    rest = f"; at the other {never} it was never seen" if never else ""
+    return (
+        f"Metal touches metal at {touched.size} of {mean.size} operating points{rest}. The "
+        f"boundary layer is broken for at most <strong>{_percent(touched.max())}</strong> of the "
+        f"time, at {_point(at)}."
+    )
+
+
+def _outside(inside):
+    inside = inside.values.astype(bool)
+    if inside.all():
+        return "All operating points lie within the range in which the film formula holds."
+    return (
+        f"{int((~inside).sum())} of {inside.size} operating points lie outside the range in which "
+        "the film formula was found to hold."
+    )
+
+
+def _agreement(comparison, chosen):
+    """Say how far simulation and rig agree; nothing where they have no point in common."""
+    chosen = chosen | {"threshold": comparison["comparison_threshold"].item()}
+    bias, spread = (float(_at(comparison[name], chosen)) for name in ("bias", "rms_difference"))
+    if not math.isfinite(bias):
+        return ""
+    rig = "a simulated rig" if comparison["origin"].item() == "simulated" else "the rig"
+    return (
+        f"Against {rig} the simulation is on average {abs(100.0 * bias):.2g} percentage points too "
+        f"{'high' if bias > 0.0 else 'low'}; the rms difference is {100.0 * spread:.2g} points."
+    )
+
+
+def _points(points, film, contact, comparison):
+    """Table of the operating points that the study names."""
+    rows = [
+        (
+            _point(point),
+            with_unit(_rounded(_at(film["film_thickness"], point)), "m"),
+            f"{float(_at(film['lambda_ratio'], point)):.3g}",
+            _with_interval(contact.sel(point)),
+            _percent(_at(comparison["measured_share"], point)),
+        )
+        for point in points
+    ]
+    head = ("operating point", "film", "lambda ratio",
+            "time with metal contact (95 % interval)", "by the rig")  # fmt: skip
+    return html_table(head, rows)
+
+
+def _with_interval(contact):
+    middle, lower, upper = (
+        _percent(contact[f"breakthrough_probability_{name}"]) for name in ("mean", "lower", "upper")
+    )
+    return f"<strong>{middle}</strong> ({lower} to {upper})"
+
+
+def _point(at):
+    units = {"force": "N", "speed": "rpm", "temperature": "degC"}
+    return ", ".join(with_unit(_rounded(at[name]), unit) for name, unit in units.items())
+
+
+def _rounded(number):
+    return float(f"{float(number):.3g}")
+
+
+def _percent(share):
+    share = float(share)
+    return f"{100.0 * share:.3g} %" if math.isfinite(share) else "–"
+
+
+def _pairs(rows):
+    cells = (f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows)
+    return "\n".join(['<table class="facts">', "<tbody>", *cells, "</tbody>", "</table>"])
+
+
+def limits(readme):
+    """Tell what the study cannot say.
+
+    Parameters
+    ----------
+    readme : str
+        The README.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    return to_html(section(readme, LIMITS))
+
+
+def files(readme):
+    """Tell what is in which file.
+
+    Parameters
+    ----------
+    readme : str
+        The README.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    _, _, table = section(readme, FILES).partition("\n\n")
+    return to_html(table.partition("\n\n")[0])
+
+
+def pipeline(readme):
+    """Draw how the stages follow from one another.
+
+    Parameters
+    ----------
+    readme : str
+        The README.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    _, _, drawing = section(readme, ARCHITECTURE).partition("```")
+    return to_html(f"```{drawing.partition('```')[0]}```")
+
+
+def assumptions(readme):
+    """Tell what the paper leaves open, and what this study filled in.
+
+    Parameters
+    ----------
+    readme : str
+        The README.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    lead = (
+        "<p>The paper does not print all that a calculation needs. This is what it leaves open and "
+        "what stands there instead. The numbers are those of the paper's study; the last column "
+        "says where a study changes them, and the page Configuration has this study's.</p>"
+    )
+    return f"{lead}\n{to_html(section(readme, ASSUMPTIONS))}"

@@ -1,0 +1,139 @@
+"""The report of a study: one file that holds all figures with their words, and needs no other."""
+
+import base64
+import json
+import re
+import shutil
+
+import pytest
+from repository import products_of
+
+from lube.markdown import plain, title_and_text, to_html
+
+
+@pytest.fixture(scope="module")
+def report(smoke):
+    """The report of the smoke study, as text."""
+    smoke.run("--report", "report.html")
+    return (smoke / "report.html").read_text("utf-8")
+
+
+@pytest.fixture(scope="module")
+def held(report):
+    """The data within the report, by their names."""
+    return {name: data(report, name) for name in ("workflow-desc", "results", "categories")}
+
+
+def data(report, name):
+    return json.loads(
+        re.search(rf'<script id="{name}">\s*var \w+ = (.*);$', report, re.MULTILINE)[1]
+    )
+
+
+def first_cell(smoke, figure):
+    cells = json.loads((smoke / f"notebooks/{figure}.ipynb").read_text("utf-8"))["cells"]
+    return title_and_text("".join(cells[0]["source"]))
+
+
+def page(held, name):
+    uri = held["results"][f"results/smoke/report/{name}.html"]["data_uri"]
+    return base64.b64decode(uri.split("base64,")[1]).decode("utf-8")
+
+
+def test_the_report_needs_no_other_file_and_no_network(report, held):
+    # What the libraries within could ask for stands in their own code.
+    without_code = re.sub(r"(<script[^>]*>).*?</script>", r"\1</script>", report, flags=re.DOTALL)
+    captions = [result["caption"] for result in held["results"].values()]
+    pages = [page(held, name) for name in ("assumptions", "configuration", "run_times")]
+    for shown in (without_code, held["workflow-desc"], *captions, *pages):
+        assert not re.search(r"""<(?!a )\w+[^>]*\s(src|href)=(?!["']?data:)""", shown)
+        assert not re.search(r"@import|url\((?!data:)", shown)
+    assert "<script>" in without_code and "https" not in without_code
+    assert len(report) < 20e6
+
+
+def test_every_figure_is_in_its_chapter_as_png_and_pdf(smoke, held):
+    chapters = {
+        chapter: [path for paths in groups.values() for path in paths]
+        for chapter, groups in held["categories"].items()
+    }
+    about = chapters.pop("About the study")
+    assert len(about) == 3
+    shown = [path for chapter in sorted(chapters) for path in chapters[chapter]]
+    assert sorted(shown) == sorted(
+        f"results/smoke/figures/{figure}.{suffix}"
+        for figure in smoke.notebooks
+        for suffix in ("png", "pdf")
+    )
+    assert sorted(chapters) == [
+        "1 Oil and film",
+        "2 Figures of the paper",
+        "3 Roughness and ensemble",
+        "4 Beyond the paper",
+    ]
+    for path in shown:
+        data = base64.b64decode(held["results"][path]["data_uri"].split("base64,")[1])
+        assert data == (smoke / path).read_bytes()
+
+
+def test_every_figure_has_the_words_of_its_notebook(smoke, held):
+    for figure in smoke.notebooks:
+        title, text = first_cell(smoke, figure)
+        assert len(text) > 100
+        for suffix in ("png", "pdf"):
+            result = held["results"][f"results/smoke/figures/{figure}.{suffix}"]
+            assert result["labels"]["Shows"] == plain(title)
+            assert to_html(text) in result["caption"]
+
+
+def test_the_start_page_tells_the_study_and_leads_to_every_figure(smoke, held):
+    start = held["workflow-desc"]
+    assert "system-message" not in start and "{{" not in start
+    for words in ("<strong>smoke</strong>", "Mobilgear", "seed 20181109", "lambda ratio",
+                  "Lyashenko", "contact.nc", "results/smoke", "Assumptions"):  # fmt: skip
+        assert words in start
+    for figure in smoke.notebooks:
+        assert f'resultPath: "results/smoke/figures/{figure}.png"' in start
+        assert plain(first_cell(smoke, figure)[0]) in start
+
+
+def test_the_pages_tell_configuration_assumptions_and_run_times(smoke, held):
+    configuration = page(held, "configuration")
+    assert "# A toy with the keys of paper.yaml" in configuration
+    assert "<code>rollers.first.young_modulus</code></td><td>210 GPa</td>" in configuration
+    readme = (smoke / "README.md").read_text("utf-8")
+    table = readme.split("## What the paper leaves open")[1].split("\n\n")[1]
+    cells = [row.split("|")[1].strip() for row in table.splitlines()[2:]]
+    assert len(cells) > 15
+    for cell in cells:
+        assert f"<td>{to_html(cell)[3:-4]}</td>" in page(held, "assumptions")
+    times = page(held, "run_times")
+    jobs = {path.stem for path in (smoke.results / "benchmarks").iterdir()}
+    for job in jobs - {"pages", "times"}:
+        assert f"<code>{job}</code>" in times
+
+
+def test_the_readme_makes_the_pages_and_nothing_else(spare):
+    spare.append("README.md", "changed")
+    assert spare.planned_pages() == {
+        f"report/{name}.html"
+        for name in ("facts", "findings", "limits", "files", "pipeline", "configuration",
+                     "assumptions")
+    }  # fmt: skip
+    assert spare.planned() == set()
+
+
+def test_a_notebook_without_words_or_chapter_is_shown_all_the_same(spare):
+    path = spare / "notebooks/fig99_mine.ipynb"
+    notebook = json.loads((spare / f"notebooks/{spare.notebooks[0]}.ipynb").read_text("utf-8"))
+    notebook["cells"] = notebook["cells"][1:]
+    path.write_text(json.dumps(notebook), encoding="utf-8")
+    target = "results/smoke/figures/fig99_mine.png"
+    for name in products_of(spare.notebooks[0]):
+        mine = name.replace(spare.notebooks[0], "fig99_mine")
+        shutil.copy(spare.results / name, spare.results / mine)
+    spare.run("--touch", target)  # instead of a run of the notebook, which takes long
+    spare.run(target, "--report", "mine.html")
+    report = (spare / "mine.html").read_text("utf-8")
+    assert data(report, "results")[target]["labels"]["Shows"] == "fig99_mine"
+    assert list(data(report, "categories")) == ["5 Further figures"]

@@ -1,0 +1,70 @@
+rule pages:
+    input:
+        film=result("film.nc"),
+        contact=result("contact.nc"),
+        comparison=result("comparison.nc"),
+        # Told from here, so that the tree can be moved.
+        study=os.path.relpath(config["study_file"]),
+        readme="README.md",
+        style="workflow/report/page.css",
+        sources=script_sources("pages"),
+    output:
+        facts=result("report/facts.html"),
+        findings=result("report/findings.html"),
+        limits=result("report/limits.html"),
+        files=result("report/files.html"),
+        pipeline=result("report/pipeline.html"),
+        configuration=report(
+            result("report/configuration.html"),
+            category=ABOUT_THE_STUDY,
+            caption="../report/page.rst",
+            labels={
+                "Page": "Configuration",
+                "Shows": "every number, as written and as understood",
+            },
+        ),
+        assumptions=report(
+            result("report/assumptions.html"),
+            category=ABOUT_THE_STUDY,
+            caption="../report/page.rst",
+            labels={
+                "Page": "Assumptions",
+                "Shows": "what the paper leaves open, and what was filled in",
+            },
+        ),
+    log:
+        result("logs/pages.log"),
+    benchmark:
+        result("benchmarks/pages.tsv")
+    params:
+        study=digest(STUDY.model_dump(mode="json")),
+    message:
+        "Report: the study's numbers, answers, configuration and assumptions"
+    script:
+        "../scripts/pages.py"
+
+
+rule times:
+    input:
+        # When all else is done.
+        [result(f"{kind}.nc") for kind in DATASETS],
+        products(ARCHIVED),
+        style="workflow/report/page.css",
+        sources=script_sources("times"),
+    output:
+        report(
+            result("report/run_times.html"),
+            category=ABOUT_THE_STUDY,
+            caption="../report/page.rst",
+            labels={"Page": "Run times", "Shows": "time and memory of every job"},
+        ),
+    log:
+        result("logs/times.log"),
+    benchmark:
+        result("benchmarks/times.tsv")
+    params:
+        jobs=benchmarks_of_steps(),
+    message:
+        "Report: run times and memory of all jobs"
+    script:
+        "../scripts/times.py"

@@ -1,0 +1,30 @@
+"""Write what the report says of the study: its start page's parts, and pages of their own."""
+
+from pathlib import Path
+
+from lube.configuration import configuration
+from lube.files import written_whole
+from lube.io import load
+from lube.jobs import begin_job
+from lube.overview import assumptions, facts, files, findings, limits, pipeline
+from lube.pages import html_page
+from lube.study import load_study
+
+begin_job(snakemake.log[0])
+study = load_study(snakemake.config["study_file"])
+datasets = (load(snakemake.input[kind], kind, study) for kind in ("film", "contact", "comparison"))
+written, readme, style = (
+    Path(snakemake.input[name]).read_text(encoding="utf-8") for name in ("study", "readme", "style")
+)
+parts = {
+    "facts": facts(study),
+    "findings": findings(study, *datasets),
+    "limits": limits(readme),
+    "files": files(readme),
+    "pipeline": pipeline(readme),
+    "configuration": html_page("Configuration", configuration(study, written), style),
+    "assumptions": html_page("What the paper leaves open", assumptions(readme), style),
+}
+for name, html in parts.items():
+    with written_whole(snakemake.output[name]) as part:
+        part.write_text(html, encoding="utf-8")
