@@ -17,7 +17,11 @@ os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, [str(ROOT), elsewhere]
 
 import lube
 from lube.errors import LubeError
+from lube.jobs import SNAKEMAKE
 from lube.study import load_study
+
+# Jobs end when this process does.
+os.environ[SNAKEMAKE] = str(os.getpid())
 
 DATASETS = (
     *("lubricant", "film", "roughness", "contact", "trace", "master"),
