@@ -19,12 +19,15 @@ MODULES = {
 
 # Each module may import those of layers above its own, and the ones named in its own row.
 LAYERS = [
-    {"errors"},
+    {"errors", "classic_netcdf"},
     {
         *("units", "hertz", "formulas", "viscosity", "resistance"),
         *("curves", "intervals", "schema", "kernels"),
     },
-    {"fields", "files", "fluids", "steps", "rig", "evaluation", "shares", "signals", "tables"},
+    {
+        *("fields", "files", "fluids", "seals", "steps", "rig", "evaluation", "shares"),
+        *("signals", "tables"),
+    },
     {"apparatus", "records", "surfaces", "manifest", "text_signals", "binary_signals"},
     {"study", "recordings"},
     {
