@@ -10,6 +10,9 @@ from pathlib import Path
 
 from lube.errors import DataError
 
+_FULL = 0.5
+"""Free space below which a disk is full, whatever the NetCDF library says, MiB."""
+
 
 @contextlib.contextmanager
 def written_whole(path):
@@ -92,6 +95,24 @@ def _force_to_disk(path):
         os.close(descriptor)
 
 
+def check_writable(folder):
+    """Refuse a folder in which nothing can be written.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The folder; if it is not there, the nearest one above counts.
+
+    Raises
+    ------
+    DataError
+        If it cannot be written.
+    """
+    existing = next(path for path in (Path(folder), *Path(folder).parents) if path.exists())
+    if not os.access(existing, os.W_OK):
+        raise DataError(f"{folder}: cannot be written: the folder {existing} is not writable")
+
+
 def why_not(error, path):
     """Tell the reason of a failed write; the NetCDF library keeps quiet about a full disk.
 
@@ -107,9 +128,11 @@ def why_not(error, path):
     str
         The reason, one line.
     """
-    folder = next(folder for folder in path.parents if folder.exists())
+    folder = next(folder for folder in Path(path).parents if folder.exists())
     if not os.access(folder, os.W_OK):
         return f"the folder {folder} is not writable"
     free = shutil.disk_usage(folder).free / 2**20
     reason = getattr(error, "strerror", None) or str(error)
+    if free < _FULL:
+        reason = "No space left on device"
     return f"{reason} ({free:.0f} MiB are free on its disk)"

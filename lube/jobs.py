@@ -58,12 +58,12 @@ def begin_job(log_file):
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     if SNAKEMAKE in os.environ:
         threading.Thread(target=_end_with, args=(int(os.environ[SNAKEMAKE]),), daemon=True).start()
-    file = _log_handler(Path(log_file))
     terminal = logging.StreamHandler()
     terminal.addFilter(_NowAndThen())
-    logging.basicConfig(level=logging.WARNING, handlers=[file, terminal], format="%(message)s")
+    logging.basicConfig(level=logging.WARNING, handlers=[terminal], format="%(message)s")
     logging.getLogger("lube").setLevel(logging.INFO)
     logging.raiseExceptions = False  # a log on a full disk has nothing to add to the job's error
+    logging.getLogger().addHandler(_log_handler(Path(log_file)))
 
 
 def _log_handler(path):

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from lube.errors import DataError
-from lube.files import written_whole
+from lube.files import check_writable, written_whole
 
 
 @pytest.fixture
@@ -56,6 +56,16 @@ def test_a_writer_that_writes_nothing_is_an_error(old):
     assert only_holds(old, "old")
 
 
+def test_a_folder_that_cannot_be_written_is_told_before(tmp_path, disk):
+    check_writable(tmp_path / "not" / "made" / "yet")
+    disk(tmp_path, "ro")
+    told = f"results: cannot be written: the folder {tmp_path} is not writable"
+    with pytest.raises(DataError, match=told):
+        check_writable(tmp_path / "results")
+    with pytest.raises(DataError, match=told), written_whole(tmp_path / "results"):
+        pass
+
+
 def test_a_folder_that_is_a_file_is_told(old):
     with pytest.raises(DataError, match="cannot be written"), written_whole(old / "below") as part:
         part.write_text("new")
@@ -63,7 +73,7 @@ def test_a_folder_that_is_a_file_is_told(old):
 
 def test_a_killed_writer_leaves_the_old_file(old):
     code = (
-        "import os, signal, sys; from lube.files import written_whole\n"
+        "import os, signal, sys; from lube.files import check_writable, written_whole\n"
         "with written_whole(sys.argv[1]) as part:\n"
         "    part.write_text('half'); os.kill(os.getpid(), signal.SIGKILL)"
     )
@@ -76,7 +86,7 @@ def test_a_killed_writer_leaves_the_old_file(old):
 
 WRITE_AND_WAIT = """\
 import sys
-from lube.files import written_whole
+from lube.files import check_writable, written_whole
 with written_whole(sys.argv[1]) as part:
     part.write_text("half")
     print(flush=True)

@@ -17,6 +17,7 @@ os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, [str(ROOT), elsewhere]
 
 import lube
 from lube.errors import LubeError
+from lube.files import check_writable
 from lube.jobs import SNAKEMAKE
 from lube.study import load_study
 
@@ -54,6 +55,12 @@ with told_in_one_line():
     STUDY = load_study(config["study_file"])
 
 RESULTS = f"results/{STUDY.name}"
+
+
+# Snakemake would end in a traceback.
+onstart:
+    with told_in_one_line():
+        check_writable(RESULTS)
 
 
 def result(name):
