@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lube.errors import DataError
 
+_TEXTS = (".yaml", ".yml", ".csv", ".tsv", ".txt")
 _FULL = 0.5
 """Free space below which a disk is full, whatever the NetCDF library says, MiB."""
 
@@ -111,6 +112,26 @@ def check_writable(folder):
     existing = next(path for path in (Path(folder), *Path(folder).parents) if path.exists())
     if not os.access(existing, os.W_OK):
         raise DataError(f"{folder}: cannot be written: the folder {existing} is not writable")
+
+
+def cut_within_a_line(path):
+    """Tell whether a file of text ends within a line, as one that is cut short mostly does.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; all but tables and YAML are passed over.
+
+    Returns
+    -------
+    bool
+        True if it is text whose last line has no end.
+    """
+    if Path(path).suffix.lower() not in _TEXTS or os.path.getsize(path) == 0:
+        return False
+    with open(path, "rb") as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read() != b"\n"
 
 
 def why_not(error, path):

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from lube.errors import DataError
-from lube.files import check_writable, written_whole
+from lube.files import check_writable, cut_within_a_line, written_whole
 
 
 @pytest.fixture
@@ -73,7 +73,7 @@ def test_a_folder_that_is_a_file_is_told(old):
 
 def test_a_killed_writer_leaves_the_old_file(old):
     code = (
-        "import os, signal, sys; from lube.files import check_writable, written_whole\n"
+        "import os, signal, sys; from lube.files import written_whole\n"
         "with written_whole(sys.argv[1]) as part:\n"
         "    part.write_text('half'); os.kill(os.getpid(), signal.SIGKILL)"
     )
@@ -86,7 +86,7 @@ def test_a_killed_writer_leaves_the_old_file(old):
 
 WRITE_AND_WAIT = """\
 import sys
-from lube.files import check_writable, written_whole
+from lube.files import check_writable, cut_within_a_line, written_whole
 with written_whole(sys.argv[1]) as part:
     part.write_text("half")
     print(flush=True)
@@ -142,3 +142,19 @@ def test_leftovers_of_other_machines_stay(old):
     with written_whole(old) as part:
         part.write_text("new")
     assert foreign.exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "cut"),
+    [
+        ("study.yaml", b"seed: 12", True),
+        ("study.yaml", b"seed: 123\n", False),
+        ("study.yml", b"", False),
+        ("record.CSV", b"t [s],U [V]\r\n0,1.5", True),
+        ("record.csv", b"t [s],U [V]\r\n0,1.5\r\n", False),
+        ("record.tdms", b"TDSm", False),
+    ],
+)
+def test_a_text_cut_within_a_line_is_noticed(tmp_path, name, content, cut):
+    (tmp_path / name).write_bytes(content)
+    assert cut_within_a_line(tmp_path / name) is cut
