@@ -16,6 +16,7 @@ import netCDF4
 import numpy as np
 from nptdms import TdmsFile
 
+from lube.classic_netcdf import needed_length
 from lube.errors import DataError, LubeError, shown
 from lube.signals import FIRST_STEPS, Part, Signal, find_signals
 from lube.units import convert, parse_number, parse_quantity
@@ -125,14 +126,25 @@ def _told(path, kind):
 
 @contextlib.contextmanager
 def _netcdf_arrays(path):
-    with _told(path, "NetCDF"), netCDF4.Dataset(path) as file:
-        file.set_always_mask(False)
-        shared = {name: file.getncattr(name) for name in file.ncattrs()}
-        yield [
-            _netcdf_array(variable, shared)
-            for variable in file.variables.values()
-            if variable.ndim == 1 and getattr(variable.dtype, "kind", "O") in "fiu"
-        ]
+    with _told(path, "NetCDF"):
+        _check_length(path)
+        with netCDF4.Dataset(path) as file:
+            file.set_always_mask(False)
+            shared = {name: file.getncattr(name) for name in file.ncattrs()}
+            yield [
+                _netcdf_array(variable, shared)
+                for variable in file.variables.values()
+                if variable.ndim == 1 and getattr(variable.dtype, "kind", "O") in "fiu"
+            ]
+
+
+def _check_length(path):
+    """Refuse a classic NetCDF file that is cut short: the library reads zeros, in silence."""
+    needed, size = needed_length(path), os.path.getsize(path)
+    if needed is not None and size < needed:
+        raise DataError(
+            f"{path}: not a whole NetCDF file, truncated: ends at byte {size}, need {needed}"
+        )
 
 
 def _netcdf_array(variable, shared):

@@ -16,6 +16,7 @@ from lube.errors import DataError
 from lube.files import written_whole
 from lube.provenance import check_config, global_attributes
 from lube.schema import check
+from lube.seals import holds, seal
 
 log = logging.getLogger(__name__)
 
@@ -24,7 +25,7 @@ def save(dataset, path, kind, study, inputs=(), compress=True):
     """Save a dataset, refusing one that does not fit its kind.
 
     The file is written beside its final place, forced to disk, and renamed: a reader finds
-    the whole file or none.
+    the whole file or none. Its last line is a seal, see `lube.seals`.
 
     Parameters
     ----------
@@ -53,6 +54,7 @@ def save(dataset, path, kind, study, inputs=(), compress=True):
         dataset.to_netcdf(
             part, engine="netcdf4", format="NETCDF4", encoding=_encoding(dataset, compress)
         )
+        seal(part)
     log.info("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
 
 
@@ -108,17 +110,33 @@ def opened(path, kind, study=None, raw=True):
     path = Path(path)
     if not path.is_file():
         raise DataError(f"{path}: no such file, need a {kind} dataset")
+    sealed = _seal_of(path)
     try:
         with xr.open_dataset(path, engine="netcdf4", mask_and_scale=not raw) as dataset:
             check(dataset, kind, path)
             if study is not None:
                 check_config(dataset, study, kind, path)
+            if not sealed:
+                log.warning("%s: has no seal, so nobody knows if it is undamaged", path)
             yield dataset
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise DataError(
             f"{path}: not a whole NetCDF file, truncated, damaged or foreign ({reason})"
         ) from error
+
+
+def _seal_of(path):
+    """Whether a file has a seal, which must hold: a damaged file may crash the NetCDF library."""
+    try:
+        sealed = holds(path)
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read: {error.strerror}") from None
+    if sealed is False:
+        raise DataError(
+            f"{path}: not a whole NetCDF file, damaged since it was saved (its seal is broken)"
+        )
+    return sealed
 
 
 def _encoding(dataset, compress):

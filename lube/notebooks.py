@@ -11,6 +11,7 @@ import os
 
 import nbformat
 import papermill
+from nbclient.exceptions import DeadKernelError
 from papermill.exceptions import PapermillExecutionError
 
 from lube.errors import LubeError
@@ -36,7 +37,7 @@ def execute_notebook(notebook, output, parameters):
     ------
     LubeError
         If the file is no notebook, has no cell tagged ``parameters``, does not know a
-        parameter, a cell fails, or the copy cannot be written.
+        parameter, a cell fails, the kernel is killed, or the copy cannot be written.
     """
     _check_parameters(notebook, parameters)
     try:
@@ -53,6 +54,8 @@ def execute_notebook(notebook, output, parameters):
     except PapermillExecutionError as error:
         reason = " ".join(f"{error.ename}: {error.evalue}".split())
         raise LubeError(f"{notebook}: cell {error.cell_index} fails: {reason}") from error
+    except DeadKernelError as error:
+        raise LubeError(f"{notebook}: its kernel was killed, perhaps for want of memory") from error
     with written_whole(output) as part:
         nbformat.write(_without_times(executed), part)
 

@@ -1,5 +1,6 @@
 """Shared fixtures: the rollers of the smoke study on grids fine or small enough for a test."""
 
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -124,3 +125,25 @@ def make_experiment():
         return label(experiment, "experiment")
 
     return make
+
+
+@pytest.fixture
+def disk():
+    """Mount a disk in memory on a folder; options such as ``size=64k`` or ``remount,ro``."""
+    mounted = []
+
+    def mount(folder, options):
+        command = ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(folder)]
+        try:
+            finished = subprocess.run(command, capture_output=True, text=True, check=False)
+        except FileNotFoundError:
+            pytest.skip("no disk can be mounted here: no mount")
+        if finished.returncode != 0:
+            pytest.skip(f"no disk can be mounted here: {finished.stderr.strip()}")
+        if "remount" not in options:
+            mounted.append(str(folder))
+
+    yield mount
+    for folder in mounted:
+        # At once, though the NetCDF library keeps files open that it could not write.
+        subprocess.run(["umount", "--lazy", folder], check=True)

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from lube.errors import DataError
-from lube.files import written_whole
+from lube.files import check_writable, cut_within_a_line, written_whole
 
 
 @pytest.fixture
@@ -56,6 +56,16 @@ def test_a_writer_that_writes_nothing_is_an_error(old):
     assert only_holds(old, "old")
 
 
+def test_a_folder_that_cannot_be_written_is_told_before(tmp_path, disk):
+    check_writable(tmp_path / "not" / "made" / "yet")
+    disk(tmp_path, "ro")
+    told = f"results: cannot be written: the folder {tmp_path} is not writable"
+    with pytest.raises(DataError, match=told):
+        check_writable(tmp_path / "results")
+    with pytest.raises(DataError, match=told), written_whole(tmp_path / "results"):
+        pass
+
+
 def test_a_folder_that_is_a_file_is_told(old):
     with pytest.raises(DataError, match="cannot be written"), written_whole(old / "below") as part:
         part.write_text("new")
@@ -70,3 +80,81 @@ def test_a_killed_writer_leaves_the_old_file(old):
     killed = subprocess.run([sys.executable, "-c", code, old], env=os.environ, check=False)
     assert killed.returncode != 0
     assert old.read_text() == "old"
+
+
+# Killed writers, and two at once
+
+WRITE_AND_WAIT = """\
+import sys
+from lube.files import check_writable, cut_within_a_line, written_whole
+with written_whole(sys.argv[1]) as part:
+    part.write_text("half")
+    print(flush=True)
+    sys.stdin.read()
+    part.write_text("its own")
+"""
+
+
+@pytest.fixture
+def writer(old):
+    """Another process that has written half of the same file; it ends when its input does."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", WRITE_AND_WAIT, old],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+    )
+    process.stdout.readline()
+    yield process
+    process.kill()
+    process.communicate()
+
+
+def test_of_two_that_write_at_once_each_gives_a_whole_file(old, writer):
+    with written_whole(old) as part:
+        part.write_text("new")
+    assert old.read_text() == "new"
+    assert len(list(old.parent.glob("*.part"))) == 1
+    writer.communicate()
+    assert writer.returncode == 0
+    assert only_holds(old, "its own")
+
+
+def test_two_in_one_process_do_not_meet_either(old):
+    with written_whole(old) as first, written_whole(old) as second:
+        first.write_text("first")
+        second.write_text("second")
+    assert only_holds(old, "first")
+
+
+def test_what_a_killed_writer_leaves_is_cleared_by_the_next_in_its_folder(old, writer):
+    writer.kill()
+    writer.wait()
+    assert old.read_text() == "old"
+    assert len(list(old.parent.glob("*.part"))) == 1
+    with written_whole(old.with_name("another")) as part:
+        part.write_text("new")
+    assert sorted(path.name for path in old.parent.iterdir()) == ["another", old.name]
+
+
+def test_leftovers_of_other_machines_stay(old):
+    foreign = old.with_name("results.txt.0a1b2c3d.1@elsewhere-1.part")
+    foreign.write_text("half")
+    with written_whole(old) as part:
+        part.write_text("new")
+    assert foreign.exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "cut"),
+    [
+        ("study.yaml", b"seed: 12", True),
+        ("study.yaml", b"seed: 123\n", False),
+        ("study.yml", b"", False),
+        ("record.CSV", b"t [s],U [V]\r\n0,1.5", True),
+        ("record.csv", b"t [s],U [V]\r\n0,1.5\r\n", False),
+        ("record.tdms", b"TDSm", False),
+    ],
+)
+def test_a_text_cut_within_a_line_is_noticed(tmp_path, name, content, cut):
+    (tmp_path / name).write_bytes(content)
+    assert cut_within_a_line(tmp_path / name) is cut

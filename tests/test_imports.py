@@ -19,24 +19,14 @@ MODULES = {
 
 # Each module may import those of the layers above its own.
 LAYERS = [
-    {"errors", "repository"},
+    {"errors", "repository", "classic_netcdf"},
     {
         *("units", "texts", "hertz", "groups", "regimes", "inlet_heating", "viscosity"),
         *("resistance", "curves", "intervals", "schema", "kernels", "pages"),
     },
     {
-        *(
-            "formulas",
-            "markdown",
-            "fields",
-            "files",
-            "fluids",
-            "steps",
-            "points",
-            "evaluation",
-            "shares",
-        ),
-        *("signals", "tables", "sizes"),
+        *("formulas", "markdown", "fields", "files", "fluids", "seals", "steps", "points"),
+        *("evaluation", "shares", "signals", "tables", "sizes"),
     },
     {
         *("about", "apparatus", "records", "surfaces", "rig", "manifest"),

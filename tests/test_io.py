@@ -24,6 +24,7 @@ from lube.provenance import global_attributes
 from lube.rig_records import rig_records
 from lube.roughness import roughness_batch, roughness_lines
 from lube.schema import COORDINATES, FILES, check, label
+from lube.seals import LENGTH
 from lube.trace import contact_trace
 
 KINDS = list(FILES)
@@ -391,3 +392,75 @@ def test_one_flipped_bit_inside_compressed_data_is_noticed(files, tmp_path):
     path = tmp_path / "roughness.nc"
     path.write_bytes(whole)
     assert "damaged" in refusal(path, "roughness")
+
+
+# Nothing but what was saved
+
+
+def spread(size, count, seed):
+    """Places all over a file: at its beginning, in its midst, and a few in its seal."""
+    midst = np.random.default_rng(seed).integers(0, size - LENGTH, count).tolist()
+    return {*range(20), *midst, *range(size - LENGTH - 2, size, 30)}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_flipped_bit_anywhere_is_told_or_harmless(datasets, files, tmp_path, kind):
+    """Data, header, index of chunks, texts, unused space: HDF5 protects only some of them."""
+    whole = (files / f"{kind}.nc").read_bytes()
+    path = tmp_path / f"{kind}.nc"
+    expected = load_as_jobs_do(files / f"{kind}.nc", kind)
+    for place in spread(len(whole), 100, seed=len(kind)):
+        flipped = bytearray(whole)
+        flipped[place] ^= 1 << (place % 8)
+        path.write_bytes(flipped)
+        try:
+            loaded = load_as_jobs_do(path, kind)
+        except DataError as error:
+            assert str(error).startswith(f"{path}: not a whole NetCDF file, damaged")
+        else:
+            assert place >= len(whole) - LENGTH  # in the seal itself
+            xr.testing.assert_identical(loaded, expected)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_file_cut_anywhere_is_told_or_whole(files, tmp_path, kind):
+    whole = (files / f"{kind}.nc").read_bytes()
+    path = tmp_path / f"{kind}.nc"
+    expected = load_as_jobs_do(files / f"{kind}.nc", kind)
+    for length in spread(len(whole), 20, seed=len(kind)):
+        path.write_bytes(whole[:length])
+        try:
+            loaded = load_as_jobs_do(path, kind)
+        except DataError as error:
+            assert str(error).startswith(f"{path}: not a whole NetCDF file, truncated")
+            assert "\n" not in str(error)
+        else:
+            assert length >= len(whole) - LENGTH  # only the seal is cut
+            xr.testing.assert_identical(loaded, expected)
+
+
+def test_a_file_without_a_seal_is_taken_with_a_warning(datasets, files, tmp_path, caplog):
+    path = tmp_path / "film.nc"
+    path.write_bytes((files / "film.nc").read_bytes()[:-LENGTH])
+    thickness = load(path, "film")["film_thickness"]
+    xr.testing.assert_equal(thickness, datasets["film"]["film_thickness"])
+    assert caplog.messages == [f"{path}: has no seal, so nobody knows if it is undamaged"]
+
+
+@pytest.mark.parametrize("kind", ["film", "roughness_batch"])
+def test_on_a_disk_of_any_size_a_file_is_whole_or_not_there(datasets, study, tmp_path, disk, kind):
+    """The library may run out of space anywhere in the file, at the last also while it closes."""
+    path = tmp_path / "small" / f"{kind}.nc"
+    path.parent.mkdir()
+    saved = {}
+    for size in range(4, 400, 18):
+        disk(path.parent, f"size={size}k")
+        try:
+            save(datasets[kind], path, kind, study, compress=kind == "film")
+        except DataError as error:
+            assert str(error).startswith(f"{path}: cannot be written: ")
+            assert "MiB are free on its disk" in str(error)
+            assert not list(path.parent.iterdir())
+        saved[size] = path.exists() and bool(load_as_jobs_do(path, kind))
+    assert list(saved.values()) == sorted(saved.values())
+    assert not saved[4] and saved[382]

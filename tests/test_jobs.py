@@ -1,5 +1,7 @@
 """What every job does first: its log, its progress, its errors in one line."""
 
+import os
+import signal
 import subprocess
 import sys
 import textwrap
@@ -7,7 +9,7 @@ import time
 
 import pytest
 
-from lube.jobs import TERMINAL_PAUSE, _NowAndThen
+from lube.jobs import SNAKEMAKE, TERMINAL_PAUSE, _NowAndThen
 
 BEGIN = """\
 import logging, sys
@@ -91,3 +93,72 @@ def test_the_terminal_shows_progress_now_and_then_and_every_warning(monkeypatch)
     assert passes(logging.WARNING, after=0.0)
     assert passes(logging.ERROR, after=0.0)
     assert passes(logging.INFO, after=1.1 * TERMINAL_PAUSE)
+
+
+def test_a_log_that_cannot_be_written_is_told_in_one_line(tmp_path):
+    (tmp_path / "logs").write_text("no folder")
+    log = tmp_path / "logs" / "job.log"
+    command = [sys.executable, "-c", BEGIN, log]
+    finished = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert finished.returncode != 0
+    assert finished.stderr.startswith(f"Error: {log}: cannot be written: ")
+    assert finished.stderr.count("\n") == 1
+
+
+# Killed, itself or its Snakemake
+
+WRITE_SLOWLY = """\
+import time
+from lube.files import written_whole
+with written_whole(sys.argv[2]) as part:
+    part.write_text("half")
+    print(flush=True)
+    time.sleep(60.0)
+"""
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Start a job that is writing a file, of a Snakemake whose process is another."""
+    started = []
+
+    def start_job(snakemake):
+        started.append(
+            subprocess.Popen(
+                [sys.executable, "-c", BEGIN + WRITE_SLOWLY, tmp_path / "log", tmp_path / "made"],
+                env=os.environ | {SNAKEMAKE: str(snakemake.pid)},
+                stdout=subprocess.PIPE,
+            )
+        )
+        started[0].stdout.readline()
+        assert len(list(tmp_path.glob("made.*.part"))) == 1
+        return started[0]
+
+    yield start_job
+    for job in started:
+        job.kill()
+        job.communicate()
+
+
+@pytest.fixture
+def other():
+    """Another process, which does nothing for long."""
+    process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    yield process
+    process.kill()
+    process.communicate()
+
+
+def test_a_job_ends_with_its_snakemake_and_clears_up(start, other, tmp_path):
+    job = start(other)
+    other.kill()
+    other.wait()
+    assert job.wait(20.0) == 128 + signal.SIGTERM
+    assert [path.name for path in tmp_path.iterdir()] == ["log"]
+
+
+def test_a_job_that_is_stopped_clears_up(start, other, tmp_path):
+    job = start(other)
+    job.terminate()
+    assert job.wait(20.0) == 128 + signal.SIGTERM
+    assert [path.name for path in tmp_path.iterdir()] == ["log"]

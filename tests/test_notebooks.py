@@ -78,3 +78,9 @@ def test_a_file_that_is_no_notebook_is_refused(tmp_path):
     path = tmp_path / "figure.ipynb"
     path.write_text("no notebook", encoding="utf-8")
     assert "not a Jupyter notebook" in refusal(path, tmp_path / "executed.ipynb", {})
+
+
+def test_a_killed_kernel_is_told(write, tmp_path):
+    notebook = write("import os, signal; os.kill(os.getpid(), signal.SIGKILL)")
+    told = "its kernel was killed, perhaps for want of memory"
+    assert told in refusal(notebook, tmp_path / "executed.ipynb", {})

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from nptdms import ChannelObject, TdmsWriter
 
 from lube import text_signals
+from lube.classic_netcdf import needed_length
 from lube.errors import DataError
 from lube.evaluation import ContactShare
 from lube.recordings import open_recording
@@ -426,6 +427,54 @@ def test_truncated_binary_files(tmp_path, counts, volts, share):
         path.write_bytes(content[: int(share * len(content))])
         assert "truncated" in refusal(path)
         assert kind in refusal(path)
+
+
+@pytest.mark.parametrize("growing", [False, True])
+@pytest.mark.parametrize("kind", ["NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA"])
+def test_truncated_classic_files_are_not_read_as_zeros(tmp_path, volts, kind, growing):
+    path = tmp_path / "r.nc"
+    with netCDF4.Dataset(path, "w", format=kind) as file:
+        file.title = "odd"
+        file.createDimension("time", None if growing else SAMPLES)
+        file.createVariable("gain", "i2", ())[...] = 3
+        for name, values, units in (("time", TIMES, "s"), ("voltage", volts, "V")):
+            file.createVariable(name, "f8", ("time",))[:] = values
+            file[name].units = units
+    np.testing.assert_array_equal(read(path), volts)
+    content = path.read_bytes()
+    for length in (4, 30, 200, len(content) // 2, len(content) - 9, len(content) - 1):
+        path.write_bytes(content[:length])
+        assert refusal(path).startswith("not a whole NetCDF file, truncated")
+
+
+@pytest.mark.parametrize("growing", [0, 1, 2])
+@pytest.mark.parametrize("records", [0, 1, 3])
+def test_the_length_of_a_classic_file_is_known_from_its_header(tmp_path, growing, records):
+    """A part of a record is padded to four bytes, unless it is the only one."""
+    path = tmp_path / "r.nc"
+    with netCDF4.Dataset(path, "w", format="NETCDF3_CLASSIC") as file:
+        file.createDimension("time", None)
+        file.createDimension("bit", 5)
+        file.createVariable("note", "S1", ("bit",))[:] = np.array(list("notes"), "S1")
+        for number in range(growing):
+            variable = file.createVariable(f"v{number}", "i1", ("time", "bit"))
+            if records:
+                variable[:records] = 1
+    assert 0 <= path.stat().st_size - needed_length(path) < 4
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.999])
+def test_a_truncated_csv_record_is_right_but_for_its_last_line(tmp_path, volts, share):
+    """Where it ends within a line, the workflow warns of it."""
+    path = write_csv(tmp_path / "r.csv", [TIMES, volts], "time [s],voltage [V]")
+    content, whole = path.read_bytes(), read(path)
+    path.write_bytes(content[: int(share * len(content))])
+    try:
+        values = read(path)
+    except DataError as error:
+        assert str(error).startswith(f"{path}: line ")
+    else:
+        np.testing.assert_array_equal(values[:-1], whole[: values.size - 1])
 
 
 def test_foreign_content_behind_the_right_mark(tmp_path):

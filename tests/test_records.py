@@ -171,6 +171,16 @@ def test_each_mistake_in_a_record_is_refused_by_key_and_value(write, old, new, m
     assert message in refusal(write(OIL.replace(old, new)))
 
 
+def test_a_truncated_record_is_refused_wherever_it_is_cut(tmp_path):
+    path = tmp_path / "oil.yaml"
+    for length in range(0, len(OIL) - len("W/m/K\n"), 5):
+        path.write_text(OIL[:length])
+        with pytest.raises(RecordError) as caught:
+            load_record(path)
+        assert str(caught.value).startswith(f"{path}: ")
+        assert "\n" not in str(caught.value)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

@@ -17,8 +17,13 @@ os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, [str(ROOT), elsewhere]
 
 import lube
 from lube.errors import LubeError
+from lube.files import check_writable, cut_within_a_line
+from lube.jobs import SNAKEMAKE
 from lube.schema import MEASURED, SUMMARIES
 from lube.study import load_study
+
+# Jobs end when this process does.
+os.environ[SNAKEMAKE] = str(os.getpid())
 
 DATASETS = [kind for kind in SUMMARIES if kind not in MEASURED]
 # Where the report has its pages, apart from the figures.
@@ -144,3 +149,14 @@ def batch_limits(wildcards):
     """First and last realisation of a batch."""
     batch = STUDY.batch(int(wildcards.first))
     return batch[0], batch[-1]
+
+
+onstart:
+    with told_in_one_line():
+        check_writable(RESULTS)  # Snakemake would end in a traceback
+    for file in [config["study_file"], *record_files(), *measured_files()]:
+        if cut_within_a_line(file):
+            told = (
+                "its last line has no end; if the file was cut short, its last value is wrong"
+            )
+            print(f"Warning: {file}: {told}", file=sys.stderr)

@@ -1,0 +1,89 @@
+"""Prove that the smoke study makes the same bytes whichever way it is run.
+
+`python tests/same_bytes/run_same_bytes.py` makes its datasets on one core and on two, in batches
+of 1, 2, 3 and 4, through a submit script as on a cluster, and in a second clone at another path,
+and compares the checksum of each dataset; the clone's figures and executed notebooks too.
+
+Then it tells, without a verdict, which datasets change on lesser processors: NumPy without its
+vectorised loops, Numba without the processor's own instructions.
+It takes about ten minutes on two idle cores.
+"""
+
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "workflow"))
+from repository import RESULTS, copy_of_the_repository
+from test_cluster_generic import SUBMIT
+
+BATCH_SIZES = (1, 2, 3, 4)
+
+LESSER = {
+    "NumPy without AVX-512": {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR"},
+    "NumPy without AVX2 and FMA": {
+        "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"
+    },
+    "Numba for any x86-64": {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""},
+}
+"""Environments that hide some of the processor from the libraries."""
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="lube-same-bytes-") as folder:
+        first = copy_of_the_repository(Path(folder) / "first" / "repository")
+        expected = made(first, "all, in the first clone", [])
+        print()
+        datasets = [name for name in expected if name.endswith(".nc")]
+        targets = [f"{RESULTS}/{name}" for name in datasets]
+        failed = 0
+        for what, arguments, changes in ways(first):
+            again = made(first, what, [*arguments, *targets], **changes)
+            failed += tell(again, {name: expected[name] for name in datasets})
+        second = copy_of_the_repository(Path(folder) / "second" / "deeper" / "repository")
+        failed += tell(made(second, "all, in a second clone", []), expected)
+        for what, variables in LESSER.items():
+            os.environ.update(variables)
+            again = made(first, what, targets)
+            tell(again, {name: expected[name] for name in datasets}, verdict=False)
+            for name in variables:
+                del os.environ[name]
+    print(f"{failed} runs differ" if failed else "one checksum for each dataset")
+    return 1 if failed else 0
+
+
+def ways(repository):
+    """What to try, as words, arguments of Snakemake and changed values of the study."""
+    for cores in ("1", "2"):
+        for size in BATCH_SIZES:
+            changes = {"batch_size": size}
+            yield f"{cores} core(s), batches of {size}", ["--cores", cores], changes
+    submit = repository / "submit"
+    submit.write_text(SUBMIT, encoding="utf-8")
+    submit.chmod(0o755)
+    away = ["--executor", "cluster-generic", "--jobs", "2", "--seconds-between-status-checks", "1"]
+    yield "through a submit script", [*away, "--cluster-generic-submit-cmd", str(submit)], {}
+
+
+def made(repository, what, arguments, **changes):
+    """Make results from nothing and return their digests; compiled kernels stay."""
+    for name in ("results", ".snakemake"):
+        if (repository / name).exists():
+            (repository / name).rename(repository.folder.with_name(f"{name}-{time.monotonic_ns()}"))
+    began = time.monotonic()
+    repository.run(*arguments, study=repository.with_values(**changes))
+    print(f"{what}: {time.monotonic() - began:.0f} s", end="", flush=True)
+    return repository.products()
+
+
+def tell(again, expected, verdict=True):
+    """Say what differs; return whether that is a failure."""
+    different = sorted(name for name in expected if again.get(name) != expected[name])
+    print(f", different: {', '.join(different)}" if different else ", the same", flush=True)
+    return bool(different) and verdict
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,238 @@
+"""Killing the smoke study at some moment, and taking it up again as the README says."""
+
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import psutil
+from repository import RESULTS, ROOT, environment, products_of
+
+VICTIMS = ("snakemake", "all", "job")
+"""Snakemake alone, so that its jobs are orphans; its process group; one job or its kernel."""
+
+PATIENCE = 600.0
+
+
+@dataclass(frozen=True)
+class Kill:
+    """One `kill -9` of a run.
+
+    Attributes
+    ----------
+    victim : str
+        One of `VICTIMS`.
+    begin : str
+        What is there when the run begins: `nothing`; a share of the `datasets`, and then those
+        and one figure are asked for; or all but some `figures`.
+    share : float
+        Share of the datasets that are there, or of the figures that are not.
+    delay : float
+        Time from the run's first job to the kill, s; less if it ends before.
+    """
+
+    victim: str
+    begin: str
+    share: float
+    delay: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a kill.
+
+    Attributes
+    ----------
+    at_work : list of str
+        Jobs that were at work in the moment of the kill.
+    after : float
+        Time from the run's first job to the kill, s.
+    recovery : float
+        How long it took to take the run up again, s.
+    faults : list of str
+        What was not as it should be, one line each.
+    """
+
+    at_work: list
+    after: float
+    recovery: float
+    faults: list
+
+
+@dataclass(frozen=True)
+class Finished:
+    """The study as an undisturbed run leaves it: its folder, its products, all its files."""
+
+    folder: Path
+    products: dict
+    files: set
+
+
+def finished(repository, folder):
+    """Keep a copy of a finished study, to begin trials from and to compare them with."""
+    for name in ("results", ".snakemake"):
+        shutil.copytree(repository / name, folder / name)
+    return Finished(folder, repository.products(), files_of(repository))
+
+
+def recovery_commands():
+    """Arguments of each `snakemake` that the README tells after a crash."""
+    section = (ROOT / "README.md").read_text("utf-8").split("## When something goes wrong")[1]
+    block = re.search(r"```bash\n(.*?)```", section, re.DOTALL)[1]
+    return [line.split("#")[0].split()[1:] for line in block.replace("&&", "\n").splitlines()]
+
+
+def survive(repository, whole, kill, seed=0):
+    """Begin the study, kill it, recover, and compare with an undisturbed run.
+
+    Parameters
+    ----------
+    repository : Repository
+        A copy of the repository, whose results are replaced.
+    whole : Finished
+        The undisturbed run, made in the same folder.
+    kill : Kill
+        When and whom.
+    seed : int, optional
+        Of the choice of figures, and among several jobs.
+
+    Returns
+    -------
+    Outcome
+        What came of it.
+    """
+    at_work, delay, chance = [], kill.delay, random.Random(seed)
+    while not at_work:
+        targets = begin_with(repository, whole, kill, chance)
+        at_work = run_and_kill(repository, targets, kill.victim, delay, chance)
+        after, delay = delay, delay / 2.0
+    began = time.monotonic()
+    faults = []
+    for arguments in recovery_commands():
+        targets_too = [] if arguments else targets
+        said = repository.snakemake(*arguments, *targets_too)
+        if said.returncode != 0:
+            faults.append(f"snakemake {' '.join(arguments)} failed: {said.stdout[-2000:]}")
+    seconds = time.monotonic() - began
+    faults += differences(repository, whole, targets)
+    if kill.victim == "snakemake":  # whose orphans may have been late
+        again = repository.snakemake(*targets)
+        if "Nothing to be done" not in again.stdout:
+            faults.append(f"not up to date: {again.stdout[-2000:]}")
+    return Outcome(at_work, after, seconds, faults)
+
+
+def begin_with(repository, whole, kill, chance):
+    """Put back some of an undisturbed run's results; return what to ask for, all if empty."""
+    for name in ("results", ".snakemake"):
+        shutil.rmtree(repository / name, ignore_errors=True)
+        if kill.begin != "nothing":
+            shutil.copytree(whole.folder / name, repository / name)
+    if kill.begin == "nothing":
+        return []
+    figures = repository.notebooks
+    chance.shuffle(figures)
+    if kill.begin == "figures":
+        gone = [
+            name
+            for figure in figures[: int(kill.share * len(figures))]
+            for name in products_of(figure)
+        ]
+        targets = []
+    else:
+        gone = [name for figure in figures for name in products_of(figure)]
+        datasets = [name for name in whole.products if name.endswith(".nc")]
+        made = [*datasets, *(name for name in whole.files if name.startswith("batches/"))]
+        made.sort(key=lambda name: (whole.folder / RESULTS / name).stat().st_mtime_ns)
+        gone += made[int(kill.share * len(made)) :]
+        targets = [f"{RESULTS}/{name}" for name in (*datasets, f"notebooks/{figures[0]}.ipynb")]
+    for name in gone:
+        (repository.results / name).unlink()
+    return targets
+
+
+def run_and_kill(repository, targets, victim, delay, chance):
+    """Run Snakemake, kill a while after its first job, and return the names of the jobs at work.
+
+    There are none if the run ended before.
+    """
+    running = subprocess.Popen(
+        repository.command(*targets),
+        cwd=repository.folder,
+        env=environment(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        if jobs_of(running):
+            time.sleep(delay)
+        jobs = jobs_of(running)
+        names = [name_of(job) for job in jobs]
+        if jobs and victim == "all":
+            os.killpg(running.pid, signal.SIGKILL)
+        elif jobs and victim == "snakemake":
+            running.kill()
+        elif jobs:
+            chance.choice(jobs).kill()
+        running.wait(PATIENCE)
+    finally:
+        running.kill()
+        running.wait()
+    return names if running.returncode != 0 else []
+
+
+def jobs_of(running):
+    """Processes of the jobs at work, and of their notebooks' kernels; none if the run is over."""
+    deadline = time.monotonic() + PATIENCE
+    while running.poll() is None and time.monotonic() < deadline:
+        with suppress(psutil.NoSuchProcess):
+            jobs = psutil.Process(running.pid).children(recursive=True)
+            if jobs and all(map(name_of, jobs)):
+                return jobs
+        time.sleep(0.01)
+    return []
+
+
+def name_of(job):
+    """Rule whose script a process runs, or `kernel`; empty if it has not begun or has ended."""
+    try:
+        command = " ".join(job.cmdline())
+    except psutil.Error:
+        return ""
+    script = re.search(r"scripts/tmp\w+\.(\w+)\.py", command)
+    return script[1] if script else "kernel" * ("ipykernel" in command)
+
+
+def differences(repository, whole, targets):
+    """Yield what distinguishes the results from those of the undisturbed run, one line each."""
+    products, files = repository.products(), files_of(repository)
+    asked = {str(Path(name).relative_to(RESULTS)) for name in targets} or set(whole.products)
+    for name in sorted(asked | set(products)):
+        if products.get(name) != whole.products.get(name):
+            yield f"{name} is {'different' if name in products else 'missing'}"
+    yield from (f"{name} is left over" for name in sorted(files - whole.files))
+    for name in ("locks", "incomplete"):
+        if any((repository / f".snakemake/{name}").glob("*")):
+            yield f".snakemake/{name} is not empty"
+    yield from (f"still at work: {name}" for name in stray_jobs(repository))
+
+
+def stray_jobs(repository):
+    """Names of jobs that still run in a repository, with no Snakemake over them."""
+    for process in psutil.process_iter():
+        with suppress(psutil.Error):
+            if process.cwd() == str(repository.folder) and name_of(process):
+                yield name_of(process)
+
+
+def files_of(repository):
+    """Names of all files of the results."""
+    paths = repository.results.rglob("*")
+    return {str(path.relative_to(repository.results)) for path in paths if path.is_file()}

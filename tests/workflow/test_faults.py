@@ -1,0 +1,144 @@
+"""Nothing is lost: killed runs, full and read-only disks, two runs at once, damaged inputs."""
+
+import re
+import shutil
+import subprocess
+
+import pytest
+from kills import Kill, finished, jobs_of, recovery_commands, survive
+from repository import environment
+
+FILM, COMPARISON = "results/smoke/film.nc", "results/smoke/comparison.nc"
+
+
+# Killed
+
+
+@pytest.fixture(scope="module")
+def whole(smoke, tmp_path_factory):
+    """The undisturbed run, to begin from and to compare with."""
+    return finished(smoke, tmp_path_factory.mktemp("whole"))
+
+
+@pytest.mark.parametrize(
+    "kill",
+    [
+        Kill("snakemake", "figures", 0.1, 2.0),
+        Kill("all", "figures", 0.1, 1.0),
+        Kill("job", "datasets", 0.8, 0.5),
+    ],
+    ids=lambda kill: kill.victim,
+)
+def test_a_killed_run_is_taken_up_again_and_nothing_is_lost(smoke, whole, kill):
+    """By hand, tests/faults/run_faults.py does so at 50 moments of the whole run."""
+    with smoke.clean_slate():
+        assert survive(smoke, whole, kill).faults == []
+
+
+def recover(repository, *targets):
+    """Do what the README says after a crash."""
+    for arguments in recovery_commands():
+        repository.run(*arguments, *([] if arguments else targets))
+
+
+# A disk that is full or cannot be written
+
+
+@pytest.fixture
+def on_a_disk(spare, disk):
+    """Put the finished results on a disk of their own, and return how to mount it again."""
+    kept = spare.folder.with_name("kept")
+    shutil.move(spare / "results", kept)
+    (spare / "results").mkdir()
+
+    def with_options(options, copied=False):
+        disk(spare / "results", options)
+        if copied:
+            shutil.copytree(kept, spare / "results", dirs_exist_ok=True)
+
+    return with_options
+
+
+def test_a_full_disk_is_told_and_the_next_run_makes_what_is_missing(spare, smoke, on_a_disk):
+    on_a_disk("size=100k")  # enough for the oil's properties
+    refused = spare.snakemake(FILM)
+    assert refused.returncode != 0
+    assert f"Error: {FILM}: cannot be written: No space left" in refused.stdout
+    assert "Traceback" not in refused.stdout
+    on_a_disk("remount,size=100m")
+    recover(spare, FILM)
+    made = spare.products()
+    assert made == {name: smoke.products()[name] for name in ("lubricant.nc", "film.nc")}
+    assert not list(spare.results.rglob("*.part"))
+
+
+def test_a_folder_that_cannot_be_written_is_told_before_any_job(spare, smoke, on_a_disk):
+    on_a_disk("size=100m", copied=True)
+    (spare / COMPARISON).unlink()
+    before = spare.snapshot()
+    on_a_disk("remount,ro")
+    refused = spare.snakemake(COMPARISON)
+    assert refused.returncode != 0
+    told = "results/smoke: cannot be written: the folder results/smoke is not writable"
+    assert refused.stdout.splitlines()[-1] == f"The study cannot start. {told}"
+    assert "Traceback" not in refused.stdout
+    assert spare.snapshot() == before
+    on_a_disk("remount,rw")
+    spare.run(COMPARISON)
+    assert spare.products() == smoke.products()
+
+
+# Two at once
+
+
+def test_a_second_snakemake_says_that_the_folder_is_locked_and_does_no_harm(spare, smoke):
+    (spare / COMPARISON).unlink()
+    first = subprocess.Popen(
+        spare.command(COMPARISON),
+        cwd=spare.folder,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    (job,) = jobs_of(first)
+    job.suspend()
+    second = spare.snakemake(COMPARISON)
+    assert second.returncode != 0
+    assert "Directory cannot be locked" in second.stdout
+    assert "Traceback" not in second.stdout
+    job.resume()
+    said, _ = first.communicate()
+    assert first.returncode == 0, said
+    assert spare.products() == smoke.products()
+
+
+# Damaged inputs
+
+
+def test_a_flipped_bit_is_told_and_deleting_the_file_mends_it(spare, smoke):
+    contact = spare.results / "contact.nc"
+    whole = bytearray(contact.read_bytes())
+    whole[whole.index(b"pan-hamrock")] ^= 1  # no checksum of HDF5's covers texts
+    contact.write_bytes(whole)
+    (spare / COMPARISON).unlink()
+    refused = spare.snakemake(COMPARISON)
+    assert refused.returncode != 0
+    assert "Error: results/smoke/contact.nc: not a whole NetCDF file, damaged" in refused.stdout
+    assert "Traceback" not in refused.stdout
+    contact.unlink()
+    spare.run(COMPARISON)
+    assert spare.products() == smoke.products()
+
+
+def test_a_record_that_ends_within_a_line_is_warned_of(spare):
+    record = "time [s],voltage [mV]\n0,50\n1e-4,50\n2e-4,50"
+    (spare / "run.csv").write_text(record, encoding="utf-8")
+    manifest = "file,force [N],speed [rpm],temperature [degC]\nrun.csv,800,100,40\n"
+    (spare / "records.csv").write_text(manifest, encoding="utf-8")
+    study = spare.with_values(experiment__manifest="records.csv")
+    said = spare.run("results/smoke/experiment.nc", study=study)
+    assert re.findall("^Warning: .*", said, re.M) == [
+        "Warning: run.csv: its last line has no end; if the file was cut short, its last value "
+        "is wrong"
+    ]
