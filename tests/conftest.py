@@ -16,6 +16,18 @@ from lube.schema import EXPERIMENT_DIMS, label
 settings.register_profile("lube", deadline=None)
 settings.load_profile("lube")
 
+
+def pytest_collection_modifyitems(items):
+    """Two processes share the tests: one file stays in one, and so do all real runs of Snakemake.
+
+    Those take longest and come first.
+    """
+    for item in items:
+        real = item.path.parent.name == "workflow"
+        item.add_marker(pytest.mark.xdist_group("workflow" if real else item.path.stem))
+    items.sort(key=lambda item: item.path.parent.name != "workflow")
+
+
 SMOKE = Path(__file__).parents[1] / "workflow" / "config" / "smoke.yaml"
 LARGEST_FORCE = 1600.0
 
