@@ -56,7 +56,9 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), 
     )
     ratios = np.asarray(slide_to_roll_ratio, float)
     dataset = results.assign_coords(
-        slide_to_roll_ratio=ratios, **{name: film[name] for name in OPERATING_DIMS}
+        slide_to_roll_ratio=ratios,
+        revolutions=revolutions,
+        **{name: film[name] for name in OPERATING_DIMS},
     )
     return label(dataset, "contact_batch")
 
@@ -95,7 +97,7 @@ def contact_map(lines, film, boundary_layer, lambda_levels=40, width_levels=9):
         _levels(np.linspace, width, LAYER_LEVELS[1]),
     )
     mapped["layer_breakthrough_probability"] = _layer_map(lines, film, boundary_layer, *coarse)
-    return label(mapped, "master_batch")
+    return label(mapped.assign_coords(revolutions=1), "master_batch")
 
 
 def _levels(between, values, count):

@@ -209,7 +209,8 @@ def _experiment(rows, film, study, origin, refused=()):
         for name, value in row.items():
             dataset[name].values[index] = value
     dataset["record"] = dataset["record"].astype(str)
-    dataset = dataset.assign_coords(origin=origin).assign_attrs(refused="\n".join(refused))
+    dataset = dataset.set_coords("duration").assign_coords(origin=origin)
+    dataset = dataset.assign_attrs(refused="\n".join(refused))
     dataset["comparison_threshold"] = study.experiment.threshold
     return label(dataset, "experiment")
 

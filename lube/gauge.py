@@ -219,7 +219,7 @@ def _shares(film, experiment):
     """Shares in pure rolling at the comparison threshold, on the levels of the film table."""
     rolling = in_pure_rolling(experiment)
     shares = at_comparison_threshold(on_study_levels(rolling, film), experiment)
-    return shares.transpose(*POINT_DIMS)
+    return shares.drop_vars("duration").transpose(*POINT_DIMS)
 
 
 def _curves(master, width):

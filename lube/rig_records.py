@@ -95,6 +95,7 @@ def _dataset(points, records, study):
             "bandwidth": np.array(BANDWIDTHS),
             "threshold": np.array(study.experiment.thresholds),
             "origin": "simulated",
+            "revolutions": study.rig.revolutions,
         },
     )
     for name in ("bandwidth", "sampling_rate", "bias_voltage"):

@@ -92,9 +92,10 @@ def _limited(name, dims, units, long_name, value="", meaning="", **more):
     }
 
 
-# What is a mean says of what. A realisation is CF's "realization".
-_OVER_TIME = {"cell_methods": "time: mean"}
-_OVER_ALL = {"cell_methods": "time: mean realization: mean"}
+# What is a mean says over what, by CF's cell methods, which name a coordinate of the variable.
+_OVER_RUN = {"cell_methods": "revolutions: mean"}
+_OVER_ALL = {"cell_methods": "revolutions: mean (then over the realisations)"}
+_OVER_RECORD = {"cell_methods": "duration: mean"}
 
 
 COORDINATES = {
@@ -120,6 +121,8 @@ COORDINATES = {
     "rig_time": _number(["rig_time"], "s", "time"),
     "bandwidth": _number(["bandwidth"], "Hz", "bandwidth of the amplifier"),
     "threshold": _number(["threshold"], "ohm", "threshold of the resistance"),
+    "revolutions": _number([], "1", "revolutions of the roller with the faster surface", kind="i"),
+    "duration": _number(EXPERIMENT_DIMS, "s", "duration of the record"),
     "origin": _text([], "whether the rig's records were measured or simulated"),
     "record_reader": _text(["record_reader"], "way to read and evaluate a binary record"),
     "table_reader": _text(["table_reader"], "way to read a CSV record"),
@@ -229,8 +232,8 @@ _ROUGHNESS_BATCH = {
 }
 
 
-def _mean_over_time(dims, units, long_name, **more):
-    return _number(dims, units, long_name, attributes=_OVER_TIME, **more)
+def _run_mean(dims, units, long_name):
+    return _number(dims, units, long_name, attributes=_OVER_RUN)
 
 
 _RUN_DIMS = ("realisation", *CONTACT_DIMS)
@@ -245,13 +248,11 @@ _LAYER = {
 }
 
 _CONTACT_RUN = {
+    "revolutions": COORDINATES["revolutions"],
     **_LAYER,
-    **{
-        name: _mean_over_time(_RUN_DIMS, "1", long_name)
-        for name, long_name in _PROBABILITIES.items()
-    },
-    "mean_contact_length": _mean_over_time(_RUN_DIMS, "m", "mean contact length"),
-    "mean_contact_force": _mean_over_time(_RUN_DIMS, "N", "mean contact force"),
+    **{name: _run_mean(_RUN_DIMS, "1", long_name) for name, long_name in _PROBABILITIES.items()},
+    "mean_contact_length": _run_mean(_RUN_DIMS, "m", "mean contact length"),
+    "mean_contact_force": _run_mean(_RUN_DIMS, "N", "mean contact force"),
 }
 
 
@@ -272,11 +273,12 @@ def _intervals(dims):
 
 
 _MASTER_RUN = {
+    "revolutions": COORDINATES["revolutions"],
     **{
-        name: _mean_over_time(("realisation", *MASTER_DIMS), "1", long_name)
+        name: _run_mean(("realisation", *MASTER_DIMS), "1", long_name)
         for name, long_name in _PROBABILITIES.items()
     },
-    "layer_breakthrough_probability": _mean_over_time(
+    "layer_breakthrough_probability": _run_mean(
         ("realisation", *LAYER_DIMS), "1", "probability of breakthrough of weak and strong layers"
     ),
 }
@@ -312,10 +314,13 @@ _EXPERIMENT = {
         "1",
         "share of time with resistance below the threshold",
         content="record",
-        attributes=_OVER_TIME,
+        attributes=_OVER_RECORD,
     ),
-    "true_contact_share": _mean_over_time(
-        EXPERIMENT_DIMS, "1", "share of time with metal contact in the simulated rig"
+    "true_contact_share": _number(
+        EXPERIMENT_DIMS,
+        "1",
+        "share of time with metal contact in the simulated rig",
+        attributes=_OVER_RECORD,
     ),
     "comparison_threshold": _number([], "ohm", "threshold that is compared with the simulation"),
     **_limited(
@@ -324,35 +329,41 @@ _EXPERIMENT = {
         "1",
         "share of time below the compared threshold, one revolution alone",
         content="record",
-        attributes=_OVER_TIME,
+        attributes={"cell_methods": "revolution: mean"},
     ),
     "record": _text(EXPERIMENT_DIMS, "record of the rig"),
-    "duration": _number(EXPERIMENT_DIMS, "s", "duration of the record"),
+    "duration": COORDINATES["duration"],
     "sampling_interval": _number(EXPERIMENT_DIMS, "s", "time between samples"),
 }
 
 _RIG = {
     "origin": COORDINATES["origin"],
+    "revolutions": COORDINATES["revolutions"],
     **{name: _AT_POINTS[name] for name in EXPERIMENT_DIMS},
     "voltage": _number(["operating_point", "rig_time"], "V", "voltage that the rig logs"),
     "resistance": _number(["operating_point", "rig_time"], "ohm", "resistance between the rollers"),
-    "contact_share": _mean_over_time(
+    "contact_share": _run_mean(
         ["operating_point", "bandwidth", "threshold"],
         "1",
         "share of time with resistance below the threshold",
     ),
-    "true_contact_share": _mean_over_time(
-        ["operating_point"], "1", "share of time with metal contact"
-    ),
+    "true_contact_share": _run_mean(["operating_point"], "1", "share of time with metal contact"),
     "rig_bandwidth": _number([], "Hz", "bandwidth of the study's rig"),
     "rig_sampling_rate": _number([], "s-1", "sampling rate"),
     "rig_bias_voltage": _number([], "V", "bias voltage"),
 }
 
 
+def _over_points(level, method):
+    """Cell methods of a figure for all operating points at one level."""
+    return {"cell_methods": f"{level}: {method} (over all points at one {level})"}
+
+
 _AGREEMENT_DIMS = ("film_formula", "threshold")
 _COMPARISON = {
     "origin": COORDINATES["origin"],
+    "revolutions": COORDINATES["revolutions"],
+    "duration": COORDINATES["duration"],
     "comparison_threshold": _EXPERIMENT["comparison_threshold"],
     **_limited(
         "simulated_probability",
@@ -367,16 +378,31 @@ _COMPARISON = {
         "1",
         "share of time below the threshold",
         content="record",
-        attributes=_OVER_TIME,
+        attributes=_OVER_RECORD,
     ),
     "intervals_overlap": _flag(
         COMPARISON_DIMS,
         "whether the intervals of simulation and record overlap",
         ("apart", "overlapping"),
     ),
-    "bias": _number(_AGREEMENT_DIMS, "1", "mean of simulated probability less measured share"),
-    "rms_difference": _number(_AGREEMENT_DIMS, "1", "rms difference of the probabilities"),
-    "logit_rms_difference": _number(_AGREEMENT_DIMS, "1", "rms difference of the logits"),
+    "bias": _number(
+        _AGREEMENT_DIMS,
+        "1",
+        "mean of simulated probability less measured share",
+        attributes=_over_points("film_formula", "mean"),
+    ),
+    "rms_difference": _number(
+        _AGREEMENT_DIMS,
+        "1",
+        "rms difference of the probabilities",
+        attributes=_over_points("film_formula", "root_mean_square"),
+    ),
+    "logit_rms_difference": _number(
+        _AGREEMENT_DIMS,
+        "1",
+        "rms difference of the logits",
+        attributes=_over_points("film_formula", "root_mean_square"),
+    ),
     "rank_correlation": _number(_AGREEMENT_DIMS, "1", "Spearman's rank correlation"),
     "overlap_share": _number(
         _AGREEMENT_DIMS, "1", "share of the points with two intervals whose intervals overlap"
@@ -386,7 +412,12 @@ _COMPARISON = {
         _AGREEMENT_DIMS, "1", "number of points with both probabilities within 0 and 1", kind="i"
     ),
     **{
-        f"{name}_by_{level}": _number([*dims, level], "1", f"{long_name} at this {level}")
+        f"{name}_by_{level}": _number(
+            [*dims, level],
+            "1",
+            f"{long_name} at this {level}",
+            attributes=_over_points(level, "mean"),
+        )
         for level in ("force", "speed", "temperature")
         for name, dims, long_name in (
             ("simulated_mean", ["film_formula"], "mean simulated probability"),

@@ -134,7 +134,7 @@ def make_experiment():
             {"threshold": thresholds.values, "origin": "simulated"},
             {"refused": []},
         )
-        return label(experiment, "experiment")
+        return label(experiment.set_coords("duration"), "experiment")
 
     return make
 

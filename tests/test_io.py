@@ -214,7 +214,7 @@ def test_files_keep_the_conventions(files, checker, tmp_path, kind, convention, 
         str(files / f"{kind}.nc"),
         [convention],
         verbose=0,
-        criteria="lenient",
+        criteria="strict",
         output_filename=str(report),
         output_format="json",
     )
