@@ -259,6 +259,7 @@ To see where a number comes from, and make it again to the last bit:
 {_example(study)}
 ```
 
-Without Python, `sha256sum --check {SUMS}` checks the fingerprints. To compute everything anew, go
-to `code/` and follow its README with `--configfile ../study/{study_file}`.
+Without Python, `sha256sum --check {SUMS}` checks the fingerprints. To compute everything anew,
+go to a copy of `code/`, follow its README, and give `snakemake --configfile` the path of
+`study/{study_file}` here: the datasets come out as the same bytes.
 """

@@ -67,6 +67,16 @@ def test_every_variable_is_described(row):
     assert (row.units is None) == (row.kind == "U")
 
 
+@pytest.mark.parametrize(("kind", "name"), VARIABLES)
+def test_what_is_a_mean_says_over_what(kind, name):
+    row = FILES[kind][name]
+    words = ("mean ", "share of time", "breakthrough probability", "probability of", "rms diff")
+    if row.long_name.startswith(words) and "limit" not in row.long_name:
+        over, method = row.attributes["cell_methods"].split(": ", 1)
+        assert over in (*row.dims, "revolutions", "duration")
+        assert method.startswith(("mean", "root_mean_square"))
+
+
 @pytest.mark.parametrize(
     "row", [FILES[k][n] for k, n in VARIABLES if "flag_values" in FILES[k][n].attributes]
 )
