@@ -15,6 +15,13 @@ sys.path.insert(0, str(ROOT))
 elsewhere = dict(os.environ).get("PYTHONPATH")
 os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, [str(ROOT), elsewhere])))
 
+# NumPy's functions for AVX-512 round otherwise than those for other processors, in the last
+# digits; without them a result is the same bytes on all. (Names of NumPy 2.4, and those before.)
+os.environ.setdefault(
+    "NPY_DISABLE_CPU_FEATURES",
+    "X86_V4 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR",
+)
+
 import lube
 from lube.errors import LubeError
 from lube.files import check_writable, cut_within_a_line
@@ -137,5 +144,7 @@ onstart:
         check_writable(RESULTS)  # Snakemake would end in a traceback
     for file in [config["study_file"], *record_files(), *measured_files()]:
         if cut_within_a_line(file):
-            told = "its last line has no end; if the file was cut short, its last value is wrong"
+            told = (
+                "its last line has no end; if the file was cut short, its last value is wrong"
+            )
             print(f"Warning: {file}: {told}", file=sys.stderr)
