@@ -7,6 +7,7 @@ import argparse
 import sys
 
 from lube.errors import LubeError
+from lube.processors import compute_alike
 
 
 def main(arguments=None):
@@ -24,6 +25,7 @@ def main(arguments=None):
         out.
     """
     options = _parser().parse_args(arguments)
+    compute_alike()
     try:
         return options.run(options)
     except LubeError as error:

@@ -19,7 +19,7 @@ MODULES = {
 
 # Each module may import those of the layers above its own.
 LAYERS = [
-    {"errors", "repository", "classic_netcdf"},
+    {"errors", "repository", "processors", "classic_netcdf"},
     {
         *("units", "texts", "hertz", "groups", "regimes", "inlet_heating", "viscosity"),
         *("resistance", "curves", "intervals", "schema", "kernels", "pages"),

@@ -15,14 +15,12 @@ sys.path.insert(0, str(ROOT))
 elsewhere = dict(os.environ).get("PYTHONPATH")
 os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, [str(ROOT), elsewhere])))
 
-# NumPy's functions for AVX-512 round otherwise than those for other processors, in the last
-# digits; without them a result is the same bytes on all. (Names of NumPy 2.4, and those before.)
-os.environ.setdefault(
-    "NPY_DISABLE_CPU_FEATURES",
-    "X86_V4 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR",
-)
-
 import lube
+from lube.processors import compute_alike
+
+# For all jobs, before one of them imports NumPy.
+compute_alike()
+
 from lube.errors import LubeError
 from lube.files import check_writable, cut_within_a_line
 from lube.jobs import SNAKEMAKE

@@ -1,0 +1,29 @@
+"""The same last digits on all processors."""
+
+import os
+import subprocess
+import sys
+
+from lube.processors import compute_alike
+
+NAME = "NPY_DISABLE_CPU_FEATURES"
+
+
+def test_processes_begun_later_do_without_avx_512(monkeypatch):
+    monkeypatch.delenv(NAME, raising=False)
+    compute_alike()
+    said = subprocess.run(
+        [sys.executable, "-c", "import numpy; numpy.show_runtime()"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    found = said.stdout.split("'found': ")[1].split("'not_found'")[0]
+    assert "V4" not in found
+    assert "AVX512" not in found
+
+
+def test_a_choice_of_the_users_stays(monkeypatch):
+    monkeypatch.setenv(NAME, "")
+    compute_alike()
+    assert os.environ[NAME] == ""
