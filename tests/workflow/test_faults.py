@@ -60,7 +60,8 @@ def on_a_disk(spare, disk):
 
 
 def test_a_full_disk_is_told_and_the_next_run_makes_what_is_missing(spare, smoke, on_a_disk):
-    on_a_disk("size=100k")  # enough for the oil's properties
+    oil, film = ((smoke.results / f"{kind}.nc").stat().st_size for kind in ("lubricant", "film"))
+    on_a_disk(f"size={(oil + film // 2) // 1024}k")
     refused = spare.snakemake(FILM)
     assert refused.returncode != 0
     assert f"Error: {FILM}: cannot be written: No space left" in refused.stdout

@@ -1,14 +1,10 @@
 """The smoke study as a whole: everything made, nothing made twice, the same bytes always."""
 
 import json
-import os
 import re
-import signal
-import subprocess
-import time
 
 import pytest
-from repository import environment, products_of
+from repository import products_of
 
 from lube.io import load
 from lube.schema import FILES, check
@@ -122,7 +118,7 @@ def test_datasets_say_which_study_and_version_made_them(smoke):
     for kind in DATASETS:
         attributes = load(smoke.results / f"{kind}.nc", kind).attrs
         assert attributes["study"] == "smoke"
-        assert attributes["source"].startswith("lube ")
+        assert attributes["source"].startswith("simulation by lube ")
 
 
 def test_a_second_run_does_nothing(smoke):
@@ -148,41 +144,6 @@ def test_another_batch_size_on_one_core_makes_the_same_bytes(smoke):
         again = smoke.products()
     assert again == {name: first[name] for name in again}
     assert len(again) == len(DATASETS) + 3
-
-
-def test_a_run_killed_midway_is_taken_up_again_as_documented(smoke):
-    first = smoke.products()
-    datasets = [f"results/smoke/{kind}.nc" for kind in DATASETS]
-    with smoke.clean_slate():
-        kill_during_contact(smoke, datasets)
-        assert not (smoke.results / "contact.nc").exists()
-        refused = smoke.snakemake("--rerun-incomplete", *datasets)
-        assert refused.returncode != 0
-        assert "--unlock" in refused.stdout
-        smoke.run("--unlock")
-        smoke.run("--rerun-incomplete", *datasets)
-        again = smoke.products()
-        assert not list(smoke.results.rglob("*.part"))
-    assert again == {name: first[name] for name in again}
-    assert len(again) == len(DATASETS)
-
-
-def kill_during_contact(repository, targets):
-    """Start a run, and kill all its processes while the first contact job is at work."""
-    running = subprocess.Popen(
-        repository.command(*targets),
-        cwd=repository.folder,
-        env=environment(),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    deadline = time.monotonic() + 120.0
-    while not list(repository.results.glob("logs/contact_*.log")):
-        assert running.poll() is None and time.monotonic() < deadline
-        time.sleep(0.02)
-    os.killpg(running.pid, signal.SIGKILL)
-    running.wait()
 
 
 # What the terminal says

@@ -12,10 +12,8 @@ rule archive:
         result("benchmarks/archive.tsv")
     params:
         about=digest(STUDY.about.model_dump(mode="json")),
-        results=RESULTS,
         kinds=DATASETS,
         figures=ARCHIVED,
-        folder=result(f"archive/{STUDY.name}"),
     message:
         "Archive: {output.zip}, and the same as a folder beside it"
     script:
@@ -24,10 +22,14 @@ rule archive:
 
 rule verify:
     # Nothing is made anew for it: what is there is checked as it is.
+    log:
+        result("logs/verify.log"),
+    benchmark:
+        result("benchmarks/verify.tsv")
     params:
         archive=result(f"archive/{STUDY.name}"),
         python=sys.executable,
     message:
         "Verify: {params.archive}"
     shell:
-        "{params.python:q} -m lube.command verify {params.archive:q}"
+        "{params.python:q} -m lube.command verify {params.archive:q} 2>&1 | tee {log}"

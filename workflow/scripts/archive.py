@@ -1,16 +1,13 @@
 """Make the archive of a study: a folder and its zip."""
 
+from pathlib import Path
+
 from lube.archive import make_archive
 from lube.jobs import begin_job
 from lube.study import load_study
 
 begin_job(snakemake.log[0])
-study_file = snakemake.config["study_file"]
-make_archive(
-    load_study(study_file),
-    study_file,
-    snakemake.params.results,
-    snakemake.params.kinds,
-    snakemake.params.figures,
-    snakemake.params.folder,
-)
+study_file, sums = snakemake.config["study_file"], Path(snakemake.output.sums)
+kinds, figures = snakemake.params.kinds, snakemake.params.figures
+study, results = load_study(study_file), sums.parents[2]
+make_archive(study, study_file, results, kinds, figures, sums.parent)
