@@ -156,11 +156,11 @@ def test_a_run_killed_midway_is_taken_up_again_as_documented(smoke):
     with smoke.clean_slate():
         kill_during_contact(smoke, datasets)
         assert not (smoke.results / "contact.nc").exists()
-        refused = smoke.snakemake("--rerun-incomplete", *datasets)
+        refused = smoke.snakemake(*datasets)
         assert refused.returncode != 0
         assert "--unlock" in refused.stdout
         smoke.run("--unlock")
-        smoke.run("--rerun-incomplete", *datasets)
+        smoke.run(*datasets)
         again = smoke.products()
         assert not list(smoke.results.rglob("*.part"))
     assert again == {name: first[name] for name in again}
