@@ -49,6 +49,8 @@ def execute_notebook(notebook, output, parameters):
                 kernel_name="python3",
                 language="python",
                 progress_bar=False,
+                # Else what a cell prints is in one piece or several, as the clock will.
+                coalesce_streams=True,
                 extra_arguments=_QUIET_KERNEL,
             )
     except PapermillExecutionError as error:

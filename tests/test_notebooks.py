@@ -49,6 +49,13 @@ def test_a_notebook_is_executed_with_its_parameters_twice_the_same(write, tmp_pa
     assert f"film.nc {drawn}\n" in str(outputs).replace("\\n", "\n")
 
 
+def test_what_a_cell_prints_is_one_piece_however_slowly_it_comes(write, tmp_path):
+    output = tmp_path / "executed.ipynb"
+    execute_notebook(write("import time; print(1); time.sleep(0.7); print(2)"), output, {})
+    cell = nbformat.read(output, as_version=4).cells[-1]
+    assert [printed.text for printed in cell.outputs] == ["1\n2\n"]
+
+
 def test_an_executed_notebook_holds_no_clock_time_and_is_valid(write, tmp_path):
     output = tmp_path / "executed.ipynb"
     execute_notebook(write("1 + 1"), output, {})

@@ -13,6 +13,7 @@ It takes about 20 minutes on two idle cores.
 
 import argparse
 import random
+import shutil
 import sys
 import tempfile
 import time
@@ -86,6 +87,11 @@ def tell(number, kill, repository, whole):
     )
     for fault in outcome.faults:
         print(f"      FAILED: {fault}", flush=True)
+    if outcome.faults:
+        kept = Path(tempfile.mkdtemp(prefix="lube-faults-failed-"))
+        shutil.copytree(repository.results, kept / "results")
+        shutil.copytree(whole.folder / "results", kept / "undisturbed")
+        print(f"      kept in {kept}", flush=True)
     return not outcome.faults
 
 
