@@ -1,5 +1,6 @@
 """What every job of the workflow does first: open its log and tell errors in one line."""
 
+import errno
 import logging
 import os
 import signal
@@ -89,5 +90,8 @@ def _tell(kind, error, traceback):
         logging.error("Error: %s", error)
     elif isinstance(error, KeyboardInterrupt):
         logging.error("Interrupted")
+    elif isinstance(error, OSError) and error.errno == errno.ENOSPC:
+        # Not of a result, which says so itself, but for instance of a compiled kernel.
+        logging.error("Error: %s: no space left on its disk", error.filename or "a file aside")
     else:
         logging.error("Error in the study's own code", exc_info=(kind, error, traceback))

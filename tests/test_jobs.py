@@ -63,6 +63,12 @@ def test_an_error_of_our_own_comes_with_all_it_knows(run):
         assert "Traceback" in text and "ZeroDivisionError: by nought" in text
 
 
+def test_a_disk_that_is_full_elsewhere_is_told_in_one_line(run):
+    finished, log = run("raise OSError(28, 'No space left on device', 'kernel.nbc')")
+    assert finished.returncode != 0
+    assert log == finished.stderr == "Error: kernel.nbc: no space left on its disk\n"
+
+
 def test_an_interrupted_job_shows_no_traceback(run):
     # What Ctrl-C raises; a signal would not do where a shell runs the tests in the background.
     finished, log = run("raise KeyboardInterrupt")
