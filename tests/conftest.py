@@ -17,6 +17,7 @@ settings.register_profile("lube", deadline=None)
 settings.load_profile("lube")
 
 
+@pytest.hookimpl(tryfirst=True)  # before xdist looks for groups
 def pytest_collection_modifyitems(items):
     """Two processes share the tests: one file stays in one, and so do all real runs of Snakemake.
 
