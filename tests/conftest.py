@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 from hypothesis import settings
+from xdist.scheduler import LoadScopeScheduling
 
 from lube import film_table, line_spec, load_study, roughness_lines
 from lube.lubricant import lubricant_table
@@ -17,15 +18,20 @@ settings.register_profile("lube", deadline=None)
 settings.load_profile("lube")
 
 
-@pytest.hookimpl(tryfirst=True)  # before xdist looks for groups
-def pytest_collection_modifyitems(items):
-    """Two processes share the tests: one file stays in one, and so do all real runs of Snakemake.
+class _TwoProcesses(LoadScopeScheduling):
+    """Share the tests: one file stays in one process, and so do all real runs of Snakemake."""
 
-    Those take longest and come first.
-    """
-    for item in items:
-        real = item.path.parent.name == "workflow"
-        item.add_marker(pytest.mark.xdist_group("workflow" if real else item.path.stem))
+    def _split_scope(self, nodeid):
+        file = nodeid.split("::", 1)[0]
+        return "workflow" if "workflow/" in file else file
+
+
+def pytest_xdist_make_scheduler(config, log):
+    return _TwoProcesses(config, log)
+
+
+def pytest_collection_modifyitems(items):
+    """The real runs of Snakemake take longest and come first."""
     items.sort(key=lambda item: item.path.parent.name != "workflow")
 
 
