@@ -20,11 +20,12 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "workflow"))
 from repository import RESULTS, copy_of_the_repository
 from test_cluster_generic import SUBMIT
 
+from lube.processors import AVX512
+
 BATCH_SIZES = (1, 2, 3, 4)
 
-NO_AVX512 = "X86_V4 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR"
 LESSER = {
-    "NumPy as without AVX2": {"NPY_DISABLE_CPU_FEATURES": f"X86_V3 AVX2 FMA3 {NO_AVX512}"},
+    "NumPy as without AVX2": {"NPY_DISABLE_CPU_FEATURES": f"X86_V3 AVX2 FMA3 {AVX512}"},
     "Numba as for any x86-64": {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""},
     "OpenBLAS as without AVX": {"OPENBLAS_CORETYPE": "Prescott"},
 }
