@@ -19,11 +19,15 @@ settings.load_profile("lube")
 
 
 class _TwoProcesses(LoadScopeScheduling):
-    """Share the tests: one file stays in one process, and so do all real runs of Snakemake."""
+    """Share the tests: one file stays in one process, and so do most real runs of Snakemake.
+
+    The many dry runs of `test_rerun.py` have the other process, for the last.
+    """
 
     def _split_scope(self, nodeid):
         file = nodeid.split("::", 1)[0]
-        return "workflow" if "workflow/" in file else file
+        together = "workflow/" in file and "test_rerun" not in file
+        return "real runs" if together else file
 
 
 def pytest_xdist_make_scheduler(config, log):
@@ -31,8 +35,9 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def pytest_collection_modifyitems(items):
-    """The real runs of Snakemake take longest and come first."""
-    items.sort(key=lambda item: item.path.parent.name != "workflow")
+    """What takes longest comes first; what needs the smoke study once more comes last."""
+    items.sort(key=lambda item: (item.path.parent.name != "workflow", item.path.name))
+    items.sort(key=lambda item: item.path.name == "test_rerun.py")
 
 
 SMOKE = Path(__file__).parents[1] / "workflow" / "config" / "smoke.yaml"
