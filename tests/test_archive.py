@@ -1,4 +1,4 @@
-"""What goes into an archive, and where; the whole of one is in workflow/test_archive.py."""
+"""What goes into an archive, and where; the whole of one is in workflow/test_archived_study.py."""
 
 import json
 from pathlib import Path
