@@ -16,7 +16,8 @@ from importlib.metadata import distributions
 from pathlib import Path
 
 from lube.about import LICENCES, PAPER
-from lube.citation import citation_file, crate_metadata, zenodo_metadata
+from lube.citation import citation_file, zenodo_metadata
+from lube.crate import crate_metadata
 from lube.errors import DataError
 from lube.files import written_whole
 from lube.provenance import config_text, digest, fingerprint, title_of

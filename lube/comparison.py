@@ -7,8 +7,8 @@ import scipy.special
 import scipy.stats
 import xarray as xr
 
-from lube.schema import COMPARISON_DIMS, EXPERIMENT_DIMS, label
-from lube.shares import LIMITS, at_comparison_threshold, lines_of, log_lines, on_study_levels
+from lube.schema import COMPARISON_DIMS, EXPERIMENT_DIMS, LIMITS, label
+from lube.shares import at_comparison_threshold, lines_of, log_lines, on_study_levels
 
 log = logging.getLogger(__name__)
 
@@ -31,7 +31,8 @@ def compare(contact, experiment):
         The ``comparison`` file of `lube.schema`: both probabilities with their 95 % intervals
         at every operating point, agreement figures for every film formula and threshold, and
         the means of both sides at every force, speed and temperature, over the points that
-        both have. The attribute ``missing`` lists the points that one side lacks.
+        both have. The attribute ``missing`` tells the points that one side lacks, a line
+        each.
 
     Raises
     ------
@@ -46,7 +47,7 @@ def compare(contact, experiment):
     table = table.merge(_calibration(table), join="exact")
     missing = _missing(table)
     log_lines(log, missing)
-    return label(table.assign_attrs(missing=missing), "comparison")
+    return label(table.assign_attrs(missing="\n".join(missing)), "comparison")
 
 
 def _side_by_side(contact, shares):

@@ -11,16 +11,14 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.evaluation import record_counter, share_interval
+from lube.levels import level_index, levels_told
 from lube.points import operating_points
 from lube.recordings import open_recording
 from lube.rig import SimulatedRig
-from lube.schema import EXPERIMENT_DIMS, FILES, label
-from lube.shares import LIMITS, limited
+from lube.schema import EXPERIMENT_DIMS, FILES, LIMITS, label
+from lube.shares import limited
 
 log = logging.getLogger(__name__)
-
-NEAR = 0.005
-"""Relative distance within which a record's force, speed or temperature is a level's."""
 
 SATURATED = 0.001
 """Share of a record's samples at the amplifier's limits from which on it is refused."""
@@ -146,11 +144,12 @@ def _levels(entry, film, study):
 
 def _level(where, name, value, film, study):
     levels = study.slips if name == "slide_to_roll_ratio" else film[name].values.tolist()
-    for level in levels:
-        if value == level or (name != "lubricant" and abs(value - level) <= NEAR * abs(level)):
-            return level
-    told = ", ".join(f"{level:g}" if name != "lubricant" else level for level in levels)
-    raise DataError(f"{where}: {name}: got {value}, need one of the study's: {told}")
+    index = level_index(levels, value)
+    if index is None:
+        raise DataError(
+            f"{where}: {name}: got {value}, need one of the study's: {levels_told(levels)}"
+        )
+    return levels[index]
 
 
 def _measured_row(entry, point, study):

@@ -13,12 +13,11 @@ from lube.contact import contact_statistics
 from lube.ensemble import with_intervals
 from lube.errors import DataError
 from lube.io import load
+from lube.levels import level_index, levels_told
 from lube.provenance import fingerprint, told_by
 from lube.roughness import roughness_batch
 from lube.schema import CONTACT_DIMS
 from lube.surfaces import BoundaryLayer, LineSpec
-
-_NEAR = 0.005  # levels are met within half a per cent: 86 r/min is 600/7
 
 
 @dataclass(frozen=True)
@@ -124,12 +123,10 @@ def _level(coordinate, path, wanted):
     levels, name = coordinate.values.tolist(), coordinate.name
     if wanted is None and (len(levels) == 1 or name not in ("temperature", "speed", "force")):
         return 0
-    for index, level in enumerate(levels):
-        near = isinstance(level, float) and isinstance(wanted, int | float)
-        if level == wanted or (near and abs(level - wanted) <= _NEAR * abs(level)):
-            return index
-    told = ", ".join(f"{level:g}" if isinstance(level, float) else level for level in levels)
-    raise DataError(f"{path}: {name}: got {wanted}, need one of {told}")
+    index = level_index(levels, wanted)
+    if index is None:
+        raise DataError(f"{path}: {name}: got {wanted}, need one of {levels_told(levels)}")
+    return index
 
 
 def _made_again(cell, film, values):

@@ -1,23 +1,14 @@
-"""What the report says of a study first: its numbers, its answers, its assumptions and limits.
-
-Words that stand in the README are taken from there, and from nowhere else.
-"""
+"""What the report says of a study first: its numbers and its answers."""
 
 import math
 import platform
 from html import escape
 from importlib.metadata import version
 
-from lube.markdown import section, to_html
 from lube.pages import html_table
 from lube.provenance import LIBRARIES
 from lube.repository import commit
 from lube.units import with_unit
-
-ASSUMPTIONS = "What the paper leaves open"
-LIMITS = "Honest limits"
-FILES = "What you get"
-ARCHITECTURE = "How it is built"
 
 
 def facts(study):
@@ -227,74 +218,3 @@ def _percent(share):
 def _pairs(rows):
     cells = (f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows)
     return "\n".join(['<table class="facts">', "<tbody>", *cells, "</tbody>", "</table>"])
-
-
-def limits(readme):
-    """Tell what the study cannot say.
-
-    Parameters
-    ----------
-    readme : str
-        The README.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
-    return to_html(section(readme, LIMITS))
-
-
-def files(readme):
-    """Tell what is in which file.
-
-    Parameters
-    ----------
-    readme : str
-        The README.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
-    _, _, table = section(readme, FILES).partition("\n\n")
-    return to_html(table.partition("\n\n")[0])
-
-
-def pipeline(readme):
-    """Draw how the stages follow from one another.
-
-    Parameters
-    ----------
-    readme : str
-        The README.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
-    _, _, drawing = section(readme, ARCHITECTURE).partition("```")
-    return to_html(f"```{drawing.partition('```')[0]}```")
-
-
-def assumptions(readme):
-    """Tell what the paper leaves open, and what this study filled in.
-
-    Parameters
-    ----------
-    readme : str
-        The README.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
-    lead = (
-        "<p>The paper does not print all that a calculation needs. This is what it leaves open and "
-        "what stands there instead. The numbers are those of the paper's study; the last column "
-        "says where a study changes them, and the page Configuration has this study's.</p>"
-    )
-    return f"{lead}\n{to_html(section(readme, ASSUMPTIONS))}"

@@ -1,14 +1,9 @@
 """Contact shares of a rig's records, brought to the operating points of a study."""
 
-import numpy as np
-
 from lube.errors import DataError
-from lube.schema import COORDINATES, EXPERIMENT_DIMS
+from lube.levels import SAME, level_index, levels_told
+from lube.schema import COORDINATES, EXPERIMENT_DIMS, LIMITS, POINT_DIMS
 
-SAME_LEVEL = 1e-9
-"""Relative difference of levels that are the same but for rounding."""
-LIMITS = ("", "_lower", "_upper")
-"""What the names of a value and of the limits of its 95 % interval end with."""
 MOST_LINES = 10
 """Lines that a log shows of a longer list."""
 
@@ -63,18 +58,14 @@ def on_study_levels(experiment, levels, share="contact_share"):
 
 def _study_levels(name, found, wanted):
     """Levels of the study that some levels are."""
-    study = []
-    for level in found.tolist():
-        same = wanted == level
-        if wanted.dtype.kind == "f":
-            same = np.isclose(wanted, level, rtol=SAME_LEVEL, atol=0.0)
-        if not same.any():
-            raise DataError(
-                f"experiment: {name} {level} is not a level of the study, need one of "
-                f"{', '.join(str(value) for value in wanted.tolist())}"
-            )
-        study.append(wanted[same][0])
-    return np.array(study, wanted.dtype)
+    indices = [level_index(wanted.tolist(), level, SAME) for level in found.tolist()]
+    if None in indices:
+        level = found[indices.index(None)]
+        raise DataError(
+            f"experiment: {name} {level} is not a level of the study, need one of "
+            f"{levels_told(wanted.tolist())}"
+        )
+    return wanted[indices]
 
 
 def at_comparison_threshold(shares, experiment):
@@ -98,14 +89,14 @@ def at_comparison_threshold(shares, experiment):
         If the records were not evaluated at that threshold.
     """
     wanted = experiment["comparison_threshold"].item()
-    levels = shares["threshold"].values
-    same = np.isclose(levels, wanted, rtol=SAME_LEVEL, atol=0.0)
-    if not same.any():
+    levels = shares["threshold"].values.tolist()
+    index = level_index(levels, wanted, SAME)
+    if index is None:
         raise DataError(
             f"experiment: threshold {wanted:g} ohm is not among those evaluated, "
-            f"{', '.join(f'{level:g}' for level in levels)}"
+            f"{levels_told(levels)}"
         )
-    return shares.isel(threshold=int(np.argmax(same)), drop=True)
+    return shares.isel(threshold=index, drop=True)
 
 
 def in_pure_rolling(dataset):
@@ -122,6 +113,31 @@ def in_pure_rolling(dataset):
         The same without that dimension; numbers are NaN if there is slip everywhere.
     """
     return dataset.reindex(slide_to_roll_ratio=[0.0]).isel(slide_to_roll_ratio=0, drop=True)
+
+
+def compared_in_pure_rolling(film, experiment):
+    """Shares without slip, at the threshold that is compared, at all points of a film table.
+
+    Parameters
+    ----------
+    film, experiment : xarray.Dataset
+        Datasets of these kinds, of one study.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``contact_share`` and its limits over (lubricant, temperature, speed, force), NaN without
+        a record.
+
+    Raises
+    ------
+    DataError
+        If the records have a level that is not the study's, or were not evaluated at their
+        comparison threshold.
+    """
+    rolling = in_pure_rolling(experiment)
+    shares = at_comparison_threshold(on_study_levels(rolling, film), experiment)
+    return shares.drop_vars("duration").transpose(*POINT_DIMS)
 
 
 def lines_of(absent, reason):

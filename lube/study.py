@@ -5,7 +5,6 @@ table in the README; their validators make the one-line errors; and `Study.stage
 tells which values a stage depends on, so that a change re-runs that stage and no other.
 """
 
-import math
 import os
 from collections import Counter
 from pathlib import Path
@@ -32,6 +31,7 @@ from lube.fields import (
     validate,
 )
 from lube.formulas import formula
+from lube.levels import SAME, level_index
 from lube.records import LubricantRecord, check_temperatures, load_record
 from lube.resistance import divider_voltage
 from lube.sizes import check_sizes
@@ -329,20 +329,14 @@ class Study(StrictModel):
         found = {}
         for variable, available in levels_of.items():
             wanted = getattr(point, variable)
-            matches = [level for level in available if wanted is None or _same(level, wanted)]
-            if not matches:
+            index = 0 if wanted is None else level_index(available, wanted, SAME)
+            if index is None:
                 raise ValueError(
                     f"traces.{number}.{variable}: got {wanted}, need one of the study's: "
                     f"{', '.join(str(level) for level in available)}"
                 )
-            found[variable] = matches[0]
+            found[variable] = available[index]
         return found
-
-
-def _same(level, wanted):
-    if isinstance(level, str):
-        return level == wanted
-    return math.isclose(level, wanted, rel_tol=1e-9)
 
 
 def _refuse_repeats(key, values):

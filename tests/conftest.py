@@ -9,6 +9,7 @@ from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
 
 from lube import film_table, line_spec, load_study, roughness_lines
+from lube.about import About
 from lube.lubricant import lubricant_table
 from lube.roughness import roughness_batch
 from lube.schema import EXPERIMENT_DIMS, label
@@ -48,6 +49,23 @@ LARGEST_FORCE = 1600.0
 def study():
     """The smoke study: the paper's rollers and layer."""
     return load_study(SMOKE)
+
+
+@pytest.fixture(scope="session")
+def attributed_study(study):
+    """The smoke study, with makers of every kind and a title that needs care."""
+    about = {
+        "title": "My <rollers> & oil",
+        "summary": "Rollers & oil.",
+        "creators": [
+            {"name": "Popova, Elena", "affiliation": "TU Berlin", "orcid": "0000-0002-1825-0097"},
+            {"name": "The authors of lube"},
+        ],
+        "licence": "CC0-1.0",
+        "date": "2026-02-03",
+        "doi": "10.5281/zenodo.123",
+    }
+    return study.model_copy(update={"about": About.model_validate(about)})
 
 
 @pytest.fixture(scope="session")

@@ -1,43 +1,18 @@
-"""How an archive is cited and catalogued."""
+"""How an archive is cited."""
 
 import json
 
 import pytest
 import yaml
-from crates import issues_of
 
 from lube.about import PAPER, About
-from lube.citation import (
-    check_about,
-    citation_file,
-    crate_metadata,
-    publication_date,
-    zenodo_metadata,
-)
+from lube.citation import check_about, citation_file, publication_date, zenodo_metadata
 from lube.errors import StudyError
 from lube.fields import validate
 
-MAKERS = {
-    "title": "My <rollers> & oil",
-    "summary": "Rollers & oil.",
-    "creators": [
-        {"name": "Popova, Elena", "affiliation": "TU Berlin", "orcid": "0000-0002-1825-0097"},
-        {"name": "The authors of lube"},
-    ],
-    "licence": "CC0-1.0",
-    "date": "2026-02-03",
-    "doi": "10.5281/zenodo.123",
-}
 
-
-@pytest.fixture
-def made(study):
-    """The smoke study, with makers of every kind."""
-    return study.model_copy(update={"about": About.model_validate(MAKERS)})
-
-
-def test_a_citation_names_makers_licence_day_and_paper(made):
-    cited = yaml.safe_load(citation_file(made))
+def test_a_citation_names_makers_licence_day_and_paper(attributed_study):
+    cited = yaml.safe_load(citation_file(attributed_study))
     assert cited["cff-version"] == "1.2.0"
     assert cited["authors"] == [
         {
@@ -54,36 +29,14 @@ def test_a_citation_names_makers_licence_day_and_paper(made):
     assert PAPER in [reference["title"] for reference in cited["references"]]
 
 
-def test_zenodo_gets_what_it_asks_for(made):
-    told = json.loads(zenodo_metadata(made))
+def test_zenodo_gets_what_it_asks_for(attributed_study):
+    told = json.loads(zenodo_metadata(attributed_study))
     assert told["upload_type"] == "dataset"
     assert told["title"] == "My <rollers> & oil"
     assert "Rollers &amp; oil." in told["description"]  # which is HTML
     assert told["creators"][0]["orcid"] == "0000-0002-1825-0097"
     assert told["creators"][1] == {"name": "The authors of lube"}
     assert told["license"] == "cc0-1.0"
-
-
-def test_the_catalogue_is_valid_under_its_own_validator(made, tmp_path):
-    texts = {"README.md": "read", "data/film.nc": "film", "code/lube/film.py": "pass"}
-    for name, text in texts.items():
-        (tmp_path / "crate" / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / "crate" / name).write_text(text)
-    catalogue = crate_metadata(made, {name: len(text) for name, text in texts.items()})
-    (tmp_path / "crate/ro-crate-metadata.json").write_text(catalogue)
-    assert issues_of(tmp_path / "crate", tmp_path) == []
-    listed = {entity["@id"]: entity for entity in json.loads(catalogue)["@graph"]}
-    assert listed["data/film.nc"]["contentSize"] == "4"
-    assert listed["data/film.nc"]["encodingFormat"] == "application/netcdf"
-    assert {"README.md", "data/", "code/"} <= set(listed)
-    (tmp_path / "crate/data/film.nc").unlink()
-    assert any("data/film.nc" in issue for issue in issues_of(tmp_path / "crate", tmp_path))
-
-
-def test_the_same_study_has_the_same_catalogue(made):
-    sizes = {"README.md": 1, "data/film.nc": 2}
-    backwards = dict(reversed(sizes.items()))
-    assert crate_metadata(made, sizes) == crate_metadata(made, backwards)
 
 
 # What an archive needs to know

@@ -99,20 +99,22 @@ def test_points_without_a_record_are_listed_and_left_out(
     experiment = make_experiment(*(side.where(~gap) for side in simulated))
     with caplog.at_level(logging.WARNING):
         found = compare(contact, experiment)
-    assert len(found.attrs["missing"]) == 12
-    assert found.attrs["missing"][0] == "800 N, 60 rpm, 40 degC, slide-to-roll ratio 0: no record"
-    assert caplog.messages == [*found.attrs["missing"][:10], "... and 2 more"]
+    assert len(found.missing.splitlines()) == 12
+    assert (
+        found.missing.splitlines()[0] == "800 N, 60 rpm, 40 degC, slide-to-roll ratio 0: no record"
+    )
+    assert caplog.messages == [*found.missing.splitlines()[:10], "... and 2 more"]
     assert (found["compared_points"] == 120 - 12).all()
     assert not found["intervals_overlap"].sel(force=800.0, slide_to_roll_ratio=0.0).any()
     part = compare(contact, experiment.sel(slide_to_roll_ratio=[0.1]))
-    assert len(part.attrs["missing"]) == 60
+    assert len(part.missing.splitlines()) == 60
 
 
 def test_points_without_a_simulation_are_listed_too(contact, perfect):
     partial = contact.copy(deep=True)
     partial["breakthrough_probability_mean"][{"force": 0, "speed": 1, "temperature": 2}] = np.nan
     found = compare(partial, perfect)
-    assert [line.split(": ")[1] for line in found.attrs["missing"]] == ["no simulation"] * 2
+    assert [line.split(": ")[1] for line in found.missing.splitlines()] == ["no simulation"] * 2
     assert (found["compared_points"] == 118).all()
     for level in ("force", "speed", "temperature"):
         means = [

@@ -22,24 +22,25 @@ LAYERS = [
     {"errors", "repository", "processors", "classic_netcdf"},
     {
         *("units", "texts", "hertz", "groups", "regimes", "inlet_heating", "viscosity"),
-        *("resistance", "curves", "intervals", "schema", "kernels", "pages"),
+        *("resistance", "curves", "intervals", "levels", "schema", "kernels", "pages"),
     },
     {
         *("formulas", "markdown", "fields", "files", "fluids", "seals", "steps", "points"),
         *("evaluation", "shares", "signals", "tables", "sizes"),
     },
     {
-        *("about", "apparatus", "records", "surfaces", "rig", "manifest"),
+        *("about", "apparatus", "records", "surfaces", "rig", "manifest", "excerpts", "map_curves"),
         *("text_signals", "binary_signals"),
     },
-    {"study", "recordings"},
+    {"study", "recordings", "fits"},
     {
         *("lubricant", "film", "roughness", "contact", "trace", "ensemble"),
         *("experiment", "rig_records", "comparison", "gauge"),
     },
     {"provenance", "notebooks", "jobs", "reference"},
     {"io", "plots", "citation"},
-    {"archive", "explanation", "configuration", "overview"},
+    {"crate", "explanation", "configuration", "overview"},
+    {"archive"},
     {"verify"},
     {"command"},
 ]

@@ -1,14 +1,10 @@
 """What the report says of a study first, and that it says what the datasets say."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
 
-from lube.overview import assumptions, facts, files, findings, limits, pipeline
-
-README = (Path(__file__).parents[1] / "README.md").read_text("utf-8")
+from lube.overview import facts, findings
 
 
 def test_the_numbers_of_the_study_are_told(study):
@@ -110,19 +106,3 @@ def test_a_study_without_contact_and_records_says_so(study, datasets):
     assert "Metal touched metal at none of 8 operating points." in told
     assert "rig the simulation" not in told and "<td>–</td>" in told
     assert "All operating points lie within" in told
-
-
-@pytest.mark.parametrize(
-    ("tell", "words", "rows"),
-    [
-        (assumptions, "viscosity of Mobilgear SHC XMP 320", 15),
-        (files, "<code>contact.nc</code>", 10),
-        (limits, "Lyashenko", 0),
-        (pipeline, "──► film", 0),
-    ],
-)
-def test_the_readme_is_where_the_words_stand(tell, words, rows):
-    html = tell(README)
-    assert words in html
-    assert html.count("<tr>") >= rows
-    assert "|" not in html.replace("| ", "") or tell is pipeline

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from lube.errors import DataError
+from lube.levels import levels_told
 from lube.schema import EXPERIMENT_DIMS, FILES
 from lube.shares import (
     at_comparison_threshold,
@@ -75,7 +76,7 @@ def test_levels_that_are_not_the_studys_are_refused(experiment, film, name, leve
     levels[-1] = level
     message = refusal(on_study_levels, experiment.assign_coords({name: levels}), film)
     assert message.startswith(f"experiment: {name} {level} is not a level of the study")
-    assert str(film[name].values[0]) in message
+    assert levels_told(film[name].values[:1].tolist()) in message
 
 
 def test_the_threshold_to_compare_is_picked(experiment, film):

@@ -3,10 +3,11 @@
 from pathlib import Path
 
 from lube.configuration import configuration
+from lube.excerpts import excerpts
 from lube.files import written_whole
 from lube.io import load
 from lube.jobs import begin_job
-from lube.overview import assumptions, facts, files, findings, limits, pipeline
+from lube.overview import facts, findings
 from lube.pages import html_page
 from lube.study import load_study
 
@@ -16,14 +17,12 @@ datasets = (load(snakemake.input[kind], kind, study) for kind in ("film", "conta
 written, readme, style = (
     Path(snakemake.input[name]).read_text(encoding="utf-8") for name in ("study", "readme", "style")
 )
-parts = {
+parts = excerpts(readme)
+parts |= {
     "facts": facts(study),
     "findings": findings(study, *datasets),
-    "limits": limits(readme),
-    "files": files(readme),
-    "pipeline": pipeline(readme),
     "configuration": html_page("Configuration", configuration(study, written), style),
-    "assumptions": html_page("What the paper leaves open", assumptions(readme), style),
+    "assumptions": html_page("What the paper leaves open", parts["assumptions"], style),
 }
 for name, html in parts.items():
     with written_whole(snakemake.output[name]) as part:

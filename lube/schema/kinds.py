@@ -1,0 +1,17 @@
+"""All kinds of file, by their names."""
+
+from lube.schema import clocks, lines, oil, rig
+
+_KINDS = {**oil.KINDS, **lines.KINDS, **rig.KINDS, **clocks.KINDS}
+
+FILES = {kind: file.variables for kind, file in _KINDS.items()}
+"""Variables of each kind of file, by the kind's name."""
+
+SUMMARIES = {kind: file.summary for kind, file in _KINDS.items() if file.summary}
+"""What is in each kind of file that stays, in a sentence or two."""
+
+MEASURED = tuple(clocks.KINDS)
+"""Files of measured clock times, by `snakemake benchmark`; they are no part of the results."""
+
+ATTRIBUTES = {kind: file.attributes for kind, file in _KINDS.items() if file.attributes}
+"""Global attributes that the stages read from a file, by kind."""

@@ -1,0 +1,40 @@
+"""What means a level, and what does not."""
+
+import pytest
+
+from lube.levels import NEAR, SAME, level_index, levels_told
+
+SPEEDS = [60.0, 600.0 / 7.0, 100.0]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "index"), [(100, 2), (86, 1), (85.7, 1), (100.5, 2), (100.6, None), (-60.0, None)]
+)
+def test_what_people_write_means_the_level_near_it(wanted, index):
+    assert level_index(SPEEDS, wanted) == index
+
+
+@pytest.mark.parametrize("within", [NEAR, SAME])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_the_distance_is_relative_to_the_level(within, side):
+    assert level_index([1e-9, 1e9], 1e9 * (1.0 + 0.99 * side * within), within) == 1
+    assert level_index([1e-9, 1e9], 1e9 * (1.0 + 1.01 * side * within), within) is None
+
+
+def test_names_are_met_letter_by_letter():
+    assert level_index(["paper", "pan-hamrock"], "pan-hamrock") == 1
+    assert level_index(["paper"], "pap") is None
+
+
+@pytest.mark.parametrize("wanted", ["800", None, float("nan")])
+def test_what_is_no_number_means_no_number(wanted):
+    assert level_index([800.0], wanted) is None
+
+
+def test_of_two_levels_as_near_the_first_is_meant():
+    assert level_index([100.0, 100.1], 100.05) == 0
+
+
+def test_levels_are_told_in_a_line():
+    assert levels_told(SPEEDS) == "60, 85.7143, 100"
+    assert levels_told(["paper", "pan-hamrock"]) == "paper, pan-hamrock"
