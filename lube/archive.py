@@ -209,12 +209,13 @@ def _readme(study, kinds, study_file):
         creator.name + (f" ({creator.affiliation})" if creator.affiliation else "")
         for creator in about.creators
     )
-    records = (
-        "\nThe measured records themselves are not in this archive; `data/experiment.nc` holds "
-        "their fingerprints in its attribute `inputs_sha256`.\n"
-        if study.experiment.manifest is not None
-        else ""
-    )
+    records = anew = ""
+    if study.experiment.manifest is not None:
+        records = (
+            "\nThe measured records themselves are not in this archive; `data/experiment.nc` holds "
+            "their fingerprints in its attribute `inputs_sha256`.\n"
+        )
+        anew = "put the measured records where their list expects them, "
     return f"""\
 # {title_of(study)}
 
@@ -261,6 +262,6 @@ To see where a number comes from, and make it again to the last bit:
 ```
 
 Without Python, `sha256sum --check {SUMS}` checks the fingerprints. To compute everything anew,
-go to a copy of `code/`, follow its README, and give `snakemake --configfile` the path of
+{anew}go to a copy of `code/`, follow its README, and give `snakemake --configfile` the path of
 `study/{study_file}` here: the datasets come out as the same bytes.
 """

@@ -46,18 +46,25 @@ def _parser():
     figures.set_defaults(run=_figures)
     explain = commands.add_parser("explain", help="trace a number of contact.nc and make it again")
     explain.add_argument("path", help="a contact.nc, its film.nc beside it")
-    for name in ("force", "speed", "temperature", "slide-to-roll-ratio"):
-        explain.add_argument(f"--{name}", type=float, help="the nearest level is taken")
+    units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
+    for name in (*units, "slide-to-roll-ratio"):
+        told = f"a level of the file{units.get(name, '')}, to within half a per cent"
+        explain.add_argument(f"--{name}", type=float, help=told)
     for name in ("lubricant", "film-formula"):
         explain.add_argument(f"--{name}", help="by name; else the first")
     explain.add_argument(
         "--realisation",
-        type=lambda text: None if text == "all" else int(text),
+        type=_realisation,
         default=0,
         help="its number, or `all` for the mean and its interval; by default 0",
     )
     explain.set_defaults(run=_explain)
     return parser
+
+
+def _realisation(text):
+    """Number of a realisation; None for all."""
+    return None if text == "all" else int(text)
 
 
 def _verify(options):

@@ -40,6 +40,7 @@ def test_what_people_wrote_keeps_its_place_towards_one_another(own, tmp_path):
     assert contents["study/oils/mine.yaml"].samefile(tmp_path / "oils/mine.yaml")
     assert json.loads(contents[VALUES])["study_file"] == "studies/study.yaml"
     assert "measured records themselves are not in this archive" in contents["README.md"]
+    assert "anew,\nput the measured records where their list expects them" in contents["README.md"]
 
 
 def test_the_values_are_those_behind_the_files(study, tmp_path):
