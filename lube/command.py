@@ -6,7 +6,7 @@
 import argparse
 import sys
 
-from lube.errors import LubeError
+from lube.errors import LubeError, shown
 from lube.processors import compute_alike
 
 
@@ -63,8 +63,12 @@ def _parser():
 
 
 def _realisation(text):
-    """Number of a realisation; None for all."""
-    return None if text == "all" else int(text)
+    """Read the number of a realisation; None stands for all."""
+    try:
+        return None if text == "all" else int(text)
+    except ValueError:
+        told = f"got {shown(text)}, need a whole number or `all`"
+        raise argparse.ArgumentTypeError(told) from None
 
 
 def _verify(options):

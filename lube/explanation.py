@@ -125,7 +125,8 @@ def _level(coordinate, path, wanted):
         return 0
     index = level_index(levels, wanted)
     if index is None:
-        raise DataError(f"{path}: {name}: got {wanted}, need one of {levels_told(levels)}")
+        came = "missing" if wanted is None else f"got {wanted}"
+        raise DataError(f"{path}: {name}: {came}, need one of {levels_told(levels)}")
     return index
 
 

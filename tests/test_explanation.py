@@ -88,7 +88,7 @@ def test_an_explanation_tells_what_a_number_follows_from(folder, study):
     [
         (PLACE | {"force": 700.0}, "force: got 700.0, need one of 800, 1600"),
         (PLACE | {"film_formula": "nope"}, "film_formula: got nope, need one of paper, pan-h"),
-        ({"force": 800.0}, "temperature: got None, need one of 40, 80"),
+        ({"force": 800.0}, "temperature: missing, need one of 40, 80"),
         (PLACE | {"colour": 1}, "got colour, need names among slide_to_roll_ratio, "),
         (PLACE | {"realisation": 7}, "realisation: got 7, need 0 to 2"),
     ],
