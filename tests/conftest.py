@@ -5,11 +5,15 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+import yaml
+from every_kind import datasets_of_every_kind
 from hypothesis import settings
+from studies import PAPER_CONTENT, with_value
 from xdist.scheduler import LoadScopeScheduling
 
 from lube import film_table, line_spec, load_study, roughness_lines
 from lube.about import About
+from lube.io import save
 from lube.lubricant import lubricant_table
 from lube.roughness import roughness_batch
 from lube.schema import EXPERIMENT_DIMS, label
@@ -167,6 +171,36 @@ def make_experiment():
         return label(experiment.set_coords("duration"), "experiment")
 
     return make
+
+
+@pytest.fixture
+def paper_with(tmp_path):
+    """Write the paper's study with changed values, and return the file."""
+
+    def write(*changes):
+        content = PAPER_CONTENT
+        for key, value in changes:
+            content = with_value(content, key, value)
+        path = tmp_path / "mine.yaml"
+        path.write_text(yaml.safe_dump(content), encoding="utf-8")
+        return path
+
+    return write
+
+
+@pytest.fixture(scope="session")
+def datasets(study, make_spec):
+    """One dataset of every kind; not to be changed."""
+    return datasets_of_every_kind(study, make_spec)
+
+
+@pytest.fixture(scope="session")
+def files(datasets, study, tmp_path_factory):
+    """The same, saved."""
+    folder = tmp_path_factory.mktemp("files")
+    for kind, dataset in datasets.items():
+        save(dataset, folder / f"{kind}.nc", kind, study)
+    return folder
 
 
 @pytest.fixture

@@ -4,6 +4,8 @@ import contextlib
 import re
 import signal
 
+import pytest
+
 from lube.errors import LONGEST_LINE, LubeError
 
 LONGEST_WAIT = 60
@@ -55,3 +57,12 @@ def attempt(read, path, named=None):
             check_line(str(error))
             assert str(error).startswith(str(LubeError(str(named or f"{path}: ")))[:300])
             return None
+
+
+def one_line(error, call, *arguments):
+    """The line in which a call refuses its arguments, by this kind of error."""
+    with pytest.raises(error) as caught:
+        call(*arguments)
+    message = str(caught.value)
+    assert message and "\n" not in message
+    return message

@@ -12,6 +12,7 @@ import json
 import math
 import os
 from collections import Counter
+from functools import partial
 from pathlib import Path
 
 import netCDF4
@@ -236,15 +237,13 @@ def written(content):
 
 
 def test_a_mistaken_study_is_valid_or_told_in_one_line(tmp_path):
-    path = tmp_path / "study.yaml"
-    cases = mistaken(STUDY_CONTENTS).map(written)
-    fuzz(cases, 900, lambda content: study_is_valid(path, content))
+    check = partial(study_is_valid, tmp_path / "study.yaml")
+    fuzz(mistaken(STUDY_CONTENTS).map(written), 900, check)
 
 
 def test_a_spoilt_study_is_valid_or_told_in_one_line(tmp_path):
-    path = tmp_path / "study.yaml"
-    cases = spoilt([STUDIES[0].read_bytes()])
-    fuzz(cases, 500, lambda content: study_is_valid(path, content))
+    check = partial(study_is_valid, tmp_path / "study.yaml")
+    fuzz(spoilt([STUDIES[0].read_bytes()]), 500, check)
 
 
 # Lubricant records
@@ -272,15 +271,13 @@ def record_is_valid(path, content):
 
 
 def test_a_mistaken_record_is_valid_or_told_in_one_line(tmp_path):
-    path = tmp_path / "oil.yaml"
-    cases = mistaken(RECORD_CONTENTS).map(written)
-    fuzz(cases, 400, lambda content: record_is_valid(path, content))
+    check = partial(record_is_valid, tmp_path / "oil.yaml")
+    fuzz(mistaken(RECORD_CONTENTS).map(written), 400, check)
 
 
 def test_a_spoilt_record_is_valid_or_told_in_one_line(tmp_path):
-    path = tmp_path / "oil.yaml"
-    cases = spoilt([path.read_bytes() for path in RECORDS])
-    fuzz(cases, 200, lambda content: record_is_valid(path, content))
+    check = partial(record_is_valid, tmp_path / "oil.yaml")
+    fuzz(spoilt([path.read_bytes() for path in RECORDS]), 200, check)
 
 
 def test_a_spoilt_table_of_viscosities_is_read_or_told_in_one_line(tmp_path):
@@ -337,13 +334,13 @@ def test_a_spoilt_list_of_measurements_is_read_or_told_in_one_line(tmp_path, suf
     (tmp_path / "run.csv").write_text("t [s], U [V]\n0, 1\n1, 2\n")
     path = tmp_path / f"list.{suffix}"
     text = LIST if suffix == "csv" else written(LIST_CONTENT)
-    fuzz(spoilt([text]), 150, lambda content: list_is_read(path, content))
+    fuzz(spoilt([text]), 150, partial(list_is_read, path))
 
 
 def test_a_mistaken_list_of_measurements_is_read_or_told_in_one_line(tmp_path):
     (tmp_path / "run.csv").write_text("t [s], U [V]\n0, 1\n1, 2\n")
     cases = mistaken([{"list": LIST_CONTENT}]).map(lambda content: written(content.get("list")))
-    fuzz(cases, 150, lambda content: list_is_read(tmp_path / "list.yaml", content))
+    fuzz(cases, 150, partial(list_is_read, tmp_path / "list.yaml"))
 
 
 # Measurements

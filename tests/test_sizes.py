@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from studies import with_value
 
 from lube.errors import StudyError
 from lube.study import load_study
@@ -18,11 +19,7 @@ def load(tmp_path):
     def load_changed(**changes):
         content = yaml.safe_load(SMOKE.read_text("utf-8"))
         for key, value in changes.items():
-            *path, last = key.split("__")
-            place = content
-            for part in path:
-                place = place[part]
-            place[last] = value
+            content = with_value(content, key.replace("__", "."), value)
         path = tmp_path / "large.yaml"
         path.write_text(yaml.safe_dump(content), encoding="utf-8")
         return load_study(path)

@@ -1,10 +1,12 @@
 """Numbers with units: read exactly, or refused in one line that says what is needed."""
 
 import math
+from functools import partial
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from refusals import one_line
 
 from lube.errors import LubeError
 from lube.units import convert, parse_number, parse_quantity, with_unit
@@ -35,13 +37,7 @@ FACTORS = [
     ("rad/s", "rpm", 30.0 / math.pi),
 ]
 
-
-def refusal(call, *arguments):
-    with pytest.raises(LubeError) as caught:
-        call(*arguments)
-    message = str(caught.value)
-    assert message and "\n" not in message
-    return message
+refusal = partial(one_line, LubeError)
 
 
 @given(finite)

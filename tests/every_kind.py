@@ -1,0 +1,71 @@
+"""One dataset of every kind that has a file, for tests of files."""
+
+import numpy as np
+import xarray as xr
+
+from lube.comparison import compare
+from lube.contact import contact_map, contact_statistics
+from lube.ensemble import gather, gather_map
+from lube.experiment import simulated_experiment
+from lube.film import film_table
+from lube.gauge import gauge_records
+from lube.io import opened
+from lube.lubricant import lubricant_table
+from lube.rig_records import rig_records
+from lube.roughness import roughness_batch, roughness_lines
+from lube.schema import COORDINATES, FILES, label
+from lube.trace import contact_trace
+
+KINDS = list(FILES)
+
+
+def load_as_jobs_do(path, kind, study=None):
+    """Batches of lines stay whole steps, everything else is in its unit."""
+    with opened(path, kind, study, raw=kind == "roughness_batch") as dataset:
+        return dataset.load()
+
+
+def measured_times(kind):
+    """Times as `snakemake benchmark` saves them, none like another."""
+    rng = np.random.default_rng(1)
+    variables = {
+        name: (row.dims, rng.uniform(1.0, 1e6, (2,) * len(row.dims)).astype(row.kind + "8"))
+        for name, row in FILES[kind].items()
+    }
+    dims = {dim for row in FILES[kind].values() for dim in row.dims}
+    coords = {dim: np.arange(2).astype(COORDINATES[dim].kind + "8") for dim in sorted(dims)}
+    return label(xr.Dataset(variables, coords), kind)
+
+
+def datasets_of_every_kind(study, make_spec):
+    """One dataset of every kind, by the stages themselves, on a coarse grid."""
+    grid, layer = study.operating_grid, study.boundary_layer
+    # Rollers of two sizes, so that the shorter line is padded.
+    spec = make_spec(12_000, second_radius=0.04)
+    oil = lubricant_table(study.lubricants, grid.temperature)
+    film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+    lines = roughness_lines(spec, study.seed, [0, 1])
+    batch = roughness_batch(spec, study.seed, [0, 1])
+    run = contact_statistics(batch, film, layer, study.slips)
+    rig_lines = roughness_batch(spec, study.seed, study.rig_realisations[:1])
+    mapped = contact_map(batch, film, layer, 5, 3)
+    points = [point | {"slide_to_roll_ratio": 0.0} for point in study.trace_points]
+    contact, master = gather([run], film), gather_map([mapped])
+    experiment = simulated_experiment(rig_lines, film, study)
+    return {
+        "lubricant": oil,
+        "film": film,
+        "roughness": lines,
+        "roughness_batch": batch,
+        "contact_batch": run,
+        "contact": contact,
+        "master_batch": mapped,
+        "master": master,
+        "trace": contact_trace(lines, film, points, layer, study.resistivity),
+        "experiment": experiment,
+        "rig": rig_records(rig_lines, film, study),
+        "comparison": compare(contact, experiment),
+        "gauge": gauge_records(master, film, contact, experiment),
+        "speed": measured_times("speed"),
+        "reading": measured_times("reading"),
+    }
