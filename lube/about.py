@@ -4,7 +4,7 @@ import datetime
 import re
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, StringConstraints
+from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints
 
 from lube.errors import shown
 from lube.fields import StrictModel
@@ -31,8 +31,17 @@ def _text(pattern, needed):
     return Annotated[str, StringConstraints(strip_whitespace=True), AfterValidator(check)]
 
 
+def _day(value):
+    """Read a day; YAML makes one of 2026-11-21, and a number is none."""
+    try:
+        return value if type(value) is datetime.date else datetime.date.fromisoformat(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"got {shown(value)}, need a day such as 2026-11-21") from None
+
+
 _Line = _text(r"[^\x00-\x1f\x7f]{1,2000}", "one line of text, 2000 letters at most")
 _Orcid = _text(r"\d{4}-\d{4}-\d{4}-\d{3}[\dX]", "an ORCID iD such as 0000-0002-1825-0097")
+_Day = Annotated[datetime.date, BeforeValidator(_day)]
 _Doi = _text(r"10\.\d{4,9}/\S{1,200}", "a DOI such as 10.5281/zenodo.1234567")
 
 
@@ -65,7 +74,7 @@ class About(StrictModel):
         ),
         description="keywords",
     )
-    date: datetime.date | None = Field(
+    date: _Day | None = Field(
         None, description="day of publication, for the archive; else that of the code's commit"
     )
     doi: _Doi | None = Field(None, description="DOI that the repository reserved for the archive")

@@ -346,4 +346,5 @@ def _tell(mistake):
             return f"{key}: got {came}, {_NEEDED[kind].format(**mistake.get('ctx', {}))}"
         case _:
             needed = mistake["msg"].replace("Input should be", "need")
+            needed = needed if needed.startswith("need") else f"need another: {needed}"
             return f"{key}: got {came}, {needed}"

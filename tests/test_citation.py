@@ -1,5 +1,6 @@
 """How an archive is cited."""
 
+import datetime
 import json
 
 import pytest
@@ -66,7 +67,10 @@ def test_the_day_is_the_studys_or_that_of_the_commit(study, monkeypatch):
         ("creators", [{"name": "A", "orcid": "12"}], "creators.0.orcid: got '12', need an ORCID"),
         ("creators", [{}], "creators.0.name: missing"),
         ("doi", "doi.org/10.5281/1", "doi: got 'doi.org/10.5281/1', need a DOI such as 10."),
-        ("date", "yesterday", "date: got 'yesterday', need a valid date"),
+        ("date", "yesterday", "date: got 'yesterday', need a day such as 2026-11-21"),
+        ("date", -1, "date: got -1, need a day"),
+        ("date", 2026, "date: got 2026, need a day"),  # no seconds since 1970
+        ("date", datetime.datetime(2026, 11, 21, 12), "date: got 2026-11-21 12:00:00, need a day"),
     ],
 )
 def test_what_a_study_says_of_itself_is_checked(key, value, told):

@@ -12,7 +12,7 @@ from lube.records import SHIPPED_FOLDER
 from lube.study import load_study
 
 STAGES = (
-    *("lubricant", "film", "roughness", "contact", "trace"),
+    *("lubricant", "film", "roughness", "contact", "trace", "master"),
     *("experiment", "rig", "comparison", "gauge", "speed", "reading"),
 )
 
@@ -159,15 +159,16 @@ def changed_stages(paper_with):
 
 
 MECHANICS = {"contact", "trace", "experiment"}
-LINES = MECHANICS | {"roughness"}
+LAYER = MECHANICS | {"master"}  # which is for pure rolling
+LINES = LAYER | {"roughness"}
 
 
 @pytest.mark.parametrize(
     ("key", "value", "stages"),
     [
         ("resistivity", "0.3 uohm*m", {"trace", "experiment"}),
-        ("boundary_layer.critical_thickness", "6 nm", MECHANICS),
-        ("boundary_layer.shear_strength", "2 MPa", MECHANICS),
+        ("boundary_layer.critical_thickness", "6 nm", LAYER),
+        ("boundary_layer.shear_strength", "2 MPa", LAYER),
         ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS),
         ("revolutions", 3, {"contact"}),
         ("seed", 1, LINES),
