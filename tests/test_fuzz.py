@@ -1,8 +1,10 @@
 """Hostile and careless input: every file is read, or refused in one line, and soon.
 
 Thousands of mistaken studies, records, lists and measurements are made from the shipped ones.
-The cases are the same in every run, so that a test that passed cannot fail for bad luck; with
-LUBE_FUZZ=10 in the environment they are ten times as many, and new ones.
+The cases are the same in every run of the same code, so that a test that passed cannot fail for
+bad luck (Hypothesis takes numbers and words from the modules that are loaded: changed code, or this
+file alone, has other cases). With LUBE_FUZZ=10 in the environment they are ten times as many, and
+new ones each time.
 """
 
 import contextlib
