@@ -90,6 +90,31 @@ def _sensible(number, units):
     return number
 
 
+def sensible_quantity(value, units, **limits):
+    """Read a number written with its unit, of a size that machine parts have.
+
+    Parameters
+    ----------
+    value : str
+        A number and its unit.
+    units : str
+        Unit of the returned number.
+    **limits
+        As in `bounded`, in `units`.
+
+    Returns
+    -------
+    float
+        The value in `units`.
+
+    Raises
+    ------
+    LubeError
+        If it is no such quantity, or outside its limits.
+    """
+    return _sensible(bounded(parse_quantity(value, units), units, **limits), units)
+
+
 def _in_words(limits):
     """``{"above": 0.0, "most": 0.5}`` -> ``above 0 and at most 0.5``."""
     words = {"above": "above", "below": "below", "least": "at least", "most": "at most"}
@@ -120,7 +145,7 @@ def quantity(units, **limits):
     """
 
     def parse(value):
-        return _sensible(bounded(parse_quantity(value, units), units, **limits), units)
+        return sensible_quantity(value, units, **limits)
 
     schema = {"type": "string", "format": _described(f"quantity in {units}", limits)}
     return Annotated[float, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]

@@ -10,10 +10,10 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, StrictInt, WithJsonSchema
 
 from lube.errors import LubeError, StudyError
-from lube.fields import Length, Pressure, StrictModel, bounded, pure_number
+from lube.fields import Length, Pressure, StrictModel, bounded, pure_number, sensible_quantity
 from lube.hertz import contact_half_width, reduced_modulus, reduced_radius
 from lube.sizes import MOST_POINTS
-from lube.units import parse_number, parse_quantity
+from lube.units import parse_number
 
 AUTOMATIC_WAVELENGTH = "contact width at the largest force"
 
@@ -63,7 +63,7 @@ def _wavelength(value):
     if value == AUTOMATIC_WAVELENGTH:
         return value
     try:
-        return bounded(parse_quantity(value, "m"), "m", above=0.0)
+        return sensible_quantity(value, "m", above=0.0)
     except LubeError as error:
         raise ValueError(f"{error}, or the words {AUTOMATIC_WAVELENGTH!r}") from None
 
@@ -73,7 +73,7 @@ def _shortest_wavelength(value):
         _points_of(value)
         return value
     try:
-        return bounded(parse_quantity(value, "m"), "m", above=0.0)
+        return sensible_quantity(value, "m", above=0.0)
     except LubeError as error:
         raise ValueError(f"{error}, or a number of grid points such as '10 points'") from None
 
@@ -185,16 +185,21 @@ def line_spec(rollers, roughness, largest_force):
         q_max=2.0 * math.pi / shortest,
         height_step=roughness.height_step,
     )
-    _check_waves(spec, longest, shortest)
+    _check_waves(spec, roughness, longest, shortest)
     _check_height_step(spec)
     return spec
 
 
-def _check_waves(spec, longest, shortest):
+def _check_waves(spec, roughness, longest, shortest):
     if shortest < 2.0 * spec.spacing * (1.0 - 1e-9):
         raise StudyError(
             f"roughness.points: got {spec.points[0]}, too coarse a grid: its spacing is "
             f"{spec.spacing:.3g} m, need at most half the shortest wavelength, {shortest:.3g} m"
+        )
+    if shortest >= longest and shortest == roughness.shortest_wavelength:
+        raise StudyError(
+            f"roughness.shortest_wavelength: got {shortest:.3g} m, need less than the longest "
+            f"wavelength, {longest:.3g} m"
         )
     if shortest >= longest:
         least = math.ceil(spec.points[0] * shortest / longest) + 1

@@ -42,7 +42,7 @@ def delimiter_of(header):
     return next((sign for sign in "\t;" if sign in header), ",")
 
 
-def split_cells(line, delimiter):
+def split_cells(line, delimiter, blanks=None):
     """Cells of a line, without the blanks and quotes around them.
 
     Parameters
@@ -51,6 +51,8 @@ def split_cells(line, delimiter):
         One line of the file.
     delimiter : str
         What parts the cells, one character.
+    blanks : str, optional
+        Characters that are blanks; else all that Unicode calls so.
 
     Returns
     -------
@@ -61,4 +63,4 @@ def split_cells(line, delimiter):
         cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
     except csv.Error:  # at a carriage return within the line, or a cell of 100 000 characters
         cells = [line]
-    return [cell.strip() for cell in cells]
+    return [cell.strip(blanks) for cell in cells]

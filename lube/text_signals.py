@@ -142,7 +142,8 @@ class TextSignal:
     def _fault(self, offset, block, error):
         """First line of a block that is no row of numbers, and why."""
         for number, line in self._rows(offset, block):
-            cells = split_cells(line, self.delimiter)
+            # As the reader does, which knows no other digits or blanks than ASCII's.
+            cells = split_cells(line, self.delimiter, blanks=" \t")
             if len(cells) != self.width:
                 return f"line {number}: got {len(cells)} values, need {self.width}"
             for signal in filter(None, (self.time, self.measured)):
@@ -151,14 +152,15 @@ class TextSignal:
                     came = cells[signal.place][:40]
                     return f"line {number}: got {came!r} as {signal.quantity}, need {needed}"
         first = _line_number(self.path, offset)
-        return f"lines from {first} on: not a table of numbers ({str(error).splitlines()[0]})"
+        found = str(error).splitlines()[0]
+        return f"lines from {first} on: got what is no row ({found}), need a table of numbers"
 
     def _is_number(self, cell):
         if self.decimal_sign == "," and "." in cell:
             return False
         try:
-            float(cell.replace(self.decimal_sign, "."))
-        except ValueError:
+            pyarrow.scalar(cell.replace(self.decimal_sign, ".")).cast("float64")
+        except pyarrow.ArrowInvalid:
             return False
         return True
 

@@ -168,6 +168,9 @@ def test_a_missing_value_of_scaled_integers_is_no_number(tmp_path):
         ("3", "got 1 values, need 2"),
         ("3,4,5", "got 3 values, need 2"),
         ("# a comment", "got 1 values, need 2"),
+        ("3,1_000", "got '1_000' as voltage, need a number"),
+        ("3,-0.5\x85", r"got '-0.5\x85' as voltage, need a number"),  # blank for Python alone
+        ("3,٣", "got '٣' as voltage, need a number"),
     ],
 )
 def test_a_line_that_is_no_row_of_numbers(tmp_path, line, told):
