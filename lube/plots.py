@@ -9,7 +9,7 @@ import io
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from lube.files import written_whole
 from lube.provenance import stamp
@@ -210,11 +210,16 @@ def plain_log_ticks(axis, numbers=(1, 2, 5)):
     Parameters
     ----------
     axis : matplotlib.axis.Axis
-        The axis, on a logarithmic scale.
+        The axis, on a logarithmic scale, its limits as they are to stay.
     numbers : sequence of int, optional
-        Which multiples of the powers of ten get a label.
+        Which multiples of the powers of ten get a label; on an axis too short for two of them,
+        round numbers do.
     """
+    low, high = sorted(axis.get_view_interval())
     axis.set_major_locator(LogLocator(subs=numbers))
+    if sum(low <= place <= high for place in axis.get_majorticklocs()) < 2:
+        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+        axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 

@@ -135,3 +135,22 @@ def test_a_figure_that_cannot_be_written_is_told_and_leaves_the_old_one(
     plt.close(figure)
     assert (tmp_path / "figure.png").read_bytes() == before
     assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize(
+    ("limits", "labels"),
+    [
+        ((15.0, 120.0), ["20", "50", "100"]),
+        ((0.7, 1.4), ["0.8", "1", "1.2", "1.4"]),
+        ((1.02, 1.07), ["1.02", "1.03", "1.04", "1.05", "1.06", "1.07"]),
+    ],
+)
+def test_a_logarithmic_axis_has_plain_labels_however_short_it_is(limits, labels):
+    figure, axes = plt.subplots()
+    axes.set(yscale="log", ylim=limits)
+    plots.plain_log_ticks(axes.yaxis)
+    figure.canvas.draw()
+    low, high = (limit * (1.0 + side * 1e-9) for limit, side in zip(limits, (-1, 1), strict=True))
+    ticks = zip(axes.get_yticks(), axes.get_yticklabels(), strict=True)
+    assert [label.get_text() for place, label in ticks if low <= place <= high] == labels
+    plt.close(figure)
