@@ -108,18 +108,18 @@ class Study(StrictModel):
     seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)] = Field(
         description="seed of all randomness"
     )
-    realisations: Annotated[StrictInt, Field(ge=1, le=10**6)] = Field(
+    realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
         description="how many pairs of roughness lines"
     )
     revolutions: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
         description="of the roller with the faster surface; equal rollers without slip repeat "
         "themselves after one"
     )
-    batch_size: Annotated[StrictInt, Field(ge=1)] = Field(
+    batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
         description="realisations per job; changes no result"
     )
-    kept_realisations: tuple[StrictInt, ...] = Field(
-        description="realisations whose lines stay in roughness.nc, 0 among them"
+    kept_realisations: tuple[Annotated[StrictInt, Field(ge=0, le=RIG_REALISATIONS - 1)], ...] = (
+        Field(description="realisations whose lines stay in roughness.nc, 0 among them")
     )
     rollers: RollerPair
     lubricants: tuple[LubricantRecord, ...] = Field(

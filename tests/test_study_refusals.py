@@ -1,11 +1,12 @@
 """Every mistake in a study is refused, before anything is computed."""
 
+import re
 from functools import partial
 
 import pytest
 import yaml
 from refusals import one_line
-from studies import OIL, PAPER_CONTENT, REMOVED, with_value
+from studies import CONFIG, OIL, PAPER_CONTENT, REMOVED, with_value
 
 from lube.errors import LubeError
 from lube.records import SHIPPED_FOLDER
@@ -108,7 +109,7 @@ COUNTS = [
     ("roughness.points", 10, "got 10, need at least 64"),
     ("roughness.points", 1e6, "got 1000000.0, need a whole number"),
     ("kept_realisations", [0, 64], "got 64, need realisations from 0 to 63"),
-    ("kept_realisations", [-1, 0], "got -1, need realisations from 0 to 63"),
+    ("kept_realisations", [-1, 0], "kept_realisations.0: got -1, need at least 0"),
     ("kept_realisations", [0, 0], "0 is repeated, need each once"),
     ("kept_realisations", [1], "need 0 among them"),
     ("kept_realisations", [], "need 0 among them"),
@@ -285,3 +286,12 @@ def test_a_study_file_that_is_no_study_is_named(tmp_path):
     assert "absent.yaml: cannot be read" in refusal(tmp_path / "absent.yaml")
     (tmp_path / "empty.yaml").touch()
     assert "empty.yaml: need a mapping" in refusal(tmp_path / "empty.yaml")
+
+
+@pytest.mark.parametrize("key", ["seed", "realisations", "batch_size", "kept_realisations"])
+def test_a_number_that_python_will_not_write_out_is_told_by_its_length(key, tmp_path):
+    path, huge = tmp_path / "study.yaml", "0x" + "f" * 5000
+    value = f"[0, {huge}]" if key == "kept_realisations" else huge
+    text = (CONFIG / "smoke.yaml").read_text(encoding="utf-8")
+    path.write_text(re.sub(f"(?m)^{key}: .*$", f"{key}: {value}", text), encoding="utf-8")
+    assert re.search("got a whole number of some 60.. digits, need at most [0-9]+$", refusal(path))
