@@ -2,6 +2,7 @@
 
 import json
 import mimetypes
+from urllib.parse import quote
 
 from rocrate.model import ContextEntity, File, Person
 from rocrate.model.dataset import Dataset
@@ -55,9 +56,10 @@ def crate_metadata(study, files):
     crate.datePublished = publication_date(study)
     crate.keywords = ", ".join(about.keywords)
     crate.license = crate.add(_licence(crate, about.licence))
-    crate.creator = [
-        crate.add(_person(crate, creator, number)) for number, creator in enumerate(about.creators)
-    ]
+    people = [_person(crate, *numbered) for numbered in enumerate(about.creators, start=1)]
+    crate.creator = _one_or_all(people)
+    # Who makes it public: the first maker's institution, else the first maker.
+    crate.publisher = people[0].get("affiliation") or people[0]
     if about.doi:
         crate.root_dataset["identifier"] = f"https://doi.org/{about.doi}"
     folders = {
@@ -65,11 +67,12 @@ def crate_metadata(study, files):
         for folder in sorted({_folder_of(path) for path in files} - {""})
     }
     for path, size in sorted(files.items()):
-        if _folder_of(path) == "code/":
-            continue  # described as a whole
-        entity = crate.add(File(crate, None, path, properties=_described(path, size)))
-        if _folder_of(path):
-            folders[_folder_of(path)].append_to("hasPart", entity)
+        if _folder_of(path) != "code/":  # which is described as a whole
+            crate.add(File(crate, None, path, properties=_described(path, size)))
+    for name, folder in folders.items():
+        parts = [file for file in crate.data_entities if _folder_of(file.id) == name != file.id]
+        if parts:
+            folder["hasPart"] = _one_or_all(parts)
     return json.dumps(crate.metadata.generate(), indent=2, ensure_ascii=False) + "\n"
 
 
@@ -82,12 +85,20 @@ def _licence(crate, licence):
     return ContextEntity(crate, LICENCES[licence], properties=properties)
 
 
-def _person(crate, creator, number):
-    identifier = f"https://orcid.org/{creator.orcid}" if creator.orcid else f"#creator-{number + 1}"
-    properties = {"name": creator.name}
+def _person(crate, number, creator):
+    identifier = f"https://orcid.org/{creator.orcid}" if creator.orcid else f"#creator-{number}"
+    person = crate.add(Person(crate, identifier, properties={"name": creator.name}))
     if creator.affiliation:
-        properties["affiliation"] = creator.affiliation
-    return Person(crate, identifier, properties=properties)
+        properties = {"@type": "Organization", "name": creator.affiliation}
+        name = f"#{quote(creator.affiliation, safe='')}"  # one entity, however many work there
+        institution = ContextEntity(crate, name, properties=properties)
+        person["affiliation"] = crate.add(institution)
+    return person
+
+
+def _one_or_all(entities):
+    """Reduce a list of one to its one, as RO-Crate wants it."""
+    return entities[0] if len(entities) == 1 else entities
 
 
 def _folder_of(path):

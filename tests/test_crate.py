@@ -4,7 +4,10 @@ import json
 
 from crates import issues_of
 
+from lube.about import About
 from lube.crate import crate_metadata
+
+ORCID = "0000-0002-1825-0097"
 
 
 def test_the_catalogue_is_valid_under_its_own_validator(attributed_study, tmp_path):
@@ -27,3 +30,26 @@ def test_the_same_study_has_the_same_catalogue(attributed_study):
     sizes = {"README.md": 1, "data/film.nc": 2}
     backwards = dict(reversed(sizes.items()))
     assert crate_metadata(attributed_study, sizes) == crate_metadata(attributed_study, backwards)
+
+
+def test_makers_of_one_institution_share_it_and_it_makes_the_archive_public(study):
+    creators = [{"name": "A, B", "affiliation": "TU Berlin"}, {"name": "C", "orcid": ORCID}]
+    creators += [{"name": "D", "affiliation": "TU Berlin"}]
+    study = study.model_copy(update={"about": About.model_validate({"creators": creators})})
+    catalogue = json.loads(crate_metadata(study, {"README.md": 1}))
+    listed = {entity["@id"]: entity for entity in catalogue["@graph"]}
+    assert listed["#TU%20Berlin"] == {
+        "@id": "#TU%20Berlin",
+        "@type": "Organization",
+        "name": "TU Berlin",
+    }
+    makers = ["#creator-1", f"https://orcid.org/{ORCID}", "#creator-3"]
+    assert [maker["@id"] for maker in listed["./"]["creator"]] == makers
+    for maker in (listed["./"]["publisher"], listed["#creator-3"]["affiliation"]):
+        assert maker == {"@id": "#TU%20Berlin"}
+
+
+def test_a_maker_of_no_institution_makes_the_archive_public(study):
+    study = study.model_copy(update={"about": About(creators=[{"name": "A"}])})
+    root = json.loads(crate_metadata(study, {"README.md": 1}))["@graph"][0]
+    assert root["publisher"] == root["creator"] == {"@id": "#creator-1"}
