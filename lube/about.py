@@ -36,7 +36,8 @@ def _day(value):
     try:
         return value if type(value) is datetime.date else datetime.date.fromisoformat(value)
     except (TypeError, ValueError):
-        raise ValueError(f"got {shown(value)}, need a day such as 2026-11-21") from None
+        came = value if isinstance(value, datetime.datetime) else shown(value)
+        raise ValueError(f"got {came}, need a day such as 2026-11-21") from None
 
 
 _Line = _text(r"[^\x00-\x1f\x7f]{1,2000}", "one line of text, 2000 letters at most")
