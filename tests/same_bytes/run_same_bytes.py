@@ -2,7 +2,8 @@
 
 `python tests/same_bytes/run_same_bytes.py` makes its datasets on one core and on two, in batches
 of 1, 2, 3 and 4, through a submit script as on a cluster, and in a second clone at another path,
-and compares the checksum of each dataset; the clone's figures and executed notebooks too.
+and compares the checksum of each dataset; the clone's figures and executed notebooks too, and all
+that the code and the study's file in the clone's archive make.
 
 So it does as if on lesser processors: NumPy without AVX2 and fused multiply-add, Numba without the
 processor's own instructions, OpenBLAS as on an early one. Last it tells, without a verdict, what
@@ -11,13 +12,14 @@ It takes about ten minutes on two idle cores.
 """
 
 import os
+import shutil
 import sys
 import tempfile
 import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow"))
-from repository import RESULTS, copy_of_the_repository
+from repository import RESULTS, Repository, copy_of_the_repository
 from test_cluster_generic import SUBMIT
 
 from lube.processors import AVX512
@@ -46,6 +48,7 @@ def main():
             failed += tell(again, {name: expected[name] for name in datasets})
         second = copy_of_the_repository(Path(folder) / "second" / "deeper" / "repository")
         failed += tell(made(second, "all, in a second clone", []), expected)
+        failed += tell(made_by_a_stranger(second, Path(folder) / "stranger"), expected)
         for what, variables in (LESSER | GREATER).items():
             os.environ.update(variables)
             again = made(first, what, targets)
@@ -79,6 +82,16 @@ def made(repository, what, arguments, **changes):
     repository.run(*arguments, study=repository.with_values(**changes))
     print(f"{what}: {time.monotonic() - began:.0f} s", end="", flush=True)
     return repository.products()
+
+
+def made_by_a_stranger(repository, folder):
+    """Archive a study, and make it anew with nothing but the archive's code and study file."""
+    repository.run("archive", study="mine.yaml")
+    archive = repository.results / "archive/smoke"
+    stranger = Repository(shutil.copytree(archive / "code", folder))
+    stranger.run(study=str(archive / "study/mine.yaml"))
+    print("all, from the archive alone", end="")
+    return stranger.products()
 
 
 def tell(again, expected, verdict=True):
