@@ -4,7 +4,7 @@ import datetime
 import re
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints
+from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints, model_validator
 
 from lube.errors import shown
 from lube.fields import StrictModel
@@ -46,12 +46,41 @@ _Day = Annotated[datetime.date, BeforeValidator(_day)]
 _Doi = _text(r"10\.\d{4,9}/\S{1,200}", "a DOI such as 10.5281/zenodo.1234567")
 
 
+def _cited(name):
+    """Refuse half a name."""
+    if not all(part.strip() for part in name.split(",", 1)):
+        raise ValueError(f"got {shown(name)}, need 'Family, Given', or a name without a comma")
+    return name
+
+
+def _once(values):
+    """Refuse a list that is empty or says something twice."""
+    if not values or len(set(values)) < len(values):
+        raise ValueError(f"got {shown(list(values))}, need one or more, each once")
+    return values
+
+
 class Creator(StrictModel):
     """Someone who made a study."""
 
-    name: _Line = Field(description="as it is cited: `Family, Given`")
+    name: Annotated[_Line, AfterValidator(_cited)] = Field(
+        description="as it is cited: `Family, Given`"
+    )
     affiliation: _Line | None = Field(None, description="institution")
     orcid: _Orcid | None = Field(None, description="ORCID iD, such as 0000-0002-1825-0097")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _check_quotes(cls, content):
+        # For YAML {name: Somebody, Else} has two keys, the second without a value.
+        if isinstance(content, dict):
+            for key in set(content) - set(cls.model_fields):
+                if content[key] is None:
+                    raise ValueError(
+                        f"got {shown(key)} without a value, need quotes where a name has a comma: "
+                        "{name: 'Family, Given'}"
+                    )
+        return content
 
 
 class About(StrictModel):
@@ -68,7 +97,7 @@ class About(StrictModel):
         (), description="who made them; an archive needs one at least"
     )
     licence: Literal[tuple(LICENCES)] = Field("CC-BY-4.0", description="licence of the results")
-    keywords: tuple[_Line, ...] = Field(
+    keywords: Annotated[tuple[_Line, ...], AfterValidator(_once)] = Field(
         (
             *("tribology", "mixed lubrication", "boundary lubrication"),
             *("elastohydrodynamic lubrication", "rolling contact", "surface roughness"),
@@ -80,7 +109,15 @@ class About(StrictModel):
     )
     doi: _Doi | None = Field(None, description="DOI that the repository reserved for the archive")
 
+    @model_validator(mode="after")
+    def _check_orcids(self):
+        known = [one.orcid for one in self.creators if one.orcid is not None]
+        if len(set(known)) < len(known):
+            raise ValueError("creators: got an ORCID iD twice, need one for each")
+        return self
+
     @property
     def in_files(self):
         """What every file of the study says; the rest concerns the archive alone."""
-        return self.model_dump(mode="json", exclude={"date", "doi"})
+        passing = {"date": True, "doi": True, "creators": {"__all__": {"orcid"}}}
+        return self.model_dump(mode="json", exclude=passing)

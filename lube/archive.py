@@ -10,18 +10,20 @@ import json
 import os
 import platform
 import shutil
-import tempfile
 import zipfile
+from collections import Counter
 from importlib.metadata import distributions
 from pathlib import Path
 
 from lube.about import LICENCES, PAPER
 from lube.citation import citation_file, zenodo_metadata
 from lube.crate import crate_metadata
-from lube.errors import DataError
-from lube.files import written_whole
+from lube.errors import DataError, StudyError, shown
+from lube.fields import read_yaml
+from lube.files import scratch_beside, written_whole
 from lube.provenance import config_text, digest, fingerprint, title_of
-from lube.repository import ROOT, code_files, commit
+from lube.records import shipped_records
+from lube.repository import ROOT, changed_code, code_files, commit
 from lube.schema import SUMMARIES
 
 SUMS = "SHA256SUMS"
@@ -57,13 +59,12 @@ def make_archive(study, study_file, results, kinds, figures, folder):
     folder = Path(folder)
     contents = archive_contents(study, study_file, results, kinds, figures)
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder.parent, prefix=".part-") as scratch:
-            new = Path(scratch) / folder.name
+        with scratch_beside(folder) as scratch:
+            new = scratch / folder.name
             _fill(new, contents, study)
             _zip(new, folder.with_name(folder.name + ".zip"))
             if folder.exists():
-                os.rename(folder, Path(scratch) / "old")
+                os.rename(folder, scratch / "old")
             os.rename(new, folder)
     except OSError as error:
         what = error.filename or folder
@@ -87,16 +88,15 @@ def archive_contents(study, study_file, results, kinds, figures):
     datasets = {f"data/{kind}.nc": results / f"{kind}.nc" for kind in kinds}
     drawn = [f"figures/{figure}.{suffix}" for figure in figures for suffix in ("pdf", "png")]
     drawn += [f"notebooks/{figure}.ipynb" for figure in figures]
-    written = _written(study, Path(study_file))
-    records = sorted({Path(file) for record in study.lubricants for file in record.files})
+    written = written_files(study, study_file)
     return {
         **datasets,
         **{name: results / name for name in drawn},
         **{f"study/{name}": path for name, path in written.items()},
-        **{f"lubricants/{path.name}": path for path in records},
+        **{f"lubricants/{name}": path for name, path in _records(study).items()},
         **{f"code/{name}": ROOT / name for name in code_files()},
         "code/COMMIT": commit() + "\n",
-        VALUES: _values(study, Path(study_file), kinds),
+        VALUES: _values(study, study_file, kinds),
         "versions.txt": exact_versions(),
         "CITATION.cff": citation_file(study),
         ".zenodo.json": zenodo_metadata(study),
@@ -104,16 +104,53 @@ def archive_contents(study, study_file, results, kinds, figures):
     }
 
 
-def _written(study, study_file):
-    """Files that people wrote, by their places towards one another: the study's file first."""
-    shipped = ROOT / "lube" / "lubricants"
-    files = [Path(file).resolve() for record in study.lubricants for file in record.files]
-    own = [file for file in files if not file.is_relative_to(shipped)]
+def written_files(study, study_file):
+    """Files of a study that people wrote, but for the measured records.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    study_file : str or Path
+        Its YAML file.
+
+    Returns
+    -------
+    dict
+        From their places towards one another, with slashes, to the files: the study's file
+        first, then lubricant records of its own and the list of its measured records.
+
+    Raises
+    ------
+    StudyError
+        If it names one of them by an absolute path, which would lead nowhere in an archive.
+    """
+    content = read_yaml(study_file, StudyError)
+    named = dict(zip(content["lubricants"], study.lubricants, strict=True))
+    own = [file for name in set(named) - set(shipped_records()) for file in named[name].files]
     if study.experiment.manifest is not None:
-        own.append(Path(study.experiment.manifest).resolve())
-    written = [study_file.resolve(), *sorted(set(own))]
+        named |= {content["experiment"]["manifest"]: None}
+        own.append(study.experiment.manifest)
+    for name in named:
+        if os.path.isabs(name):
+            raise StudyError(
+                f"{study_file}: got {shown(name)}, need a path from the study's folder: any "
+                "other leads nowhere in an archive"
+            )
+    # As they are called, wherever links may lead.
+    written = [Path(os.path.abspath(file)) for file in (study_file, *sorted(map(str, own)))]
     folder = os.path.commonpath([path.parent for path in written])
     return {path.relative_to(folder).as_posix(): path for path in written}
+
+
+def _records(study):
+    """Files of the lubricant records by their names, with the record's before one of several."""
+    files = {Path(file): record.name for record in study.lubricants for file in record.files}
+    times = Counter(file.name for file in files)
+    return {
+        file.name if times[file.name] == 1 else f"{name}/{file.name}": file
+        for file, name in sorted(files.items())
+    }
 
 
 def _values(study, study_file, kinds):
@@ -124,7 +161,7 @@ def _values(study, study_file, kinds):
         values |= json.loads(text)
     content = {
         "study": study.name,
-        "study_file": next(iter(_written(study, study_file))),
+        "study_file": next(iter(written_files(study, study_file))),
         "seed": study.seed,
         "realisations": study.realisations,
         "about": study.about.in_files,
@@ -216,6 +253,8 @@ def _readme(study, kinds, study_file):
             "their fingerprints in its attribute `inputs_sha256`.\n"
         )
         anew = "put the measured records where their list expects them, "
+    changed = ", ".join(f"`{name}`" for name in changed_code())
+    changed = f"; not as in that commit: {changed}" if changed else ""
     return f"""\
 # {title_of(study)}
 
@@ -232,7 +271,7 @@ The model is that of the paper *{PAPER}*.
 | `study/{study_file}` | the study as it was written |
 | `{VALUES}` | its values as they were understood: SI units, but r/min and °C |
 | `lubricants/` | the records of its lubricants, with their sources |
-| `code/` | the code, commit `{commit()}`, with its workflow and the figures' notebooks |
+| `code/` | the code, commit `{commit()}`, with its workflow and the figures' notebooks{changed} |
 | `versions.txt` | the exact versions of Python and of all packages |
 | `{SUMS}` | the SHA-256 of every file |
 | `ro-crate-metadata.json`, `.zenodo.json` | what each file is, for catalogues |

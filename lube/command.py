@@ -45,7 +45,7 @@ def _parser():
     figures.add_argument("--to", required=True, help="folder for the new figures")
     figures.set_defaults(run=_figures)
     explain = commands.add_parser("explain", help="trace a number of contact.nc and make it again")
-    explain.add_argument("path", help="a contact.nc, its film.nc beside it")
+    explain.add_argument("path", help="a contact.nc, its film.nc and lubricant.nc beside it")
     units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
     for name in (*units, "slide-to-roll-ratio"):
         told = f"a level of the file{units.get(name, '')}, to within half a per cent"

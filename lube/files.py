@@ -40,7 +40,7 @@ def written_whole(path):
         If the file cannot be written: the folder is not writable, the disk is full.
     """
     path = Path(path)
-    part = path.with_name(f"{path.name}.{secrets.token_hex(4)}.{os.getpid()}@{_HERE}.part")
+    part = _part_of(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _clear_leftovers(path.parent)
@@ -53,6 +53,38 @@ def written_whole(path):
     finally:
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def scratch_beside(path):
+    """Make a folder beside the place of another, for a while.
+
+    Only a killed process leaves it there, until the next file is written to the same place.
+
+    Parameters
+    ----------
+    path : str or Path
+        The other's place; the folder that it lies in is made if need be.
+
+    Yields
+    ------
+    Path
+        The folder, empty.
+    """
+    path = Path(path)
+    part = _part_of(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    _clear_leftovers(path.parent)
+    part.mkdir()
+    try:
+        yield part
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+def _part_of(path):
+    """Name of what is not finished: it tells who works at it."""
+    return path.with_name(f"{path.name}.{secrets.token_hex(4)}.{os.getpid()}@{_HERE}.part")
 
 
 def _this_machine():
@@ -74,7 +106,7 @@ def _clear_leftovers(folder):
         writer = _OURS.fullmatch(part.name)
         if writer and not is_running(int(writer[1])):
             with contextlib.suppress(OSError):
-                part.unlink()
+                shutil.rmtree(part) if part.is_dir() else part.unlink()
 
 
 def is_running(process):

@@ -111,14 +111,26 @@ def opened(path, kind, study=None, raw=True):
     if not path.is_file():
         raise DataError(f"{path}: no such file, need a {kind} dataset")
     sealed = _seal_of(path)
-    try:
-        with xr.open_dataset(path, engine="netcdf4", mask_and_scale=not raw) as dataset:
+    with _told_as_damage(path):
+        dataset = xr.open_dataset(path, engine="netcdf4", mask_and_scale=not raw)
+    with dataset:
+        with _told_as_damage(path):
             check(dataset, kind, path)
             if study is not None:
                 check_config(dataset, study, kind, path)
-            if not sealed:
-                log.warning("%s: has no seal, so nobody knows if it is undamaged", path)
+        if sealed:
+            yield dataset  # whole, so that what goes wrong from here on is not the file's fault
+            return
+        log.warning("%s: has no seal, so nobody knows if it is undamaged", path)
+        with _told_as_damage(path):
             yield dataset
+
+
+@contextlib.contextmanager
+def _told_as_damage(path):
+    """Tell what the NetCDF library and xarray stumble over as damage of a file."""
+    try:
+        yield
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise DataError(

@@ -94,10 +94,12 @@ def parameters_of(notebook):
     Raises
     ------
     LubeError
-        If the file is no notebook, or has no such cell.
+        If the file is not there or no notebook, or has no such cell.
     """
     try:
         cells = nbformat.read(notebook, as_version=4).cells
+    except OSError as error:
+        raise LubeError(f"{notebook}: cannot be read: {error.strerror}") from None
     except ValueError:
         raise LubeError(f"{notebook}: not a Jupyter notebook, damaged or foreign") from None
     tagged = [cell for cell in cells if "parameters" in cell.metadata.get("tags", [])]

@@ -8,6 +8,7 @@ the same study makes the same bytes.
 import contextlib
 import hashlib
 import json
+from collections import Counter
 from importlib.metadata import version
 from pathlib import Path
 
@@ -55,20 +56,34 @@ def global_attributes(study, kind, inputs=()):
         "config": config,
         "config_sha256": digest(config),
         "inputs_sha256": json.dumps(hashes, sort_keys=True),
-        "source": f"simulation by lube {version('lube')}",
+        "source": _source(study, stage),
         "code_commit": commit(),
         "software": ", ".join(f"{name} {version(name)}" for name in LIBRARIES),
         "history": f"{code}: made from {made_from}",
         "license": f"{about.licence} {LICENCES[about.licence]}",
-        "creator_name": "; ".join(one.name for one in about.creators) or "not named",
+        "creator_name": makers_of(study),
         "creator_institution": "; ".join(one.affiliation or "-" for one in about.creators) or "-",
         "references": f"The model is that of: {PAPER}",
     }
 
 
+def _source(study, stage):
+    """Tell how a file's values came about: CF's word for it."""
+    by = f"by lube {version('lube')}"
+    if study.experiment.manifest is None or stage not in ("experiment", "comparison", "gauge"):
+        return f"simulation {by}"
+    evaluated = f"records of a rig, evaluated {by}"
+    return evaluated if stage == "experiment" else f"{evaluated}; simulation {by}"
+
+
 def title_of(study):
     """Title of a study's results."""
     return study.about.title or f"Mixed lubrication study {study.name}"
+
+
+def makers_of(study):
+    """Names of those who made a study."""
+    return "; ".join(one.name for one in study.about.creators) or "not named"
 
 
 def config_text(study, kind):
@@ -281,13 +296,37 @@ def fingerprints(paths):
     Returns
     -------
     dict
-        From file name to digits, in the names' order. Where two files share a name, as many of
-        their folders stand before it as tell them apart.
+        From file name to digits, in the names' order. Different files of one name bear the
+        first digits behind it, as in ``run.csv#1f0c6a97bd``.
     """
-    paths = sorted({Path(path).resolve() for path in paths})
-    names = {path: path.name for path in paths}
-    depth = 1
-    while len(set(names.values())) < len(paths):
-        depth += 1
-        names = {path: "/".join(path.parts[-depth:]) for path in paths}
-    return {name: fingerprint(path) for path, name in sorted(names.items(), key=lambda it: it[1])}
+    found = sorted({(Path(path).name, fingerprint(path)) for path in paths})
+    times = Counter(name for name, _ in found)
+    return {
+        name if times[name] == 1 else f"{name}#{digits[:SHORT]}": digits for name, digits in found
+    }
+
+
+def told_inputs(dataset, where):
+    """Read what a file says of the files that it was made from.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The loaded file.
+    where : str or Path
+        The file's path, for the message.
+
+    Returns
+    -------
+    dict
+        From file name to a set of fingerprints: one for each file of that name.
+
+    Raises
+    ------
+    DataError
+        If it does not say.
+    """
+    told = {}
+    for name, digits in told_by(dataset, "inputs_sha256", where).items():
+        told.setdefault(name.removesuffix(f"#{str(digits)[:SHORT]}"), set()).add(digits)
+    return told

@@ -7,11 +7,14 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 """Folder of the Snakefile, if the code runs from a clone or an unpacked archive."""
 
+# What lies among it besides is its user's: other studies, records, notes.
 _CODE = (
     *("Snakefile", "pyproject.toml", "README.md", "LICENSE", "CITATION.cff"),
-    *("lube", "notebooks", "workflow", "profiles", "tests/benchmarks"),
+    *("lube/**/*.py", "lube/lubricants/*", "notebooks/*.ipynb", "tests/benchmarks/*.py"),
+    *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
+    *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
+    *("workflow/report/*", "workflow/docs/probability.png", "profiles/*/config.yaml"),
 )
-_PASSING = {"__pycache__", ".ipynb_checkpoints"}
 
 
 def code_files():
@@ -22,12 +25,23 @@ def code_files():
     list of str
         Their paths below `ROOT`, with slashes, as far as they are there.
     """
-    found = []
-    for name in _CODE:
-        path = ROOT / name
-        files = [file.relative_to(ROOT) for file in (path, *path.rglob("*")) if file.is_file()]
-        found += [file.as_posix() for file in files if not _PASSING.intersection(file.parts)]
-    return sorted(found)
+    found = (file for pattern in _CODE for file in ROOT.glob(pattern) if file.is_file())
+    return sorted(file.relative_to(ROOT).as_posix() for file in found)
+
+
+def changed_code():
+    """List the files of `code_files` that are not as in the commit.
+
+    Returns
+    -------
+    list of str
+        Their paths below `ROOT`, new files included; empty if all are, or nobody knows.
+    """
+    if not (ROOT / ".git").exists():
+        return []
+    changed = _git("diff", "--name-only", "-z", "HEAD") or ""
+    new = _git("ls-files", "--others", "-z") or ""
+    return sorted({*changed.split("\0"), *new.split("\0")} & set(code_files()))
 
 
 @functools.cache
@@ -37,8 +51,9 @@ def commit():
     Returns
     -------
     str
-        Hexadecimal digits, with ``+changes`` behind them if the code differs from the commit;
-        in an unpacked archive, what its file ``COMMIT`` says; else ``unknown``.
+        Hexadecimal digits, with ``+changes`` behind them if what computes differs from the
+        commit, `lube` or the workflow's scripts; in an unpacked archive, what its file
+        ``COMMIT`` says; else ``unknown``.
     """
     try:
         told = (ROOT / "COMMIT").read_text(encoding="utf-8").strip()

@@ -1,13 +1,14 @@
 """What goes into an archive, and where; the whole of one is in workflow/test_archived_study.py."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
 import yaml
 
-from lube.archive import VALUES, archive_contents, exact_versions, make_archive
-from lube.errors import DataError
+from lube.archive import VALUES, archive_contents, exact_versions, make_archive, written_files
+from lube.errors import DataError, StudyError
 from lube.provenance import config_text, digest
 from lube.study import load_study
 
@@ -41,6 +42,50 @@ def test_what_people_wrote_keeps_its_place_towards_one_another(own, tmp_path):
     assert json.loads(contents[VALUES])["study_file"] == "studies/study.yaml"
     assert "measured records themselves are not in this archive" in contents["README.md"]
     assert "anew,\nput the measured records where their list expects them" in contents["README.md"]
+
+
+@pytest.mark.parametrize("place", ["lubricants", "manifest"])
+def test_an_absolute_path_is_refused(own, place):
+    study = yaml.safe_load(own.read_text("utf-8"))
+    if place == "manifest":
+        named = study["experiment"]["manifest"] = str(own.parent / "records/list.csv")
+    else:
+        named = study["lubricants"][1] = str(own.parent.parent / "oils/mine.yaml")
+    own.write_text(yaml.safe_dump(study), encoding="utf-8")
+    with pytest.raises(StudyError, match="need a path from the study's folder") as caught:
+        written_files(load_study(own), own)
+    assert named[:40] in str(caught.value)
+
+
+def test_records_of_one_file_name_are_both_there(own, tmp_path):
+    oil = yaml.safe_load((tmp_path / "oils/mine.yaml").read_text("utf-8")) | {"name": "other"}
+    same = own.parent / "mobilgear-shc-xmp-320.yaml"
+    same.write_text(yaml.safe_dump(oil), encoding="utf-8")
+    study = yaml.safe_load(own.read_text("utf-8"))
+    study["lubricants"].append(same.name)
+    own.write_text(yaml.safe_dump(study), encoding="utf-8")
+    contents = archive_contents(load_study(own), own, tmp_path / "results", ["film"], [])
+    assert contents["lubricants/other/mobilgear-shc-xmp-320.yaml"].samefile(same)
+    shipped = contents["lubricants/mobilgear-shc-xmp-320/mobilgear-shc-xmp-320.yaml"]
+    assert shipped.is_relative_to(ROOT / "lube/lubricants")
+    assert contents["study/studies/mobilgear-shc-xmp-320.yaml"].samefile(same)
+
+
+def test_a_record_behind_a_link_is_taken_where_the_study_looks_for_it(own, tmp_path):
+    record = tmp_path / "oils/mine.yaml"
+    record.rename(tmp_path / "elsewhere.yaml")
+    record.symlink_to(tmp_path / "elsewhere.yaml")
+    assert "oils/mine.yaml" in written_files(load_study(own), own)
+
+
+def test_a_shipped_record_named_by_its_path_stands_where_it_leads(own, tmp_path):
+    shutil.copytree(ROOT / "lube/lubricants", tmp_path / "lube/lubricants")
+    study = yaml.safe_load(own.read_text("utf-8"))
+    study["lubricants"][0] = "../lube/lubricants/n-dodecane.yaml"
+    study["operating_grid"]["temperature"]["values"] = [40, 50]
+    study["traces"] = [{"force": "800 N", "speed": "100 rpm", "temperature": "40 degC"}]
+    own.write_text(yaml.safe_dump(study), encoding="utf-8")
+    assert "lube/lubricants/n-dodecane.yaml" in written_files(load_study(own), own)
 
 
 def test_the_values_are_those_behind_the_files(study, tmp_path):

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from lube.errors import DataError
-from lube.files import check_writable, cut_within_a_line, written_whole
+from lube.files import check_writable, cut_within_a_line, scratch_beside, written_whole
 
 
 @pytest.fixture
@@ -82,11 +82,25 @@ def test_a_killed_writer_leaves_the_old_file(old):
     assert old.read_text() == "old"
 
 
+def test_a_killed_worker_leaves_a_folder_that_the_next_one_takes_away(tmp_path):
+    code = (
+        "import os, signal, sys; from lube.files import scratch_beside\n"
+        "with scratch_beside(sys.argv[1]) as part:\n"
+        "    (part / 'half').write_text('half'); os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    killed = subprocess.run([sys.executable, "-c", code, tmp_path / "archive"], check=False)
+    assert killed.returncode != 0
+    assert len(list(tmp_path.iterdir())) == 1
+    with scratch_beside(tmp_path / "archive") as part:
+        assert list(tmp_path.iterdir()) == [part]
+    assert not list(tmp_path.iterdir())
+
+
 # Killed writers, and two at once
 
 WRITE_AND_WAIT = """\
 import sys
-from lube.files import check_writable, cut_within_a_line, written_whole
+from lube.files import check_writable, cut_within_a_line, scratch_beside, written_whole
 with written_whole(sys.argv[1]) as part:
     part.write_text("half")
     print(flush=True)

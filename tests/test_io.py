@@ -140,6 +140,13 @@ def test_on_a_disk_of_any_size_a_file_is_whole_or_not_there(datasets, study, tmp
     assert not saved[4] and saved[382]
 
 
+@pytest.mark.parametrize("error", [OSError(28, "No space left"), ValueError(), RuntimeError()])
+def test_what_goes_wrong_while_a_whole_file_is_open_is_not_its_fault(files, error):
+    with pytest.raises(type(error)) as caught, opened(files / "film.nc", "film"):
+        raise error
+    assert caught.value is error
+
+
 def test_saving_makes_the_folder_it_needs(datasets, study, tmp_path):
     save(datasets["film"], tmp_path / "new" / "folder" / "film.nc", "film", study)
     load(tmp_path / "new" / "folder" / "film.nc", "film")

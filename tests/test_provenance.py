@@ -16,6 +16,7 @@ from lube.provenance import (
     global_attributes,
     merged_config,
     stamp,
+    told_inputs,
 )
 from lube.schema import FILES, SUMMARIES
 
@@ -75,23 +76,30 @@ def test_inputs_are_told_by_name_and_fingerprint(study, tmp_path):
     expected = {
         name: hashlib.sha256(text.encode()).hexdigest()
         for name, text in {
-            f"{tmp_path.name}/list.csv": "file",
-            "monday/run.csv": "monday",
-            "tuesday/run.csv": "tuesday",
+            "list.csv": "file",
+            f"run.csv#{digest('monday')[:10]}": "monday",
+            f"run.csv#{digest('tuesday')[:10]}": "tuesday",
         }.items()
     }
     assert fingerprints(paths) == expected
     attributes = global_attributes(study, "experiment", paths)
     assert json.loads(attributes["inputs_sha256"]) == expected
     assert attributes["history"].endswith("made from " + ", ".join(sorted(expected)))
+    told = told_inputs(xr.Dataset(attrs=attributes), "experiment.nc")
+    runs = {digest("monday"), digest("tuesday")}
+    assert told == {"list.csv": {digest("file")}, "run.csv": runs}
 
 
 def test_names_of_inputs_do_not_depend_on_where_they_lie(tmp_path):
-    for place in ("here", "elsewhere"):
-        (tmp_path / place).mkdir()
-        (tmp_path / place / "film.nc").write_text("film")
-    told = [fingerprints([tmp_path / place / "film.nc"]) for place in ("here", "elsewhere")]
-    assert told[0] == told[1] == {"film.nc": digest("film")}
+    told = []
+    for place in ("here", "else/where"):
+        files = [tmp_path / place / name for name in ("film.nc", "a/run.csv", "b/run.csv")]
+        for file in files:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(file.parent.name if file.suffix == ".csv" else "film")
+        told.append(fingerprints(files))
+    assert told[0] == told[1]
+    assert told[0]["film.nc"] == digest("film")
 
 
 def test_an_input_that_is_not_there_is_named(tmp_path):

@@ -6,7 +6,7 @@ import subprocess
 import pytest
 
 from lube import repository
-from lube.repository import code_files, commit, commit_date
+from lube.repository import changed_code, code_files, commit, commit_date
 
 
 @pytest.fixture
@@ -51,6 +51,25 @@ def test_code_that_differs_from_its_commit_says_so(place):
     assert commit() == f"{head}+changes"
 
 
+@pytest.mark.skipif(shutil.which("git") is None, reason="needs Git")
+def test_code_tells_which_of_its_files_are_not_in_the_commit(place):
+    for name in ("notebooks/fig1.ipynb", "lube/film.py", "lube/gauge.py", "notes.txt"):
+        (place / name).parent.mkdir(exist_ok=True)
+        (place / name).write_text("1")
+    git(place, "init")
+    git(place, "add", ".")
+    git(place, "commit", "-m", "first")
+    assert changed_code() == []
+    for name in ("notebooks/fig1.ipynb", "lube/gauge.py", "lube/new.py", "notes.txt", "more.txt"):
+        (place / name).write_text("2")
+    git(place, "add", "lube/gauge.py")
+    assert changed_code() == ["lube/gauge.py", "lube/new.py", "notebooks/fig1.ipynb"]
+
+
+def test_code_outside_git_knows_of_no_changes(place):
+    assert changed_code() == []
+
+
 def test_code_in_git_has_a_day_and_code_elsewhere_has_none(place):
     commit_date.cache_clear()
     assert commit_date() is None
@@ -62,3 +81,19 @@ def test_the_files_of_the_code_are_those_that_make_and_draw_results():
     for needed in ("Snakefile", "lube/film.py", "notebooks/fig02_film.ipynb"):
         assert needed in files
     assert not [name for name in files if "__pycache__" in name or name.startswith("results")]
+
+
+@pytest.mark.skipif(not (repository.ROOT / ".git").exists(), reason="needs the clone")
+def test_all_files_of_the_clone_but_tests_are_code():
+    tracked = set(git(repository.ROOT, "ls-files").splitlines())
+    passing = ("tests/", ".ci/", ".gitignore")
+    needed = {name for name in tracked if not name.startswith(passing)}
+    assert needed <= set(code_files())
+
+
+def test_what_its_user_leaves_among_the_code_is_not_code(place):
+    for name in ("workflow/config/mine.yaml", "workflow/config/run.csv", "notebooks/notes.txt"):
+        (place / name).parent.mkdir(parents=True, exist_ok=True)
+        (place / name).write_text("private")
+    (place / "notebooks/mine.ipynb").write_text("a figure")
+    assert code_files() == ["notebooks/mine.ipynb"]

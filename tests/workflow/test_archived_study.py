@@ -1,5 +1,6 @@
 """The archive of the smoke study, as a stranger finds it: whole, checkable, and drawn again."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -10,7 +11,7 @@ from crates import issues_of
 from repository import Repository, environment
 
 from lube.archive import SUMS, VALUES, files_of
-from lube.errors import DataError
+from lube.errors import DataError, LubeError
 from lube.provenance import fingerprint
 from lube.verify import redraw, unpacked, verify_archive
 
@@ -128,6 +129,37 @@ def test_a_figure_that_is_not_in_the_archive_is_refused(archive, tmp_path):
         list(redraw(archive, tmp_path, ["fig99"]))
 
 
+@pytest.mark.parametrize("place", [".", "figures", "notebooks/../figures"])
+def test_nothing_is_drawn_over_an_archive(archive, place):
+    with pytest.raises(DataError, match="need a folder outside the archive"):
+        list(redraw(archive, archive / place))
+    assert verify_archive(archive) == []
+
+
+def test_figures_are_drawn_of_an_archive_and_nothing_else(archive, archived, tmp_path):
+    for folder in (archive.parent, archived.results):
+        with pytest.raises(DataError, match="not an archive: SHA256SUMS is missing"):
+            list(redraw(folder, tmp_path))
+
+
+def test_a_notebook_that_is_not_there_is_told(spoilt, tmp_path):
+    (spoilt / "code/notebooks/fig02_film.ipynb").unlink()
+    with pytest.raises(LubeError, match=r"fig02_film.ipynb: cannot be read: No such file"):
+        list(redraw(spoilt, tmp_path / "new", ["fig02_film"]))
+
+
+def test_what_a_notebook_sets_besides_paths_stays_when_it_is_drawn_again(spoilt, tmp_path):
+    notebook = spoilt / "code/notebooks/fig02_film.ipynb"
+    content = json.loads(notebook.read_text("utf-8"))
+    for cell in content["cells"]:
+        if "parameters" in cell["metadata"].get("tags", []):
+            cell["source"] += ["\nshown_force = 800"]
+    content["cells"][-1]["source"] += ["\nassert shown_force == 800"]
+    notebook.write_text(json.dumps(content), "utf-8")
+    drawn = dict(redraw(spoilt, tmp_path / "new", ["fig02_film"]))
+    assert drawn == {"fig02_film.png": True, "fig02_film.pdf": True}
+
+
 def test_snakemake_verifies_what_is_there_and_makes_nothing(archived, archive):
     before = archived.snapshot()
     said = archived.run("verify")
@@ -187,6 +219,37 @@ def test_a_file_of_another_kind_is_found_out_by_the_schema(spoilt):
     shutil.copy(spoilt / "data/film.nc", spoilt / "data/lubricant.nc")
     with_true_sums(spoilt)
     assert any("lubricant.nc: not a lubricant file" in line for line in verify_archive(spoilt))
+
+
+def test_files_of_another_study_are_found_out_by_its_name_and_makers(spoilt):
+    study = spoilt / "study/smoke.yaml"
+    text = study.read_text("utf-8").replace("name: smoke", "name: theirs")
+    study.write_text(text.replace("The authors of lube", "Somebody Else"), "utf-8")
+    with_true_sums(spoilt)
+    wrong = verify_archive(spoilt)
+    assert any("film.nc: study is 'smoke', need 'theirs'" in line for line in wrong)
+    assert any("creator_name is 'The authors of lube', need 'Somebody" in line for line in wrong)
+
+
+@pytest.mark.parametrize("content", [b"\xff", b"no sums"])
+def test_damaged_sums_are_told(spoilt, content):
+    with (spoilt / SUMS).open("r+b") as file:
+        file.write(content)
+    assert verify_archive(spoilt)
+
+
+def test_a_zip_damaged_anywhere_is_told(archive, tmp_path):
+    packed = archive.with_suffix(".zip").read_bytes()
+    told = []
+    for place in range(40, len(packed), len(packed) // 40):
+        path = tmp_path / "flipped.zip"
+        path.write_bytes(packed[:place] + bytes([packed[place] ^ 4]) + packed[place + 1 :])
+        try:
+            with unpacked(path) as folder:
+                told += verify_archive(folder)
+        except DataError as error:
+            told.append(str(error))
+    assert len(told) >= 40
 
 
 @pytest.mark.parametrize(

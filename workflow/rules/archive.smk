@@ -12,6 +12,7 @@ rule archive:
         result("benchmarks/archive.tsv")
     params:
         about=digest(STUDY.about.model_dump(mode="json")),
+        code=lambda wildcards: state_of_code(),
         kinds=DATASETS,
         figures=ARCHIVED,
     message:

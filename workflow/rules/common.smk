@@ -141,13 +141,21 @@ def measured_files():
 
 def archived_texts():
     """What people wrote and an archive holds: the study's file, its records, the code."""
+    from lube.archive import written_files
     from lube.citation import check_about
     from lube.repository import code_files
 
     with told_in_one_line():
         check_about(STUDY)
-    manifest = filter(None, [STUDY.experiment.manifest])
-    return [config["study_file"], *record_files(), *manifest, *code_files()]
+        written = written_files(STUDY, config["study_file"]).values()
+    return [*input_paths(written), *record_files(), *code_files()]
+
+
+def state_of_code():
+    """What an archive says of its code besides the code itself."""
+    from lube.repository import changed_code, commit, commit_date
+
+    return commit(), commit_date(), changed_code()
 
 
 def batch_limits(wildcards):
