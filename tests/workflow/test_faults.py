@@ -1,5 +1,6 @@
 """Nothing is lost: killed runs, full and read-only disks, two runs at once, damaged inputs."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -87,6 +88,20 @@ def test_a_folder_that_cannot_be_written_is_told_before_any_job(spare, smoke, on
     on_a_disk("remount,rw")
     spare.run(COMPARISON)
     assert spare.products() == smoke.products()
+
+
+def test_lines_that_a_failed_run_left_are_taken_away_by_the_next_good_one(spare):
+    lines, others = (spare.results / f"batches/roughness_{first}.nc" for first in (0, 2))
+    lines.write_text("left by Snakemake, when contact_0 was done and another job failed")
+    os.utime(lines, (0, 0))
+    (spare / COMPARISON).unlink()
+    spare.run(COMPARISON, "--notemp")
+    assert lines.exists()
+    (spare / COMPARISON).unlink()
+    spare.run(COMPARISON)
+    assert not lines.exists()
+    spare.run(f"results/smoke/batches/{others.name}")
+    assert others.exists()  # as it was asked for
 
 
 # Two at once
