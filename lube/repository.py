@@ -40,7 +40,7 @@ def changed_code():
     if not (ROOT / ".git").exists():
         return []
     changed = _git("diff", "--name-only", "-z", "HEAD") or ""
-    new = _git("ls-files", "--others", "-z") or ""
+    new = _git("ls-files", "--others", "--exclude-standard", "-z") or ""
     return sorted({*changed.split("\0"), *new.split("\0")} & set(code_files()))
 
 
