@@ -23,26 +23,20 @@ settings.register_profile("lube", deadline=None)
 settings.load_profile("lube")
 
 
-class _TwoProcesses(LoadScopeScheduling):
-    """Share the tests: one file stays in one process, and so do most real runs of Snakemake.
-
-    The many dry runs of `test_rerun.py` have the other process, for the last.
-    """
+class _FileByFile(LoadScopeScheduling):
+    """Share the tests: one file stays in one process."""
 
     def _split_scope(self, nodeid):
-        file = nodeid.split("::", 1)[0]
-        together = "workflow/" in file and "test_rerun" not in file
-        return "real runs" if together else file
+        return nodeid.split("::", 1)[0]
 
 
 def pytest_xdist_make_scheduler(config, log):
-    return _TwoProcesses(config, log)
+    return _FileByFile(config, log)
 
 
 def pytest_collection_modifyitems(items):
-    """What takes longest comes first; what needs the smoke study once more comes last."""
+    """What takes longest comes first."""
     items.sort(key=lambda item: (item.path.parent.name != "workflow", item.path.name))
-    items.sort(key=lambda item: item.path.name == "test_rerun.py")
 
 
 SMOKE = Path(__file__).parents[1] / "workflow" / "config" / "smoke.yaml"

@@ -46,9 +46,9 @@ def recover(repository, *targets):
 
 
 @pytest.fixture
-def on_a_disk(spare, disk):
+def on_a_disk(spare, disk, tmp_path):
     """Put the finished results on a disk of their own, and return how to mount it again."""
-    kept = spare.folder.with_name("kept")
+    kept = tmp_path / "kept"
     shutil.move(spare / "results", kept)
     (spare / "results").mkdir()
 
