@@ -34,9 +34,19 @@ def pytest_xdist_make_scheduler(config, log):
     return _FileByFile(config, log)
 
 
+# The two processes get these in turn: while one makes the smoke study, the other needs none.
+FIRST = ("test_archived_study.py", "test_fuzz.py", "test_faults.py", "test_gauge.py")
+
+
 def pytest_collection_modifyitems(items):
     """What takes longest comes first."""
-    items.sort(key=lambda item: (item.path.parent.name != "workflow", item.path.name))
+
+    def rank(item):
+        name = item.path.name
+        later = len(FIRST) + (item.path.parent.name != "workflow")
+        return FIRST.index(name) if name in FIRST else later, name
+
+    items.sort(key=rank)
 
 
 SMOKE = Path(__file__).parents[1] / "workflow" / "config" / "smoke.yaml"
