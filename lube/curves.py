@@ -189,7 +189,8 @@ def realisation_correlation(probabilities):
     offsets = probabilities - probabilities.mean(axis=0)
     length = np.sqrt(np.sum(offsets**2, axis=0))
     offsets /= np.where(length > 0.0, length, 1.0)
-    correlation = offsets.T @ offsets
+    # Not the matrix product: its last digits hang on which processor the BLAS finds.
+    correlation = np.einsum("ri,rj->ij", offsets, offsets)
     np.fill_diagonal(correlation, 1.0)
     return correlation
 

@@ -4,6 +4,7 @@ import logging
 
 import numpy as np
 import pytest
+import scipy.stats
 import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
@@ -176,6 +177,14 @@ def test_touching_intervals_overlap_and_unknown_ones_do_not_count():
     simulated = np.array([0.2, 0.2, 0.2]), np.array([0.1] * 3), np.array([0.25] * 3)
     measured = np.array([0.3, 0.4, 0.2]), np.array([0.25, 0.35, np.nan]), np.array([0.4, 0.5, 0.3])
     assert agreement(simulated, measured)["overlap_share"] == 0.5
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_rank_correlation_is_spearmans(seed):
+    rng = np.random.default_rng(seed)
+    p, m = rng.integers(1, 9, (2, 40)) / 10.0  # with many ties
+    found = agreement((p, p, p), (m, m, m))["rank_correlation"]
+    assert found == pytest.approx(scipy.stats.spearmanr(p, m).statistic, rel=1e-12)
 
 
 @pytest.mark.parametrize("pairs", [[], [(0.1, 0.2)], [(0.1, 0.2), (0.1, 0.3)]])

@@ -1,9 +1,14 @@
 """The same last digits on all processors."""
 
+import ast
 import os
 import subprocess
 import sys
+from pathlib import Path
 
+import pytest
+
+import lube
 from lube.processors import compute_alike
 
 NAME = "NPY_DISABLE_CPU_FEATURES"
@@ -27,3 +32,12 @@ def test_a_choice_of_the_users_stays(monkeypatch):
     monkeypatch.setenv(NAME, "")
     compute_alike()
     assert os.environ[NAME] == ""
+
+
+@pytest.mark.parametrize("path", sorted(Path(lube.__file__).parent.rglob("*.py")), ids=str)
+def test_no_last_digit_hangs_on_the_kernels_that_a_blas_chooses(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        assert not isinstance(node, ast.MatMult)
+        name = getattr(node, "attr", getattr(node, "name", None))
+        assert name not in {"linalg", "matmul", "dot", "inner", "tensordot", "lstsq", "polyfit"}
+        assert name not in {"corrcoef", "cov", "spearmanr", "pearsonr"}
