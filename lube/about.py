@@ -74,8 +74,8 @@ class Creator(StrictModel):
     def _check_quotes(cls, content):
         # For YAML {name: Somebody, Else} has two keys, the second without a value.
         if isinstance(content, dict):
-            for key in set(content) - set(cls.model_fields):
-                if content[key] is None:
+            for key in content:
+                if key not in cls.model_fields and content[key] is None:
                     raise ValueError(
                         f"got {shown(key)} without a value, need quotes where a name has a comma: "
                         "{name: 'Family, Given'}"

@@ -81,7 +81,8 @@ def _shortest_wavelength(value):
 def _points_of(wavelength):
     """``"10 points"`` -> 10.0, at least the two that make a wave."""
     try:
-        return bounded(parse_number(wavelength.removesuffix(" points")), "points", least=2.0)
+        number = parse_number(wavelength.removesuffix(" points"))
+        return bounded(number, "points", least=2.0, most=MOST_POINTS)
     except LubeError as error:
         raise ValueError(str(error)) from None
 

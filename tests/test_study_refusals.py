@@ -121,6 +121,7 @@ GRIDS = [
     ("roughness.longest_wavelength", "1 um", "got 1000000, too coarse a grid"),
     ("roughness.longest_wavelength", "1e-310 m", "need a magnitude from 1e-30 to 1e+30"),
     ("roughness.shortest_wavelength", "1 mm", "got 0.001 m, need less than the longest"),
+    ("roughness.shortest_wavelength", "1e308 points", "got 1e+308, need a value at least 2 and at"),
     ("roughness.longest_wavelength", "1 m", "the perimeter, 0.314 m, is too short"),
     ("roughness.height_step", "1 nm", "got 1e-09 m, need 2e-14 to 2e-10 m"),
     ("roughness.height_step", "1e-15 m", "got 1e-15 m, need 2e-14 to 2e-10 m"),
