@@ -86,7 +86,11 @@ PURE_NUMBERS = [
     ("experiment.threshold", "50 ohm", "got 50 ohm, need one of experiment.thresholds: 10, "),
     ("experiment.manifest", "none.csv", "need a file that is there"),
     ("roughness.hurst_exponent", INFINITY, "need a finite number"),
-    ("roughness.shortest_wavelength", "1.9 points", "got 1.9, need a value at least 2 points"),
+    (
+        "roughness.shortest_wavelength",
+        "1.9 points",
+        "got 1.9, need a value at least 2 and at most 1.67772e+07 points",
+    ),
     ("operating_grid.slide_to_roll_ratio", [2.5], "got 2.5, need a value at least -2 and at most"),
     ("operating_grid.slide_to_roll_ratio", [], "need a list such as [0, 0.1]"),
     ("operating_grid.slide_to_roll_ratio", [0, 0], "got 0 after 0, need rising levels"),
