@@ -89,6 +89,7 @@ def archive_contents(study, study_file, results, kinds, figures):
     drawn = [f"figures/{figure}.{suffix}" for figure in figures for suffix in ("pdf", "png")]
     drawn += [f"notebooks/{figure}.ipynb" for figure in figures]
     written = written_files(study, study_file)
+    archived_as = next(iter(written))
     return {
         **datasets,
         **{name: results / name for name in drawn},
@@ -96,11 +97,11 @@ def archive_contents(study, study_file, results, kinds, figures):
         **{f"lubricants/{name}": path for name, path in _records(study).items()},
         **{f"code/{name}": ROOT / name for name in code_files()},
         "code/COMMIT": commit() + "\n",
-        VALUES: _values(study, study_file, kinds),
+        VALUES: _values(study, kinds, archived_as),
         "versions.txt": exact_versions(),
         "CITATION.cff": citation_file(study),
         ".zenodo.json": zenodo_metadata(study),
-        "README.md": _readme(study, kinds, next(iter(written))),
+        "README.md": _readme(study, kinds, archived_as),
     }
 
 
@@ -153,7 +154,7 @@ def _records(study):
     }
 
 
-def _values(study, study_file, kinds):
+def _values(study, kinds, study_file):
     """Tell the study as it was understood: the values behind each dataset, their fingerprints."""
     texts = {kind: config_text(study, kind) for kind in kinds}
     values = {}
@@ -161,7 +162,7 @@ def _values(study, study_file, kinds):
         values |= json.loads(text)
     content = {
         "study": study.name,
-        "study_file": next(iter(written_files(study, study_file))),
+        "study_file": study_file,
         "seed": study.seed,
         "realisations": study.realisations,
         "about": study.about.in_files,

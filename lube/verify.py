@@ -22,7 +22,6 @@ from lube.study import load_study
 _BYPRODUCTS = ("code/build/", "code/lube.egg-info/", "__pycache__")
 """What appears in an archive's folder when its code is installed and run."""
 
-
 # What Python's zipfile says of a file that is none, damaged, or locked by a password.
 _UNREADABLE = (OSError, EOFError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error)
 

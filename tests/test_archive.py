@@ -1,4 +1,4 @@
-"""What goes into an archive, and where; the whole of one is in workflow/test_archived_study.py."""
+"""What goes into an archive, and where; workflow/test_archived_study.py makes a whole one."""
 
 import json
 import shutil

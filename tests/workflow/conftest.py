@@ -54,6 +54,22 @@ def copied(whole, folder):
 
 
 @pytest.fixture(scope="session")
+def archived(smoke, tmp_path_factory):
+    """A repository with the smoke study archived by Snakemake; not to be changed."""
+    folder = tmp_path_factory.mktemp("archived") / "repository"
+    repository = Repository(shutil.copytree(smoke.folder, folder, symlinks=True))
+    said = repository.run("archive")
+    assert "Archive: results/smoke/archive/smoke.zip" in said
+    return repository
+
+
+@pytest.fixture(scope="session")
+def archive(archived):
+    """The smoke study's archive; not to be changed."""
+    return archived.results / "archive/smoke"
+
+
+@pytest.fixture(scope="session")
 def spare_folder(tmp_path_factory):
     """Where all spare repositories lie, one after the other: compiled kernels hang on the path."""
     return tmp_path_factory.mktemp("spare") / "repository"
