@@ -24,7 +24,7 @@ def _text(pattern, needed):
     """Field type for a text of a given form."""
 
     def check(text):
-        if not re.fullmatch(pattern, text):
+        if not re.fullmatch(pattern, text, re.ASCII):
             raise ValueError(f"got {shown(text)}, need {needed}")
         return text
 
@@ -40,10 +40,29 @@ def _day(value):
         raise ValueError(f"got {came}, need a day such as 2026-11-21") from None
 
 
-_Line = _text(r"[^\x00-\x1f\x7f]{1,2000}", "one line of text, 2000 letters at most")
-_Orcid = _text(r"\d{4}-\d{4}-\d{4}-\d{3}[\dX]", "an ORCID iD such as 0000-0002-1825-0097")
+def _true_orcid(orcid):
+    """Refuse an ORCID iD with a slip of the pen, by its last digit (ISO 7064, MOD 11-2)."""
+    *digits, last = orcid.replace("-", "")
+    total = 0
+    for digit in digits:
+        total = 2 * (total + int(digit))
+    if "0123456789X"[(12 - total % 11) % 11] != last:
+        raise ValueError(f"got {shown(orcid)}, need an ORCID iD whose last digit fits the others")
+    return orcid
+
+
+_Line = _text(
+    r"[^\x00-\x1f\x7f-\x9f\u2028\u2029]{1,2000}", "one line of text, 2000 letters at most"
+)
+_Orcid = Annotated[
+    _text(r"\d{4}-\d{4}-\d{4}-\d{3}[\dX]", "an ORCID iD such as 0000-0002-1825-0097"),
+    AfterValidator(_true_orcid),
+]
 _Day = Annotated[datetime.date, BeforeValidator(_day)]
-_Doi = _text(r"10\.\d{4,9}/\S{1,200}", "a DOI such as 10.5281/zenodo.1234567")
+# The characters that CITATION.cff allows.
+_Doi = _text(
+    r"10\.\d{4,9}(\.\d+)?/[\w:/;.()\[\]\\-]{1,200}", "a DOI such as 10.5281/zenodo.1234567"
+)
 
 
 def _cited(name):
@@ -110,10 +129,12 @@ class About(StrictModel):
     doi: _Doi | None = Field(None, description="DOI that the repository reserved for the archive")
 
     @model_validator(mode="after")
-    def _check_orcids(self):
-        known = [one.orcid for one in self.creators if one.orcid is not None]
-        if len(set(known)) < len(known):
-            raise ValueError("creators: got an ORCID iD twice, need one for each")
+    def _check_creators(self):
+        people = [tuple(dict(one).items()) for one in self.creators]
+        orcids = [one.orcid for one in self.creators if one.orcid is not None]
+        for what, known in (("somebody", people), ("an ORCID iD", orcids)):
+            if len(set(known)) < len(known):
+                raise ValueError(f"creators: got {what} twice, need each once")
         return self
 
     @property

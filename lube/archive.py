@@ -6,6 +6,7 @@ versions of its libraries, a fingerprint of every file, and metadata for those w
 catalogue it. Nothing in it tells the hour: the same results make the same archive.
 """
 
+import errno
 import json
 import os
 import platform
@@ -15,20 +16,19 @@ from collections import Counter
 from importlib.metadata import distributions
 from pathlib import Path
 
-from lube.about import LICENCES, PAPER
+from lube.archive_page import archive_page
 from lube.citation import citation_file, zenodo_metadata
-from lube.crate import crate_metadata
+from lube.crate import CATALOGUE, crate_metadata
 from lube.errors import DataError, StudyError, shown
 from lube.fields import read_yaml
-from lube.files import scratch_beside, written_whole
-from lube.provenance import config_text, digest, fingerprint, title_of
+from lube.files import scratch_beside, why_not, written_whole
+from lube.provenance import config_text, digest, fingerprint
 from lube.records import shipped_records
-from lube.repository import ROOT, changed_code, code_files, commit
-from lube.schema import SUMMARIES
+from lube.repository import ROOT, code_files, commit
 
 SUMS = "SHA256SUMS"
 """Name of the file of fingerprints, as ``sha256sum --check`` reads it."""
-VALUES = "study/values.json"
+VALUES = "values.json"
 """Name of the file with the study's values, as they were understood."""
 
 
@@ -67,8 +67,14 @@ def make_archive(study, study_file, results, kinds, figures, folder):
                 os.rename(folder, scratch / "old")
             os.rename(new, folder)
     except OSError as error:
-        what = error.filename or folder
-        raise DataError(f"{folder}: cannot be archived: {what}: {error.strerror}") from error
+        raise DataError(f"{folder}: cannot be archived: {_told(error, folder)}") from error
+
+
+def _told(error, folder):
+    """Tell why a file could not be read, or not be written."""
+    if error.errno == errno.ENOENT:
+        return f"{error.filename}: {error.strerror}"
+    return why_not(error, folder)
 
 
 def archive_contents(study, study_file, results, kinds, figures):
@@ -97,11 +103,11 @@ def archive_contents(study, study_file, results, kinds, figures):
         **{f"lubricants/{name}": path for name, path in _records(study).items()},
         **{f"code/{name}": ROOT / name for name in code_files()},
         "code/COMMIT": commit() + "\n",
-        VALUES: _values(study, kinds, archived_as),
+        VALUES: values_text(study, kinds, archived_as),
         "versions.txt": exact_versions(),
         "CITATION.cff": citation_file(study),
         ".zenodo.json": zenodo_metadata(study),
-        "README.md": _readme(study, kinds, archived_as),
+        "README.md": archive_page(study, kinds, archived_as),
     }
 
 
@@ -124,24 +130,34 @@ def written_files(study, study_file):
     Raises
     ------
     StudyError
-        If it names one of them by an absolute path, which would lead nowhere in an archive.
+        If it names one of them by a path that would lead nowhere in an archive.
     """
     content = read_yaml(study_file, StudyError)
-    named = dict(zip(content["lubricants"], study.lubricants, strict=True))
-    own = [file for name in set(named) - set(shipped_records()) for file in named[name].files]
+    records = zip(content["lubricants"], study.lubricants, strict=True)
+    named = {name: record.files for name, record in records if name not in shipped_records()}
     if study.experiment.manifest is not None:
-        named |= {content["experiment"]["manifest"]: None}
-        own.append(study.experiment.manifest)
+        named[content["experiment"]["manifest"]] = (study.experiment.manifest,)
     for name in named:
-        if os.path.isabs(name):
-            raise StudyError(
-                f"{study_file}: got {shown(name)}, need a path from the study's folder: any "
-                "other leads nowhere in an archive"
-            )
+        _check_path(name, study_file)
+    own = {str(file) for files in named.values() for file in files}
     # As they are called, wherever links may lead.
-    written = [Path(os.path.abspath(file)) for file in (study_file, *sorted(map(str, own)))]
+    written = [Path(os.path.abspath(file)) for file in (study_file, *sorted(own))]
     folder = os.path.commonpath([path.parent for path in written])
     return {path.relative_to(folder).as_posix(): path for path in written}
+
+
+def _check_path(name, study_file):
+    """Refuse any way to a file but the straight one from the study's folder.
+
+    Others hang on folders that are not archived: those above, those passed on the way.
+    """
+    here = os.path.abspath(Path(study_file).parent)
+    straight = os.path.relpath(os.path.join(here, name), here)
+    if Path(name) != Path(straight):
+        raise StudyError(
+            f"{study_file}: got {shown(name)}, need the straight path from the study's folder, "
+            f"{shown(straight)}: any other leads nowhere in an archive"
+        )
 
 
 def _records(study):
@@ -154,8 +170,23 @@ def _records(study):
     }
 
 
-def _values(study, kinds, study_file):
-    """Tell the study as it was understood: the values behind each dataset, their fingerprints."""
+def values_text(study, kinds, study_file):
+    """Tell a study as it was understood: the values behind each dataset, their fingerprints.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    kinds : sequence of str
+        Its datasets.
+    study_file : str
+        Where its file stands in the archive's folder ``study``, with slashes.
+
+    Returns
+    -------
+    str
+        JSON.
+    """
     texts = {kind: config_text(study, kind) for kind in kinds}
     values = {}
     for text in texts.values():
@@ -186,6 +217,23 @@ def exact_versions():
     return system + "\n".join(kept) + "\n"
 
 
+def check_is_archive(folder):
+    """Refuse a folder that is no archive.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The folder.
+
+    Raises
+    ------
+    DataError
+        If it has no fingerprints.
+    """
+    if not (Path(folder) / SUMS).is_file():
+        raise DataError(f"{folder}: not an archive: {SUMS} is missing")
+
+
 def files_of(folder):
     """List all files below a folder.
 
@@ -197,11 +245,13 @@ def files_of(folder):
     Returns
     -------
     list of str
-        Their paths below it, with slashes, in order.
+        Their paths below it, with slashes, in order; links and pipes as well.
     """
-    folder = Path(folder)
+    folder, found = Path(folder), Path(folder).rglob("*")
     return sorted(
-        path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()
+        path.relative_to(folder).as_posix()
+        for path in found
+        if path.is_symlink() or not path.is_dir()
     )
 
 
@@ -216,7 +266,7 @@ def _fill(folder, contents, study):
             path.write_text(content, encoding="utf-8")
     sizes = {name: (folder / name).stat().st_size for name in files_of(folder)}
     catalogue = crate_metadata(study, sizes)
-    (folder / "ro-crate-metadata.json").write_text(catalogue, encoding="utf-8")
+    (folder / CATALOGUE).write_text(catalogue, encoding="utf-8")
     sums = [f"{fingerprint(folder / name)}  {name}\n" for name in files_of(folder)]
     (folder / SUMS).write_text("".join(sums), encoding="utf-8")
 
@@ -229,79 +279,3 @@ def _zip(folder, path):
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = 0o644 << 16
             packed.writestr(entry, (folder / name).read_bytes())
-
-
-def _example(study):
-    """How to explain a number of the study."""
-    grid = study.operating_grid
-    levels = {name: getattr(grid, name)[-1] for name in ("force", "speed", "temperature")}
-    named = " ".join(f"--{name} {level:g}" for name, level in levels.items())
-    return f"lube explain data/contact.nc {named} --realisation 0"
-
-
-def _readme(study, kinds, study_file):
-    """One page for a stranger who opens the archive."""
-    about = study.about
-    rows = "\n".join(f"| `data/{kind}.nc` | {SUMMARIES[kind]} |" for kind in kinds)
-    makers = "; ".join(
-        creator.name + (f" ({creator.affiliation})" if creator.affiliation else "")
-        for creator in about.creators
-    )
-    records = anew = ""
-    if study.experiment.manifest is not None:
-        records = (
-            "\nThe measured records themselves are not in this archive; `data/experiment.nc` holds "
-            "their fingerprints in its attribute `inputs_sha256`.\n"
-        )
-        anew = "put the measured records where their list expects them, "
-    changed = ", ".join(f"`{name}`" for name in changed_code())
-    changed = f"; not as in that commit: {changed}" if changed else ""
-    return f"""\
-# {title_of(study)}
-
-{makers}. Licence of the results: [{about.licence}]({LICENCES[about.licence]}); of the code: see
-`code/LICENSE`. To cite, see `CITATION.cff`.
-
-{about.summary}
-The model is that of the paper *{PAPER}*.
-
-| here | what it is |
-| --- | --- |
-{rows}
-| `figures/`, `notebooks/` | each figure as PNG and PDF, and the executed notebook that drew it |
-| `study/{study_file}` | the study as it was written |
-| `{VALUES}` | its values as they were understood: SI units, but r/min and °C |
-| `lubricants/` | the records of its lubricants, with their sources |
-| `code/` | the code, commit `{commit()}`, with its workflow and the figures' notebooks{changed} |
-| `versions.txt` | the exact versions of Python and of all packages |
-| `{SUMS}` | the SHA-256 of every file |
-| `ro-crate-metadata.json`, `.zenodo.json` | what each file is, for catalogues |
-{records}
-The NetCDF files follow the CF and ACDD conventions; each says in its attributes what it follows
-from. With xarray alone:
-
-```python
-import xarray as xr
-
-contact = xr.open_dataset("data/contact.nc")
-```
-
-With Python 3.11 or newer, the same packages as then, and nothing computed anew but the drawings:
-
-```bash
-python3 -m venv ../lube-env && . ../lube-env/bin/activate
-pip install -c versions.txt ./code
-lube verify .                     # fingerprints, contents, and how the files hang together
-lube figures . --to ../figures    # draws every figure again and compares it byte for byte
-```
-
-To see where a number comes from, and make it again to the last bit:
-
-```bash
-{_example(study)}
-```
-
-Without Python, `sha256sum --check {SUMS}` checks the fingerprints. To compute everything anew,
-{anew}go to a copy of `code/`, follow its README, and give `snakemake --configfile` the path of
-`study/{study_file}` here: the datasets come out as the same bytes.
-"""

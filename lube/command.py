@@ -4,6 +4,7 @@
 """
 
 import argparse
+import os
 import sys
 
 from lube.errors import LubeError, shown
@@ -24,12 +25,22 @@ def main(arguments=None):
         0 if all is well, 1 if something was found wrong, 2 if the command could not be carried
         out.
     """
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="backslashreplace")  # whatever letters the terminal knows
     options = _parser().parse_args(arguments)
     compute_alike()
     try:
-        return options.run(options)
+        code = options.run(options)
+        sys.stdout.flush()
+        return code
     except LubeError as error:
         print(f"Error: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("Interrupted", file=sys.stderr)
+        return 2
+    except BrokenPipeError:  # nobody reads on, as behind `| head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 2
 
 
@@ -83,7 +94,8 @@ def _verify(options):
 
 
 def _figures(options):
-    from lube.verify import redraw, unpacked
+    from lube.redraw import redraw
+    from lube.verify import unpacked
 
     compared = []
     with unpacked(options.path) as folder:

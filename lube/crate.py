@@ -13,6 +13,8 @@ from lube.citation import publication_date
 from lube.provenance import title_of
 from lube.schema import SUMMARIES
 
+CATALOGUE = "ro-crate-metadata.json"
+"""Name of the catalogue, as RO-Crate wants it."""
 RO_CRATE = "1.3"
 """Version of the RO-Crate specification that the archive follows."""
 
@@ -90,7 +92,8 @@ def _person(crate, number, creator):
     person = crate.add(Person(crate, identifier, properties={"name": creator.name}))
     if creator.affiliation:
         properties = {"@type": "Organization", "name": creator.affiliation}
-        name = f"#{quote(creator.affiliation, safe='')}"  # one entity, however many work there
+        # One entity, however many work there.
+        name = f"#institution-{quote(creator.affiliation, safe='')}"
         institution = ContextEntity(crate, name, properties=properties)
         person["affiliation"] = crate.add(institution)
     return person

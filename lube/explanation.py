@@ -6,8 +6,10 @@ that is all it takes to draw the roughness anew and run the model on it.
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import xarray as xr
+from pydantic import BaseModel, Field, ValidationError
 
 from lube.contact import contact_statistics
 from lube.ensemble import with_intervals
@@ -18,6 +20,21 @@ from lube.provenance import fingerprint, told_by, told_inputs
 from lube.roughness import roughness_batch
 from lube.schema import CONTACT_DIMS
 from lube.surfaces import BoundaryLayer, LineSpec
+
+
+class _Layer(BaseModel):
+    critical_thickness: float
+    shear_strength: float
+
+
+class _Run(BaseModel):
+    """How the model was run for a contact.nc, as the file tells it."""
+
+    lines: LineSpec
+    boundary_layer: _Layer
+    reduced_modulus: float
+    seed: Annotated[int, Field(ge=0)]
+    revolutions: Annotated[int, Field(ge=1)]
 
 
 @dataclass(frozen=True)
@@ -80,6 +97,8 @@ def explain(path, realisation=0, **levels):
         If a file cannot be used, they do not belong together, or there is no such cell.
     """
     path = Path(path)
+    if path.is_dir():
+        raise DataError(f"{path}: got a folder, need a contact.nc; an archive's is in its data")
     contact = load(path, "contact")
     film = _beside(path, contact, "film")
     lubricant = _beside(path.with_name("film.nc"), film, "lubricant")
@@ -90,11 +109,15 @@ def explain(path, realisation=0, **levels):
             raise DataError(f"{path}: realisation: got {realisation}, need {known}")
         cell = cell.sel(realisation=[realisation])
     values = told_by(contact, "config", path)
+    try:
+        run = _Run.model_validate(values.get("contact"))
+    except ValidationError:
+        raise DataError(f"{path}: its attribute 'config' does not tell how it was made") from None
     oil, point = (
         table.sel({name: cell[name].values for name in CONTACT_DIMS if name in table.dims})
         for table in (lubricant, film)
     )
-    again = _made_again(cell, point, values["contact"])
+    again = _made_again(cell, point, run)
     if realisation is None:
         again = with_intervals(again, point)
     return Explanation(cell, oil, point, values, again)
@@ -130,14 +153,13 @@ def _level(coordinate, path, wanted):
     return index
 
 
-def _made_again(cell, film, values):
+def _made_again(cell, film, run):
     """Draw the roughness of a cell's realisations anew, and run the model on it."""
-    spec = LineSpec.model_validate(values["lines"])
-    layer = BoundaryLayer.model_construct(**values["boundary_layer"])
+    layer = BoundaryLayer.model_construct(**dict(run.boundary_layer))
     ratios, parts = cell["slide_to_roll_ratio"].values, []
     for realisation in cell["realisation"].values.tolist():
-        lines = roughness_batch(spec, values["seed"], [realisation])
-        parts.append(contact_statistics(lines, film, layer, ratios, values["revolutions"]))
+        lines = roughness_batch(run.lines, run.seed, [realisation])
+        parts.append(contact_statistics(lines, film, layer, ratios, run.revolutions))
     return xr.concat(
         parts, "realisation", join="exact", data_vars="minimal", combine_attrs="override"
     )

@@ -266,6 +266,17 @@ class _PlainLoader(yaml.SafeLoader):
             seen.add(key)
         return super().construct_mapping(node, deep)
 
+    def construct_object(self, node, deep=False):
+        try:
+            return super().construct_object(node, deep)
+        except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError):
+            if not isinstance(node, yaml.ScalarNode):
+                raise
+        raise LubeError(
+            f"line {node.start_mark.line + 1}: got {shown(node.value)}, not valid as the day, "
+            "number or other value that it looks like"
+        )
+
 
 _YAML_KINDS = {dict: "a mapping of keys to values", list: "a list of mappings"}
 

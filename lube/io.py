@@ -14,7 +14,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.files import written_whole
-from lube.provenance import check_config, global_attributes
+from lube.provenance import check_config, check_origin, global_attributes
 from lube.schema import check
 from lube.seals import holds, seal
 
@@ -116,6 +116,7 @@ def opened(path, kind, study=None, raw=True):
     with dataset:
         with _told_as_damage(path):
             check(dataset, kind, path)
+            check_origin(dataset, path)
             if study is not None:
                 check_config(dataset, study, kind, path)
         if sealed:

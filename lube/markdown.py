@@ -126,6 +126,23 @@ def plain(text):
     return unescape(re.sub(r"<[^<>]*>", "", inline(text)))
 
 
+def escaped(text):
+    """Write words so that Markdown shows them as they are.
+
+    Parameters
+    ----------
+    text : str
+        One line of anybody's words.
+
+    Returns
+    -------
+    str
+        Markdown that starts a line, with a backslash before whatever would be a mark.
+    """
+    text = re.sub(r"[\\`*<\[\]|~#$]|(?<![^\W_])_|_(?![^\W_])|&(?=#?\w+;)", r"\\\g<0>", text)
+    return re.sub(r"^(\d+(?=[.)])|(?=[+>-]))", r"\1\\", text)
+
+
 def _marked(match):
     """HTML of one piece of marked text."""
     kind = match.lastgroup

@@ -94,7 +94,7 @@ def parameters_of(notebook):
     Raises
     ------
     LubeError
-        If the file is not there or no notebook, or has no such cell.
+        If the file is not there or no notebook, or has no such cell of Python.
     """
     try:
         cells = nbformat.read(notebook, as_version=4).cells
@@ -105,7 +105,10 @@ def parameters_of(notebook):
     tagged = [cell for cell in cells if "parameters" in cell.metadata.get("tags", [])]
     if not tagged:
         raise LubeError(f"{notebook}: no cell is tagged 'parameters', need one with the paths")
-    return _assigned_names(tagged[0].source)
+    try:
+        return _assigned_names(tagged[0].source)
+    except (SyntaxError, ValueError):
+        raise LubeError(f"{notebook}: its parameters cell is not Python") from None
 
 
 def _check_parameters(notebook, parameters):

@@ -22,6 +22,8 @@ LIBRARIES = ("numpy", "scipy", "numba", "CoolProp", "xarray", "netCDF4")
 """Libraries whose version may change the numbers, or the bytes that hold them."""
 SHORT = 10
 """Digits of a fingerprint where people read it."""
+WAY_OUT = "; take it away and run snakemake again"
+"""What to do about a result of other values, at the end of its line."""
 
 
 def global_attributes(study, kind, inputs=()):
@@ -41,18 +43,14 @@ def global_attributes(study, kind, inputs=()):
     dict
         Global attributes by CF's and ACDD's names, and the study's own beside them.
     """
-    stage, about = kind.removesuffix("_batch"), study.about
+    stage = kind.removesuffix("_batch")
     config = config_text(study, kind)
     hashes = fingerprints(inputs)
     made_from = ", ".join(hashes) or "the study's values alone"
     code = f"lube {version('lube')}, commit {commit()}"
     return {
         "Conventions": CONVENTIONS,
-        "title": f"{title_of(study)}, {stage}",
-        "summary": f"{SUMMARIES[stage]} {about.summary}",
-        "keywords": ", ".join(about.keywords),
-        "study": study.name,
-        "study_seed": study.seed,
+        **names_of(study, kind),
         "config": config,
         "config_sha256": digest(config),
         "inputs_sha256": json.dumps(hashes, sort_keys=True),
@@ -60,10 +58,35 @@ def global_attributes(study, kind, inputs=()):
         "code_commit": commit(),
         "software": ", ".join(f"{name} {version(name)}" for name in LIBRARIES),
         "history": f"{code}: made from {made_from}",
-        "license": f"{about.licence} {LICENCES[about.licence]}",
-        "creator_name": makers_of(study),
-        "creator_institution": "; ".join(one.affiliation or "-" for one in about.creators) or "-",
         "references": f"The model is that of: {PAPER}",
+    }
+
+
+def names_of(study, kind):
+    """Attributes of a file that say what it is and whose, whatever code made it.
+
+    Parameters
+    ----------
+    study : Study
+        The study it belongs to.
+    kind : str
+        A key of `lube.schema.FILES`.
+
+    Returns
+    -------
+    dict
+        Some of those of `global_attributes`.
+    """
+    stage, about = kind.removesuffix("_batch"), study.about
+    return {
+        "title": f"{title_of(study)}, {stage}",
+        "summary": f"{SUMMARIES[stage]} {about.summary}",
+        "keywords": ", ".join(about.keywords),
+        "study": study.name,
+        "study_seed": study.seed,
+        "license": f"{about.licence} {LICENCES[about.licence]}",
+        "creator_name": "; ".join(one.name for one in about.creators) or "not named",
+        "creator_institution": "; ".join(one.affiliation or "-" for one in about.creators) or "-",
     }
 
 
@@ -79,11 +102,6 @@ def _source(study, stage):
 def title_of(study):
     """Title of a study's results."""
     return study.about.title or f"Mixed lubrication study {study.name}"
-
-
-def makers_of(study):
-    """Names of those who made a study."""
-    return "; ".join(one.name for one in study.about.creators) or "not named"
 
 
 def config_text(study, kind):
@@ -127,9 +145,37 @@ def check_config(dataset, study, kind, where):
     if dataset.attrs.get("config_sha256") != digest(wanted):
         raise DataError(
             f"{where}: belongs to other values than this study's: "
-            f"{_difference(dataset.attrs.get('config'), wanted)}; "
-            "take it away and run snakemake again"
+            f"{_difference(dataset.attrs.get('config'), wanted)}{WAY_OUT}"
         )
+
+
+def check_origin(dataset, where):
+    """Refuse a file that does not say where it comes from, or has been given other values.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The opened file.
+    where : str or Path
+        The file's path, for the message.
+
+    Raises
+    ------
+    DataError
+        If an attribute is missing, or ``config`` is not what its fingerprint says.
+    """
+    for name in _NEEDED:
+        if name not in dataset.attrs:
+            raise DataError(f"{where}: its attribute {name!r} is missing, so its origin is unknown")
+    if digest(dataset.attrs["config"]) != dataset.attrs["config_sha256"]:
+        raise DataError(
+            f"{where}: damaged or changed by hand: its attribute 'config' is not the text whose "
+            "fingerprint is config_sha256"
+        )
+
+
+_NEEDED = ("title", "study", "config", "config_sha256", "inputs_sha256", "source", "code_commit")
+_NEEDED += ("software",)
 
 
 def merged_config(datasets):
@@ -186,7 +232,7 @@ def told_by(dataset, name, where):
     DataError
         If it does not say.
     """
-    with contextlib.suppress(KeyError, TypeError, ValueError):
+    with contextlib.suppress(KeyError, TypeError, ValueError, RecursionError):
         told = json.loads(dataset.attrs[name])
         if isinstance(told, dict):
             return told
@@ -328,5 +374,6 @@ def told_inputs(dataset, where):
     """
     told = {}
     for name, digits in told_by(dataset, "inputs_sha256", where).items():
-        told.setdefault(name.removesuffix(f"#{str(digits)[:SHORT]}"), set()).add(digits)
+        digits = str(digits)  # a forged file may say anything
+        told.setdefault(name.removesuffix(f"#{digits[:SHORT]}"), set()).add(digits)
     return told

@@ -1,26 +1,29 @@
-"""Whether a study's files, or an archive of them, are what they were and hang together.
+"""Whether an archive is what it was, and whether what is in it hangs together.
 
 Every check yields one line for each thing that is wrong; silence is a good answer.
 """
 
 import contextlib
+import errno
 import json
 import os
 import tempfile
 import zipfile
 import zlib
-from collections import defaultdict
 from pathlib import Path
+from urllib.parse import unquote
 
-from lube.archive import SUMS, VALUES, files_of
+from lube.archive import SUMS, VALUES, check_is_archive, files_of, values_text
+from lube.crate import CATALOGUE
 from lube.errors import DataError, LubeError, shown
+from lube.files import why_not
 from lube.io import opened
-from lube.notebooks import execute_notebook, parameters_of
-from lube.provenance import fingerprint, makers_of, told_inputs
+from lube.provenance import WAY_OUT, fingerprint, names_of, told_inputs
+from lube.schema import DATASETS
+from lube.seals import holds
 from lube.study import load_study
 
-_BYPRODUCTS = ("code/build/", "code/lube.egg-info/", "__pycache__")
-"""What appears in an archive's folder when its code is installed and run."""
+_INPUTS = ("data/", "lubricants/")
 
 # What Python's zipfile says of a file that is none, damaged, or locked by a password.
 _UNREADABLE = (OSError, EOFError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error)
@@ -51,20 +54,31 @@ def unpacked(path):
     if path.is_dir():
         yield path
         return
+    if not path.is_file():  # to open a pipe may take forever
+        raise DataError(f"{path}: neither an archive's folder nor its zip")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
         try:
             with zipfile.ZipFile(path) as packed:
                 packed.extractall(scratch)  # which keeps every entry below the folder
         except _UNREADABLE as error:
-            raise DataError(f"{path}: neither an archive's folder nor its zip ({error})") from None
-        inside = [folder for folder in Path(scratch).iterdir() if folder.is_dir()]
-        if len(inside) != 1:
-            raise DataError(f"{path}: not an archive: it holds {len(inside)} folders, need one")
-        yield inside[0]
+            if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+                told = f"cannot be unpacked: {why_not(error, Path(scratch) / path.name)}"
+            else:
+                told = f"neither an archive's folder nor its zip ({error})"
+            raise DataError(f"{path}: {told}") from None
+        yield _root(Path(scratch), path)
+
+
+def _root(scratch, path):
+    """Find the archive in what was in a zip, whoever packed it: with its folder or without."""
+    roots = [sums.parent for depth in ("", "*/", "*/*/") for sums in scratch.glob(depth + SUMS)]
+    if not roots:
+        raise DataError(f"{path}: not an archive: {SUMS} is missing")
+    return roots[0]
 
 
 def verify_archive(folder):
-    """Check an archive: fingerprints, datasets, and how they hang together.
+    """Check an archive: fingerprints, catalogue, study, and datasets, and how they hang together.
 
     Parameters
     ----------
@@ -74,159 +88,118 @@ def verify_archive(folder):
     Returns
     -------
     list of str
-        What is wrong, a line each; empty if all is well.
+        What is wrong, a line each; empty if all is as it should be. Files are told by their
+        places in the archive.
 
     Raises
     ------
     DataError
         If it is no archive.
     """
-    folder = Path(folder)
-    _check_is_archive(folder)
-    wrong = list(_wrong_sums(folder))
-    if wrong:
-        return wrong  # anything else would only repeat it
-    try:
-        told = json.loads((folder / VALUES).read_text(encoding="utf-8"))
-        study_file, kinds = folder / "study" / told["study_file"], list(told["config_sha256"])
-    except (OSError, ValueError, KeyError, TypeError):
-        return [f"{VALUES}: missing or damaged"]
-    records = [path for path in folder.glob("lubricants/**/*") if path.is_file()]
-    return [*verify_datasets(folder / "data", study_file, kinds, records)]
+    check_is_archive(folder)
+    folder = Path(folder).resolve()
+    # What one finds wrong, the next would only repeat.
+    for look in (_wrong_sums, _wrong_catalogue, _wrong_datasets):
+        wrong = [line.replace(f"{folder}{os.sep}", "") for line in look(folder)]
+        if wrong:
+            return [line.removesuffix(WAY_OUT) for line in wrong]
+    return []
 
 
-def _check_is_archive(folder):
-    if not (folder / SUMS).is_file():
-        raise DataError(f"{folder}: not an archive: {SUMS} is missing")
+def _sums(folder):
+    """Fingerprints by file, as the archive tells them."""
+    lines = (folder / SUMS).read_text(encoding="utf-8").split("\n")
+    pairs = [line.rstrip("\r").split("  ", 1) for line in lines]
+    return {pair[1]: pair[0] for pair in pairs if len(pair) == 2}
 
 
 def _wrong_sums(folder):
     """Compare every file with its fingerprint."""
     try:
-        lines = (folder / SUMS).read_text(encoding="utf-8").splitlines()
+        sums = _sums(folder)
     except (OSError, ValueError):
         yield f"{SUMS}: damaged"
         return
-    sums = dict(reversed(line.split("  ", 1)) for line in lines if "  " in line)
     there = set(files_of(folder)) - {SUMS}
     for name, expected in sums.items():
         if name not in there:
             yield f"{name}: missing"
-        elif fingerprint(folder / name) != expected:
+        elif not (folder / name).is_file() or fingerprint(folder / name) != expected:
             yield f"{name}: not what it was: its SHA-256 is not the one in {SUMS}"
     for name in sorted(there - set(sums)):
-        if not any(known in name for known in _BYPRODUCTS):
+        if not _is_byproduct(name):
             yield f"{name}: does not belong to the archive: not in {SUMS}"
 
 
-def verify_datasets(folder, study_file, kinds, records=()):
-    """Check a study's datasets: each whole and by its schema, all of one study.
+def _is_byproduct(name):
+    """Whether a file appears when an archive is looked at, or its code installed and run."""
+    folder, *parts = name.split("/")
+    if folder == "code" and parts:
+        return parts[0] in ("build", "lube.egg-info") or "__pycache__" in parts
+    return [folder, *parts][-1] in (".DS_Store", "Thumbs.db", "desktop.ini")
 
-    Parameters
-    ----------
-    folder : str or Path
-        Folder of the datasets.
-    study_file : str or Path
-        The study that they must follow from.
-    kinds : iterable of str
-        Which datasets there must be.
-    records : iterable of Path, optional
-        Files of its lubricant records.
 
-    Yields
-    ------
-    str
-        What is wrong, a line each.
-    """
-    folder, kinds = Path(folder), list(kinds)
+def _wrong_catalogue(folder):
+    """Compare the files with what the catalogue lists; the code it lists as a whole."""
     try:
-        study = load_study(study_file)
+        graph = json.loads((folder / CATALOGUE).read_text(encoding="utf-8"))["@graph"]
+        listed = {unquote(each["@id"]) for each in graph if each["@type"] in ("File", "Dataset")}
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        yield f"{CATALOGUE}: missing or damaged"
+        return
+    named = set(_sums(folder))
+    folders = {name.split("/")[0] + "/" for name in named if "/" in name}
+    there = {name for name in named if not name.startswith("code/")} | folders
+    for name in sorted((listed ^ there) - {CATALOGUE, "./"}):
+        told = "missing" if name in listed else "does not belong to the archive"
+        yield f"{name}: {told}, by {CATALOGUE}"
+
+
+def _wrong_datasets(folder):
+    """Check the study, and that every dataset is whole, by its schema, and of this study."""
+    try:
+        text = (folder / VALUES).read_text(encoding="utf-8")
+        study_file = json.loads(text)["study_file"]
+        study = load_study(folder / "study" / study_file)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        yield f"{VALUES}: missing or damaged"
+        return
     except LubeError as error:
         yield str(error)
         return
-    inputs = defaultdict(list)
-    for path in (*records, *(folder / f"{kind}.nc" for kind in kinds)):
-        if path.is_file():
-            inputs[path.name].append(path)
-    for kind in kinds:
-        path = folder / f"{kind}.nc"
+    for kind in DATASETS:
+        path = folder / "data" / f"{kind}.nc"
         try:
+            if holds(path) is None:
+                yield f"{path}: has no seal: not as lube saved it"
+                continue
             with opened(path, kind, study, raw=False) as dataset:
                 dataset.load()  # every chunk has a checksum
-                yield from _wrong_names(dataset, path, study)
-                yield from _wrong_inputs(dataset, path, inputs)
-        except DataError as error:
+                yield from _wrong_names(dataset, path, names_of(study, kind))
+                yield from _wrong_inputs(dataset, path, kind, study)
+        except (OSError, DataError) as error:
             yield str(error)
+    if text != values_text(study, DATASETS, study_file):
+        yield f"{VALUES}: not what study/{study_file} says"
 
 
-def _wrong_names(dataset, path, study):
+def _wrong_names(dataset, path, wanted):
     """Compare what a dataset says of its study and makers with the study."""
-    wanted = {"study": study.name, "creator_name": makers_of(study)}
     for name, needed in wanted.items():
         if dataset.attrs.get(name) != needed:
             yield f"{path}: {name} is {shown(dataset.attrs.get(name))}, need {shown(needed)}"
 
 
-def _wrong_inputs(dataset, path, inputs):
+def _wrong_inputs(dataset, path, kind, study):
     """Compare what a dataset says of the files it was made from with those files."""
-    for name, known in told_inputs(dataset, path).items():
-        for file in inputs.get(name, ()):
-            if fingerprint(file) not in known:
-                yield f"{path}: was made from another {name} than {file}"
-
-
-def redraw(folder, target, figures=()):
-    """Draw figures of an archive again, from its datasets and notebooks alone.
-
-    Parameters
-    ----------
-    folder : str or Path
-        The unpacked archive.
-    target : str or Path
-        Where the new figures go, outside the archive.
-    figures : iterable of str, optional
-        Which figures, such as ``fig02_film``; all if none is named.
-
-    Yields
-    ------
-    str, bool
-        Name of a file, such as ``fig02_film.png``, and whether it equals the archived one, byte
-        for byte.
-
-    Raises
-    ------
-    LubeError
-        If it is no archive, there is no such figure, or its notebook cannot be executed.
-    """
-    folder, target = Path(folder).resolve(), Path(target).resolve()
-    _check_is_archive(folder)
-    if target.is_relative_to(folder):
-        raise DataError(f"got {target} for the new figures, need a folder outside the archive")
-    archived = sorted(path.stem for path in (folder / "figures").glob("*.png"))
-    for figure in figures:
-        if figure not in archived:
-            raise DataError(f"got {figure}, need a figure of the archive: {', '.join(archived)}")
-    with _code_first(folder / "code"):
-        for figure in figures or archived:
-            notebook = folder / "code/notebooks" / f"{figure}.ipynb"
-            paths = {path.stem: path for path in (folder / "data").glob("*.nc")}
-            paths |= {"figure": target / figure}
-            # What else stands in its cell keeps its value, as in the workflow.
-            names = [name for name in parameters_of(notebook) if name in paths]
-            parameters = {name: str(paths[name]) for name in names}
-            execute_notebook(notebook, target / notebook.name, parameters)
-            for name in (f"{figure}.png", f"{figure}.pdf"):
-                yield name, (target / name).read_bytes() == (folder / "figures" / name).read_bytes()
-
-
-@contextlib.contextmanager
-def _code_first(code):
-    """Let notebooks use the archived code, whatever else is installed."""
-    before = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(code), before]))
-    try:
-        yield
-    finally:
-        del os.environ["PYTHONPATH"]
-        if before is not None:
-            os.environ["PYTHONPATH"] = before
+    told = told_inputs(dataset, path)
+    if kind == "experiment" and study.experiment.manifest is not None:
+        # The measured records, of whatever names, are not in the archive.
+        files = [path.with_name("film.nc"), Path(study.experiment.manifest)]
+        wrong = [file.name for file in files if fingerprint(file) not in told.get(file.name, ())]
+    else:
+        sums = _sums(path.parents[1])
+        at_hand = {digits for name, digits in sums.items() if name.startswith(_INPUTS)}
+        wrong = [name for name, digits in told.items() if not digits <= at_hand]
+    for name in wrong:
+        yield f"{path}: was made from another {name} than the archive's"

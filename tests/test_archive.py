@@ -1,6 +1,7 @@
 """What goes into an archive, and where; workflow/test_archived_study.py makes a whole one."""
 
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -36,12 +37,10 @@ def test_what_people_wrote_keeps_its_place_towards_one_another(own, tmp_path):
     written = {name for name in contents if name.startswith(("study/", "lubricants/"))}
     assert written == {
         *("study/studies/study.yaml", "study/studies/records/list.csv", "study/oils/mine.yaml"),
-        *("lubricants/mine.yaml", "lubricants/mobilgear-shc-xmp-320.yaml", VALUES),
+        *("lubricants/mine.yaml", "lubricants/mobilgear-shc-xmp-320.yaml"),
     }
     assert contents["study/oils/mine.yaml"].samefile(tmp_path / "oils/mine.yaml")
     assert json.loads(contents[VALUES])["study_file"] == "studies/study.yaml"
-    assert "measured records themselves are not in this archive" in contents["README.md"]
-    assert "anew,\nput the measured records where their list expects them" in contents["README.md"]
 
 
 @pytest.mark.parametrize("place", ["lubricants", "manifest"])
@@ -52,9 +51,27 @@ def test_an_absolute_path_is_refused(own, place):
     else:
         named = study["lubricants"][1] = str(own.parent.parent / "oils/mine.yaml")
     own.write_text(yaml.safe_dump(study), encoding="utf-8")
-    with pytest.raises(StudyError, match="need a path from the study's folder") as caught:
+    with pytest.raises(StudyError, match="need the straight path from the study's") as caught:
         written_files(load_study(own), own)
     assert named[:40] in str(caught.value)
+
+
+@pytest.mark.parametrize("way", ["../studies/mine.yaml", "records/../mine.yaml"])
+def test_a_way_through_folders_that_are_not_archived_is_refused(own, tmp_path, way):
+    shutil.copy(tmp_path / "oils/mine.yaml", own.with_name("mine.yaml"))
+    study = yaml.safe_load(own.read_text("utf-8"))
+    study["lubricants"][1] = way
+    own.write_text(yaml.safe_dump(study), encoding="utf-8")
+    told = f"got '{way}', need the straight path from the study's folder, 'mine.yaml'"
+    with pytest.raises(StudyError, match=re.escape(told)):
+        written_files(load_study(own), own)
+
+
+def test_a_study_may_have_the_name_of_any_file_of_the_archive(own, tmp_path):
+    own = own.rename(own.with_name(VALUES))
+    contents = archive_contents(load_study(own), own, tmp_path / "results", ["film"], [])
+    assert contents[f"study/studies/{VALUES}"].samefile(own)
+    assert json.loads(contents[VALUES])["study_file"] == f"studies/{VALUES}"
 
 
 def test_records_of_one_file_name_are_both_there(own, tmp_path):

@@ -38,15 +38,23 @@ def test_makers_of_one_institution_share_it_and_it_makes_the_archive_public(stud
     study = study.model_copy(update={"about": About.model_validate({"creators": creators})})
     catalogue = json.loads(crate_metadata(study, {"README.md": 1}))
     listed = {entity["@id"]: entity for entity in catalogue["@graph"]}
-    assert listed["#TU%20Berlin"] == {
-        "@id": "#TU%20Berlin",
+    assert listed["#institution-TU%20Berlin"] == {
+        "@id": "#institution-TU%20Berlin",
         "@type": "Organization",
         "name": "TU Berlin",
     }
     makers = ["#creator-1", f"https://orcid.org/{ORCID}", "#creator-3"]
     assert [maker["@id"] for maker in listed["./"]["creator"]] == makers
     for maker in (listed["./"]["publisher"], listed["#creator-3"]["affiliation"]):
-        assert maker == {"@id": "#TU%20Berlin"}
+        assert maker == {"@id": "#institution-TU%20Berlin"}
+
+
+def test_an_institution_is_not_taken_for_a_person(study):
+    creators = [{"name": "A", "affiliation": "creator-2"}, {"name": "B"}]
+    study = study.model_copy(update={"about": About.model_validate({"creators": creators})})
+    listed = {each["@id"]: each for each in json.loads(crate_metadata(study, {}))["@graph"]}
+    assert listed[listed["#creator-1"]["affiliation"]["@id"]]["@type"] == "Organization"
+    assert listed["#creator-2"]["name"] == "B"
 
 
 def test_a_maker_of_no_institution_makes_the_archive_public(study):

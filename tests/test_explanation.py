@@ -1,5 +1,6 @@
 """A number of contact.nc is traced to what it follows from, and made again to the last bit."""
 
+import json
 import shutil
 
 import numpy as np
@@ -13,6 +14,7 @@ from lube.explanation import explain, in_words
 from lube.film import film_table
 from lube.io import save
 from lube.lubricant import lubricant_table
+from lube.provenance import digest
 from lube.roughness import roughness_batch
 
 PLACE = {"force": 1600.0, "speed": 100.0, "temperature": 80.0}
@@ -96,6 +98,35 @@ def test_an_explanation_tells_what_a_number_follows_from(folder, study):
 def test_a_cell_that_is_not_there_is_refused(folder, asked, told):
     with pytest.raises(DataError, match=told):
         explain(folder / "contact.nc", **asked)
+
+
+def test_a_folder_is_no_dataset(folder):
+    with pytest.raises(DataError, match=r"got a folder, need a contact.nc; an archive's is in its"):
+        explain(folder, **PLACE)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda values: values.clear(),
+        lambda values: values["contact"].pop("seed"),
+        lambda values: values["contact"].update(seed=-1),
+        lambda values: values["contact"].update(boundary_layer={}),
+        lambda values: values["contact"].update(revolutions="x"),
+    ],
+)
+def test_a_file_that_does_not_tell_how_it_was_made_is_refused(folder, tmp_path, change):
+    for path in folder.iterdir():
+        shutil.copy(path, tmp_path)
+    with xr.open_dataset(tmp_path / "contact.nc") as contact:
+        changed = contact.load()
+    values = json.loads(changed.attrs["config"])
+    change(values)
+    changed.attrs["config"] = json.dumps(values)
+    changed.attrs["config_sha256"] = digest(changed.attrs["config"])
+    changed.to_netcdf(tmp_path / "changed.nc")
+    with pytest.raises(DataError, match="'config' does not tell how it was made"):
+        explain(tmp_path / "changed.nc", **PLACE)
 
 
 def test_a_film_table_of_another_run_is_refused(folder, study, tmp_path):

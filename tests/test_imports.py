@@ -40,8 +40,9 @@ LAYERS = [
     {"provenance", "notebooks", "jobs", "reference"},
     {"io", "plots", "citation"},
     {"crate", "explanation", "configuration", "overview"},
+    {"archive_page"},
     {"archive"},
-    {"verify"},
+    {"verify", "redraw"},
     {"command"},
 ]
 LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}

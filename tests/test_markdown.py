@@ -1,14 +1,16 @@
 """Markdown of notebooks and README, as the report shows it."""
 
 import json
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from markdown_it import MarkdownIt
 
-from lube.markdown import inline, plain, section, title_and_text, to_html
+from lube.markdown import escaped, inline, plain, section, title_and_text, to_html
 
 ROOT = Path(__file__).parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
@@ -138,3 +140,10 @@ def test_the_studys_own_texts_leave_no_mark_behind(text):
 @given(st.text(alphabet="ab `*$|-#\\[]()<>&1.\n_", max_size=60))
 def test_any_text_is_turned_into_closed_tags(text):
     words_of(to_html(text))
+
+
+@given(st.text("ab1 \\`*_<>[]()#&;~|$+-.!=:é", max_size=20).map(str.strip).filter(bool))
+def test_escaped_words_are_shown_as_they_are(words):
+    html = MarkdownIt("commonmark").enable(["table", "strikethrough"]).render(escaped(words))
+    assert html.startswith("<p>") and html.endswith("</p>\n")
+    assert unescape(html[3:-5]) == words

@@ -76,6 +76,11 @@ def test_a_notebook_without_a_parameters_cell_is_refused(write, tmp_path):
     assert "no cell is tagged 'parameters'" in message
 
 
+def test_a_parameters_cell_that_is_no_python_is_refused(write, tmp_path):
+    message = refusal(write(parameters="film ="), tmp_path / "executed.ipynb", {})
+    assert "its parameters cell is not Python" in message
+
+
 def test_a_parameter_that_the_notebook_does_not_know_is_refused(write, tmp_path):
     message = refusal(write("x = 1"), tmp_path / "executed.ipynb", {"trace": "trace.nc"})
     assert "parameter 'trace' is not in its parameters cell, which has film, figure" in message

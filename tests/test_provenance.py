@@ -10,12 +10,14 @@ from lube.errors import DataError
 from lube.provenance import (
     LIBRARIES,
     check_config,
+    check_origin,
     config_text,
     digest,
     fingerprints,
     global_attributes,
     merged_config,
     stamp,
+    told_by,
     told_inputs,
 )
 from lube.schema import FILES, SUMMARIES
@@ -105,6 +107,31 @@ def test_names_of_inputs_do_not_depend_on_where_they_lie(tmp_path):
 def test_an_input_that_is_not_there_is_named(tmp_path):
     with pytest.raises(DataError, match=r"gone.csv: cannot be read: No such file"):
         fingerprints([tmp_path / "gone.csv"])
+
+
+# Files that do not say where they come from
+
+
+@pytest.mark.parametrize("name", ["title", "config", "config_sha256", "inputs_sha256", "software"])
+def test_a_file_that_does_not_say_where_it_comes_from_is_refused(study, name):
+    dataset = made_by(study, "film")
+    check_origin(dataset, "film.nc")
+    del dataset.attrs[name]
+    with pytest.raises(DataError, match=f"film.nc: its attribute '{name}' is missing"):
+        check_origin(dataset, "film.nc")
+
+
+def test_a_file_whose_values_were_changed_by_hand_is_refused(study):
+    dataset = made_by(study, "contact")
+    dataset.attrs["config"] = dataset.attrs["config"].replace("5e-09", "9e-09")
+    with pytest.raises(DataError, match=r"contact.nc: damaged or changed by hand: its attribute"):
+        check_origin(dataset, "contact.nc")
+
+
+def test_what_nobody_can_read_is_told():
+    dataset = xr.Dataset(attrs={"config": "[" * 100_000})
+    with pytest.raises(DataError, match="attribute 'config' is missing or damaged"):
+        told_by(dataset, "config", "film.nc")
 
 
 # Files of other values

@@ -16,7 +16,7 @@ from lube.schema.coordinates import (
     OPERATING_DIMS,
     POINT_DIMS,
 )
-from lube.schema.kinds import ATTRIBUTES, FILES, MEASURED, SUMMARIES
+from lube.schema.kinds import ATTRIBUTES, DATASETS, FILES, MEASURED, SUMMARIES
 from lube.schema.labels import check, label
 from lube.schema.oil import REGIMES
 from lube.schema.rig import ORIGINS
@@ -27,6 +27,7 @@ __all__ = [
     "COMPARISON_DIMS",
     "CONTACT_DIMS",
     "COORDINATES",
+    "DATASETS",
     "EXPERIMENT_DIMS",
     "FILES",
     "LAYER_DIMS",

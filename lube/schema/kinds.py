@@ -13,5 +13,8 @@ SUMMARIES = {kind: file.summary for kind, file in _KINDS.items() if file.summary
 MEASURED = tuple(clocks.KINDS)
 """Files of measured clock times, by `snakemake benchmark`; they are no part of the results."""
 
+DATASETS = tuple(kind for kind in SUMMARIES if kind not in MEASURED)
+"""The results of a study, a file each."""
+
 ATTRIBUTES = {kind: file.attributes for kind, file in _KINDS.items() if file.attributes}
 """Global attributes that the stages read from a file, by kind."""

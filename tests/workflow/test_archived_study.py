@@ -96,7 +96,18 @@ def test_snakemake_verifies_what_is_there_and_makes_nothing(archived, archive):
     said = archived.run("verify")
     assert "results/smoke/archive/smoke: nothing wrong" in said
     made = dict(archived.snapshot().items() - before.items())
-    assert {path.name for path in made} == {"verify.log", "verify.tsv"}
+    assert {path.name for path in made} == {"verify.log"}
+
+
+def test_snakemake_verifies_each_time(archived, archive):
+    picture = archive / "figures/fig02_film.png"
+    whole = picture.read_bytes()
+    picture.write_bytes(whole + b"0")
+    said = archived.snakemake("verify")
+    picture.write_bytes(whole)
+    assert said.returncode != 0
+    assert "Wrong: figures/fig02_film.png: not what it was" in said.stdout
+    assert "nothing wrong" in archived.run("verify")
 
 
 # What is refused before any job

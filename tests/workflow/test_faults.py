@@ -74,6 +74,24 @@ def test_a_full_disk_is_told_and_the_next_run_makes_what_is_missing(spare, smoke
     assert not list(spare.results.rglob("*.part"))
 
 
+def test_an_archive_stays_until_a_new_one_is_whole(spare, on_a_disk):
+    on_a_disk("size=200m", copied=True)
+    spare.run("archive")
+    whole = spare.snapshot()
+    ballast = spare.results / "ballast"
+    ballast.write_bytes(bytes(shutil.disk_usage(spare.results).free - 2**21))
+    refused = spare.snakemake("archive", "--forcerun", "archive")
+    assert refused.returncode != 0
+    assert "archive/smoke: cannot be archived: No space left on device" in refused.stdout
+    assert "Traceback" not in refused.stdout
+    ballast.unlink()
+    archived = {path for path in whole if "archive" in path.relative_to(spare.results).parts}
+    contents = {path: seen[1] for path, seen in spare.snapshot().items() if path in archived}
+    assert contents == {path: whole[path][1] for path in archived}
+    assert "archive/smoke: nothing wrong" in spare.run("verify")
+    assert not list(spare.results.rglob("*.part"))
+
+
 def test_a_folder_that_cannot_be_written_is_told_before_any_job(spare, smoke, on_a_disk):
     on_a_disk("size=100m", copied=True)
     (spare / COMPARISON).unlink()

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -46,6 +47,13 @@ def test_a_name_that_snakemake_takes_for_a_wildcard_is_refused(spare):
     (spare / "{oil}.yaml").write_text(shipped, encoding="utf-8")
     message = refusal(spare, study=spare.with_values(lubricants=["{oil}.yaml"]))
     assert "{oil}.yaml: got a name with braces, need one without" in message
+
+
+@pytest.mark.parametrize("sign", ["\n", "\u2028", "\udcff"])
+def test_a_study_whose_name_does_not_fit_a_line_is_refused(spare, sign):
+    study = shutil.copy(spare / SMOKE, spare / f"my{sign}study.yaml")
+    message = refusal(spare, study=study.name)
+    assert "study.yaml: got a name with an invisible character, need one without" in message
 
 
 def test_values_on_the_command_line_are_refused(smoke):
@@ -124,6 +132,12 @@ def test_a_record_without_sources_is_refused(spare):
 
 
 # Notebooks that cannot be figures
+
+
+def test_a_notebook_that_snakemake_takes_for_a_pattern_is_refused(spare):
+    shutil.copy(spare / f"notebooks/{spare.notebooks[0]}.ipynb", spare / "notebooks/a{b}.ipynb")
+    message = refusal(spare, study=SMOKE)
+    assert "a{b}.ipynb: got a name with braces, need one without" in message
 
 
 def broken_notebook(repository, change):

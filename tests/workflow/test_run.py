@@ -6,6 +6,7 @@ import re
 import pytest
 from repository import products_of
 
+from lube import schema
 from lube.io import load
 from lube.schema import FILES, check
 
@@ -189,7 +190,7 @@ def test_logs_of_contact_show_its_progress(smoke):
 
 def test_there_is_a_kind_of_file_for_every_dataset():
     studied = {kind for kind in FILES if not kind.endswith("_batch")} - {"speed", "reading"}
-    assert studied == set(DATASETS)
+    assert studied == set(DATASETS) == set(schema.DATASETS)
 
 
 def test_benchmarks_are_measured_saved_and_drawn_when_asked_for(spare):

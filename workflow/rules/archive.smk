@@ -4,8 +4,9 @@ rule archive:
         datasets=[result(f"{kind}.nc") for kind in DATASETS],
         products=products(ARCHIVED),
     output:
-        zip=result(f"archive/{STUDY.name}.zip"),
-        sums=result(f"archive/{STUDY.name}/SHA256SUMS"),
+        # Replaced when the new ones are whole, not taken away before.
+        zip=update(result(f"archive/{STUDY.name}.zip")),
+        sums=update(result(f"archive/{STUDY.name}/SHA256SUMS")),
     log:
         result("logs/archive.log"),
     benchmark:
@@ -22,11 +23,10 @@ rule archive:
 
 
 rule verify:
-    # Nothing is made anew for it: what is there is checked as it is.
+    # Nothing is made anew for it: what is there is checked as it is. Nor is anything kept of it
+    # but a log, so that it is done each time.
     log:
         result("logs/verify.log"),
-    benchmark:
-        result("benchmarks/verify.tsv")
     params:
         archive=result(f"archive/{STUDY.name}"),
         python=sys.executable,

@@ -24,13 +24,12 @@ compute_alike()
 from lube.errors import LubeError
 from lube.files import check_writable, cut_within_a_line
 from lube.jobs import SNAKEMAKE
-from lube.schema import MEASURED, SUMMARIES
+from lube.schema import DATASETS, MEASURED
 from lube.study import load_study
 
 # Jobs end when this process does.
 os.environ[SNAKEMAKE] = str(os.getpid())
 
-DATASETS = [kind for kind in SUMMARIES if kind not in MEASURED]
 # Where the report has its pages, apart from the figures.
 ABOUT_THE_STUDY = "About the study"
 
@@ -44,17 +43,27 @@ def told_in_one_line():
         sys.exit(f"The study cannot start. {error}")
 
 
+def check_name(path):
+    """Refuse a name that Snakemake would take for a wildcard, or no list could hold in a line."""
+    if "{" in path or "}" in path:
+        raise LubeError(f"{path}: got a name with braces, need one without")
+    if not path.isprintable():
+        raise LubeError(f"{path}: got a name with an invisible character, need one without")
+
+
 def the_study_file():
     """The one file a study is read from: --configfile, or else the paper's."""
     if workflow.config_settings.config:
         raise LubeError("--config is not used: write the change into a copy of the study's file")
     if len(workflow.configfiles) > 1:
         raise LubeError("got several --configfile, need one: a study is one file")
-    return (workflow.configfiles or [Path("workflow/config/paper.yaml")])[0]
+    study_file = str((workflow.configfiles or ["workflow/config/paper.yaml"])[0])
+    check_name(study_file)
+    return study_file
 
 
 with told_in_one_line():
-    config["study_file"] = str(the_study_file())
+    config["study_file"] = the_study_file()
     STUDY = load_study(config["study_file"])
 
 RESULTS = f"results/{STUDY.name}"
@@ -117,8 +126,7 @@ def input_paths(files):
     paths = sorted({os.path.relpath(file) for file in files})
     with told_in_one_line():
         for path in paths:
-            if "{" in path or "}" in path:  # which Snakemake would take for a wildcard
-                raise LubeError(f"{path}: got a name with braces, need one without")
+            check_name(path)
     return paths
 
 

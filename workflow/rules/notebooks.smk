@@ -8,6 +8,7 @@ from lube.markdown import plain, title_and_text, to_html
 def notebook_cells(figure):
     """Cells of a figure's notebook, reduced to what decides on it; outputs do not."""
     path = Path(f"notebooks/{figure}.ipynb")
+    check_name(str(path))
     try:
         cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
         return [
