@@ -49,9 +49,8 @@ def test_a_name_that_snakemake_takes_for_a_wildcard_is_refused(spare):
     assert "{oil}.yaml: got a name with braces, need one without" in message
 
 
-@pytest.mark.parametrize("sign", ["\n", "\u2028", "\udcff"])
-def test_a_study_whose_name_does_not_fit_a_line_is_refused(spare, sign):
-    study = shutil.copy(spare / SMOKE, spare / f"my{sign}study.yaml")
+def test_a_study_whose_name_does_not_fit_a_line_is_refused(spare):
+    study = shutil.copy(spare / SMOKE, spare / "my\u2028\n\udcffstudy.yaml")
     message = refusal(spare, study=study.name)
     assert "study.yaml: got a name with an invisible character, need one without" in message
 
