@@ -7,14 +7,6 @@ from lube.repository import changed_code, commit
 from lube.schema import SUMMARIES
 
 
-def _example(study):
-    """How to explain a number of the study."""
-    grid = study.operating_grid
-    levels = {name: getattr(grid, name)[-1] for name in ("force", "speed", "temperature")}
-    named = " ".join(f"--{name} {level:g}" for name, level in levels.items())
-    return f"lube explain data/contact.nc {named} --realisation 0"
-
-
 def archive_page(study, kinds, study_file):
     """One page for a stranger who opens the archive: its README.md.
 
@@ -99,3 +91,11 @@ Without Python, `sha256sum --check SHA256SUMS` checks the fingerprints. To compu
 {anew}go to a copy of `code/`, follow its README, and give `snakemake --configfile` the path of
 `study/{study_file}` here: the datasets come out as the same bytes.
 """
+
+
+def _example(study):
+    """How to explain a number of the study."""
+    grid = study.operating_grid
+    levels = {name: getattr(grid, name)[-1] for name in ("force", "speed", "temperature")}
+    named = " ".join(f"--{name} {level:g}" for name, level in levels.items())
+    return f"lube explain data/contact.nc {named} --realisation 0"
