@@ -267,16 +267,23 @@ def test_damaged_sums_are_told(spoilt, content):
 
 def test_a_zip_damaged_anywhere_is_told(archive, tmp_path):
     packed = archive.with_suffix(".zip").read_bytes()
-    told = []
+    told = 0
     for place in range(40, len(packed), len(packed) // 40):
         path = tmp_path / "flipped.zip"
         path.write_bytes(packed[:place] + bytes([packed[place] ^ 4]) + packed[place + 1 :])
         try:
             with unpacked(path) as folder:
-                told += verify_archive(folder)
-        except DataError as error:
-            told.append(str(error))
-    assert len(told) >= 40
+                wrong = verify_archive(folder)
+                # A bit may be one that matters to nobody, such as an entry's hour.
+                assert wrong or contents(folder) == contents(archive)
+                told += bool(wrong)
+        except DataError:
+            told += 1
+    assert told >= 35
+
+
+def contents(folder):
+    return {name: (folder / name).read_bytes() for name in files_of(folder)}
 
 
 @pytest.mark.parametrize(
