@@ -47,8 +47,19 @@ class Rig(StrictModel, validate_default=True):
     noise: quantity("V", least=0.0) = Field(
         "20 uV", description="rms noise at the amplifier's input"
     )
-    revolutions: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
-        12, description="of each record, each with a roughness of its own"
+    revolutions: pure_number(least=0.01, most=1000.0) = Field(
+        12, description="of the roller with the faster surface in each simulated record"
+    )
+    pairs: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
+        1,
+        description="pairs of rollers that the simulated rig runs, one after the other; each "
+        "makes a record at every operating point",
+    )
+    drift: pure_number(least=0.0, most=1.0) = Field(
+        0,
+        description="share of the variance of the roughness that each revolution renews, of "
+        "the simulated rollers and, as an assumption, of measured ones; 0: rollers stay as they "
+        "are and repeat themselves",
     )
 
     @property
@@ -69,6 +80,17 @@ class Experiment(StrictModel, validate_default=True):
     )
     threshold: _Resistance = Field(
         "100 ohm", description="the one of them that is compared with the simulation (the paper's)"
+    )
+    force_tolerance: pure_number(above=0.0, most=1.0) = Field(
+        0.01, description="relative distance within which a record's force means a level's"
+    )
+    speed_tolerance: pure_number(above=0.0, most=1.0) = Field(
+        0.01,
+        description="the same of its rotation speed; and how far the speed may be from the "
+        "one at which the record repeats itself",
+    )
+    temperature_tolerance: quantity("K", above=0.0) = Field(
+        "1 K", description="distance within which a record's temperature means a level's"
     )
     release_ratio: pure_number(least=1.0) = Field(
         1, description="contact ends at so many times the threshold; 1 is no hysteresis"

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.optimize
 import scipy.special
-import scipy.stats
 
-QUANTILE = scipy.stats.norm.ppf(0.975)
-"""Half-width of a 95 % interval of a normal error, over its standard deviation."""
+from lube.one_pair import quantile, standard_error
+
+STEPS = 16
+"""Steps between two levels of a curve on which the limits of a film are looked for."""
 
 
 @dataclass(frozen=True)
@@ -25,10 +26,13 @@ class Curve:
         Logarithms of the lambda ratio, shape (n,), rising.
     logits : numpy.ndarray
         Logits of the probability there, shape (n,), strictly falling.
+    looks : numpy.ndarray
+        Effective sample size of one realisation there, shape (n,).
     """
 
     films: np.ndarray
     logits: np.ndarray
+    looks: np.ndarray
 
     def logit_at(self, films):
         """Logit of the probability at some films, straight on beyond the ends.
@@ -69,11 +73,11 @@ class Curve:
         return np.interp(-logit, -self.logits, self.films, left=-np.inf, right=np.inf)
 
 
-def falling_curve(films, probabilities, resolution):
+def falling_curve(films, probabilities, looks, resolution):
     """Curve through estimated probabilities, made non-increasing.
 
     Neighbours out of order get their common mean (isotonic regression), and levels of equal
-    probability their mean film.
+    probability their mean film and sample size.
 
     Parameters
     ----------
@@ -81,6 +85,8 @@ def falling_curve(films, probabilities, resolution):
         Logarithms of the lambda ratio, shape (n,), rising.
     probabilities : numpy.ndarray
         Shape (n,).
+    looks : numpy.ndarray
+        Effective sample size of one realisation at each film, shape (n,).
     resolution : float
         Levels closer than this to 0 or to 1 are left out.
 
@@ -92,81 +98,54 @@ def falling_curve(films, probabilities, resolution):
     falling = scipy.optimize.isotonic_regression(probabilities, increasing=False).x
     inside = (falling >= resolution) & (falling <= 1.0 - resolution)
     sinking, level = np.unique(-scipy.special.logit(falling[inside]), return_inverse=True)
-    return Curve(np.bincount(level, films[inside]) / np.bincount(level), -sinking)
+    films, looks = (
+        np.bincount(level, each[inside]) / np.bincount(level) for each in (films, looks)
+    )
+    return Curve(films, -sinking, looks)
 
 
-def film_interval(curves, record):
-    """Film that explains a record's contact share, with the interval of both.
+def film_interval(curve, share, ratio, realisations, noise=0.0):
+    """Film that explains the contact share of one pair's record, with its 95 % interval.
 
-    The record's interval and the curve's are independent errors of one film: on the scale of
-    ln(lambda) their distances from it add in quadrature, on either side by themselves.
+    The interval holds all films whose predicted share the record does not contradict: those
+    at which it lies within `lube.one_pair.prediction_limits`.
 
     Parameters
     ----------
-    curves : tuple of Curve
-        Mean probability, its lower and its upper limit.
-    record : tuple of float
-        Share, its lower and its upper limit.
+    curve : Curve
+        Mean probability over the realisations, against the film.
+    share : float
+        The record's share of time in contact.
+    ratio : float
+        From `lube.one_pair.scatter_ratio`.
+    realisations : int
+        Number of realisations behind the curve.
+    noise : float, optional
+        Standard error of the share by what is not the roughness.
 
     Returns
     -------
     film, lower, upper : float
-        Logarithms of the lambda ratio. A share below the whole curve has no film but a lower
-        limit, and +inf for the upper one; a share above it has an upper limit and -inf for the
-        lower one. Without a share all are NaN, without its limits those are.
+        Logarithms of the lambda ratio. Where the curve ends before it contradicts the share, a
+        limit is -inf or +inf, and so is the film where the share is beyond the curve. All are
+        NaN without a share or a curve.
     """
-    (mean, low, high), (share, least, most) = curves, record
-    film = mean.film_at(share)
-    if np.isfinite(film):
-        thinner = [film - mean.film_at(most), film - _earliest(low, share)]
-        thicker = [mean.film_at(least) - film, _latest(high, share) - film]
-        # A hair below zero where curves were made non-increasing.
-        lower = film - np.hypot(*np.maximum(thinner, 0.0))
-        upper = film + np.hypot(*np.maximum(thicker, 0.0))
-    else:
-        lower = _earliest(low, most) if film == np.inf else -np.inf
-        upper = _latest(high, least) if film == -np.inf else np.inf
-        film = np.nan
-    if np.isnan(least + most):
-        lower = upper = np.nan
-    return film, lower, upper
+    if np.isnan(share) or curve.films.size < 2:
+        return np.nan, np.nan, np.nan
+    films, distance = _distances(curve, share, ratio, realisations, noise)
+    limit = quantile(realisations)
+    lower, upper = np.interp([-limit, limit], distance, films, left=-np.inf, right=np.inf)
+    return curve.film_at(share), lower, upper
 
 
-def _earliest(curve, share):
-    """Film by a lower limit of the probability: at least this, where the curve ends before."""
-    film = curve.film_at(share)
-    return -np.inf if np.isnan(film) else min(film, curve.films.max(initial=-np.inf))
-
-
-def _latest(curve, share):
-    """Film by an upper limit of the probability: at most this, where the curve begins later."""
-    film = curve.film_at(share)
-    return np.inf if np.isnan(film) else max(film, curve.films.min(initial=np.inf))
-
-
-def independent_looks(mean, lower, upper):
-    """Count the independent looks that a probability's interval amounts to.
-
-    Inverse of Wilson's score interval: with q = m (1 - m), half-width w and z = 1.96, N = n + z^2
-    solves w^2 N^2 - z^2 q N - z^4 (1/4 - q) = 0. It has an answer for m = 0 and 1 too.
-
-    Parameters
-    ----------
-    mean, lower, upper : numpy.ndarray
-        Probability and its 95 % interval, any shape.
-
-    Returns
-    -------
-    numpy.ndarray
-        Same shape, n; infinite for an interval without width.
-    """
-    spread = mean * (1.0 - mean)
-    half = 0.5 * (upper - lower)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = np.sqrt(spread**2 + 4.0 * half**2 * (0.25 - spread))
-        total = QUANTILE**2 * (spread + root) / (2.0 * half**2)
-    # An interval wider than that of no look at all is worth next to nothing.
-    return np.where(half > 0.0, np.maximum(total - QUANTILE**2, 1e-3), np.inf)
+def _distances(curve, share, ratio, realisations, noise):
+    """Distance of a share from a curve's, over its standard error, made non-decreasing."""
+    levels = np.arange(STEPS * (curve.films.size - 1) + 1) / STEPS
+    films = np.interp(levels, np.arange(curve.films.size), curve.films)
+    model = scipy.special.expit(curve.logit_at(films))
+    looks = np.interp(films, curve.films, curve.looks)
+    error = standard_error(model, looks, ratio, realisations, noise)
+    return films, np.maximum.accumulate((share - model) / error)
 
 
 def realisation_correlation(probabilities):
@@ -195,16 +174,16 @@ def realisation_correlation(probabilities):
     return correlation
 
 
-def fit_factor(log_factors, logits, shares, weights, looks, correlation, realisations):
-    """Fit the one factor that explains the contact shares of all operating points.
+def fit_factor(log_factors, logits, shares, looks, covariance, realisations, noise):
+    """Fit the one factor that explains the contact shares of all records.
 
-    At each level of the factor the misfit of all points is added up as in a quasi-likelihood
-    with binomial variances: the sum of w l (m - p), with the share m, the model's probability p,
-    the weight w and l = d logit(p) / d ln(factor). It is set over its standard error, in which
-    the points are correlated and m - p has the variance p (1 - p) / n of n looks. The factor is
-    where the misfit is zero; its 95 % interval is all that the misfit does not contradict (a
-    score interval). So points where the share is 0 or 1 count as well. The weights are no part
-    of what is assumed: poor ones widen the interval.
+    At each level of the factor the misfit of all records is added up as in a quasi-likelihood
+    with binomial variances: the sum of n l (m - p), with the share m, the model's probability p,
+    the effective sample size n and l = d logit(p) / d ln(factor). It is set over its standard
+    error, in which the records are correlated. The factor is where the misfit is zero; its 95 %
+    interval is all that the misfit does not contradict (a score interval). So records whose
+    share is 0 or 1 count as well. The covariance is never inverted: from R realisations its
+    rank is R - 1, too low for that where there are more records.
 
     Parameters
     ----------
@@ -214,15 +193,14 @@ def fit_factor(log_factors, logits, shares, weights, looks, correlation, realisa
         Logits of the model's probability, shape (F, P), falling with the factor.
     shares : numpy.ndarray
         Measured shares, shape (P,).
-    weights : numpy.ndarray
-        Shape (P,); the best are proportional to the looks, but they must not follow the chance
-        of the shares.
     looks : numpy.ndarray
-        Independent looks behind the difference of share and model, shape (P,).
-    correlation : numpy.ndarray
-        Between the errors of the points, shape (P, P).
+        Effective sample size of one realisation, shape (P,).
+    covariance : numpy.ndarray
+        Of the errors m - p, each over (p (1 - p) / n)^(1/2), shape (P, P).
     realisations : int
-        Behind the correlation; for few of them the interval is Student's.
+        Behind the covariance; for few of them the interval is Student's.
+    noise : numpy.ndarray
+        Standard errors of the shares by what is not the roughness, shape (P,).
 
     Returns
     -------
@@ -238,13 +216,14 @@ def fit_factor(log_factors, logits, shares, weights, looks, correlation, realisa
     if not shares.size:
         return np.nan, 0.0, np.inf
     model = scipy.special.expit(logits)
-    pull = weights * np.gradient(logits, log_factors, axis=0)
+    pull = looks * np.gradient(logits, log_factors, axis=0)
     errors = pull * np.sqrt(model * (1.0 - model) / looks)
-    variance = np.einsum("fi,ij,fj->f", errors, correlation, errors)
+    variance = np.einsum("fi,ij,fj->f", errors, covariance, errors, optimize=False)
+    variance += np.sum((pull * noise) ** 2, axis=1)
     misfit = np.sum(pull * (shares - model), axis=1) / np.sqrt(variance)
     falling = np.minimum.accumulate(misfit)
-    quantile = scipy.stats.t.ppf(0.975, max(realisations - 1, 1))
-    wanted = np.array([0.0, -quantile, quantile])
+    limit = quantile(realisations)
+    wanted = np.array([0.0, -limit, limit])
     found = np.exp(np.interp(wanted, -falling, log_factors, left=-np.inf, right=np.inf))
     factor = found[0] if 0.0 < found[0] < np.inf else np.nan
     return factor, found[1], found[2]

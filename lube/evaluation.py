@@ -1,8 +1,8 @@
 """From a record to the share of time in contact, and how far that share can be trusted.
 
 A record of the rig may hold more samples than fit into memory, so it is counted in pieces as
-they come. What stays of it are counts in a few dozen equal blocks: their sum is the share of
-time below a limit, and their scatter tells its interval.
+they come. What stays of it are counts in many equal blocks: their sum is the share of time
+below a limit, their scatter tells its interval, and they can be folded by the revolution.
 """
 
 import numpy as np
@@ -12,8 +12,14 @@ from lube.intervals import probability_limits
 from lube.kernels.threshold import count_below, follow_contact
 from lube.resistance import divider_voltage
 
-BLOCKS = 64
+BLOCKS = 2**18
 """So many blocks at most; whenever they are full, each two become one."""
+
+MOST_STRETCHES = 4096
+"""Shorter stretches than in so many equal parts see the same contact as their neighbours."""
+
+STRETCHES = 64
+"""Stretches of the circumference that a folded record is cut into, at most."""
 
 LEAST_BLOCKS = 8
 """Fewer blocks than this tell too little of their scatter."""
@@ -143,13 +149,42 @@ def _pairs(counts):
     return counts[..., ::2] + counts[..., 1::2]
 
 
-def share_interval(below, sizes, windows):
-    """Share and its 95 % interval, from the scatter between stretches of the record.
+def folded_counts(below, sizes, interval, period):
+    """Counts of a record by the phase of a revolution, all its revolutions together.
 
-    Neighbouring samples see the same roughness and are no independent looks; long stretches
-    are nearly so. The variance of the mean grows with the length of the stretches that it is
-    taken from, until they are longer than what a record remembers. It is taken from blocks,
-    from pairs of them, pairs of pairs and so on, and the largest of these is believed.
+    Parameters
+    ----------
+    below : numpy.ndarray
+        Shape (K, B), samples in contact at each limit in each block of the record.
+    sizes : numpy.ndarray
+        Shape (B,), samples in each block; all but the last are equal.
+    interval : float
+        Duration of a block, s.
+    period : float
+        Of a revolution, s.
+
+    Returns
+    -------
+    below, sizes : numpy.ndarray
+        The same over at most `STRETCHES` phases, shapes (K, F) and (F,).
+    """
+    phases = min(STRETCHES, max(int(period / interval), 1))
+    turns = (np.arange(sizes.size) + 0.5) * interval / period
+    phase = np.minimum((turns % 1.0 * phases).astype(np.int64), phases - 1)
+    counts = [np.bincount(phase, row, phases) for row in (*below, sizes)]
+    return np.array(counts[:-1]), counts[-1]
+
+
+def share_interval(below, sizes, windows, folded=()):
+    """Share of one record and its 95 % interval, from the scatter between stretches of it.
+
+    It is the interval of the mean over pairs of rollers, as far as the record of one pair
+    tells it. Neighbouring samples see the same roughness and are no independent looks; long
+    stretches are nearly so. The variance of the mean grows with the length of the stretches
+    that it is taken from, until they are longer than what a record remembers. It is taken from
+    blocks, from pairs of them, pairs of pairs and so on, and the largest of these is believed.
+    Where rollers repeat themselves, stretches a revolution apart are no independent looks
+    either: then stretches of the circumference take the place of stretches of time.
 
     Parameters
     ----------
@@ -160,6 +195,8 @@ def share_interval(below, sizes, windows):
     windows : float
         Independent windows in the record, at least one; they stand in where the record has
         no scatter to tell (`lube.intervals.probability_limits`).
+    folded : sequence of tuple, optional
+        The same counts over phases of a revolution, from `folded_counts`, once for each roller.
 
     Returns
     -------
@@ -183,6 +220,10 @@ def share_interval(below, sizes, windows):
         raise RangeError(f"windows: got {windows:g}, need at least 1")
     share = below.sum(axis=-1) / sizes.sum()
     variance, degrees = _levelled_variance(below, sizes)
+    for counts in folded:
+        around, freedom = _levelled_variance(*counts)
+        degrees = np.where(around > variance, freedom, degrees)
+        variance = np.maximum(around, variance)
     with np.errstate(divide="ignore", invalid="ignore"):
         looks = np.where(variance > 0.0, share * (1.0 - share) / variance, np.nan)
     return share, *probability_limits(share, looks, degrees, windows)
@@ -191,6 +232,8 @@ def share_interval(below, sizes, windows):
 def _levelled_variance(below, sizes):
     """Largest variance of the share over all lengths of stretches, and its degrees of freedom."""
     variance, degrees = np.zeros(below.shape[0]), np.ones(below.shape[0])
+    while sizes.size > MOST_STRETCHES:
+        below, sizes = _pairs(below), _pairs(sizes)
     while sizes.size >= LEAST_BLOCKS:
         here = _variance(below, sizes)
         degrees = np.where(here > variance, sizes.size - 1, degrees)

@@ -41,15 +41,43 @@ def film_table(lubricant, rollers, force, speed, formulas):
     DataError
         If the result does not fit the schema, for want of a dimension or coordinate.
     """
+    table = film_at(lubricant, rollers, _axis("force", force), _axis("speed", speed), formulas)
+    return schema.label(table.transpose(*schema.OPERATING_DIMS), "film")
+
+
+def film_at(lubricant, rollers, force, speed, formulas):
+    """Film thickness and all that goes with it, over whatever dimensions its arguments have.
+
+    Parameters
+    ----------
+    lubricant : xarray.Dataset
+        As in `film_table`, or with a row of it for each record in place of its dimensions.
+    rollers : lube.study.RollerPair
+        Geometry, elasticity and roughness of the two rollers.
+    force, speed : xarray.DataArray
+        Normal force, N, and rotation speed of the first roller in pure rolling, rpm.
+    formulas : sequence of str
+        Names of film formulas.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of the file ``film``, without labels.
+
+    Raises
+    ------
+    StudyError
+        If a film formula is unknown.
+    """
     rows = [formula(name) for name in formulas]
     # Grids that differ in one value would otherwise be cut to their intersection.
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
-        contact = _hertz_contact(rollers, _axis("force", force), _axis("speed", speed))
-        numbers = _dimensionless_groups(lubricant, rollers, contact)
+        contact = _hertz_contact(rollers, force, speed)
+        numbers = _dimensionless_groups(lubricant, rollers, force, contact)
         table = contact.merge(_regime(*numbers), join="exact")
         table = table.merge(_film(rows, rollers, numbers, table), join="exact")
         table["inlet_shear_heating_factor"] = _inlet_shear_heating(lubricant, contact)
-    return schema.label(table.transpose(*schema.OPERATING_DIMS), "film")
+    return table
 
 
 def _axis(name, values):
@@ -71,10 +99,10 @@ def _hertz_contact(rollers, force, speed):
     )
 
 
-def _dimensionless_groups(lubricant, rollers, contact):
+def _dimensionless_groups(lubricant, rollers, force, contact):
     film_modulus = 2.0 * rollers.reduced_modulus
     scale = (film_modulus, rollers.reduced_radius)
-    load = groups.dimensionless_load(contact["force"] / rollers.length, *scale)
+    load = groups.dimensionless_load(force / rollers.length, *scale)
     speed = groups.dimensionless_speed(
         lubricant["dynamic_viscosity"], contact["entrainment_speed"], *scale
     )

@@ -7,13 +7,15 @@ records best.
 
 import numpy as np
 import scipy.interpolate
+import scipy.special
 import xarray as xr
 
-from lube.curves import fit_factor, independent_looks, realisation_correlation
+from lube.curves import fit_factor, realisation_correlation
 from lube.formulas import formula
-from lube.map_curves import curve_at, logits_on, mean_and_limits
-from lube.schema import LIMITS, OPERATING_DIMS, POINT_DIMS
-from lube.shares import compared_in_pure_rolling, in_pure_rolling, limited
+from lube.map_curves import curve_at, layer_curve_at, logits_on
+from lube.one_pair import independent_windows, quantile, sample_size
+from lube.schema import LIMITS
+from lube.shares import limited
 
 ALPHA_FACTORS = np.geomspace(1.0 / 8.0, 8.0, 193)
 """Factors of the pressure-viscosity coefficient that are tried."""
@@ -21,93 +23,84 @@ STRENGTH_LEVELS = 193
 """Strengths of the boundary layer that are tried, between the map's weakest and strongest."""
 
 
-def fit_alpha(master, film, contact, experiment):
+def fit_alpha(master, contact, comparison):
     """Factor of the pressure-viscosity coefficient that explains all records together.
 
-    For every lubricant and film formula one factor, common to all operating points. The film is
+    For every lubricant and film formula one factor, common to all records. The film is
     recomputed by the formula itself, and the probability read from the map.
 
-    All points see the same rollers, so their errors are correlated: as the realisations in
-    `contact` are at those points, for the records and for the ensemble behind the map alike.
-    The size of a record's error is its own interval's, that of the map the ensemble's. Assumed
-    besides: that the film formula is right but for the coefficient, that the simulated
-    roughness is the rollers', and that the records' intervals hold each for itself.
+    All records of a pair see the same rollers, so their errors are correlated as the
+    realisations are; those of different pairs are not, but the map's own error is common to
+    all. Assumed besides: that the film formula is right but for the coefficient, and that the
+    simulated roughness is the rollers'.
 
     Parameters
     ----------
-    master, film, contact, experiment : xarray.Dataset
+    master, contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
     Returns
     -------
     xarray.Dataset
-        ``alpha_factor`` with ``_lower`` and ``_upper`` over (lubricant, film_formula): 1 is the
-        coefficient of the study. Beyond `ALPHA_FACTORS` the factor is NaN, a limit 0 or
-        infinity.
-
-    Raises
-    ------
-    DataError
-        As `lube.shares.compared_in_pure_rolling`.
+        ``alpha_factor`` with ``_lower`` and ``_upper`` over (fitted_lubricant, film_formula): 1
+        is the coefficient of the study. Beyond `ALPHA_FACTORS` the factor is NaN, a limit 0 or
+        infinity. ``alpha_factor_coverage`` is the share of realisations whose interval, each
+        left out and taken as the records, holds 1.
     """
     factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
-    logits = _mean_logits(master, film, _ratios(film, factor))
-    return _fits("alpha_factor", np.log(ALPHA_FACTORS), logits, film, contact, experiment)
+    logits = _mean_logits(master, comparison, _ratios(comparison, factor))
+    return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison)
 
 
-def fit_layer_strength(master, film, contact, experiment):
+def fit_layer_strength(master, contact, comparison):
     """Strength tau0 / h_c of the boundary layer that explains all records together.
 
     As `fit_alpha`, with the film left as the formula gives it.
 
     Parameters
     ----------
-    master, film, contact, experiment : xarray.Dataset
+    master, contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
     Returns
     -------
     xarray.Dataset
-        ``fitted_layer_strength`` (Pa/m) with ``_lower`` and ``_upper`` over (lubricant,
+        ``fitted_layer_strength`` (Pa/m) with ``_lower`` and ``_upper`` over (fitted_lubricant,
         film_formula). Beyond the strengths of the map it is NaN, a limit 0 or infinity.
-
-    Raises
-    ------
-    DataError
-        As `lube.shares.compared_in_pure_rolling`.
+        ``fitted_layer_strength_coverage`` as in `fit_alpha`.
     """
     tried = np.geomspace(*master["layer_strength"].values[[0, -1]], STRENGTH_LEVELS)
-    logits = _strength_logits(master, film, study_strength(contact))
-    # A point at which some layer's contact is too rare for the map is left out.
+    study = study_strength(contact)
+    logits = _strength_logits(master, comparison, study)
+    # A record at which some layer's contact is too rare for the map is left out.
     known = logits.notnull().all("layer_strength")
     spline = scipy.interpolate.PchipInterpolator(
         np.log(logits["layer_strength"]), logits.fillna(0.0)
     )
     logits = known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
-    name = "fitted_layer_strength"
-    return _fits(name, np.log(tried), logits, film, contact, experiment)
+    return _fits("fitted_layer_strength", tried, study, logits, contact, comparison)
 
 
-def _ratios(film, factor):
+def _ratios(comparison, factor):
     """Lambda ratios with the pressure-viscosity coefficient times a factor.
 
-    The dimensionless groups follow from the film table: W = pi/8 (a / R*)^2 from Hertz' half-
-    width, U and G from Moes' numbers M = W (2U)^(-1/2) and L = G (2U)^(1/4).
+    The dimensionless groups follow from the film at the records: W = pi/8 (a / R*)^2 from Hertz'
+    half-width, U and G from Moes' numbers M = W (2U)^(-1/2) and L = G (2U)^(1/4).
     """
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
-        load = np.pi / 8.0 * (film["contact_half_width"] / film["reduced_radius"]) ** 2
-        speed = 0.5 * (load / film["moes_load"]) ** 2
-        material = factor * film["moes_material"] / (2.0 * speed) ** 0.25
-        names = film["film_formula"]
+        load = np.pi / 8.0 * (comparison["contact_half_width"] / comparison["reduced_radius"]) ** 2
+        speed = 0.5 * (load / comparison["moes_load"]) ** 2
+        material = factor * comparison["moes_material"] / (2.0 * speed) ** 0.25
+        names = comparison["film_formula"]
         films = [formula(name).evaluate(load, speed, material) for name in names.values]
-        scale = film["reduced_radius"] / film["composite_rms_roughness"]
+        scale = comparison["reduced_radius"] / comparison["composite_rms_roughness"]
         return xr.concat(films, names, join="exact") * scale
 
 
-def _mean_logits(master, film, ratios):
+def _mean_logits(master, comparison, ratios):
     """Logits of the map's mean probability, at some lambda ratios."""
-    mean, _, _ = mean_and_limits(master)
-    return logits_on(lambda width: curve_at(mean, master, width), film, ratios)
+    widths = 2.0 * comparison["contact_half_width"]
+    return logits_on(lambda width: curve_at(master, width), widths, ratios)
 
 
 def study_strength(contact):
@@ -126,66 +119,82 @@ def study_strength(contact):
     return contact["shear_strength"].item() / contact["critical_thickness"].item()
 
 
-def _strength_logits(master, film, study):
-    """Logits over (layer_strength, operating dimensions).
+def _strength_logits(master, comparison, study):
+    """Logits over (layer_strength, film_formula, record).
 
     The study's layer has the fine map; the coarse one tells how much other layers differ.
     """
     maps = master["layer_breakthrough_probability"].mean("realisation")
-    coarse = [_strength_map(maps.sel(layer_strength=s), master, film) for s in maps.layer_strength]
+    ratios, widths = comparison["lambda_ratio"], 2.0 * comparison["contact_half_width"]
+    coarse = [
+        logits_on(lambda width, one=one: layer_curve_at(one, master, width), widths, ratios)
+        for one in (maps.sel(layer_strength=strength) for strength in maps.layer_strength)
+    ]
     coarse = xr.concat(coarse, maps["layer_strength"], join="exact")
-    fine = _mean_logits(master, film, film["lambda_ratio"])
+    fine = _mean_logits(master, comparison, ratios)
     logits = fine + coarse - coarse.sel(layer_strength=study, method="nearest", drop=True)
-    return logits.transpose("layer_strength", *OPERATING_DIMS)
+    return logits.transpose("layer_strength", "film_formula", "record")
 
 
-def _strength_map(probability, master, film):
-    """Logits at the film table's lambda ratios, from the coarse map of one layer strength."""
-    ratios = film["lambda_ratio"]
-    return logits_on(lambda width: curve_at(probability, master, width), film, ratios)
-
-
-def _fits(name, log_factors, logits, film, contact, experiment):
-    """Fit a factor, with its limits, for every lubricant and film formula."""
-    shares, contact = compared_in_pure_rolling(film, experiment), in_pure_rolling(contact)
-    oils, formulas = film["lubricant"].values, film["film_formula"].values
-    fits = np.empty((oils.size, formulas.size, len(LIMITS)))
+def _fits(name, tried, truth, logits, contact, comparison):
+    """Fit a factor, with its limits and coverage, for every lubricant and film formula."""
+    oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
+    fits = np.full((oils.size, formulas.size, len(LIMITS) + 1), np.nan)
     for o, f in np.ndindex(fits.shape[:-1]):
-        place = {"lubricant": oils[o], "film_formula": formulas[f]}
-        measured = shares.sel(lubricant=oils[o])
-        fits[o, f] = _fit(log_factors, logits.sel(place), contact.sel(place), measured)
-    found = limited(name, np.moveaxis(fits, -1, 0))
+        records = comparison["lubricant"].values == oils[o]
+        here = comparison.isel(film_formula=f, record=records)
+        model = logits.isel(film_formula=f, record=records).transpose(..., "record").values
+        fits[o, f] = _fit(np.log(tried), np.log(truth), model, here)
+    *found, coverage = np.moveaxis(fits, -1, 0)
+    variables = limited(name, found) | {f"{name}_coverage": coverage}
     return xr.Dataset(
-        {each: (("lubricant", "film_formula"), values) for each, values in found.items()},
-        coords={"lubricant": oils, "film_formula": formulas},
+        {
+            each: (("fitted_lubricant", "film_formula"), values)
+            for each, values in variables.items()
+        },
+        coords={"fitted_lubricant": oils, "film_formula": formulas},
     )
 
 
-def _fit(log_factors, logits, contact, shares):
-    """Fit a factor to the points of one lubricant, by one film formula."""
-    logits, probabilities = (
-        _points(array).reshape(array.shape[0], -1)
-        for array in (logits, contact["breakthrough_probability"])
-    )
-    measured = [_points(shares[f"contact_share{limit}"]).ravel() for limit in LIMITS]
-    ensemble = [_points(array).ravel() for array in mean_and_limits(contact)]
-    used = np.isfinite(sum(measured)) & np.isfinite(logits).all(axis=0)
-    simulated = independent_looks(*ensemble)
-    # The variances of record and ensemble add.
-    looks = 1.0 / (1.0 / independent_looks(*measured) + 1.0 / simulated)
-    return fit_factor(
-        log_factors,
-        logits[:, used],
-        measured[0][used],
-        # Not the records' own looks: their intervals are estimates too, rough ones if a record
-        # is short, and a point that by chance seems sure would decide alone.
-        simulated[used],
-        looks[used],
-        realisation_correlation(probabilities[:, used]),
-        probabilities.shape[0],
-    )
+def _fit(log_factors, truth, logits, comparison):
+    """Fit a factor to the records of one lubricant, by one film formula, and tell its coverage."""
+    shares = comparison["measured_share"].values
+    used = np.isfinite(shares) & np.isfinite(logits).all(axis=0)
+    logits, comparison = logits[:, used], comparison.isel(record=used)
+    probabilities = comparison["breakthrough_probability"].values
+    widths = 2.0 * comparison["contact_half_width"].values
+    looks = sample_size(probabilities, independent_windows(comparison, widths))
+    correlation = realisation_correlation(probabilities)
+    count = probabilities.shape[0]
+    covariance = correlation * (_of_records(comparison) + 1.0 / count)
+    noise = comparison["share_error"].values
+    fitted = fit_factor(log_factors, logits, shares[used], looks, covariance, count, noise)
+    return *fitted, _coverage(log_factors, truth, logits, probabilities, looks)
 
 
-def _points(array):
-    """Values over (..., temperature, speed, force)."""
-    return array.transpose(..., *POINT_DIMS[1:]).values
+def _of_records(comparison):
+    """Scatter ratio of the records, and between those of one pair; none between pairs."""
+    ratio = np.sqrt(comparison["scatter_ratio"].values)
+    pair = comparison["pair"].values
+    return np.where(pair[:, None] == pair, ratio[:, None] * ratio, 0.0)
+
+
+def _coverage(log_factors, truth, logits, probabilities, looks):
+    """Share of the realisations, each left out and taken as the records, whose interval is right.
+
+    The interval is all that the misfit does not contradict, so it holds the truth where the
+    misfit there is within its quantile.
+    """
+    count = probabilities.shape[0]
+    if count < 3 or not looks.size:
+        return np.nan
+    slopes = np.gradient(logits, log_factors, axis=0)
+    place = int(np.argmin(np.abs(log_factors - truth)))
+    model = scipy.special.expit(logits[place])
+    pull = looks * slopes[place]
+    others = (count * model - probabilities) / (count - 1)
+    misfit = np.sum(pull * (probabilities - others), axis=1)
+    sums = np.sum(pull * probabilities, axis=1)
+    scatter = np.array([np.delete(sums, one).std(ddof=1) for one in range(count)])
+    error = scatter * np.sqrt(1.0 + 1.0 / (count - 1))
+    return np.mean(np.abs(misfit) <= quantile(count - 1) * error)

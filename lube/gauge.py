@@ -4,133 +4,157 @@ The master map says how probable contact is at every film and window; read the o
 round it turns an ohmmeter into a film gauge, with no further run of the model. With the film
 taken from its formula instead, all records together tell one unknown of the model: the
 pressure-viscosity coefficient, or the strength of the boundary layer.
+
+A record comes from one pair of rollers. How far its share may lie from the mean of the map is
+the scatter between the map's realisations, which its interval holds besides the map's own error.
 """
 
 import logging
+from functools import cache
 
 import numpy as np
+import scipy.special
 import xarray as xr
 
 from lube.curves import film_interval
 from lube.fits import fit_alpha, fit_layer_strength, study_strength
-from lube.map_curves import curves_at
-from lube.schema import LIMITS, POINT_DIMS, label
-from lube.shares import (
-    compared_in_pure_rolling,
-    in_pure_rolling,
-    lines_of,
-    log_lines,
-    on_study_levels,
-)
+from lube.map_curves import curve_at
+from lube.one_pair import quantile, standard_error
+from lube.schema import AT_RECORDS, LIMITS, label
 
 log = logging.getLogger(__name__)
 
+_KEPT = ("film_thickness", "lambda_ratio", "contact_half_width", "comparison_threshold")
 
-def gauge_records(master, film, contact, experiment):
+
+def gauge_records(master, contact, comparison):
     """Gauge films, the pressure-viscosity coefficient and the boundary layer.
 
     Parameters
     ----------
-    master, film, contact, experiment : xarray.Dataset
+    master, contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
     Returns
     -------
     xarray.Dataset
-        The ``gauge`` file of `lube.schema`, from `gauge_film`, `fit_alpha` and
-        `fit_layer_strength`. The attribute ``missing`` tells the points without a
-        record, a line each.
-
-    Raises
-    ------
-    DataError
-        If the records have a level that is not the study's, or were not evaluated at their
-        comparison threshold.
+        The ``gauge`` file of `lube.schema`, from `gauge_film`, `gauge_coverage`, `fit_alpha` and
+        `fit_layer_strength`.
     """
-    shares = compared_in_pure_rolling(film, experiment)
-    gauged = gauge_film(master, film, experiment)
-    strength = fit_layer_strength(master, film, contact, experiment)
-    gauged = gauged.merge(fit_alpha(master, film, contact, experiment)).merge(strength)
-    gauged["film_thickness"], gauged["lambda_ratio"] = film["film_thickness"], film["lambda_ratio"]
-    gauged["interval_coverage"] = gauge_coverage(master, film, experiment)
+    gauged = comparison[[*_KEPT, *AT_RECORDS, "origin", "pairs", "drift"]]
+    parts = (
+        gauge_film(master, comparison),
+        gauge_coverage(master, comparison),
+        fit_alpha(master, contact, comparison),
+        fit_layer_strength(master, contact, comparison),
+    )
+    for part in parts:
+        gauged = gauged.merge(part, join="exact", combine_attrs="drop")
     gauged["study_layer_strength"] = study_strength(contact)
-    gauged["comparison_threshold"] = experiment["comparison_threshold"].item()
-    recorded = shares["contact_share"].notnull()
-    gauged["fitted_points"] = recorded.sum([name for name in POINT_DIMS if name != "lubricant"])
-    missing = lines_of(~recorded, "no record in pure rolling")
-    log_lines(log, missing)
-    return label(gauged.assign_attrs(missing="\n".join(missing)), "gauge")
+    oils = gauged["fitted_lubricant"].values
+    recorded = np.isfinite(comparison["measured_share"].values)
+    counts = [np.count_nonzero(recorded & (comparison["lubricant"].values == oil)) for oil in oils]
+    gauged["fitted_records"] = "fitted_lubricant", counts
+    return label(gauged.drop_attrs(deep=False), "gauge")
 
 
-def gauge_film(master, film, experiment):
+def gauge_film(master, comparison):
     """Film thickness and lambda ratio that explain the contact share of every record.
-
-    Only records in pure rolling are gauged, as the map is made for that.
 
     Parameters
     ----------
-    master, film, experiment : xarray.Dataset
+    master, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
     Returns
     -------
     xarray.Dataset
         ``gauged_film_thickness`` (m) and ``gauged_lambda_ratio`` with ``_lower`` and ``_upper``
-        over (lubricant, temperature, speed, force), NaN without a record. A share below what
-        the map resolves has no value but a lower limit, and infinity for the upper; one above
-        that of the map's thinnest film an upper limit, and zero for the lower. The intervals
-        are of 95 %, of the record and the ensemble together.
-
-    Raises
-    ------
-    DataError
-        As `gauge_records`.
+        over ``record``, NaN without a share. A share below what the map resolves has no value
+        but a lower limit, and infinity for the upper; one above that of the map's thinnest film
+        an upper limit, and zero for the lower. The intervals are of 95 %, of one pair's record
+        and the ensemble together.
     """
-    shares = compared_in_pure_rolling(film, experiment)
-    records = np.stack([shares[f"contact_share{limit}"].values for limit in LIMITS], axis=-1)
-    ratios = np.empty(records.shape)
-    for number, half_width in enumerate(film["contact_half_width"].values):
-        curves = curves_at(master, 2.0 * half_width)
-        for place in np.ndindex(records.shape[:-2]):
-            ratios[place][number] = np.exp(film_interval(curves, records[place][number]))
-    gauged = xr.Dataset(coords=shares.coords)
-    for limit, ratio in zip(LIMITS, np.moveaxis(ratios, -1, 0), strict=True):
-        gauged[f"gauged_lambda_ratio{limit}"] = (POINT_DIMS, ratio)
-        thickness = ratio * film["composite_rms_roughness"].item()
-        gauged[f"gauged_film_thickness{limit}"] = (POINT_DIMS, thickness)
+    curve = cache(lambda width: curve_at(master, width))
+    count = master.sizes["realisation"]
+    records = zip(
+        2.0 * comparison["contact_half_width"].values,
+        comparison["measured_share"].values,
+        comparison["scatter_ratio"].values[0],
+        comparison["share_error"].values,
+        strict=True,
+    )
+    films = [
+        film_interval(curve(width), share, ratio, count, noise)
+        for width, share, ratio, noise in records
+    ]
+    ratios = np.exp(films)
+    ratios[:, 0] = np.where(np.isfinite(films)[:, 0], ratios[:, 0], np.nan)
+    gauged = xr.Dataset()
+    for limit, ratio in zip(LIMITS, ratios.T, strict=True):
+        gauged[f"gauged_lambda_ratio{limit}"] = "record", ratio
+        thickness = ratio * comparison["composite_rms_roughness"].item()
+        gauged[f"gauged_film_thickness{limit}"] = "record", thickness
     return gauged
 
 
-def gauge_coverage(master, film, experiment):
-    """Tell how often the interval of a gauged film holds the true one.
+def gauge_coverage(master, comparison):
+    """How often the interval of a gauged film holds the true one, were each realisation the rig.
 
-    Each revolution of a simulated rig has a roughness of its own, so each is gauged as the
-    record of another rig. The truth is the film of the table's first formula, which the
-    simulated rig runs with.
+    Each realisation in turn is left out of the map and gauged by the others as the record of
+    one pair of rollers, one revolution long, at the films of the first formula. Its interval
+    holds the true film where its share lies within the prediction of the others there.
 
     Parameters
     ----------
-    master, film, experiment : xarray.Dataset
+    master, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
     Returns
     -------
-    xarray.DataArray
-        Share of the revolutions, over (lubricant, temperature, speed, force); NaN of measured
-        records, whose true film nobody knows.
+    xarray.Dataset
+        ``closed_coverage``, of the intervals with two limits, ``one_sided_coverage`` of the
+        others, and ``closed_share``, how many have two, over ``record``; NaN where there are
+        none, or the ensemble has fewer than three realisations.
     """
-    rolling = on_study_levels(in_pure_rolling(experiment), film, "revolution_share")
-    dims = (*POINT_DIMS, "revolution")
-    records = np.stack(
-        [rolling[f"revolution_share{limit}"].transpose(*dims).values for limit in LIMITS], axis=-1
-    )
-    true = np.log(film["lambda_ratio"].isel(film_formula=0).transpose(*POINT_DIMS).values)
-    held = np.full(records.shape[:-1], np.nan)
-    for number, half_width in enumerate(film["contact_half_width"].values):
-        curves = curves_at(master, 2.0 * half_width)
-        for *place, revolution in np.ndindex(records.shape[:-3] + records.shape[-2:-1]):
-            index = (*place, number, revolution)
-            _, lower, upper = film_interval(curves, records[index])
-            if not np.isnan(lower):
-                held[index] = lower <= true[index[:-1]] <= upper
-    return xr.DataArray(held.mean(axis=-1), dims=POINT_DIMS)
+    members = comparison["breakthrough_probability"].values[:, 0]
+    count, records = members.shape
+    coverage = np.full((3, records), np.nan)
+    places = range(records) if count > 2 else ()
+    films = np.log(comparison["lambda_ratio"].values[0])
+    widths = 2.0 * comparison["contact_half_width"].values
+    curve = cache(lambda width: curve_at(master, width))
+    for place in places:
+        held, closed = _left_out(curve(widths[place]), films[place], members[:, place])
+        coverage[:, place] = _mean(held[closed]), _mean(held[~closed]), np.mean(closed)
+    names = ("closed_coverage", "one_sided_coverage", "closed_share")
+    return xr.Dataset({name: ("record", row) for name, row in zip(names, coverage, strict=True)})
+
+
+def _mean(held):
+    return np.mean(held) if held.size else np.nan
+
+
+def _left_out(curve, film, shares):
+    """Whether the interval of each realisation holds a film, and whether it has two limits."""
+    count = shares.size
+    if curve.films.size < 2:
+        return np.ones(count, bool), np.zeros(count, bool)
+    closed = np.ones(count, bool)
+    places = (curve.films[0], film, curve.films[-1])
+    distances = [_distance(curve, place, shares) for place in places]
+    limit = quantile(count - 1)
+    closed = (distances[0] < -limit) & (distances[2] > limit)
+    return np.abs(distances[1]) <= limit, closed
+
+
+def _distance(curve, film, shares):
+    """Distance of each realisation from the mean of the others, over its standard error."""
+    count = shares.size
+    mean = scipy.special.expit(curve.logit_at(film))
+    others = (count * mean - shares) / (count - 1)
+    others = np.clip(others, 0.0, 1.0)
+    looks = np.interp(film, curve.films, curve.looks)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distance = (shares - others) / standard_error(others, looks, 1.0, count - 1)
+    return np.where(shares == others, 0.0, distance)

@@ -30,6 +30,27 @@ def level_index(levels, wanted, within=NEAR):
     return None
 
 
+def level_near(levels, value, tolerance):
+    """Find the level that a measured value means.
+
+    Parameters
+    ----------
+    levels : sequence of float
+        The levels there are.
+    value : float
+        The value.
+    tolerance : float
+        How far it may be from a level, in their unit.
+
+    Returns
+    -------
+    float or None
+        The nearest level; None if it is farther away than that.
+    """
+    nearest = min(levels, key=lambda level: abs(level - value))
+    return nearest if abs(nearest - value) <= tolerance else None
+
+
 def levels_told(levels):
     """Tell levels in a line, such as ``800, 1600``.
 

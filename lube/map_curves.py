@@ -1,30 +1,15 @@
 """The master map as curves: the probability of breakthrough over the film, at one contact width."""
 
 import numpy as np
-import xarray as xr
 
 from lube.curves import falling_curve
-from lube.schema import OPERATING_DIMS
+from lube.one_pair import independent_windows, sample_size
+
+PROBABILITY = "breakthrough_probability"
 
 
-def mean_and_limits(dataset):
-    """Mean probability of breakthrough over the realisations, and its limits.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A ``contact`` or ``master`` dataset.
-
-    Returns
-    -------
-    list of xarray.DataArray
-        Mean, lower and upper limit.
-    """
-    return [dataset[f"breakthrough_probability_{each}"] for each in ("mean", "lower", "upper")]
-
-
-def curves_at(master, width):
-    """Curves of the mean probability and of its limits.
+def curve_at(master, width):
+    """Curve of the mean probability of breakthrough, and of how far single pairs scatter about it.
 
     Parameters
     ----------
@@ -35,19 +20,23 @@ def curves_at(master, width):
 
     Returns
     -------
-    list of lube.curves.Curve
-        Of mean, lower and upper limit.
+    lube.curves.Curve
+        Over the logarithm of the lambda ratio.
     """
-    return [curve_at(each, master, width) for each in mean_and_limits(master)]
+    mean = master[f"{PROBABILITY}_mean"]
+    widths = master["contact_width"].values
+    looks = sample_size(master[PROBABILITY].values, independent_windows(master, widths))
+    here = np.array([np.interp(width, widths, row) for row in looks])
+    return _curve(mean, master, width, here)
 
 
-def curve_at(probability, master, width):
-    """Curve of one probability of the map.
+def layer_curve_at(probability, master, width):
+    """Curve of the probability that another boundary layer breaks; its scatter is not known.
 
     Parameters
     ----------
     probability : xarray.DataArray
-        Over lambda ratio and contact width, in this order.
+        Mean over the realisations, over layer_lambda_ratio and layer_contact_width.
     master : xarray.Dataset
         The ``master`` dataset that it is from.
     width : float
@@ -57,45 +46,44 @@ def curve_at(probability, master, width):
     -------
     lube.curves.Curve
         Over the logarithm of the lambda ratio.
+    """
+    return _curve(probability, master, width, np.full(probability.shape[0], np.nan))
 
-    Notes
-    -----
+
+def _curve(probability, master, width, looks):
+    """Curve through the levels of a map.
+
     Contacts that come along the line independently of one another make -ln(1 - p) grow in
-    proportion to the width, so it is taken as straight between widths.
+    proportion to the width: so it is taken beyond the map's widths, and as straight between.
     """
     ratios, widths = (probability[name].values for name in probability.dims)
     intensity = -np.log1p(-np.minimum(probability.values, 1.0 - 1e-12))
-    here = np.array([np.interp(width, widths, row) for row in intensity])
-    return falling_curve(np.log(ratios), -np.expm1(-here), _resolution(master, width))
+    nearest = np.clip(width, widths[0], widths[-1])
+    here = np.array([np.interp(width, widths, row) for row in intensity]) * width / nearest
+    resolution = 1.0 / (independent_windows(master, width) * master.sizes["realisation"])
+    return falling_curve(np.log(ratios), -np.expm1(-here), looks, resolution)
 
 
-def _resolution(master, width):
-    """Share of one window among all that share no roughness and were seen."""
-    windows = master.attrs["travel"] / (width + master.attrs["longest_wavelength"])
-    return 1.0 / (max(windows, 1.0) * master.sizes["realisation"])
-
-
-def logits_on(curve_of_width, film, ratios):
-    """Logits of the probability, read off the curve of each force.
+def logits_on(curve_of_width, widths, ratios):
+    """Logits of the probability at the films of some records, each read off its own curve.
 
     Parameters
     ----------
     curve_of_width : callable
         From a contact width (m) to a `lube.curves.Curve`.
-    film : xarray.Dataset
-        A ``film`` dataset, for its contact half-widths.
+    widths : xarray.DataArray
+        Contact width of each record, m, over ``record``.
     ratios : xarray.DataArray
-        Lambda ratios over the operating dimensions, and others.
+        Lambda ratios over ``record``, and other dimensions.
 
     Returns
     -------
     xarray.DataArray
-        Over the same dimensions, the operating ones last.
+        Over the same dimensions, ``record`` last.
     """
-    parts = [
-        xr.apply_ufunc(
-            curve_of_width(2.0 * half_width.item()).logit_at, np.log(ratios.sel(force=force))
-        )
-        for force, half_width in film["contact_half_width"].groupby("force")
-    ]
-    return xr.concat(parts, film["force"], join="exact").transpose(..., *OPERATING_DIMS)
+    films = np.log(ratios.transpose(..., "record"))
+    logits = films.copy()
+    for width in np.unique(widths.values):
+        here = widths.values == width
+        logits.values[..., here] = curve_of_width(width).logit_at(films.values[..., here])
+    return logits

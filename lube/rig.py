@@ -1,7 +1,8 @@
 """The simulated rig: from the metallic contact of its own rollers to the voltage that it logs.
 
-Its rollers are of realisations that no simulation uses, and each of its revolutions shows
-another roughness, as if the rollers had been moved against one another in between.
+Its rollers are of realisations that no simulation uses. One pair of them turns at all operating
+points, again and again, as on a rig; several pairs take turns, and the roughness drifts from
+revolution to revolution, where the study says so.
 
 A bias voltage drives a current through a series resistor, the leads and the contact. The film
 around the contact is a capacitor, and some current leaks past it. An amplifier of finite range
@@ -14,11 +15,13 @@ rounded to the steps of the converter.
 """
 
 import logging
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from lube.kernels.circuit import sampled_voltage
+from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_trace
 from lube.points import OperatingPoint
 from lube.resistance import contact_resistance, film_capacitance
@@ -36,48 +39,83 @@ class SimulatedRig:
     Parameters
     ----------
     lines : xarray.Dataset
-        A ``roughness_batch`` dataset of the rig's own realisations, one a revolution.
+        A ``roughness_batch`` dataset of `Study.rig_realisations`.
     study : Study
-        Its boundary layer, rollers, resistivity and seed.
+        Its rig, boundary layer, rollers, resistivity and seed.
     points : list of OperatingPoint
         From `lube.points.operating_points`; all of one slide-to-roll ratio.
     """
 
     def __init__(self, lines, study, points):
         self._lines, self._study, self._points = lines, study, points
+        self._ratios = speed_ratios(points[0].slide_to_roll_ratio)
 
     def revolutions(self):
-        """Run all revolutions, each at all operating points.
+        """Run all pairs of rollers, each at all operating points.
 
         Yields
         ------
+        pair : int
+            Which pair of rollers, from 0.
         number : int
             Which of the operating points.
         revolution : Revolution
-            What happens there.
+            What happens there, one revolution after the other.
         """
-        realisations = self._lines["realisation"].values.tolist()
-        for count, realisation in enumerate(realisations, start=1):
-            for number, contact in enumerate(self._contacts(realisation)):
-                yield number, self._revolution(contact, realisation, number)
-            log.info("simulated rig: revolution %d of %d", count, len(realisations))
+        rig, realisations = self._study.rig, self._lines["realisation"].values
+        for pair, drawn in enumerate(np.split(realisations, rig.pairs)):
+            for begin in range(0, len(self._points), TOGETHER):
+                some = range(begin, min(begin + TOGETHER, len(self._points)))
+                for turn, contacts in enumerate(self._turns(drawn, some)):
+                    for number, contact in zip(some, contacts, strict=True):
+                        seed = (self._study.seed, int(drawn[0]), number + 1, turn)
+                        yield pair, number, self._revolution(contact, number, seed)
+                log.info("simulated rig: pair %d, %d operating points", pair + 1, some.stop)
 
-    def _contacts(self, realisation):
-        """Points in metallic contact at all time steps of one revolution, place by place."""
-        first = self._points[0]
-        pair, ratios = line_pair(self._lines, realisation), speed_ratios(first.slide_to_roll_ratio)
-        steps = revolution(pair, ratios)
-        factor = layer_factor_of(self._lines, first.reduced_modulus, self._study.boundary_layer)
-        for begin in range(0, len(self._points), TOGETHER):
-            some = self._points[begin : begin + TOGETHER]
-            films, half_windows = whole_numbers(
-                [point.film_thickness for point in some],
-                [point.contact_half_width for point in some],
-                self._lines,
-            )
-            yield from strip_trace(*pair, ratios, steps, films, half_windows, factor)
+    def _turns(self, drawn, some):
+        """Points in metallic contact at all time steps, turn by turn, at some operating points."""
+        rig, contacts = self._study.rig, None
+        for turn, pair in enumerate(self._rollers(drawn)):
+            steps = revolution(pair, self._ratios)
+            if contacts is None or not self._repeats(pair):
+                begun = tuple(
+                    np.roll(line, -surface_position(turn * steps, ratio))
+                    for line, ratio in zip(pair, self._ratios, strict=True)
+                )
+                contacts = self._contacts(begun, steps, some)
+            part = min(rig.revolutions - turn, 1.0)
+            yield contacts[:, : max(round(part * steps), 1)]
 
-    def _revolution(self, contact, realisation, number):
+    def _repeats(self, pair):
+        """Whether each revolution is the same as the one before."""
+        alike = pair[0].size == pair[1].size and self._ratios[0] == self._ratios[1]
+        return alike and self._study.rig.drift == 0.0
+
+    def _rollers(self, drawn):
+        """Lines of a pair of rollers in each of its revolutions."""
+        drift = self._study.rig.drift
+        pair = line_pair(self._lines, drawn[0])
+        for turn in range(math.ceil(self._study.rig.revolutions)):
+            if turn and drift > 0.0:
+                pair = tuple(
+                    _renewed(old, new, drift)
+                    for old, new in zip(pair, line_pair(self._lines, drawn[turn]), strict=True)
+                )
+            yield pair
+
+    def _contacts(self, pair, steps, some):
+        """Points in metallic contact over one revolution, shape (operating points, steps)."""
+        points = [self._points[number] for number in some]
+        modulus = points[0].reduced_modulus
+        factor = layer_factor_of(self._lines, modulus, self._study.boundary_layer)
+        films, half_windows = whole_numbers(
+            [point.film_thickness for point in points],
+            [point.contact_half_width for point in points],
+            self._lines,
+        )
+        return strip_trace(*pair, self._ratios, steps, films, half_windows, factor)
+
+    def _revolution(self, contact, number, seed):
         point, spacing = self._points[number], self._lines.attrs["spacing"]
         return Revolution(
             contact,
@@ -85,8 +123,14 @@ class SimulatedRig:
             time_step=spacing / point.faster_speed,
             spot_resistance=self._study.resistivity / spacing,
             length=self._study.rollers.length,
-            seed=(self._study.seed, realisation, number + 1),
+            seed=seed,
         )
+
+
+def _renewed(line, other, drift):
+    """Line of which a share of the variance has become another's, int32 steps."""
+    kept, new = math.sqrt(1.0 - drift), math.sqrt(drift)
+    return np.rint(kept * line + new * other).astype(np.int32)
 
 
 @dataclass(frozen=True)

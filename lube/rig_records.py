@@ -19,7 +19,7 @@ def rig_records(lines, film, study):
     Parameters
     ----------
     lines : xarray.Dataset
-        A ``roughness_batch`` dataset of the rig's own realisations, one a revolution.
+        A ``roughness_batch`` dataset of `Study.rig_realisations`.
     film : xarray.Dataset
         A ``film`` dataset.
     study : Study
@@ -30,11 +30,12 @@ def rig_records(lines, film, study):
     xarray.Dataset
         The ``rig`` file of `lube.schema`: voltage (V) and resistance (ohm) over
         (operating_point, rig_time) for the first revolution, and the shares of time below the
-        thresholds that rigs of several bandwidths would find, over all revolutions.
+        thresholds that rigs of several bandwidths would find, over all revolutions of all
+        its pairs of rollers.
     """
     points = [_point_at(levels, film) for levels in study.trace_points]
     records = [_TriedRecord(study) for _ in points]
-    for number, revolution in SimulatedRig(lines, study, points).revolutions():
+    for _, number, revolution in SimulatedRig(lines, study, points).revolutions():
         records[number].add(revolution)
     return label(_dataset(points, records, study), "rig")
 

@@ -13,6 +13,9 @@ MOST_POINTS = 2**24
 MOST_BATCHES = 10_000
 """Batches of realisations, at most: Snakemake plans four jobs for each."""
 
+FOLDED_NUMBERS = 10_000
+"""Numbers kept of each record, about: its folded revolution and its trace."""
+
 
 def check_sizes(study):
     """Refuse a study that no workstation can hold or plan.
@@ -55,7 +58,7 @@ def _arrays(study):
     return [
         ("kept_realisations", "their lines", pair * len(study.kept_realisations)),
         ("batch_size", "the lines of a batch", pair * batch),
-        ("rig.revolutions", "the lines of the rig", pair * rig.revolutions),
+        ("rig.revolutions", "the lines of the rig", pair * len(study.rig_realisations)),
         ("traces", "the traces", max(points) * len(study.traces)),
         ("rig.sampling_rate", "its samples of the traces", samples * len(study.traces)),
         ("experiment.debounce", "its samples", rig.sampling_rate * study.experiment.debounce),
@@ -64,5 +67,5 @@ def _arrays(study):
             "its combinations in all realisations",
             tables * len(study.film_formulas) * study.realisations,
         ),
-        ("operating_grid", "its combinations in all revolutions", tables * rig.revolutions),
+        ("rig.pairs", "its folded records", tables * rig.pairs * FOLDED_NUMBERS),
     ]

@@ -5,6 +5,7 @@ table in the README; their validators make the one-line errors; and `Study.stage
 tells which values a stage depends on, so that a change re-runs that stage and no other.
 """
 
+import math
 import os
 from collections import Counter
 from pathlib import Path
@@ -47,7 +48,10 @@ _FORERUNNERS = {
     "experiment": ("lubricant", "film", "roughness"),
     "rig": ("lubricant", "film", "roughness", "experiment"),
     "comparison": ("lubricant", "film", "roughness", "contact", "experiment"),
-    "gauge": ("lubricant", "film", "roughness", "contact", "master", "experiment"),
+    "gauge": (
+        *("lubricant", "film", "roughness", "contact", "master"),
+        *("experiment", "comparison"),
+    ),
     "speed": ("lubricant", "film", "roughness", "contact"),
     "reading": (),
 }
@@ -69,22 +73,6 @@ class OperatingGrid(StrictModel):
     slide_to_roll_ratio: levels(None, least=-2.0, most=2.0) = Field(
         description="(v1 - v2) / mean surface speed; 0 is pure rolling"
     )
-
-
-def _check_windows(rollers, spec, forces):
-    """Every contact must be wider than the grid is fine, and narrower than a roller is round."""
-    widest = 2.0 * rollers.contact_half_width(max(forces))
-    narrowest = 2.0 * rollers.contact_half_width(min(forces))
-    if widest >= min(spec.points) * spec.spacing:
-        raise StudyError(
-            f"operating_grid.force: the contact at {max(forces):g} N is {widest:.3g} m wide, "
-            "need less than a roller's perimeter"
-        )
-    if narrowest < 2.0 * spec.spacing:
-        raise StudyError(
-            f"roughness.points: the contact at {min(forces):g} N is {narrowest:.3g} m wide, "
-            f"need at least two grid spacings of {spec.spacing:.3g} m"
-        )
 
 
 class TracePoint(StrictModel):
@@ -170,8 +158,37 @@ class Study(StrictModel):
 
     @property
     def rig_realisations(self):
-        """Realisations of the simulated rig's rollers, one a revolution, as a range."""
-        return range(RIG_REALISATIONS, RIG_REALISATIONS + self.rig.revolutions)
+        """Realisations of the simulated rig's rollers, as a range.
+
+        One for each pair and, if the roughness drifts, one more for each further revolution.
+        """
+        drawn = math.ceil(self.rig.revolutions) if self.rig.drift > 0.0 else 1
+        return range(RIG_REALISATIONS, RIG_REALISATIONS + self.rig.pairs * drawn)
+
+    def check_window(self, force):
+        """Refuse a force whose contact is finer than the grid, or wider than a roller is round.
+
+        Parameters
+        ----------
+        force : float
+            Normal force, N.
+
+        Raises
+        ------
+        StudyError
+            With the contact width, and what is needed.
+        """
+        spec, width = self.line_spec, 2.0 * self.rollers.contact_half_width(force)
+        if width >= min(spec.points) * spec.spacing:
+            raise StudyError(
+                f"operating_grid.force: the contact at {force:g} N is {width:.3g} m wide, "
+                "need less than a roller's perimeter"
+            )
+        if width < 2.0 * spec.spacing:
+            raise StudyError(
+                f"roughness.points: the contact at {force:g} N is {width:.3g} m wide, "
+                f"need at least two grid spacings of {spec.spacing:.3g} m"
+            )
 
     def stage_inputs(self, stage):
         """Return the values of the study that a stage depends on, as plain data.
@@ -224,6 +241,7 @@ class Study(StrictModel):
                 # The manifest is told by its contents, wherever it lies.
                 "experiment": content["experiment"]
                 | {"manifest": self.experiment.manifest is not None},
+                "grid": {name: grid[name] for name in ("force", "speed", "temperature")},
             },
             "rig": {"traces": content["traces"]},
             # They follow from their forerunners alone.
@@ -277,7 +295,8 @@ class Study(StrictModel):
     @model_validator(mode="after")
     def _check_lines(self):
         try:
-            _check_windows(self.rollers, self.line_spec, self.operating_grid.force)
+            for force in self.operating_grid.force:
+                self.check_window(force)
             check_sizes(self)
         except LubeError as error:
             raise ValueError(str(error)) from None

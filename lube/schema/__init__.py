@@ -6,7 +6,7 @@ that is not what its name promises, before it is saved and after it is read.
 """
 
 from lube.schema.coordinates import (
-    COMPARISON_DIMS,
+    AT_RECORDS,
     CONTACT_DIMS,
     COORDINATES,
     EXPERIMENT_DIMS,
@@ -24,7 +24,7 @@ from lube.schema.variables import LIMITS, Variable
 
 __all__ = [
     "ATTRIBUTES",
-    "COMPARISON_DIMS",
+    "AT_RECORDS",
     "CONTACT_DIMS",
     "COORDINATES",
     "DATASETS",

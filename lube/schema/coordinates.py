@@ -9,10 +9,10 @@ MASTER_DIMS = ("lambda_ratio", "contact_width")
 LAYER_DIMS = ("layer_strength", "layer_lambda_ratio", "layer_contact_width")
 EXPERIMENT_DIMS = ("slide_to_roll_ratio", "lubricant", "temperature", "speed", "force")
 POINT_DIMS = ("lubricant", "temperature", "speed", "force")
-COMPARISON_DIMS = ("film_formula", *EXPERIMENT_DIMS)
 
 COORDINATES = {
     "lubricant": text(["lubricant"], "lubricant record"),
+    "fitted_lubricant": text(["fitted_lubricant"], "lubricant record"),
     "film_formula": text(["film_formula"], "film thickness formula"),
     "viscosity_law": text(["viscosity_law"], "viscosity-temperature law"),
     "temperature": number(["temperature"], "degC", "temperature of rollers and oil"),
@@ -35,7 +35,12 @@ COORDINATES = {
     "bandwidth": number(["bandwidth"], "Hz", "bandwidth of the amplifier"),
     "threshold": number(["threshold"], "ohm", "threshold of the resistance"),
     "revolutions": number([], "1", "revolutions of the roller with the faster surface", kind="i"),
-    "duration": number(EXPERIMENT_DIMS, "s", "duration of the record"),
+    "record": text(["record"], "record of the rig"),
+    "duration": number(["record"], "s", "duration of the record"),
+    "force_group": number(["force_group"], "N", "normal force"),
+    "speed_group": number(["speed_group"], "rpm", "rotation speed"),
+    "temperature_group": number(["temperature_group"], "degC", "temperature of rollers and oil"),
+    "phase": number(["phase"], "1", "phase of the revolution"),
     "origin": text([], "whether the rig's records were measured or simulated"),
     "record_reader": text(["record_reader"], "way to read and evaluate a binary record"),
     "table_reader": text(["table_reader"], "way to read a CSV record"),
@@ -56,3 +61,25 @@ AT_POINTS = {
     for name in CONTACT_DIMS
 }
 """Operating variables of a list of points."""
+
+_CONDITIONS = ("force", "speed", "temperature", "slide_to_roll_ratio", "lubricant")
+AT_RECORDS = {
+    **{
+        name: Variable(
+            ("record",),
+            COORDINATES[name].units,
+            COORDINATES[name].long_name,
+            kind=COORDINATES[name].kind,
+        )
+        for name in _CONDITIONS
+    },
+    **{
+        f"{name}_level": number(
+            ["record"], COORDINATES[name].units, f"{COORDINATES[name].long_name} that it is near"
+        )
+        for name in _CONDITIONS[:3]
+    },
+    "pair": text(["record"], "pair of rollers"),
+    "duration": COORDINATES["duration"],
+}
+"""Operating conditions of each record, and the levels of the study that they mean."""

@@ -3,13 +3,12 @@
 from lube.schema import oil
 from lube.schema.coordinates import (
     AT_POINTS,
-    COMPARISON_DIMS,
+    AT_RECORDS,
     COORDINATES,
     EXPERIMENT_DIMS,
-    POINT_DIMS,
 )
 from lube.schema.variables import (
-    OVER_ALL,
+    OVER_REALISATIONS,
     OVER_RECORD,
     FileKind,
     flag,
@@ -22,40 +21,67 @@ from lube.schema.variables import (
 ORIGINS = ("measured", "simulated")
 """Where the rig's records may come from."""
 
-_SHARE_DIMS = (*EXPERIMENT_DIMS, "threshold")
 _EXPERIMENT = {
     "origin": COORDINATES["origin"],
+    **AT_RECORDS,
     **limited(
         "contact_share",
-        _SHARE_DIMS,
+        ["record", "threshold"],
         "1",
         "share of time with resistance below the threshold",
         content="record",
         attributes=OVER_RECORD,
     ),
     "true_contact_share": number(
-        EXPERIMENT_DIMS,
+        ["record"],
         "1",
         "share of time with metal contact in the simulated rig",
         attributes=OVER_RECORD,
     ),
     "comparison_threshold": number([], "ohm", "threshold that is compared with the simulation"),
-    **limited(
-        "revolution_share",
-        [*EXPERIMENT_DIMS, "revolution"],
-        "1",
-        "share of time below the compared threshold, one revolution alone",
+    "sampling_interval": number(["record"], "s", "time between samples"),
+    "turns": number(["record"], "1", "revolutions of the roller with the faster surface"),
+    "revolution_period": number(
+        ["record"],
+        "s",
+        "time of a revolution of the first roller, from the record's repetition where it is clear",
         content="record",
-        attributes={"cell_methods": "revolution: mean"},
     ),
-    "record": text(EXPERIMENT_DIMS, "record of the rig"),
-    "duration": COORDINATES["duration"],
-    "sampling_interval": number(EXPERIMENT_DIMS, "s", "time between samples"),
+    "repeatability": number(
+        ["record"], "1", "mean correlation between two revolutions", content="record"
+    ),
+    "share_error": number(
+        ["record"],
+        "1",
+        "standard error of the share by what differs between revolutions",
+        content="qualityInformation",
+    ),
+    "folded_share": number(
+        ["record", "phase"],
+        "1",
+        "share of time in contact at a phase of the revolution",
+        content="record",
+    ),
+    "folded_deviation": number(
+        ["record", "phase"],
+        "1",
+        "standard deviation between revolutions at a phase",
+        content="record",
+    ),
+    "trace_time": number(["record", "trace_sample"], "s", "time"),
+    "trace_resistance": number(
+        ["record", "trace_sample"],
+        "ohm",
+        "resistance between the rollers over the first revolution",
+        content="record",
+    ),
+    "drift": number([], "1", "share of the roughness's variance that each revolution renews"),
+    "pairs": number([], "1", "number of pairs of rollers behind the records", kind="i"),
 }
 
 _RIG = {
     "origin": COORDINATES["origin"],
-    "revolutions": COORDINATES["revolutions"],
+    "revolutions": number([], "1", COORDINATES["revolutions"].long_name),
     **{name: AT_POINTS[name] for name in EXPERIMENT_DIMS},
     "voltage": number(["operating_point", "rig_time"], "V", "voltage that the rig logs"),
     "resistance": number(["operating_point", "rig_time"], "ohm", "resistance between the rollers"),
@@ -71,69 +97,105 @@ _RIG = {
 }
 
 
-def _over_points(level, method):
-    """Cell methods of a figure for all operating points at one level."""
-    return {"cell_methods": f"{level}: {method} (over all points at one {level})"}
+def _over_records(level, method):
+    """Cell methods of a figure for all records at one level."""
+    return {"cell_methods": f"{level}: {method} (over all records at one {level})"}
 
+
+_BY_FORMULA = ("film_formula", "record")
+_AT_RECORDS = {
+    "film_thickness": number(_BY_FORMULA, "m", "film thickness by the formula"),
+    "lambda_ratio": number(_BY_FORMULA, "1", "lambda ratio by the formula"),
+    "contact_half_width": number(["record"], "m", "contact half-width"),
+}
 
 _AGREEMENT_DIMS = ("film_formula", "threshold")
+
+
+def _agreement(name, long_name, method):
+    """Describe a figure of agreement, and the range in which a perfect model's would lie."""
+    figure = number(
+        _AGREEMENT_DIMS, "1", long_name, attributes=_over_records("film_formula", method)
+    )
+    return {name: figure} | {
+        f"{name}_expected_{side}": number(
+            ["film_formula"],
+            "1",
+            f"{long_name}, {side} limit of what a perfect model shows in 95 % of pairs",
+            content="qualityInformation",
+        )
+        for side in ("lower", "upper")
+    }
+
+
 _COMPARISON = {
     "origin": COORDINATES["origin"],
-    "revolutions": COORDINATES["revolutions"],
-    "duration": COORDINATES["duration"],
+    **AT_RECORDS,
+    **_AT_RECORDS,
     "comparison_threshold": _EXPERIMENT["comparison_threshold"],
-    **limited(
-        "simulated_probability",
-        COMPARISON_DIMS,
+    "pairs": _EXPERIMENT["pairs"],
+    "drift": _EXPERIMENT["drift"],
+    "reduced_radius": number([], "m", "reduced radius R*"),
+    "composite_rms_roughness": number([], "m", "composite rms roughness"),
+    "moes_load": number(["record"], "1", "Moes load number M"),
+    "moes_material": number(["record"], "1", "Moes material number L"),
+    "breakthrough_probability": number(
+        ["realisation", *_BY_FORMULA],
         "1",
-        "simulated breakthrough probability",
-        attributes=OVER_ALL,
+        "probability of boundary layer breakthrough of each realisation, in rolling",
     ),
     **limited(
+        "simulated_probability",
+        _BY_FORMULA,
+        "1",
+        "simulated breakthrough probability, mean over realisations",
+        attributes=OVER_REALISATIONS,
+    ),
+    "scatter_ratio": number(
+        _BY_FORMULA,
+        "1",
+        "variance of the record's share between pairs over that of one revolution in rolling",
+    ),
+    **{
+        f"predicted_share_{side}": number(
+            _BY_FORMULA,
+            "1",
+            f"{side} limit of the 95 % prediction interval of the share of one pair's record",
+            content="qualityInformation",
+        )
+        for side in ("lower", "upper")
+    },
+    **limited(
         "measured_share",
-        EXPERIMENT_DIMS,
+        ["record"],
         "1",
         "share of time below the threshold",
         content="record",
         attributes=OVER_RECORD,
     ),
-    "intervals_overlap": flag(
-        COMPARISON_DIMS,
-        "whether the intervals of simulation and record overlap",
-        ("apart", "overlapping"),
+    "share_error": _EXPERIMENT["share_error"],
+    "within_prediction": flag(
+        _BY_FORMULA,
+        "whether the record's share lies within the prediction interval",
+        ("outside", "inside"),
     ),
-    "bias": number(
-        _AGREEMENT_DIMS,
-        "1",
-        "mean of simulated probability less measured share",
-        attributes=_over_points("film_formula", "mean"),
-    ),
-    "rms_difference": number(
-        _AGREEMENT_DIMS,
-        "1",
-        "rms difference of the probabilities",
-        attributes=_over_points("film_formula", "root_mean_square"),
-    ),
-    "logit_rms_difference": number(
-        _AGREEMENT_DIMS,
-        "1",
-        "rms difference of the logits",
-        attributes=_over_points("film_formula", "root_mean_square"),
+    **_agreement("bias", "mean of simulated probability less measured share", "mean"),
+    **_agreement("rms_difference", "rms difference of the probabilities", "root_mean_square"),
+    **_agreement("logit_rms_difference", "rms difference of the logits", "root_mean_square"),
+    **_agreement(
+        "overlap_share", "share of the records that lie within their prediction interval", "mean"
     ),
     "rank_correlation": number(_AGREEMENT_DIMS, "1", "Spearman's rank correlation"),
-    "overlap_share": number(
-        _AGREEMENT_DIMS, "1", "share of the points with two intervals whose intervals overlap"
-    ),
-    "compared_points": number(_AGREEMENT_DIMS, "1", "number of points compared", kind="i"),
-    "logit_points": number(
-        _AGREEMENT_DIMS, "1", "number of points with both probabilities within 0 and 1", kind="i"
+    "compared_records": number(_AGREEMENT_DIMS, "1", "number of records compared", kind="i"),
+    "logit_records": number(
+        _AGREEMENT_DIMS, "1", "number of records with both probabilities within 0 and 1", kind="i"
     ),
     **{
         f"{name}_by_{level}": number(
-            [*dims, level],
+            [*dims, f"{level}_group"],
             "1",
-            f"{long_name} at this {level}",
-            attributes=_over_points(level, "mean"),
+            f"{long_name} of the records near this {level}",
+            attributes=_over_records(f"{level}_group", "mean"),
         )
         for level in ("force", "speed", "temperature")
         for name, dims, long_name in (
@@ -143,13 +205,16 @@ _COMPARISON = {
     },
 }
 
-_FIT_DIMS = ("lubricant", "film_formula")
+_FIT_DIMS = ("fitted_lubricant", "film_formula")
 _GAUGE = {
     "origin": COORDINATES["origin"],
+    **AT_RECORDS,
+    **_AT_RECORDS,
     "comparison_threshold": _EXPERIMENT["comparison_threshold"],
-    **limited("gauged_film_thickness", POINT_DIMS, "m", "film thickness that explains the record"),
-    **limited("gauged_lambda_ratio", POINT_DIMS, "1", "lambda ratio that explains the record"),
-    **{name: oil.KINDS["film"].variables[name] for name in ("film_thickness", "lambda_ratio")},
+    "pairs": _EXPERIMENT["pairs"],
+    "drift": _EXPERIMENT["drift"],
+    **limited("gauged_film_thickness", ["record"], "m", "film thickness that explains the record"),
+    **limited("gauged_lambda_ratio", ["record"], "1", "lambda ratio that explains the record"),
     **limited(
         "alpha_factor",
         _FIT_DIMS,
@@ -163,23 +228,41 @@ _GAUGE = {
         "strength tau0 / h_c of the boundary layer that explains the records",
     ),
     "study_layer_strength": number([], "Pa m-1", "strength tau0 / h_c of the study's layer"),
-    "interval_coverage": number(
-        POINT_DIMS,
-        "1",
-        "share of revolutions, each gauged as a record of its own, whose interval holds the film",
+    **{
+        f"{kind}_coverage": number(
+            ["record"],
+            "1",
+            "share of realisations, each left out and gauged as the record of one pair, whose "
+            f"{kind.replace('_', '-')} interval holds the film",
+            content="qualityInformation",
+        )
+        for kind in ("closed", "one_sided")
+    },
+    "closed_share": number(
+        ["record"], "1", "share of realisations whose gauged film has both limits"
     ),
-    "fitted_points": number(
-        ["lubricant"], "1", "number of points with a record in pure rolling", kind="i"
+    **{
+        f"{fit}_coverage": number(
+            _FIT_DIMS,
+            "1",
+            f"share of realisations, each left out and taken as the records, whose {words} "
+            "interval holds the truth",
+            content="qualityInformation",
+        )
+        for fit, words in (("alpha_factor", "factor's"), ("fitted_layer_strength", "strength's"))
+    },
+    "fitted_records": number(
+        ["fitted_lubricant"], "1", "number of records that were fitted", kind="i"
     ),
 }
 
 KINDS = {
     "experiment": FileKind(
         _EXPERIMENT,
-        "Share of time that the rig's resistance is below a threshold, for several "
-        "thresholds, with intervals; its coordinate `origin` says whether the rig was measured "
-        "or simulated.",
-        ("refused",),
+        "Of each record its conditions, the share of time that the resistance is below a threshold, "
+        "the record folded by the revolution, and its first revolution; the coordinate `origin` "
+        "says whether the rig was measured or simulated.",
+        ("refused", "remarks"),
     ),
     "rig": FileKind(
         _RIG,
@@ -187,13 +270,13 @@ KINDS = {
     ),
     "comparison": FileKind(
         _COMPARISON,
-        "Simulation against experiment, point by point, and figures of their agreement.",
-        ("missing",),
+        "Simulation against experiment at the conditions of each record: how often single pairs of "
+        "rollers should lie where it lies, and figures of agreement.",
+        ("missing", "remarks", "travel", "longest_wavelength"),
     ),
     "gauge": FileKind(
         _GAUGE,
         "The other way round: the film, the pressure-viscosity coefficient and the boundary "
         "layer that would explain the records.",
-        ("missing",),
     ),
 }

@@ -1,7 +1,9 @@
 rule comparison:
     input:
+        film=result("film.nc"),
         contact=result("contact.nc"),
         experiment=result("experiment.nc"),
+        records=record_files(),
         sources=script_sources("comparison"),
     output:
         result("comparison.nc"),

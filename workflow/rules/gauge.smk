@@ -1,9 +1,8 @@
 rule gauge:
     input:
-        film=result("film.nc"),
         master=result("master.nc"),
         contact=result("contact.nc"),
-        experiment=result("experiment.nc"),
+        comparison=result("comparison.nc"),
         sources=script_sources("gauge"),
     output:
         result("gauge.nc"),

@@ -9,10 +9,10 @@ from lube.study import load_study
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
-film = load(snakemake.input.film, "film", study)
 if study.experiment.manifest:
-    experiment = measured_experiment(read_manifest(study.experiment.manifest), film, study)
+    experiment = measured_experiment(read_manifest(study.experiment.manifest), study)
 else:
+    film = load(snakemake.input.film, "film", study)
     lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     experiment = simulated_experiment(lines, film, study)
 save(

@@ -1,4 +1,4 @@
-"""Make gauge.nc: the films, and the one unknown of the model, that explain the records."""
+"""Make gauge.nc: film, pressure-viscosity coefficient and boundary layer from the records."""
 
 from lube.gauge import gauge_records
 from lube.io import load, save
@@ -7,7 +7,6 @@ from lube.study import load_study
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
-kinds = ("master", "film", "contact", "experiment")
-inputs = {kind: snakemake.input[kind] for kind in kinds}
+inputs = {kind: snakemake.input[kind] for kind in ("master", "contact", "comparison")}
 datasets = (load(path, kind, study) for kind, path in inputs.items())
 save(gauge_records(*datasets), snakemake.output[0], "gauge", study, inputs.values())

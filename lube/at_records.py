@@ -1,0 +1,206 @@
+"""The model at the conditions of each record: its film, and what single pairs of rollers do there.
+
+A record is made at a force, a speed and a temperature of its own. The film there follows from
+the formulas themselves and the probability from the study's own realisations, run at that film
+and window: nothing is taken from the nearest level of the grid.
+"""
+
+import logging
+
+import numpy as np
+import xarray as xr
+
+from lube.film import film_at
+from lube.kernels.strips import strip_statistics
+from lube.lubricant import lubricant_table
+from lube.one_pair import persistent_share, scatter_ratio
+from lube.roughness import draw_realisation, line_attributes
+from lube.schema import OPERATING_DIMS
+from lube.steps import layer_factor_of, revolution, speed_ratios, whole_numbers
+
+log = logging.getLogger(__name__)
+
+PROBABILITY = "breakthrough_probability"
+POINT_VALUES = ("film_thickness", "contact_half_width")
+
+ALIGNMENTS = 64
+"""Alignments of each pair's lines, from which it is learnt what new ones average out."""
+MOST_PAIRS = 64
+"""Pairs of lines that are tried so, at most."""
+ALIGNMENT_RATIOS = np.linspace(1.0, 3.5, 6)
+"""Lambda ratios at which they are: where contact is not too rare to scatter among so many."""
+
+
+def model_at_records(experiment, film, contact, study):
+    """Film and probability at the conditions of each record, and the scatter of one pair there.
+
+    Parameters
+    ----------
+    experiment : xarray.Dataset
+        An ``experiment`` dataset.
+    film, contact : xarray.Dataset
+        The datasets of these names of the study. Where a record's film and window are among
+        their own in rolling, the probabilities are taken from there.
+    study : Study
+        Its rollers, lubricants, film formulas, roughness lines, boundary layer and drift.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``film_thickness`` (m), ``lambda_ratio``, ``moes_load``, ``moes_material`` and
+        ``contact_half_width`` (m) of each record, ``breakthrough_probability`` over
+        (realisation, film_formula, record) and ``scatter_ratio`` over (film_formula, record);
+        the attributes ``travel`` and ``longest_wavelength``, both m, of one realisation.
+
+        The probabilities are those of one revolution of pure rolling: in expectation slip does
+        not change them. What it changes, the scatter of one record, is in ``scatter_ratio``,
+        the variance of the record's share over that of one revolution in rolling.
+    """
+    model = _films(experiment, study)
+    lines = xr.Dataset(attrs=line_attributes(study.line_spec))
+    points = _whole(model, lines)
+    realisations = range(contact.sizes["realisation"])
+    known = _known(film, contact, lines)
+    rolling = _probabilities(study, lines, points, realisations, known)
+    dims = ("realisation", "film_formula", "record")
+    model[PROBABILITY] = dims, rolling.reshape(-1, *model["film_thickness"].shape)
+    ratio = _scatter_ratios(experiment, model, study, lines, points, rolling)
+    model["scatter_ratio"] = dims[1:], ratio.reshape(model["film_thickness"].shape)
+    model = model.assign_coords(realisation=contact["realisation"].values)
+    return model.assign_attrs(
+        {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
+    )
+
+
+def _films(experiment, study):
+    """Film at the conditions of each record, by all formulas."""
+    force, speed, temperature, oil = (
+        xr.DataArray(experiment[name].values, dims="record")
+        for name in ("force", "speed", "temperature", "lubricant")
+    )
+    oils = lubricant_table(study.lubricants, np.unique(temperature))
+    here = oils.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
+    table = film_at(here, study.rollers, force, speed, study.film_formulas)
+    names = ("lambda_ratio", "moes_load", "moes_material", *POINT_VALUES)
+    scales = ("reduced_radius", "composite_rms_roughness")
+    return table[[*names, *scales]].transpose("film_formula", "record")
+
+
+def _whole(table, lines):
+    """Films in height steps and half-windows in grid points, shape (2, P), of all points."""
+    values = xr.broadcast(*(table[name] for name in POINT_VALUES))
+    return np.stack(whole_numbers(*(each.values.ravel() for each in values), lines))
+
+
+def _known(film, contact, lines):
+    """Films and half-windows that contact.nc has in rolling, with the probabilities there."""
+    rolling = contact["slide_to_roll_ratio"].values == 0.0
+    if not rolling.any() or contact["revolutions"].item() != 1:
+        return np.empty((2, 0), np.int64), np.empty((contact.sizes["realisation"], 0))
+    film = film[list(POINT_VALUES)].transpose(..., *OPERATING_DIMS, missing_dims="ignore")
+    found = contact[PROBABILITY].isel(slide_to_roll_ratio=int(np.argmax(rolling)))
+    return _whole(film, lines), found.values.reshape(found.shape[0], -1)
+
+
+def _probabilities(study, lines, points, realisations, known):
+    """Probability of every realisation in rolling, shape (R, P)."""
+    known_points, known_values = known
+    column = {tuple(point): number for number, point in enumerate(known_points.T.tolist())}
+    wanted, back = np.unique(points, axis=1, return_inverse=True)
+    values = np.empty((len(realisations), wanted.shape[1]))
+    new = [number for number, point in enumerate(wanted.T.tolist()) if tuple(point) not in column]
+    old = np.setdiff1d(np.arange(wanted.shape[1]), new)
+    values[:, old] = known_values[:, [column[tuple(point)] for point in wanted.T[old].tolist()]]
+    if new:
+        for realisation in realisations:
+            pair = draw_realisation(study.line_spec, study.seed, realisation)
+            values[realisation, new] = _run(study, lines, pair, 0.0, wanted[:, new])
+            log.info("records: realisation %d of %d: done", realisation + 1, len(realisations))
+    return values[:, back.ravel()]
+
+
+def _run(study, lines, pair, slide_to_roll_ratio, points):
+    """Probability of breakthrough over one revolution, shape (P,)."""
+    ratios = speed_ratios(slide_to_roll_ratio)
+    steps = revolution(pair, ratios)
+    factor = layer_factor_of(lines, study.rollers.reduced_modulus, study.boundary_layer)
+    films, half_windows = np.ascontiguousarray(points)
+    return strip_statistics(*pair, ratios, steps, films, half_windows, factor)[:, 1] / steps
+
+
+def _scatter_ratios(experiment, model, study, lines, points, rolling):
+    """Variance of each record's share over that of one revolution in rolling, shape (P,)."""
+    slips, turns = experiment["slide_to_roll_ratio"].values, experiment["turns"].values
+    records = model.sizes["record"]
+    persistent = _persistent(study, lines, model, slips, turns)
+    ratios = np.empty(points.shape[1])
+    for slip in np.unique(slips):
+        here = np.tile(slips == slip, points.shape[1] // records)
+        change = _slip_change(study, lines, points[:, here], rolling[:, here], slip)
+        for place, number in enumerate(np.flatnonzero(here)):
+            alone = min(persistent[number] / change[place], 1.0)
+            ratios[number] = change[place] * scatter_ratio(
+                turns[number % records],
+                speed_ratios(slip),
+                study.line_spec.points,
+                _reach(study),
+                alone,
+                study.rig.drift,
+            )
+    return ratios
+
+
+def _reach(study):
+    """Points that two alignments must be apart to share no roughness: a longest wavelength."""
+    spec = study.line_spec
+    return 2.0 * np.pi / spec.q_min / spec.spacing
+
+
+def _slip_change(study, lines, points, rolling, slip):
+    """Variance between realisations with slip over that in rolling, shape (P,).
+
+    With slip an alignment changes while the contact is passed, so that contacts are shorter and
+    more, and their share scatters less.
+    """
+    variance = rolling.var(axis=0, ddof=1) if len(rolling) > 1 else np.zeros(points.shape[1])
+    if slip == 0.0 or not variance.any():
+        return np.ones(points.shape[1])
+    slipping = np.empty((min(len(rolling), MOST_PAIRS), points.shape[1]))
+    for realisation, row in enumerate(slipping):
+        pair = draw_realisation(study.line_spec, study.seed, realisation)
+        row[:] = _run(study, lines, pair, slip, points)
+        log.info("records with slip %g: realisation %d: done", slip, realisation)
+    seen = (variance > 0.0) & (slipping.var(axis=0, ddof=1) > 0.0)
+    return np.where(seen, slipping.var(axis=0, ddof=1) / np.where(seen, variance, 1.0), 1.0)
+
+
+def _persistent(study, lines, model, slips, turns):
+    """Share of the scatter in rolling that no new alignment averages out, shape (P,).
+
+    Taken from many alignments of the ensemble's own lines; only where a record has several.
+    """
+    ratio = model["lambda_ratio"].values.ravel()
+    alike = study.line_spec.points[0] == study.line_spec.points[1]
+    one_alignment = alike and not slips.any()
+    if one_alignment or not (turns > 1.0).any() or model.sizes["realisation"] < 2:
+        return np.zeros(ratio.size) if one_alignment else np.ones(ratio.size)
+    thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
+    half_width = model["contact_half_width"].mean().item()
+    levels = np.stack(whole_numbers(thickness, np.full(thickness.size, half_width), lines))
+    shares = [
+        _aligned(study, lines, realisation, levels)
+        for realisation in range(min(model.sizes["realisation"], MOST_PAIRS))
+    ]
+    found = persistent_share(np.array(shares))
+    known = np.isfinite(found)
+    if not known.any():
+        return np.ones(ratio.size)
+    return np.interp(ratio, ALIGNMENT_RATIOS[known], found[known])
+
+
+def _aligned(study, lines, realisation, levels):
+    """Probability of one pair at several alignments of its lines, shape (alignments, levels)."""
+    first, second = draw_realisation(study.line_spec, study.seed, realisation)
+    shifts = np.arange(ALIGNMENTS) * (second.size // ALIGNMENTS)
+    log.info("alignments of realisation %d", realisation)
+    return [_run(study, lines, (first, np.roll(second, s)), 0.0, levels) for s in shifts]

@@ -1,0 +1,172 @@
+"""A record folded by the revolution: what repeats each turn, and what does not.
+
+Rollers show the same roughness again after a turn. Where both repeat themselves together (equal
+circumferences, no slip) so does the whole record, but for electrical noise. How well it repeats
+tells whether that holds, and the repetition itself tells the speed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+
+PHASES = 512
+"""Phases of a revolution that a record is folded into, at most."""
+SPAN = 0.05
+"""The period is looked for so far from the nominal one, relative."""
+CLEAR = 0.5
+"""Repeatability from which on the period of a record is believed rather than a stated speed."""
+
+
+@dataclass(frozen=True)
+class Fold:
+    """A record folded by the revolution.
+
+    Attributes
+    ----------
+    period : float
+        Of a revolution, s: refined from the record if it repeats clearly, else the nominal one.
+    repeatability : float
+        Mean correlation between two revolutions: 1 if they are the same, 0 if they have nothing
+        in common; NaN of a record that holds no more than one.
+    profile : numpy.ndarray
+        Shape (PHASES,), share of time in contact at each phase of a revolution.
+    deviation : numpy.ndarray
+        Shape (PHASES,), standard deviation between revolutions there; NaN where a phase is seen
+        once only.
+    share_error : float
+        Standard error of the record's share by what differs between its whole revolutions;
+        0 if there are fewer than two.
+    """
+
+    period: float
+    repeatability: float
+    profile: np.ndarray
+    deviation: np.ndarray
+    share_error: float
+
+
+def fold(shares, interval, nominal_period):
+    """Fold a record by the revolution.
+
+    Parameters
+    ----------
+    shares : numpy.ndarray
+        Shape (B,), share of time in contact in successive equal stretches of the record.
+    interval : float
+        Duration of a stretch, s.
+    nominal_period : float
+        Duration of a revolution by the rig's speed, s.
+
+    Returns
+    -------
+    Fold
+        The folded record.
+    """
+    found = refined_period(shares, interval, nominal_period)
+    tried = [
+        (_repeatability(shares, interval, period), period) for period in (found, nominal_period)
+    ]
+    repeatability, period = max(tried) if tried[0][0] >= CLEAR else tried[1]
+    profile, deviation = _profile(shares, interval, period)
+    error = _share_error(shares, interval, period)
+    return Fold(period, repeatability, profile, deviation, error)
+
+
+def refined_period(shares, interval, nominal_period):
+    """Period at which a record repeats itself, near a nominal one.
+
+    The autocorrelation has a peak at each multiple of the period. The first peak is looked for
+    within `SPAN` of the nominal period, the further ones, doubled each time, near where it says.
+
+    Parameters
+    ----------
+    shares, interval, nominal_period
+        As in `fold`.
+
+    Returns
+    -------
+    float
+        The period, s; the nominal one if the record is shorter than that or does not vary.
+    """
+    reach = SPAN * nominal_period / interval
+    lag = nominal_period / interval
+    if shares.size < lag + reach + 2 or np.ptp(shares) == 0.0:
+        return nominal_period
+    correlation = _autocorrelation(shares)
+    multiple = 1
+    while multiple * (lag + reach) + 2 < shares.size:
+        lag = _peak(correlation, multiple * lag, max(multiple * reach, 2.0)) / multiple
+        reach = 1.5 / multiple  # the peak is known to about a stretch
+        multiple *= 2
+    return lag * interval
+
+
+def _autocorrelation(shares):
+    """Mean product of deviations at each lag."""
+    length = scipy.fft.next_fast_len(2 * shares.size, real=True)
+    power = np.abs(scipy.fft.rfft(shares - shares.mean(), length)) ** 2
+    return scipy.fft.irfft(power, length)[: shares.size] / np.arange(shares.size, 0, -1)
+
+
+def _peak(correlation, middle, reach):
+    """Lag of the largest correlation about some lag, by a parabola through its neighbours."""
+    first = max(int(np.floor(middle - reach)), 1)
+    last = min(int(np.ceil(middle + reach)), correlation.size - 2)
+    top = first + int(np.argmax(correlation[first : last + 1]))
+    before, here, after = correlation[top - 1 : top + 2]
+    bend = before - 2.0 * here + after
+    return top + (0.5 * (before - after) / bend if bend < 0.0 else 0.0)
+
+
+def _phases(count, interval, period):
+    """Phase, as a whole number, and revolution of each stretch."""
+    turns = (np.arange(count) + 0.5) * interval / period
+    phases = min(PHASES, max(int(period / interval), 1))
+    return (turns % 1.0 * phases).astype(np.int64), turns.astype(np.int64), phases
+
+
+def _cells(shares, interval, period):
+    """Mean share, and phase, of each phase of each revolution that the record holds."""
+    phase, turn, phases = _phases(shares.size, interval, period)
+    cell = turn * phases + phase
+    counts = np.bincount(cell)
+    means = np.bincount(cell, shares) / np.maximum(counts, 1)
+    return means[counts > 0], np.flatnonzero(counts) % phases, phases
+
+
+def _repeatability(shares, interval, period):
+    """Mean correlation between two revolutions."""
+    values, phase, phases = _cells(shares - shares.mean(), interval, period)
+    times = np.bincount(phase, minlength=phases)
+    again = times > 1
+    if not again.any():
+        return np.nan
+    sums, squares = (np.bincount(phase, each, phases)[again] for each in (values, values**2))
+    times = times[again]
+    alike = np.sum((sums**2 - squares) / (times * (times - 1)))
+    total = np.sum(squares / times)
+    return alike / total if total > 0.0 else np.nan
+
+
+def _profile(shares, interval, period):
+    """Mean over the revolutions at each of `PHASES` phases, and the deviation between them."""
+    values, phase, phases = _cells(shares, interval, period)
+    times = np.bincount(phase, minlength=phases)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = np.bincount(phase, values, phases) / times
+        excess = np.bincount(phase, (values - mean[phase]) ** 2, phases) / (times - 1)
+    deviation = np.where(times > 1, np.sqrt(excess), np.nan)
+    wanted = np.arange(PHASES) * phases // PHASES
+    return mean[wanted], deviation[wanted]
+
+
+def _share_error(shares, interval, period):
+    """Standard error of the share by the scatter between whole revolutions."""
+    _, turn, _ = _phases(shares.size, interval, period)
+    whole = int(shares.size * interval / period)
+    if whole < 2:
+        return 0.0
+    inside = turn < whole
+    each = np.bincount(turn[inside], shares[inside]) / np.bincount(turn[inside])
+    return np.std(each, ddof=1) / np.sqrt(whole)
