@@ -5,7 +5,6 @@ quantity in many ways; the unit must be written, it is never guessed.
 """
 
 import re
-import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -13,10 +12,9 @@ import numpy as np
 
 from lube.errors import DataError, LubeError, shown
 from lube.kernels.uniform import first_uneven, first_unsound
-from lube.units import convert
+from lube.units import ELECTRICAL, convert, usual_spelling
 
-UNITS = {"time": "s", "voltage": "V", "resistance": "ohm"}
-MEASURED = ("voltage", "resistance")
+UNITS = {"time": "s"} | ELECTRICAL
 
 FIRST_STEPS = 1000
 """The median of so many first steps of time is the sampling interval."""
@@ -29,7 +27,6 @@ _ENDINGS = {
 _SYMBOLS = {"t": "time", "U": "voltage", "u": "voltage", "R": "resistance", "r": "resistance"}
 _HEADER = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\)|/\s*([^/\s]+))")
 _LONGEST_HEADER = 200
-_LOOSE_UNIT = re.compile("(ohm|volt|second)s?$", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -124,7 +121,7 @@ def find_signals(columns, where):
     DataError
         If there is no voltage or resistance, or a unit is missing or unknown.
     """
-    measured = _find(columns, MEASURED, where)
+    measured = _find(columns, ELECTRICAL, where)
     if measured is None:
         names = ", ".join(shown(name) for name, _ in columns[:5]) or "nothing"
         raise DataError(
@@ -155,7 +152,7 @@ def _named_quantity(name, _):
 def _quantity_of_unit(_, units):
     for quantity, target in UNITS.items():
         try:
-            convert(1.0, _plain(units or ""), target)
+            convert(1.0, usual_spelling(units or ""), target)
         except LubeError:
             continue
         return quantity
@@ -168,15 +165,9 @@ def _factor(name, units, quantity, where):
             f"{where}: {shown(name)} has no unit, need one such as '{name} [{UNITS[quantity]}]'"
         )
     try:
-        return convert(1.0, _plain(units), UNITS[quantity])
+        return convert(1.0, usual_spelling(units), UNITS[quantity])
     except LubeError as error:
         raise DataError(f"{where}: {shown(name)}: {error}") from None
-
-
-def _plain(units):
-    """``kOhm`` and ``Volts`` as the units are spelled; one sign each for ohm and for micro."""
-    units = unicodedata.normalize("NFKC", units.strip())
-    return _LOOSE_UNIT.sub(lambda match: match[0].lower(), units)
 
 
 def first_interval(times):
