@@ -214,6 +214,35 @@ def parse_quantity(value, target):
     return converted
 
 
+def parse_electrical(value):
+    """Turn ``'3 mV'`` or ``'2 kOhm'`` into a float in V or ohm.
+
+    Parameters
+    ----------
+    value : str
+        A number and its unit.
+
+    Returns
+    -------
+    number : float
+        The finite value, V or ohm.
+    quantity : str
+        ``voltage`` or ``resistance``.
+
+    Raises
+    ------
+    LubeError
+        If the text has no number or no unit, or the unit is another's.
+    """
+    match = _QUANTITY.fullmatch(value.strip()) if isinstance(value, str) else None
+    if match is None or match[2] is None:
+        raise LubeError(
+            f"got {shown(value)}, need a voltage or a resistance with its unit, such as '3 mV'"
+        )
+    quantity = electrical_quantity(match[2])
+    return parse_quantity(usual_spelling(value), ELECTRICAL[quantity]), quantity
+
+
 def with_unit(value, unit):
     """Print a number with its unit, scaled so that it is easily read.
 
