@@ -166,7 +166,9 @@ def _told_row(entry, study):
 
 
 def _recorded_row(entry, point, study):
-    recording = open_recording(entry.file, entry.sampling_interval)
+    recording = open_recording(
+        entry.file, entry.sampling_interval, entry.channel, entry.unit, entry.gain, entry.offset
+    )
     interval = recording.sampling_interval
     counter = record_counter(study.experiment, study.rig, recording.quantity, interval)
     limit = study.rig.amplifier_range if recording.quantity == "voltage" else np.inf

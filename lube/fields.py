@@ -187,6 +187,30 @@ def pure_number(**limits):
     return Annotated[float, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]
 
 
+def checked_text(check, kind):
+    """Field type for a text that stays as it is written, once a function has accepted it.
+
+    Parameters
+    ----------
+    check : callable
+        Takes the text; raises LubeError.
+    kind : str
+        What it is, for the JSON schema and the README's table.
+
+    Returns
+    -------
+    type
+        An annotated str.
+    """
+
+    def parse(value):
+        check(value)
+        return value
+
+    schema = {"type": "string", "format": kind}
+    return Annotated[str, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]
+
+
 def levels(units, **limits):
     """Field type for the levels of an operating variable.
 

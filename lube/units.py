@@ -173,7 +173,7 @@ def electrical_quantity(units):
     LubeError
         If it is neither.
     """
-    for quantity, target in ELECTRICAL.items():
+    for quantity, target in ELECTRICAL.items() if isinstance(units, str) else ():
         with contextlib.suppress(LubeError):
             convert(1.0, usual_spelling(units), target)
             return quantity

@@ -9,7 +9,14 @@ from hypothesis import strategies as st
 from refusals import one_line
 
 from lube.errors import LubeError
-from lube.units import convert, electrical_quantity, parse_number, parse_quantity, with_unit
+from lube.units import (
+    convert,
+    electrical_quantity,
+    parse_electrical,
+    parse_number,
+    parse_quantity,
+    with_unit,
+)
 
 finite = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e200, max_value=1e200)
 positive = st.floats(min_value=1e-200, max_value=1e200)
@@ -132,10 +139,23 @@ def test_a_unit_of_voltage_or_resistance_is_known_in_any_usual_spelling(units, q
     assert electrical_quantity(units) == quantity
 
 
-@pytest.mark.parametrize("units", ["N", "wumpus", "dBm", "", "V/A/A", "m**9**9**9"])
+@pytest.mark.parametrize("units", ["N", "wumpus", "dBm", "", "V/A/A", "m**9**9**9", 7, None])
 def test_any_other_unit_is_neither_voltage_nor_resistance(units):
     told = f"got the unit {units!r}, need one of voltage or resistance, such as 'mV' or 'kohm'"
     assert refusal(electrical_quantity, units) == told
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "quantity"),
+    [("3 mV", 3e-3, "voltage"), ("-1.5 kOhm", -1500.0, "resistance"), (" 0V", 0.0, "voltage")],
+)
+def test_a_voltage_or_resistance_tells_which_it_is(text, number, quantity):
+    assert parse_electrical(text) == (pytest.approx(number, rel=1e-15), quantity)
+
+
+@pytest.mark.parametrize("value", ["3", 3, None, "V", "3 mm", "1e400 V", ["3 V"], ""])
+def test_what_is_neither_voltage_nor_resistance_is_refused(value):
+    assert "need" in refusal(parse_electrical, value)
 
 
 def test_an_array_is_converted_like_each_of_its_numbers():
