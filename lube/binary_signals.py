@@ -18,7 +18,7 @@ from nptdms import TdmsFile
 
 from lube.classic_netcdf import needed_length
 from lube.errors import DataError, LubeError, shown
-from lube.signals import FIRST_STEPS, Part, Signal, find_signals
+from lube.signals import FIRST_STEPS, Channel, Part, Signal, find_signals
 from lube.units import convert, parse_number, parse_quantity
 
 SLICE = 2**20
@@ -102,10 +102,9 @@ def _read(values, wanted, signal):
 
 @dataclass(frozen=True)
 class _Array:
-    """One array of a file, with its name, its unit or None, and its attributes."""
+    """One array of a file: what the file tells of it, its values, and its attributes."""
 
-    name: str
-    units: str | None
+    channel: Channel
     values: object
     attributes: dict
 
@@ -152,7 +151,8 @@ def _netcdf_array(variable, shared):
     units = attributes.get("units")
     # A time may be told from a date on, which matters nothing here.
     units = units.split(" since ")[0] if isinstance(units, str) else None
-    return _Array(variable.name, units, variable, attributes)
+    channel = Channel(variable.name, units, variable.name, variable.dimensions[0], variable.size)
+    return _Array(channel, variable, attributes)
 
 
 @contextlib.contextmanager
@@ -161,17 +161,18 @@ def _tdms_arrays(path):
         _check_segments(path)
         with TdmsFile.open(path) as file:
             yield [
-                _tdms_array(channel)
+                _tdms_array(group.name, channel)
                 for group in file.groups()
                 for channel in group.channels()
                 if channel.dtype.kind in "fiu"
             ]
 
 
-def _tdms_array(channel):
-    units = channel.properties.get("unit_string") or channel.properties.get("NI_UnitDescription")
-    # A property may be of any type.
-    return _Array(channel.name, units and str(units), channel, channel.properties)
+def _tdms_array(group, array):
+    units = array.properties.get("unit_string") or array.properties.get("NI_UnitDescription")
+    units = units and str(units)  # a property may be of any type
+    channel = Channel(array.name, units, f"{group}/{array.name}", group, len(array))
+    return _Array(channel, array, array.properties)
 
 
 # National Instruments, The NI TDMS file format (2023): tag, table of contents (whose bit 6 says
@@ -194,7 +195,7 @@ def _check_segments(path):
         raise DataError(f"{path}: ends at byte {size} within a TDMS segment, truncated")
 
 
-def open_netcdf(path):
+def open_netcdf(path, channel=None, unit=None):
     """Find the record in a NetCDF file.
 
     The variable ``voltage`` or ``resistance`` has its time in a variable as long as itself, or
@@ -204,6 +205,10 @@ def open_netcdf(path):
     ----------
     path : Path
         The file.
+    channel : str, optional
+        Name of the record's variable.
+    unit : str, optional
+        Its unit, in place of what the file states.
 
     Returns
     -------
@@ -213,31 +218,33 @@ def open_netcdf(path):
     Raises
     ------
     DataError
-        If the file is truncated, damaged or foreign, holds no voltage or resistance, or a
-        unit is missing or unknown.
+        If the file is truncated, damaged or foreign, or `lube.signals.find_signals` refuses
+        its variables.
     """
-    return _opened(path, _netcdf_arrays, _netcdf_interval)
+    return _opened(path, _netcdf_arrays, _netcdf_interval, channel, unit)
 
 
-def open_tdms(path):
+def open_tdms(path, channel=None, unit=None):
     """Find the record in a TDMS file.
 
-    Its time is a channel as long as itself, or else its property ``wf_increment``. What goes in,
-    what comes out and what is refused is as in `open_netcdf`.
+    Its time is a channel as long as itself, or else its property ``wf_increment``. A channel
+    may be asked for as ``group/channel`` too. What goes in, what comes out and what is refused
+    is as in `open_netcdf`.
     """
-    return _opened(path, _tdms_arrays, _tdms_interval)
+    return _opened(path, _tdms_arrays, _tdms_interval, channel, unit)
 
 
-def _opened(path, opener, interval_of):
+def _opened(path, opener, interval_of, asked, unit):
     with opener(path) as arrays:
-        time, measured = find_signals([(array.name, array.units) for array in arrays], path)
-        array = arrays[measured.place]
-        if time is not None and len(arrays[time.place].values) != len(array.values):
-            time = None  # of another record
+        channels = [array.channel for array in arrays]
+        time, measured = find_signals(channels, path, asked, unit)
+        record = channels[measured.place]
         try:
-            interval = interval_of(array.attributes)
+            interval = interval_of(arrays[measured.place].attributes)
         except LubeError as error:
-            raise DataError(f"{path}: sampling interval of {shown(array.name)}: {error}") from None
+            raise DataError(f"{path}: sampling interval of {shown(record.name)}: {error}") from None
+        if time and interval is not None and channels[time.place].group != record.group:
+            time = None  # what a channel says of itself is nearer than another group's times
         return BinarySignal(path, opener, time, measured, interval)
 
 

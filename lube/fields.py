@@ -49,7 +49,15 @@ def _as_value_error(parse):
     return validate
 
 
-def bounded(number, units, above=-math.inf, below=math.inf, least=-math.inf, most=math.inf):
+def bounded(
+    number,
+    units,
+    above=-math.inf,
+    below=math.inf,
+    least=-math.inf,
+    most=math.inf,
+    other_than=math.nan,
+):
     """Return the number if it lies within its limits, else raise LubeError.
 
     Parameters
@@ -62,6 +70,8 @@ def bounded(number, units, above=-math.inf, below=math.inf, least=-math.inf, mos
         Limits that it may not touch.
     least, most : float, optional
         Limits that it may touch.
+    other_than : float, optional
+        What it may not be.
 
     Returns
     -------
@@ -73,10 +83,11 @@ def bounded(number, units, above=-math.inf, below=math.inf, least=-math.inf, mos
     LubeError
         If it lies outside.
     """
-    if not (above < number < below and least <= number <= most):
+    if not (above < number < below and least <= number <= most and number != other_than):
         limits = {"above": above, "below": below, "least": least, "most": most}
+        needed = _in_words(limits | {"other_than": other_than})
         unit = f" {units}" if units else ""
-        raise LubeError(f"got {number:g}, need a value {_in_words(limits)}{unit}")
+        raise LubeError(f"got {number:g}, need a value {needed}{unit}")
     return number
 
 
@@ -115,11 +126,15 @@ def sensible_quantity(value, units, **limits):
     return _sensible(bounded(parse_quantity(value, units), units, **limits), units)
 
 
+_WORDS = {"least": "at least", "most": "at most", "other_than": "other than"}
+
+
 def _in_words(limits):
     """``{"above": 0.0, "most": 0.5}`` -> ``above 0 and at most 0.5``."""
-    words = {"above": "above", "below": "below", "least": "at least", "most": "at most"}
     return " and ".join(
-        f"{words[name]} {value:g}" for name, value in limits.items() if math.isfinite(value)
+        f"{_WORDS.get(name, name)} {value:g}"
+        for name, value in limits.items()
+        if math.isfinite(value)
     )
 
 
@@ -170,6 +185,30 @@ def pure_number(**limits):
 
     schema = {"type": "number", "format": _described("number", limits)}
     return Annotated[float, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]
+
+
+def checked_text(check, kind):
+    """Field type for a text that stays as it is written, once a function has accepted it.
+
+    Parameters
+    ----------
+    check : callable
+        Takes the text; raises LubeError.
+    kind : str
+        What it is, for the JSON schema and the README's table.
+
+    Returns
+    -------
+    type
+        An annotated str.
+    """
+
+    def parse(value):
+        check(value)
+        return value
+
+    schema = {"type": "string", "format": kind}
+    return Annotated[str, BeforeValidator(_as_value_error(parse)), WithJsonSchema(schema)]
 
 
 def levels(units, **limits):

@@ -13,42 +13,109 @@ from typing import Annotated, Literal
 from pydantic import Field, StringConstraints, model_validator
 
 from lube.errors import DataError, LubeError, shown
-from lube.fields import StrictModel, pure_number, quantity, read_yaml, validate
+from lube.fields import (
+    StrictModel,
+    checked_text,
+    pure_number,
+    quantity,
+    read_yaml,
+    validate,
+)
 from lube.schema import ORIGINS
 from lube.tables import HEADER_CELL, delimiter_of, numbered_lines, split_cells
-from lube.units import convert
+from lube.units import convert, electrical_quantity, parse_electrical
 
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 Share = pure_number(least=0.0, most=1.0)
 
-_UNITS = {"force": "N", "speed": "rpm", "temperature": "degC", "sampling_interval": "s"}
-_TEXTS = ("file", "lubricant", "origin")
+_UNITS = {
+    "force": "N",
+    "speed": "rpm",
+    "temperature": "degC",
+    "force_tolerance": "N",
+    "speed_tolerance": "rpm",
+    "temperature_tolerance": "K",
+    "sampling_interval": "s",
+    "offset": "mV",
+}
+"""A unit for each column that needs one; the offset of a resistance has one of resistance."""
+
+_TEXTS = ("file", "channel", "unit", "lubricant", "pair", "origin")
+_OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval")
+_OF_SHARES = ("lower", "upper")
 
 
 class _Row(StrictModel):
     """A row as it is written: an operating point, and its record or its share."""
 
-    file: Text | None = None
-    probability: Share | None = None
-    lower: Share | None = None
-    upper: Share | None = None
-    force: quantity("N", above=0.0)
-    speed: quantity("rpm", above=0.0)
-    temperature: quantity("degC", above=-273.15)
-    lubricant: Text | None = None
-    slide_to_roll_ratio: pure_number(least=-2.0, most=2.0) | None = None
-    sampling_interval: quantity("s", above=0.0) | None = None
-    origin: Literal[ORIGINS] = Field(ORIGINS[0])
+    file: Text | None = Field(
+        None, description="the record, relative to the manifest's folder; this or `probability`"
+    )
+    channel: Text | None = Field(
+        None,
+        description="which column, variable or channel of the file, its name without the unit; in "
+        "TDMS also `group/channel`; else the first voltage or resistance",
+    )
+    unit: checked_text(electrical_quantity, "unit of voltage or resistance") | None = Field(
+        None,
+        description="unit of that channel, where the file states none; it is believed even if the "
+        "file states another; where the channel's name does not say voltage or resistance, it does",
+    )
+    gain: pure_number(other_than=0.0) = Field(
+        1.0,
+        description="factor of an amplifier between rig and recorder, below 0 if it inverts: "
+        "recorded = gain × true + offset",
+    )
+    offset: checked_text(parse_electrical, "quantity in V or ohm, as the record is") = Field(
+        0.0,
+        description="what is recorded when the true value is 0, in the channel's own quantity; "
+        "subtracted before the gain is divided out: true = (recorded - offset) / gain",
+    )
+    sampling_interval: quantity("s", above=0.0) | None = Field(
+        None, description="time between samples, for a file that does not tell it"
+    )
+    probability: Share | None = Field(
+        None, description="share of time in contact that you evaluated yourself, in place of `file`"
+    )
+    lower: Share | None = Field(None, description="lower limit of that share")
+    upper: Share | None = Field(None, description="upper limit of that share")
+    force: quantity("N", above=0.0) = Field(description="normal force")
+    speed: quantity("rpm", above=0.0) = Field(
+        description="rotation speed, as in the study; `1/min` and `Hz` count turns"
+    )
+    temperature: quantity("degC", above=-273.15) = Field(description="of rollers and oil")
+    force_tolerance: quantity("N", above=0.0) | None = Field(
+        None, description="how far the true force may be from the one stated"
+    )
+    speed_tolerance: quantity("rpm", above=0.0) | None = Field(
+        None, description="how far the true speed may be from the one stated"
+    )
+    temperature_tolerance: quantity("K", above=0.0) | None = Field(
+        None,
+        description="how far the true temperature may be from the one stated; 1 degC is 1 K here",
+    )
+    lubricant: Text | None = Field(None, description="a lubricant of the study; else its first")
+    slide_to_roll_ratio: pure_number(least=-2.0, most=2.0) | None = Field(
+        None, description="a ratio of the study; else 0, or the study's first if 0 is none of them"
+    )
+    pair: Text | None = Field(
+        None,
+        description="label of the pair of rollers that was measured; records without it are all of "
+        "one pair",
+    )
+    origin: Literal[ORIGINS] = Field(
+        ORIGINS[0], description="where the values come from, the same in all rows"
+    )
 
     @model_validator(mode="after")
     def _check_what_is_told(self):
         if (self.file is None) == (self.probability is None):
             raise ValueError("need either file or probability")
-        kind, foreign = "probability", ("sampling_interval",)
+        kind, foreign = "probability", _OF_FILES
         if self.file is not None:
-            kind, foreign = "file", ("lower", "upper")
+            kind, foreign = "file", _OF_SHARES
         for key in foreign:
-            if getattr(self, key) is not None:
+            if key in self.model_fields_set:
                 raise ValueError(f"{key}: not allowed with {kind}")
         return self
 
@@ -59,12 +126,6 @@ class _Row(StrictModel):
         if told != sorted(told):
             raise ValueError(f"probability: got {told}, need lower, probability and upper to rise")
         return self
-
-    @property
-    def point(self):
-        """Operating point as text, the same for levels that differ by rounding."""
-        levels = (self.force, self.speed, self.temperature, self.slide_to_roll_ratio)
-        return (*(f"{level:.9g}" for level in levels if level is not None), self.lubricant)
 
 
 @dataclass(frozen=True)
@@ -77,29 +138,49 @@ class Entry:
         Where it stands, such as ``manifest.csv: line 3``.
     file : Path or None
         Record of the rig, which exists; None where the share is given.
+    channel : str or None
+        Its channel in the file, if given.
+    unit : str or None
+        Unit of that channel, if given.
+    gain : float
+        Amplification of what was recorded, not 0.
+    offset : float or str
+        What was recorded when the true value was 0: with its unit, or 0.0 if not given.
+    sampling_interval : float or None
+        Time between samples, s, if given.
     probability, lower, upper : float or None
         Share of time in contact, already evaluated, and its limits if given.
     force, speed, temperature : float
         Operating point, N, rpm and degC.
+    force_tolerance, speed_tolerance, temperature_tolerance : float or None
+        How far the true operating point may be from it, N, rpm and K, if given.
     lubricant : str or None
         Lubricant, if given.
     slide_to_roll_ratio : float or None
         Slide-to-roll ratio, if given.
-    sampling_interval : float or None
-        Time between samples, s, if given.
+    pair : str or None
+        Label of the pair of rollers, if given.
     """
 
     where: str
     file: Path | None
+    channel: str | None
+    unit: str | None
+    gain: float
+    offset: float | str
+    sampling_interval: float | None
     probability: float | None
     lower: float | None
     upper: float | None
     force: float
     speed: float
     temperature: float
+    force_tolerance: float | None
+    speed_tolerance: float | None
+    temperature_tolerance: float | None
     lubricant: str | None
     slide_to_roll_ratio: float | None
-    sampling_interval: float | None
+    pair: str | None
 
 
 @dataclass(frozen=True)
@@ -124,12 +205,10 @@ class Manifest:
 def read_manifest(path):
     """Read a manifest.
 
-    The columns of a CSV file, or the keys of a YAML list's mappings, are ``force [N]``, ``speed
-    [rpm]``, ``temperature [degC]``, and either ``file``, relative to the manifest's folder, or
-    ``probability`` with or without its limits ``lower`` and ``upper``. There may be
-    ``lubricant``, ``slide_to_roll_ratio``, ``sampling_interval [us]`` and ``origin``, which is
-    ``measured`` by default. In YAML the unit stands with the value: ``force: 800 N``. Commas
-    within numbers are decimal commas.
+    The README has the table of its keys, made of `manifest_schema`. They are the columns of a CSV
+    file, with a unit where there is one (``force [N]``), or the keys of a YAML list's mappings,
+    where the unit stands with the value: ``force: 800 N``. Commas within numbers are decimal
+    commas. Several rows may be of one operating point.
 
     Parameters
     ----------
@@ -154,6 +233,17 @@ def read_manifest(path):
     else:
         raise DataError(f"{path}: got the suffix {path.suffix!r}, need .csv, .yaml or .yml")
     return _collected(rows, path.parent)
+
+
+def manifest_schema():
+    """Tell the columns, or keys, of a manifest.
+
+    Returns
+    -------
+    dict
+        JSON schema of a row, each key with its meaning.
+    """
+    return _Row.model_json_schema()
 
 
 def _yaml_rows(path):
@@ -208,14 +298,17 @@ def _check_units(name, units, where):
     if target is None:
         return
     try:
-        convert(1.0, units, target)
+        if name == "offset":
+            electrical_quantity(units)
+        else:
+            convert(1.0, units, target)
     except LubeError as error:
         raise DataError(f"{where}: {name}: {error}") from None
 
 
 def _collected(rows, folder):
     """Sort rows into those that can be used and those that cannot."""
-    entries, refused, points, origin = [], [], {}, None
+    entries, refused, origin = [], [], None
     for where, content in rows:
         try:
             row = _row(content, where)
@@ -225,13 +318,11 @@ def _collected(rows, folder):
                     f"{where}: origin: got {row.origin!r} among rows that are {origin}, need "
                     "one origin in a manifest"
                 )
-            if row.point in points:
-                raise DataError(f"{where}: the same operating point as {points[row.point]}")
         except DataError as error:
             refused.append(str(error))
             continue
-        origin, points[row.point] = row.origin, where
-        told = row.model_dump(exclude={"file", "origin"})
+        origin = row.origin
+        told = {name: value for name, value in row if name not in ("file", "origin")}
         entries.append(Entry(where=where, file=file, **told))
     return Manifest(origin or ORIGINS[0], tuple(entries), tuple(refused))
 

@@ -6,13 +6,15 @@ with its place in the file; nothing is mended in silence.
 """
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from lube.binary_signals import BinarySignal, open_netcdf, open_tdms
-from lube.errors import DataError
+from lube.errors import DataError, LubeError, shown
+from lube.fields import bounded
 from lube.signals import Clock, first_interval, value_fault
 from lube.text_signals import TextSignal, open_text
+from lube.units import parse_electrical, parse_number
 
 _KIND_OF_SUFFIX = {
     ".csv": "text",
@@ -73,8 +75,11 @@ class Recording:
             yield part.values
 
 
-def open_recording(path, sampling_interval=None):
+def open_recording(path, sampling_interval=None, channel=None, unit=None, gain=1.0, offset=0.0):
     """Open a record of the rig, whose samples are read later.
+
+    Between rig and recorder there may be an amplifier: recorded = gain * true + offset. What is
+    read is true = (recorded - offset) / gain.
 
     Parameters
     ----------
@@ -82,6 +87,15 @@ def open_recording(path, sampling_interval=None):
         CSV file (.csv, .tsv, .txt), NetCDF file (.nc, .nc4) or TDMS file (.tdms).
     sampling_interval : float, optional
         Time between samples, s, for a file that does not tell it.
+    channel : str, optional
+        Name of the column, variable or channel that is the record, without its unit; of a TDMS
+        file ``group/channel`` too. By default the first voltage or resistance.
+    unit : str, optional
+        Unit of that channel, such as ``mV``. It is believed even where the file states another.
+    gain : float, optional
+        Factor of the amplifier, not 0; below 0 if it inverts.
+    offset : float or str, optional
+        What is recorded when the true value is 0: in V or ohm, or a text with its unit.
 
     Returns
     -------
@@ -92,11 +106,14 @@ def open_recording(path, sampling_interval=None):
     ------
     DataError
         If the file is missing, not what its name says, empty or damaged; if it holds no
-        voltage or resistance, or a unit is missing or unknown; if the sampling interval is not
-        known, not positive, or told twice and differently.
+        voltage or resistance, or not the channel, or several of its name, or a unit is missing,
+        unknown or not of what the channel's name says; if the gain is 0 or the offset is not of
+        the record's quantity; if the sampling interval is not known, not positive, or told
+        twice and differently.
     """
     path = Path(path)
-    signal = _OPENERS[_kind(path)](path)
+    signal = _OPENERS[_kind(path)](path, channel, unit)
+    signal = replace(signal, measured=_before_amplifier(path, signal.measured, gain, offset))
     head = signal.head()
     if head is None:
         raise DataError(f"{path}: empty record, need samples")
@@ -125,6 +142,28 @@ def _kind(path):
     if found != claimed:
         raise DataError(f"{path}: named as {claimed} but begins as {found}, need one of the two")
     return claimed
+
+
+def _before_amplifier(path, measured, gain, offset):
+    try:
+        gain = bounded(parse_number(gain), None, other_than=0.0)
+    except LubeError as error:
+        raise DataError(f"{path}: gain: {error}") from None
+    try:
+        volts_or_ohms = _offset(offset, measured.quantity)
+    except LubeError as error:
+        raise DataError(f"{path}: offset: {error}") from None
+    return measured.before_amplifier(gain, volts_or_ohms)
+
+
+def _offset(offset, quantity):
+    """Offset in V or ohm, as the record's quantity is."""
+    if not isinstance(offset, str):
+        return parse_number(offset)
+    number, kind = parse_electrical(offset)
+    if kind != quantity:
+        raise LubeError(f"got {shown(offset)}, need a {quantity}, as the record is one")
+    return number
 
 
 def _told_interval(path, signal, head):

@@ -1,4 +1,4 @@
-"""Tables of the README that follow from the code: configuration keys, record keys, formulas.
+"""Tables of the README that follow from the code: files, keys, columns of a manifest, formulas.
 
 ``python -m lube.reference README.md`` writes them anew between their markers; a test holds the
 README to them.
@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 from lube.formulas import FORMULAS
+from lube.manifest import manifest_schema
 from lube.records import LubricantRecord
 from lube.schema import MEASURED, SUMMARIES
 from lube.study import Study
@@ -34,6 +35,17 @@ def record_table():
         Markdown.
     """
     return _table(("key", "value", "meaning"), record_keys())
+
+
+def manifest_table():
+    """Table of the columns, or keys, of a manifest, from its schema.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    return _table(("column or key", "value", "meaning"), _keys(manifest_schema()))
 
 
 def formula_table():
@@ -88,6 +100,7 @@ TABLES = {
     "files": file_table,
     "study": study_table,
     "record": record_table,
+    "manifest": manifest_table,
     "formulas": formula_table,
 }
 
@@ -143,6 +156,8 @@ def _by_default(field):
     default = field.get("default")
     if isinstance(default, list):
         default = ", ".join(default) or None
+    if isinstance(default, float):
+        default = f"{default:g}"
     if default is None or len(str(default)) > _LONGEST:
         return " (optional)"
     if isinstance(default, dict):

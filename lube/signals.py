@@ -5,18 +5,16 @@ quantity in many ways; the unit must be written, it is never guessed.
 """
 
 import re
-import unicodedata
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lube.errors import DataError, LubeError, shown
 from lube.kernels.uniform import first_uneven, first_unsound
-from lube.units import convert
+from lube.units import ELECTRICAL, convert, electrical_quantity, usual_spelling
 
-UNITS = {"time": "s", "voltage": "V", "resistance": "ohm"}
-MEASURED = ("voltage", "resistance")
+UNITS = {"time": "s"} | ELECTRICAL
 
 FIRST_STEPS = 1000
 """The median of so many first steps of time is the sampling interval."""
@@ -29,31 +27,64 @@ _ENDINGS = {
 _SYMBOLS = {"t": "time", "U": "voltage", "u": "voltage", "R": "resistance", "r": "resistance"}
 _HEADER = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\)|/\s*([^/\s]+))")
 _LONGEST_HEADER = 200
-_LOOSE_UNIT = re.compile("(ohm|volt|second)s?$", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A column, variable or channel, as its file tells of it.
+
+    Attributes
+    ----------
+    name : str
+        Its name, without a unit.
+    units : str or None
+        Its unit, if the file states one.
+    full_name : str
+        By which it may be asked for as well: ``group/channel``, or the whole head of a column.
+    group : str
+        What is logged together has the same: a group of channels, or a dimension.
+    size : int
+        Number of its samples, as far as it matters; 0 in a table.
+    """
+
+    name: str
+    units: str | None
+    full_name: str
+    group: str = ""
+    size: int = 0
 
 
 @dataclass(frozen=True)
 class Signal:
-    """A column, variable or channel of a record.
+    """What is read of a record: a channel, and how its values are converted.
 
     Attributes
     ----------
     place : int
-        Its number among those of the file.
+        The channel's number among those of the file.
     quantity : str
         ``time``, ``voltage`` or ``resistance``.
     factor : float
-        From its own unit to s, V or ohm.
+        From the unit of the file to s, V or ohm, of a voltage or resistance at the rig.
+    shift : float
+        Added after that, s, V or ohm.
     """
 
     place: int
     quantity: str
     factor: float
+    shift: float = 0.0
+
+    def before_amplifier(self, gain, offset):
+        """Signal of the rig, of which ``gain`` times so much and ``offset`` were recorded."""
+        return replace(self, factor=self.factor / gain, shift=(self.shift - offset) / gain)
 
     def converted(self, values):
         """Values of the file in s, V or ohm, float64."""
         values = np.asarray(values, float)
-        return values if self.factor == 1.0 else values * self.factor
+        if self.factor != 1.0:
+            values = values * self.factor
+        return values + self.shift if self.shift else values
 
 
 @dataclass(frozen=True)
@@ -99,18 +130,23 @@ def header_cell(cell):
     return name, next(filter(None, units), None)
 
 
-def find_signals(columns, where):
-    """Find the time and the measured quantity among the columns of a file.
+def find_signals(channels, where, asked=None, unit=None):
+    """Find the time and the measured quantity among the channels of a file.
 
     Names decide, and where none of them tells, units. Where a file holds several voltages or
-    resistances, the first counts.
+    resistances, the first counts, unless one is asked for. The time is as long as the record; one
+    of the same group comes first.
 
     Parameters
     ----------
-    columns : list of tuple of str
-        Name and unit (or None) of each column, variable or channel.
+    channels : list of Channel
+        All columns, variables or channels of numbers.
     where : str or Path
         The file, for the message.
+    asked : str, optional
+        Name, or full name, of the channel that is the record.
+    unit : str, optional
+        Its unit, in place of what the file states.
 
     Returns
     -------
@@ -122,61 +158,101 @@ def find_signals(columns, where):
     Raises
     ------
     DataError
-        If there is no voltage or resistance, or a unit is missing or unknown.
+        If there is no voltage or resistance, or not the channel that is asked for, or several of
+        its name; if a unit is missing or unknown, or not of what the channel's name says.
     """
-    measured = _find(columns, MEASURED, where)
-    if measured is None:
-        names = ", ".join(shown(name) for name, _ in columns[:5]) or "nothing"
+    everywhere = range(len(channels))
+    if asked is None:
+        place = _place_of(ELECTRICAL, channels, everywhere)
+    else:
+        place = _asked_place(channels, asked, where)
+    if place is None:
+        names = ", ".join(shown(channel.name) for channel in channels[:5]) or "nothing"
         raise DataError(
             f"{where}: got {names}, need a voltage or a resistance with its unit, such as "
-            "'voltage [V]'"
+            "'voltage [V]', or 'channel' given beside the file"
         )
-    return _find(columns, ("time",), where), measured
+    record = channels[place] if unit is None else replace(channels[place], units=unit)
+    named = _named_quantity(record)
+    measured = _signal(place, record, named if named in ELECTRICAL else None, where)
+    taken = None if asked is None else place  # what is asked for is no time, whatever its name
+    beside = [at for at in everywhere if at != taken and channels[at].size == record.size]
+    return _time(channels, beside, record.group, where), measured
 
 
-def _find(columns, quantities, where):
+def _place_of(quantities, channels, places):
+    """First of some places where a channel is one of some quantities; None if there is none."""
     for told_by in (_named_quantity, _quantity_of_unit):
-        for place, (name, units) in enumerate(columns):
-            quantity = told_by(name, units)
-            if quantity in quantities:
-                return Signal(place, quantity, _factor(name, units, quantity, where))
+        for place in places:
+            if told_by(channels[place]) in quantities:
+                return place
     return None
 
 
-def _named_quantity(name, _):
+def _asked_place(channels, asked, where):
+    places = [
+        place
+        for place, channel in enumerate(channels)
+        if asked in (channel.name, channel.full_name)
+    ]
+    if len(places) == 1:
+        return places[0]
+    fitting = [channels[place] for place in places] or channels
+    names = ", ".join(shown(channel.full_name) for channel in fitting[:5])
+    more = f" and {len(fitting) - 5} more" if len(fitting) > 5 else ""
+    if places:
+        raise DataError(
+            f"{where}: got the channel {shown(asked)}, which may be {names}{more}, need a name "
+            "that one alone has"
+        )
+    raise DataError(
+        f"{where}: got the channel {shown(asked)}, need one that is there: "
+        f"{names or 'there is none'}{more}"
+    )
+
+
+def _time(channels, places, group, where):
+    own = [place for place in places if channels[place].group == group]
+    for candidates in (own, places):
+        place = _place_of(("time",), channels, candidates)
+        if place is not None:
+            return _signal(place, channels[place], "time", where)
+    return None
+
+
+def _named_quantity(channel):
     # Symbols as they are, since T is a temperature; words in any case, compound ones too.
-    words = re.split(r"[\W_\d]+", name)
+    words = re.split(r"[\W_\d]+", channel.name)
     for quantity, endings in _ENDINGS.items():
         if any(word.casefold().endswith(endings) for word in words):
             return quantity
     return next((_SYMBOLS[word] for word in words if word in _SYMBOLS), None)
 
 
-def _quantity_of_unit(_, units):
+def _quantity_of_unit(channel):
     for quantity, target in UNITS.items():
         try:
-            convert(1.0, _plain(units or ""), target)
+            convert(1.0, usual_spelling(channel.units or ""), target)
         except LubeError:
             continue
         return quantity
     return None
 
 
-def _factor(name, units, quantity, where):
-    if not units:
+def _signal(place, channel, quantity, where):
+    """Signal of a channel; where its quantity is None, the unit must tell a measured one."""
+    if not channel.units:
+        example = f"'{channel.name} [{UNITS[quantity or 'voltage']}]'"
+        given = "" if quantity == "time" else ", or 'unit' given beside the file"
         raise DataError(
-            f"{where}: {shown(name)} has no unit, need one such as '{name} [{UNITS[quantity]}]'"
+            f"{where}: {shown(channel.name)} has no unit, need one such as {example}{given}"
         )
     try:
-        return convert(1.0, _plain(units), UNITS[quantity])
+        quantity = quantity or electrical_quantity(channel.units)
+        factor = convert(1.0, usual_spelling(channel.units), UNITS[quantity])
     except LubeError as error:
-        raise DataError(f"{where}: {shown(name)}: {error}") from None
-
-
-def _plain(units):
-    """``kOhm`` and ``Volts`` as the units are spelled; one sign each for ohm and for micro."""
-    units = unicodedata.normalize("NFKC", units.strip())
-    return _LOOSE_UNIT.sub(lambda match: match[0].lower(), units)
+        raise DataError(f"{where}: {shown(channel.name)}: {error}") from None
+    return Signal(place, quantity, factor)
 
 
 def first_interval(times):

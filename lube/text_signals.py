@@ -16,7 +16,7 @@ import pyarrow
 import pyarrow.csv
 
 from lube.errors import DataError
-from lube.signals import FIRST_STEPS, Part, Signal, find_signals, header_cell
+from lube.signals import FIRST_STEPS, Channel, Part, Signal, find_signals, header_cell
 from lube.tables import delimiter_of, split_cells
 
 HEAD_BYTES = 2**20
@@ -179,7 +179,7 @@ def _line_number(path, offset):
     return number
 
 
-def open_text(path):
+def open_text(path, channel=None, unit=None):
     """Read the head of a CSV file: where rows begin, and which columns matter.
 
     Lines that are empty or begin with ``#`` may stand before the one of column names. Columns
@@ -190,6 +190,10 @@ def open_text(path):
     ----------
     path : Path
         The file, UTF-8 text.
+    channel : str, optional
+        Name of the record's column, or the whole head of it.
+    unit : str, optional
+        Its unit, in place of what the file states.
 
     Returns
     -------
@@ -199,7 +203,7 @@ def open_text(path):
     Raises
     ------
     DataError
-        If it has no line of column names, or those tell no voltage or resistance.
+        If it has no line of column names, or `lube.signals.find_signals` refuses those.
     """
     with open(path, "rb") as file:
         number, header = _header_line(file, path)
@@ -208,8 +212,8 @@ def open_text(path):
     # A comma in a lone column is a decimal one.
     delimiter = delimiter_of(header) if "," in header else delimiter_of(header + ";")
     cells = split_cells(header, delimiter)
-    columns = [header_cell(cell) for cell in cells]
-    time, measured = find_signals(columns, f"{path}: line {number}")
+    columns = [Channel(*header_cell(cell), full_name=cell) for cell in cells]
+    time, measured = find_signals(columns, f"{path}: line {number}", channel, unit)
     sign = "," if delimiter != "," and b"," in rows else "."
     return TextSignal(path, begin, delimiter, sign, len(cells), time, measured)
 

@@ -5,9 +5,11 @@ This module turns such a text into a float in the unit that the study computes i
 and says in one line what is wrong when it cannot.
 """
 
+import contextlib
 import functools
 import math
 import re
+import unicodedata
 
 from lube.errors import LubeError, shown
 
@@ -20,12 +22,20 @@ _LONGEST = 100
 
 # Units are products and quotients of names with one-digit exponents. Pint would read far
 # more, arithmetic that never ends included; a file from elsewhere must not reach that.
-_FACTOR = r"[A-Za-zµμΩ°%]+(?:(?:\^|\*\*)?[+-]?\d|[²³])?"
+_FACTOR = r"(?:delta_)?[A-Za-zµμΩ°%]+(?:(?:\^|\*\*)?[+-]?\d|[²³])?"
 _UNITS = re.compile(rf"(?:1|{_FACTOR})(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
 
-# To pint an angle is a pure number, so 1 Hz would be 9.55 rpm, which nobody means.
+# Of a rotation. To pint an angle is a pure number, so 100 1/min would be 15.9 rpm; but who gives a
+# rotation as so many per minute, or in hertz, means turns.
 _ANGLE = re.compile("rpm|turn|revolution|cycle|rad|deg")
+_TURN = re.compile(r"(?<![A-Za-z])(?:U|r|rev)(?![A-Za-z])")
+_INVERSE = re.compile(r"(?<=[A-Za-z])(?:(?:\^|\*\*)?-1|⁻¹)(?!\d)")
+_FREQUENCY = re.compile(r"1?\s*/\s*[A-Za-zµμ]+|[A-Za-zµμ]+\^-1|[A-Za-zµμ]*Hz|[a-z]*hertz")
 
+ELECTRICAL = {"voltage": "V", "resistance": "ohm"}
+"""What a record of the rig may hold, and the unit that it is kept in."""
+
+_LOOSE_UNIT = re.compile("(ohm|volt|second)s?$", re.IGNORECASE)
 
 # How a number is printed: with a prefix, in the unit of the trade, or with the unit's own sign.
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
@@ -77,6 +87,10 @@ def parse_number(value):
 def convert(number, units, target):
     """Convert a number, or an array, between two units of the same dimension.
 
+    Two targets say what is meant. With ``rpm`` it is a speed of rotation: ``1/min`` and ``Hz``
+    count turns, and only a unit that names another angle, such as ``rad/s``, does not. With ``K``
+    it is a difference of temperatures: 1 degC is 1 K.
+
     Parameters
     ----------
     number : float or numpy.ndarray
@@ -96,20 +110,76 @@ def convert(number, units, target):
     """
     if units == target:
         return number
+    written, units = units, _in_turns(units) if target == "rpm" else units
     if len(units) > 40 or not _UNITS.fullmatch(units):
-        raise LubeError(f"{units[:40]!r} is no unit, need one of the kind {target!r}")
+        raise LubeError(f"{written[:40]!r} is no unit, need one of the kind {target!r}")
     registry = _registry()
     try:
-        converted = registry.Quantity(number, units).to(target).magnitude
+        value = registry.Quantity(number, units)
+        if target == "K":
+            value = value - registry.Quantity(0.0, units)
+        converted = value.to(target).magnitude
     except Exception as error:  # pint's parser raises many kinds, all meaning one thing
         kind = type(error).__name__
         reason = "unknown unit" if "Undefined" in kind else "wrong dimension or unit"
-        raise LubeError(f"{reason} {shown(units)}, need a unit of the kind {target!r}") from None
+        raise LubeError(f"{reason} {shown(written)}, need a unit of the kind {target!r}") from None
     if target == "rpm" and not _ANGLE.search(units):
         raise LubeError(
-            f"{shown(units)} names no angle, need a unit such as 'rpm', 'turn/s' or 'rad/s'"
+            f"{shown(written)} names no angle, need a unit such as 'rpm', '1/s' or 'rad/s'"
         )
     return converted
+
+
+def _in_turns(units):
+    """Name the turns of a speed of rotation: ``1/min``, ``Hz``, ``U/min`` and the like."""
+    units = _INVERSE.sub("^-1", _TURN.sub("turn", units.strip()[:_LONGEST]))
+    if _FREQUENCY.fullmatch(units):
+        return f"turn{units.lstrip('1 ')}" if "/" in units else f"turn*{units}"
+    return units
+
+
+def usual_spelling(text):
+    """Spell a unit at the end of a text as `convert` knows it.
+
+    Parameters
+    ----------
+    text : str
+        Such as ``kOhm``, ``Volts`` or ``3 MOhm``, with any of Unicode's signs for ohm and micro.
+
+    Returns
+    -------
+    str
+        Such as ``kohm``, ``volts`` or ``3 Mohm``.
+    """
+    text = unicodedata.normalize("NFKC", text.strip())
+    return _LOOSE_UNIT.sub(lambda match: match[0].lower(), text)
+
+
+def electrical_quantity(units):
+    """Tell whether a unit is one of voltage or of resistance.
+
+    Parameters
+    ----------
+    units : str
+        The unit, in any usual spelling.
+
+    Returns
+    -------
+    str
+        ``voltage`` or ``resistance``.
+
+    Raises
+    ------
+    LubeError
+        If it is neither.
+    """
+    for quantity, target in ELECTRICAL.items() if isinstance(units, str) else ():
+        with contextlib.suppress(LubeError):
+            convert(1.0, usual_spelling(units), target)
+            return quantity
+    raise LubeError(
+        f"got the unit {shown(units)}, need one of voltage or resistance, such as 'mV' or 'kohm'"
+    )
 
 
 def parse_quantity(value, target):
@@ -142,6 +212,35 @@ def parse_quantity(value, target):
     if not math.isfinite(converted):
         raise LubeError(f"got {shown(value)}, need a finite number")
     return converted
+
+
+def parse_electrical(value):
+    """Turn ``'3 mV'`` or ``'2 kOhm'`` into a float in V or ohm.
+
+    Parameters
+    ----------
+    value : str
+        A number and its unit.
+
+    Returns
+    -------
+    number : float
+        The finite value, V or ohm.
+    quantity : str
+        ``voltage`` or ``resistance``.
+
+    Raises
+    ------
+    LubeError
+        If the text has no number or no unit, or the unit is another's.
+    """
+    match = _QUANTITY.fullmatch(value.strip()) if isinstance(value, str) else None
+    if match is None or match[2] is None:
+        raise LubeError(
+            f"got {shown(value)}, need a voltage or a resistance with its unit, such as '3 mV'"
+        )
+    quantity = electrical_quantity(match[2])
+    return parse_quantity(usual_spelling(value), ELECTRICAL[quantity]), quantity
 
 
 def with_unit(value, unit):

@@ -161,3 +161,14 @@ def test_a_saturated_record_is_refused(measured, tmp_path, study):
     (tmp_path / "volts.csv").write_text("\n".join(["t [s],U [V]", *rows]), encoding="utf-8")
     with pytest.raises(DataError, match=r"50.0% of its samples are at or beyond 0.1 V"):
         measured("volts.csv,800,100,40")
+
+
+def test_a_voltage_behind_an_amplifier_is_judged_at_the_rig(measured, tmp_path):
+    """Recorded are 0.253 and 0.254 V, beyond the amplifier's 0.1 V, of 25.0 and 25.1 mV."""
+    true = np.where(np.arange(5000) // 50 % 4 == 0, 25.0e-3, 25.1e-3)
+    recorded = 10.0 * true + 3e-3
+    rows = [f"{1e-4 * number!r},5,{value!r}" for number, value in enumerate(recorded.tolist())]
+    (tmp_path / "log.csv").write_text("\n".join(["t [s],CH1 [V],CH2", *rows]), encoding="utf-8")
+    header = "file,channel,unit,gain,offset [mV],force [N],speed [rpm],temperature [degC]"
+    result = measured("log.csv,CH2,V,10,3,800,100,40", header=header)
+    assert at(result, force=800, temperature=40).contact_share == 0.25

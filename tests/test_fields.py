@@ -50,10 +50,16 @@ def refusal(field, written):
         (quantity("N", least=0.0), "0 N", 0.0),
         (pure_number(below=1.0), 0.7, 0.7),
         (pure_number(), "600/7", 600.0 / 7.0),
+        (pure_number(other_than=0.0), "-1/10", -0.1),
     ],
 )
 def test_a_field_keeps_the_number_in_its_own_unit(field, written, kept):
     assert value_of(field, written) == pytest.approx(kept, rel=1e-14)
+
+
+@pytest.mark.parametrize("zero", [0, 0.0, "-0.0", "0/7"])
+def test_a_number_may_have_to_be_other_than_zero(zero):
+    assert "need a value other than 0" in refusal(pure_number(other_than=0.0), zero)
 
 
 @pytest.mark.parametrize("field", [Length, Pressure, Resistivity])

@@ -297,10 +297,10 @@ def test_a_spoilt_table_of_viscosities_is_read_or_told_in_one_line(tmp_path):
 
 # Lists of measurements
 
-LIST = b"""file, probability, force [N], speed [rpm], temperature [degC], lubricant
-run.csv,    , 800, 100, 40, oil
-       , 0.5, 800, 100, 50, oil
-"./run.csv",, 8e2, 600/7, 60, "oil"
+LIST = b"""file, probability, force [N], speed [rpm], temperature [K], lubricant, gain, offset [V]
+run.csv,    , 800, 100, 40, oil, 10, 3
+       , 0.5, 800, 100, 50, oil, ,
+"./run.csv",, 8e2, 600/7, 60, "oil", -1/3, 0
 """
 LIST_CONTENT = [
     {"file": "run.csv", "force": "800 N", "speed": "100 rpm", "temperature": "40 degC"},
@@ -317,6 +317,12 @@ LIST_CONTENT = [
         "lubricant": "oil",
         "slide_to_roll_ratio": 0,
         "origin": "measured",
+        "channel": "U",
+        "unit": "mV",
+        "gain": 10,
+        "offset": "3 mV",
+        "temperature_tolerance": "1 degC",
+        "pair": "A",
     },
 ]
 

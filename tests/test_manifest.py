@@ -1,9 +1,14 @@
 """Manifests: good rows are read, bad ones are told one by one and hide nothing."""
 
+import math
+
+import numpy as np
 import pytest
+import yaml
 
 from lube.errors import DataError
 from lube.manifest import read_manifest
+from lube.recordings import open_recording
 
 HEADER = "file,probability,lower,upper,force [kN],speed [rpm],temperature [degC],origin"
 
@@ -104,7 +109,6 @@ def test_files_above_the_folder_and_absolute_ones_are_read_if_they_are_there(fol
         (",0.5,,,0.8,100,50", "got 7 values, need 8"),
         (",0.5,,,0.8,100,50,guessed", "origin: got 'guessed', need 'measured' or 'simulated'"),
         (",0.5,,,0.8,100,50,simulated", "origin: got 'simulated' among rows that are measured"),
-        (",0.5,,,0.800,100,40.0,", "the same operating point as manifest.csv: line 2"),
     ],
 )
 def test_a_row_that_cannot_be_used_is_told_and_hides_no_other(folder, row, told):
@@ -155,11 +159,105 @@ def test_the_first_usable_row_tells_the_origin(folder):
     assert (found.origin, len(found.entries)) == ("measured", 2)
 
 
-def test_another_lubricant_or_slip_is_another_operating_point(folder):
-    header = "probability,force [N],speed [rpm],temperature [degC],lubricant,slide_to_roll_ratio"
-    rows = ["0.5,800,100,40,,", "0.5,800,100,40,oil,", "0.5,800,100,40,oil,0.1"]
-    found = manifest(folder, header, *rows, rows[-1])
-    assert (len(found.entries), len(found.refused)) == (3, 1)
+def test_several_records_may_be_of_one_operating_point(folder):
+    header = "probability,force [N],speed [rpm],temperature [degC],lubricant,pair"
+    found = manifest(folder, header, *["0.5,800,100,40,oil,A"] * 2, "0.5,800,100,40,oil,B")
+    assert found.refused == ()
+    assert [entry.pair for entry in found.entries] == ["A", "A", "B"]
+
+
+LOGGER = "time [s],Dev1/ai0 [V],Dev1/ai1 [mV]\n0,1,13\n0.1,2,23\n0.2,3,33\n"
+
+
+def test_a_channel_behind_an_amplifier(folder):
+    (folder / "run.csv").write_text(LOGGER)
+    found = manifest(
+        folder,
+        "file,channel,unit,gain,offset [mV],force [N],force_tolerance [kN],speed [1/min],"
+        "speed_tolerance [rpm],temperature [degC],temperature_tolerance [degC],pair",
+        "run.csv,Dev1/ai1,,10,3,800,0.02,100,1.5,40,1,7",
+        "run.csv,,mV,,,800,,6,,40,,",
+    )
+    assert found.refused == ()
+    amplified, plain = found.entries
+    assert (amplified.channel, amplified.unit, amplified.pair) == ("Dev1/ai1", None, "7")
+    assert (amplified.gain, amplified.offset) == (10.0, "3 mV")
+    assert (amplified.force, amplified.speed, amplified.temperature) == (800.0, 100.0, 40.0)
+    tolerances = [amplified.force_tolerance, amplified.speed_tolerance]
+    assert tolerances == pytest.approx([20.0, 1.5])
+    assert amplified.temperature_tolerance == pytest.approx(1.0)
+    assert (plain.channel, plain.unit, plain.gain, plain.offset) == (None, "mV", 1.0, 0.0)
+    assert plain.force_tolerance is plain.speed_tolerance is plain.temperature_tolerance is None
+    assert plain.pair is None
+    for entry, volts in ((amplified, [1e-3, 2e-3, 3e-3]), (plain, [1e-3, 2e-3, 3e-3])):
+        told = (entry.channel, entry.unit, entry.gain, entry.offset)
+        recording = open_recording(entry.file, entry.sampling_interval, *told)
+        np.testing.assert_allclose(np.concatenate(list(recording.pieces())), volts)
+
+
+def test_a_channel_behind_an_amplifier_in_yaml(folder):
+    found = manifest(
+        folder,
+        "- {file: a.csv, channel: '1,5', unit: kOhm, gain: -1/10, offset: '1,5 Ohm', pair: '1,5',",
+        "   force: 800 N, speed: 100 U/min, temperature: 40 degC, temperature_tolerance: 0.5 K}",
+        name="manifest.yaml",
+    )
+    (entry,) = found.entries
+    assert (entry.channel, entry.unit, entry.pair) == ("1,5", "kOhm", "1,5")
+    assert (entry.gain, entry.offset, entry.temperature_tolerance) == (-0.1, "1.5 Ohm", 0.5)
+    assert entry.speed == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize("units", ["K", "degC", "delta_degC", "°C"])
+def test_a_tolerance_of_a_degree_is_a_kelvin(folder, units):
+    header = f"probability,force [N],speed [rpm],temperature [K],temperature_tolerance [{units}]"
+    found = manifest(folder, header, "0.5,800,100,313.15,1")
+    (entry,) = found.entries
+    assert entry.temperature_tolerance == pytest.approx(1.0)
+    assert entry.temperature == pytest.approx(40.0)
+
+
+NEEDS_OFFSET = "need a voltage or a resistance with its unit, such as '3 mV'"
+
+
+@pytest.mark.parametrize(
+    ("told", "refused"),
+    [
+        ({"gain": 0}, "gain: got 0, need a value other than 0"),
+        ({"gain": "0/3"}, "gain: got 0, need a value other than 0"),
+        ({"gain": math.inf}, "gain: got inf, need a finite number"),
+        ({"gain": "10 V"}, "gain: got '10 V', need a number"),
+        ({"offset": 3}, f"offset: got 3, {NEEDS_OFFSET}"),
+        ({"offset": "3"}, f"offset: got '3', {NEEDS_OFFSET}"),
+        ({"offset": "3 mm"}, "offset: got the unit 'mm', need one of voltage or resistance"),
+        ({"unit": "wumpus"}, "unit: got the unit 'wumpus', need one of voltage or resistance"),
+        ({"unit": "N"}, "unit: got the unit 'N', need one of voltage or resistance"),
+        ({"unit": 7}, "unit: got the unit 7, need one of voltage or resistance"),
+        ({"channel": 2}, "channel: got 2, need text"),
+        ({"channel": ""}, "channel: got '', need some text"),
+        ({"pair": 7}, "pair: got 7, need text"),
+        ({"pair": ["A", "B"]}, "pair: got ['A', 'B'], need text"),
+        ({"force_tolerance": "0 N"}, "force_tolerance: got 0, need a value above 0 N"),
+        ({"speed_tolerance": "-1 rpm"}, "speed_tolerance: got -1, need a value above 0 rpm"),
+        ({"speed_tolerance": "1 %"}, "speed_tolerance: "),
+        ({"temperature_tolerance": "0 K"}, "temperature_tolerance: got 0, need a value above 0 K"),
+        ({"temperature_tolerance": "-1 degC"}, "temperature_tolerance: got -1, need a value above"),
+        ({"temperature_tolerance": 1}, "temperature_tolerance: got 1, need a number with its unit"),
+    ],
+)
+def test_what_is_told_of_a_record_and_cannot_be_is_refused(folder, told, refused):
+    row = {"file": "a.csv", "force": "8 N", "speed": "1 rpm", "temperature": "40 degC"} | told
+    found = manifest(folder, yaml.safe_dump([row]), name="manifest.yaml")
+    (line,) = found.refused
+    assert line.startswith(f"manifest.yaml: entry 1: {refused}")
+    assert "\n" not in line
+
+
+@pytest.mark.parametrize("told", [{"channel": "U"}, {"unit": "V"}, {"gain": 1}, {"offset": "0 V"}])
+def test_a_share_has_no_channel_and_no_amplifier(folder, told):
+    row = {"probability": 0.5, "force": "8 N", "speed": "1 rpm", "temperature": "40 degC"} | told
+    (line,) = manifest(folder, yaml.safe_dump([row]), name="manifest.yaml").refused
+    assert line == f"manifest.yaml: entry 1: {next(iter(told))}: not allowed with probability"
 
 
 @pytest.mark.parametrize(
@@ -172,6 +270,10 @@ def test_another_lubricant_or_slip_is_another_operating_point(folder):
         (["probability,force [mew],speed [rpm],temperature [degC]"], "force: unknown unit 'mew'"),
         (["probability [%],force [N],speed [rpm],temperature [degC]"], "without a unit"),
         (["probability,force [N],speed [rpm]"], "no column 'temperature [degC]'"),
+        (["file,force [N],speed [rpm],temperature [K],offset"], "need 'offset [mV]'"),
+        (["file,force [N],speed [rpm],temperature [K],offset [N]"], "offset: got the unit 'N'"),
+        (["file,force [N],speed [rpm],temperature [K],gain [V]"], "need 'gain' without a unit"),
+        (["file,force [N],speed [1/mm],temperature [K]"], "speed: wrong dimension or unit '1/mm'"),
         (["share,force [N],speed [rpm],temperature [degC]"], "got the column 'share', need"),
         (["force [N],force [N],speed [rpm]"], "got the column 'force [N]', need each once"),
     ],

@@ -17,6 +17,7 @@ from written_recordings import (
     read,
     refusal,
     write_csv,
+    write_logger,
     write_netcdf,
     write_tdms,
 )
@@ -24,7 +25,7 @@ from written_recordings import (
 from lube import text_signals
 from lube.evaluation import ContactShare
 from lube.recordings import open_recording
-from lube.signals import find_signals, header_cell
+from lube.signals import Channel, find_signals, header_cell
 
 # The same record
 
@@ -176,6 +177,124 @@ def test_a_record_is_evaluated_as_it_comes(tmp_path):
     assert share.below.sum(axis=1) == pytest.approx(expected, abs=1)
 
 
+# Channels, units and amplifiers
+
+KINDS = ["csv", "nc", "tdms"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    ("told", "factor"),
+    [
+        ({}, -1.0),
+        ({"channel": "CH1"}, -1.0),
+        ({"channel": "CH2"}, 1.0),
+        ({"channel": "CH2", "unit": "V"}, 1e3),
+        ({"channel": "CH3", "unit": "kV"}, 1e3),
+        ({"channel": "CH3", "unit": "MOhm"}, 1e6),
+        ({"unit": "mV"}, -1e-3),
+    ],
+)
+def test_a_channel_is_read_in_the_unit_that_is_told(tmp_path, kind, told, factor):
+    path = write_logger(tmp_path, kind)
+    recording = open_recording(path, **told)
+    assert recording.quantity == ("resistance" if told.get("unit") == "MOhm" else "voltage")
+    assert recording.sampling_interval == pytest.approx(INTERVAL)
+    np.testing.assert_allclose(read(path, **told), factor * VOLTS, rtol=1e-8, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("gain", [10.0, -4.0, 0.5, 1.0])
+@pytest.mark.parametrize(("offset", "volts"), [("3 mV", 3e-3), (0.25, 0.25), ("-1 V", -1.0)])
+def test_an_amplifier_is_undone(tmp_path, kind, gain, offset, volts):
+    """What is recorded is the true value times the gain, and the offset."""
+    recorded = VOLTS * gain + volts
+    match kind:
+        case "csv":
+            path = write_csv(tmp_path / "r.csv", [TIMES, 1e3 * recorded], "t [s],U [mV]")
+        case "nc":
+            path = write_netcdf(tmp_path / "r.nc", 1e3 * recorded, "mV")
+        case "tdms":
+            told = {"wf_increment": INTERVAL, "unit_string": "mV"}
+            path = write_tdms(tmp_path / "r.tdms", 1e3 * recorded, **told)
+    found = read(path, gain=gain, offset=offset)
+    np.testing.assert_allclose(found, VOLTS, rtol=1e-7, atol=1e-7)
+
+
+def test_an_amplifier_of_a_resistance_leaves_an_open_circuit_open(tmp_path):
+    (tmp_path / "r.csv").write_text("t [s],R [kOhm]\n0,inf\n1,2\n")
+    found = read(tmp_path / "r.csv", gain=2, offset="1 kOhm")
+    np.testing.assert_allclose(found, [np.inf, 500.0])
+
+
+def test_without_an_amplifier_no_bit_changes(tmp_path):
+    path = write_netcdf(tmp_path / "r.nc", VOLTS)
+    np.testing.assert_array_equal(read(path, gain=1.0, offset=0.0), VOLTS)
+    np.testing.assert_array_equal(read(path, gain=1, offset="0 V"), VOLTS)
+
+
+def test_a_channel_that_is_asked_for_is_no_time_whatever_its_name(tmp_path):
+    (tmp_path / "r.csv").write_text("t_contact [mV],t [s]\n5,0\n6,1\n")
+    np.testing.assert_allclose(read(tmp_path / "r.csv", channel="t_contact"), [5e-3, 6e-3])
+
+
+@pytest.mark.parametrize("asked", ["Dev1/ai1", "Dev1/ai1 [V]"])
+def test_a_column_may_be_asked_for_by_its_whole_head(tmp_path, asked):
+    unit = asked[9:] and " [V]"
+    (tmp_path / "r.csv").write_text(f"t [s],Dev1/ai0{unit},Dev1/ai1{unit}\n0,5,1\n1,5,2\n")
+    found = read(tmp_path / "r.csv", channel=asked, unit="V")
+    np.testing.assert_array_equal(found, [1.0, 2.0])
+
+
+def write_groups(path, groups):
+    """TDMS file of groups, each a dict of unit and values, or of unit, values and increment."""
+    with TdmsWriter(path) as file:
+        for group, channels in groups.items():
+            for name, (unit, values, *increment) in channels.items():
+                told = {"unit_string": unit} | ({"wf_increment": increment[0]} if increment else {})
+                file.write_segment([ChannelObject(group, name, values, properties=told)])
+    return path
+
+
+def test_a_channel_of_a_group_has_the_times_of_its_group(tmp_path):
+    slow, fast = np.arange(5.0), np.arange(5.0) / 10.0
+    path = write_groups(
+        tmp_path / "r.tdms",
+        {
+            "A": {"Time": ("s", slow), "U": ("V", slow)},
+            "B": {"U": ("V", fast), "Time": ("s", fast), "Dev1/ai0": ("V", -fast)},
+        },
+    )
+    for asked, sign in (("B/U", 1.0), ("Dev1/ai0", -1.0), ("B/Dev1/ai0", -1.0)):
+        assert open_recording(path, channel=asked).sampling_interval == pytest.approx(0.1)
+        np.testing.assert_array_equal(read(path, channel=asked), sign * fast)
+    assert open_recording(path, channel="A/U").sampling_interval == pytest.approx(1.0)
+
+
+def test_an_increment_of_a_channel_counts_before_the_times_of_another_group(tmp_path):
+    values = np.arange(5.0)
+    groups = {"A": {"Time": ("s", values)}, "B": {"U": ("V", values, 1e-5)}}
+    path = write_groups(tmp_path / "r.tdms", groups)
+    assert open_recording(path).sampling_interval == pytest.approx(1e-5)
+    groups["B"]["U"] = ("V", values)
+    path = write_groups(tmp_path / "s.tdms", groups)
+    assert open_recording(path).sampling_interval == pytest.approx(1.0)
+
+
+def test_a_netcdf_variable_has_the_times_of_its_dimension(tmp_path):
+    with netCDF4.Dataset(tmp_path / "r.nc", "w") as file:
+        for name, step in (("slow", 1.0), ("fast", 0.1), ("long", 0.01)):
+            size = 7 if name == "long" else 5
+            file.createDimension(name, size)
+            for kind, units in (("time", "s"), ("U", "V")):
+                variable = file.createVariable(f"{kind}_{name}", "f8", (name,))
+                variable[:] = step * np.arange(size)
+                variable.units = units
+    for name, step in (("slow", 1.0), ("fast", 0.1), ("long", 0.01)):
+        recording = open_recording(tmp_path / "r.nc", channel=f"U_{name}")
+        assert recording.sampling_interval == pytest.approx(step)
+
+
 # Names
 
 
@@ -196,6 +315,6 @@ def test_heads_of_columns(cell, parts):
 
 def test_names_decide_before_units_and_order_after_both():
     columns = [("T", "degC"), ("bias", "V"), ("Messzeit", "ms"), ("R", "ohm"), ("U", "V")]
-    time, measured = find_signals(columns, "here")
+    time, measured = find_signals([Channel(*column, column[0]) for column in columns], "here")
     assert (time.place, time.factor) == (2, pytest.approx(1e-3))
     assert (measured.place, measured.quantity) == (3, "resistance")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from nptdms import ChannelObject, TdmsWriter
 from written_recordings import (
     COUNTS,
     INTERVAL,
@@ -17,6 +18,7 @@ from written_recordings import (
     read,
     refusal,
     write_csv,
+    write_logger,
     write_netcdf,
     write_tdms,
 )
@@ -87,6 +89,7 @@ def test_units_and_quantities_are_never_guessed(tmp_path, header, told):
 
 def test_units_of_binary_records_are_not_guessed_either(tmp_path):
     missing = "'voltage' has no unit, need one such as 'voltage [V]'"
+    missing += ", or 'unit' given beside the file"
     assert refusal(write_netcdf(tmp_path / "r.nc", VOLTS, units=None)) == missing
     assert "unknown unit 'wumpus'" in refusal(write_netcdf(tmp_path / "r.nc", VOLTS, "wumpus"))
     assert "'time' has no unit" in refusal(write_netcdf(tmp_path / "r.nc", VOLTS, time_units=None))
@@ -95,6 +98,100 @@ def test_units_of_binary_records_are_not_guessed_either(tmp_path):
     assert "'Voltage' has no unit" in refusal(
         write_tdms(tmp_path / "r.tdms", VOLTS, wf_increment=INTERVAL)
     )
+
+
+NOT_THERE = "got the channel 'CH4', need one that is there: "
+
+
+@pytest.mark.parametrize("kind", ["csv", "nc", "tdms"])
+def test_a_channel_that_is_not_there(tmp_path, kind):
+    names = {
+        "csv": "'time [s]', 'CH1 [V]', 'CH2 [mV]', 'CH3'",
+        "nc": "'time', 'CH1', 'CH2', 'CH3'",
+        "tdms": "'rig/Time', 'rig/CH1', 'rig/CH2', 'rig/CH3'",
+    }[kind]
+    told = refusal(write_logger(tmp_path, kind), channel="CH4")
+    assert told.removeprefix("line 1: ") == NOT_THERE + names
+
+
+def test_of_many_channels_the_first_are_named(tmp_path):
+    heads = ",".join(f"CH{number} [V]" for number in range(10, 100))
+    path = write_csv(tmp_path / "r.csv", [TIMES] * 90, heads)
+    names = ", ".join(f"'CH{number} [V]'" for number in range(10, 15))
+    assert refusal(path, 1.0, channel="CH4") == f"line 1: {NOT_THERE}{names} and 85 more"
+
+
+def test_a_channel_of_text_or_of_several_dimensions_is_not_there(tmp_path):
+    with netCDF4.Dataset(tmp_path / "r.nc", "w") as file:
+        file.createDimension("time", 3)
+        file.createVariable("CH4", "f8", ("time", "time"))
+    assert refusal(tmp_path / "r.nc", channel="CH4") == NOT_THERE + "there is none"
+
+
+def test_a_name_that_several_channels_have(tmp_path):
+    (tmp_path / "r.csv").write_text("t [s],U [V],U [mV]\n0,1,2\n")
+    told = "got the channel 'U', which may be 'U [V]', 'U [mV]', need a name that one alone has"
+    assert refusal(tmp_path / "r.csv", channel="U") == f"line 1: {told}"
+    with TdmsWriter(tmp_path / "r.tdms") as file:
+        for group in "AB":
+            file.write_segment([ChannelObject(group, "U", VOLTS)])
+    told = "got the channel 'U', which may be 'A/U', 'B/U', need a name that one alone has"
+    assert refusal(tmp_path / "r.tdms", channel="U") == told
+
+
+@pytest.mark.parametrize("kind", ["csv", "nc", "tdms"])
+@pytest.mark.parametrize(
+    ("channel", "unit", "told"),
+    [
+        ("CH3", None, "'CH3' has no unit, need one such as 'CH3 [V]', or 'unit' given beside"),
+        ("CH1", "wumpus", "'CH1': got the unit 'wumpus', need one of voltage or resistance"),
+        ("CH1", "N", "'CH1': got the unit 'N', need one of voltage or resistance"),
+        ("CH1", "s", "'CH1': got the unit 's', need one of voltage or resistance"),
+    ],
+)
+def test_a_unit_that_is_none_of_a_record(tmp_path, kind, channel, unit, told):
+    path = write_logger(tmp_path, kind)
+    assert refusal(path, channel=channel, unit=unit).removeprefix("line 1: ").startswith(told)
+
+
+def test_a_time_is_no_record(tmp_path):
+    path = write_netcdf(tmp_path / "r.nc", VOLTS)
+    assert refusal(path, channel="time").startswith("'time': got the unit 's', need one of volt")
+
+
+def test_a_unit_against_the_name_of_the_channel(tmp_path):
+    told = "'voltage': wrong dimension or unit 'ohm', need a unit of the kind 'V'"
+    assert refusal(write_netcdf(tmp_path / "r.nc", VOLTS), unit="ohm") == told
+
+
+@pytest.mark.parametrize(
+    ("gain", "told"),
+    [
+        (0.0, "got 0, need a value other than 0"),
+        (0, "got 0, need a value other than 0"),
+        (np.inf, "got inf, need a finite number"),
+        (np.nan, "got nan, need a finite number"),
+        ("ten", "got 'ten', need a number"),
+        (None, "got None, need a number"),
+    ],
+)
+def test_a_gain_that_is_none(tmp_path, gain, told):
+    assert refusal(write_netcdf(tmp_path / "r.nc", VOLTS), gain=gain) == f"gain: {told}"
+
+
+@pytest.mark.parametrize(
+    ("offset", "told"),
+    [
+        ("3 ohm", "got '3 ohm', need a voltage, as the record is one"),
+        ("3 mm", "got the unit 'mm', need one of voltage or resistance"),
+        ("3", "got '3', need a voltage or a resistance with its unit, such as '3 mV'"),
+        ("1e400 V", "got '1e400', need a finite number"),
+        (np.nan, "got nan, need a finite number"),
+    ],
+)
+def test_an_offset_that_is_none_of_the_record(tmp_path, offset, told):
+    path = write_netcdf(tmp_path / "r.nc", VOLTS)
+    assert refusal(path, offset=offset).startswith(f"offset: {told}")
 
 
 FAULTY_TIMES = [

@@ -34,6 +34,16 @@ def test_the_papers_speeds_are_a_minute_over_tenths_of_a_second():
     assert load_study(PAPER).operating_grid.speed == pytest.approx(expected, rel=1e-15)
 
 
+def test_a_speed_may_be_so_many_a_minute(tmp_path):
+    text = PAPER.read_text("utf-8").replace("units: rpm", "units: 1/min")
+    text = text.replace("speed: 100 rpm", "speed: 100 min^-1")
+    assert "rpm" not in text
+    (tmp_path / "study.yaml").write_text(text, "utf-8")
+    study, paper = load_study(tmp_path / "study.yaml"), load_study(PAPER)
+    assert study.operating_grid.speed == pytest.approx(paper.operating_grid.speed, rel=1e-15)
+    assert study.trace_points[0]["speed"] == pytest.approx(100.0, rel=1e-15)
+
+
 def test_the_papers_rollers_are_in_si():
     rollers = load_study(PAPER).rollers
     assert rollers.length == pytest.approx(10e-3)

@@ -9,7 +9,14 @@ from hypothesis import strategies as st
 from refusals import one_line
 
 from lube.errors import LubeError
-from lube.units import convert, parse_number, parse_quantity, with_unit
+from lube.units import (
+    convert,
+    electrical_quantity,
+    parse_electrical,
+    parse_number,
+    parse_quantity,
+    with_unit,
+)
 
 finite = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e200, max_value=1e200)
 positive = st.floats(min_value=1e-200, max_value=1e200)
@@ -77,9 +84,78 @@ def test_temperatures_are_points_on_a_scale_not_differences(text, celsius):
     assert parse_quantity(text, "degC") == pytest.approx(celsius, abs=1e-9)
 
 
-@pytest.mark.parametrize("units", ["Hz", "1/s", "s^-1"])
-def test_a_frequency_that_does_not_say_turn_or_radian_is_no_rotation_speed(units):
-    assert "need a unit such as 'rpm', 'turn/s'" in refusal(parse_quantity, f"2 {units}", "rpm")
+A_MINUTE = ["1/min", "min^-1", "min-1", "min**-1", "min⁻¹", "/min", "/ min", "U/min", "r/min"]
+A_MINUTE += ["rev/min", "rpm", "U min^-1", "rev min-1", "turn/min", "revolution/minute"]
+
+
+@pytest.mark.parametrize("units", A_MINUTE)
+def test_so_many_a_minute_are_turns_where_a_rotation_is_asked(units):
+    assert parse_quantity(f"100 {units}", "rpm") == pytest.approx(100.0, rel=1e-15)
+    assert convert(100.0, units, "rpm") == pytest.approx(100.0, rel=1e-15)
+
+
+@pytest.mark.parametrize("units", ["1/s", "/s", "s^-1", "s-1", "Hz", "hertz", "U/s", "turn/s"])
+def test_so_many_a_second_are_turns_where_a_rotation_is_asked(units):
+    assert parse_quantity(f"2 {units}", "rpm") == pytest.approx(120.0, rel=1e-15)
+
+
+@pytest.mark.parametrize("units", ["rad/s", "rad s^-1", "rad s-1", "rad*Hz"])
+def test_radians_a_second_are_no_turns(units):
+    assert parse_quantity(f"{math.pi} {units}", "rpm") == pytest.approx(30.0, rel=1e-15)
+
+
+@pytest.mark.parametrize("units", ["Bq", "count/s", "arcmin/s"])
+def test_what_counts_no_turns_is_no_speed_of_rotation(units):
+    assert "need a unit such as 'rpm', '1/s'" in refusal(parse_quantity, f"2 {units}", "rpm")
+
+
+@pytest.mark.parametrize("units", ["1/mm", "min", "U", "m/s", "1/min^2", "min-11", "Umin", "/"])
+def test_what_is_no_frequency_is_no_speed_of_rotation_and_told_as_written(units):
+    assert repr(units) in refusal(parse_quantity, f"2 {units}", "rpm")
+
+
+@pytest.mark.parametrize(("units", "hertz"), [("kHz", 1e3), ("Hz", 1.0), ("1/s", 1.0)])
+def test_a_frequency_that_is_no_rotation_stays_one(units, hertz):
+    assert parse_quantity(f"50 {units}", "Hz") == 50.0 * hertz
+
+
+@pytest.mark.parametrize(
+    ("text", "kelvin"),
+    [("1 degC", 1.0), ("1 K", 1.0), ("1 delta_degC", 1.0), ("1 °C", 1.0), ("9 degF", 5.0)],
+)
+def test_kelvins_are_differences_of_temperature(text, kelvin):
+    assert parse_quantity(text, "K") == pytest.approx(kelvin, rel=1e-12)
+
+
+def test_a_difference_of_temperature_is_no_temperature():
+    assert "'delta_degC', need a unit" in refusal(parse_quantity, "1 delta_degC", "degC")
+
+
+@pytest.mark.parametrize(
+    ("units", "quantity"),
+    [("mV", "voltage"), ("Volts", "voltage"), ("kOhm", "resistance"), ("M\u2126", "resistance")],
+)
+def test_a_unit_of_voltage_or_resistance_is_known_in_any_usual_spelling(units, quantity):
+    assert electrical_quantity(units) == quantity
+
+
+@pytest.mark.parametrize("units", ["N", "wumpus", "dBm", "", "V/A/A", "m**9**9**9", 7, None])
+def test_any_other_unit_is_neither_voltage_nor_resistance(units):
+    told = f"got the unit {units!r}, need one of voltage or resistance, such as 'mV' or 'kohm'"
+    assert refusal(electrical_quantity, units) == told
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "quantity"),
+    [("3 mV", 3e-3, "voltage"), ("-1.5 kOhm", -1500.0, "resistance"), (" 0V", 0.0, "voltage")],
+)
+def test_a_voltage_or_resistance_tells_which_it_is(text, number, quantity):
+    assert parse_electrical(text) == (pytest.approx(number, rel=1e-15), quantity)
+
+
+@pytest.mark.parametrize("value", ["3", 3, None, "V", "3 mm", "1e400 V", ["3 V"], ""])
+def test_what_is_neither_voltage_nor_resistance_is_refused(value):
+    assert "need" in refusal(parse_electrical, value)
 
 
 def test_an_array_is_converted_like_each_of_its_numbers():

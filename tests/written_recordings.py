@@ -1,5 +1,7 @@
 """Records of the rig as others may write them, and what is read of them."""
 
+from functools import partial
+
 import netCDF4
 import numpy as np
 from nptdms import ChannelObject, TdmsWriter
@@ -63,12 +65,36 @@ def write_tdms(path, values, name="Voltage", segments=4, others=(), **properties
     return path
 
 
-def read(path, *interval):
-    return np.concatenate([np.array([]), *open_recording(path, *interval).pieces()])
+def write_logger(folder, kind):
+    """Times and three channels, of which no name tells a voltage, and the third has no unit."""
+    channels = {"CH1": ("V", -VOLTS), "CH2": ("mV", 1e3 * VOLTS), "CH3": (None, VOLTS)}
+    path = folder / f"logger.{kind}"
+    match kind:
+        case "csv":
+            heads = [f"{name} [{unit}]" if unit else name for name, (unit, _) in channels.items()]
+            columns = [TIMES, *(values for _, values in channels.values())]
+            write_csv(path, columns, ",".join(["time [s]", *heads]))
+        case "nc":
+            write_netcdf(path, TIMES, "s", times=None, name="time")
+            with netCDF4.Dataset(path, "a") as file:
+                for name, (unit, values) in channels.items():
+                    file.createVariable(name, "f8", ("time",))[:] = values
+                    file[name].setncatts({"units": unit} if unit else {})
+        case "tdms":
+            channels = {"Time": ("s", TIMES)} | channels
+            with TdmsWriter(path) as file:
+                for name, (unit, values) in channels.items():
+                    told = {"unit_string": unit} if unit else {}
+                    file.write_segment([ChannelObject("rig", name, values, properties=told)])
+    return path
 
 
-def refusal(path, *interval):
+def read(path, *interval, **told):
+    return np.concatenate([np.array([]), *open_recording(path, *interval, **told).pieces()])
+
+
+def refusal(path, *interval, **told):
     """The one line that a bad record is told in, its path left out."""
-    message = one_line(DataError, read, path, *interval)
+    message = one_line(DataError, partial(read, **told), path, *interval)
     assert message.startswith(f"{path}: ")
     return message.removeprefix(f"{path}: ")
