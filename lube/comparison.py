@@ -70,8 +70,9 @@ def compare(model, experiment, levels):
 def _side_by_side(model, experiment):
     """Both sides at the comparison threshold, and the prediction interval."""
     names = [*AT_RECORDS, "origin", "pairs", "drift", "comparison_threshold", "share_error"]
-    table = experiment[names].drop_dims(["threshold", "phase", "trace_sample"])
-    table = table.drop_attrs().merge(model.assign_coords(record=table["record"]), join="exact")
+    table = experiment[names]
+    model = model.assign_coords(record=table["record"])
+    table = table.drop_attrs().merge(model, join="exact", compat="no_conflicts")
     table.attrs = model.attrs
     for limit, share in zip(LIMITS, _shares(at_comparison_threshold(experiment)), strict=True):
         table[f"measured_share{limit}"] = "record", share
@@ -82,9 +83,8 @@ def _side_by_side(model, experiment):
         table[f"predicted_share_{side}"] = dims, values
     with xr.set_options(keep_attrs=False):
         share = table["measured_share"]
-        inside = (share >= table["predicted_share_lower"]) & (
-            share <= table["predicted_share_upper"]
-        )
+        lower, upper = (table[f"predicted_share_{side}"] for side in ("lower", "upper"))
+        inside = (share >= lower) & (share <= upper)
     table["within_prediction"] = inside.transpose(*dims)
     return table
 
@@ -258,7 +258,7 @@ def _missing(table, levels):
 
 
 def _contradictions(table):
-    """Records of one operating point that differ more than two pairs of rollers do, a line each."""
+    """Name records of one operating point that differ more than two pairs of rollers do."""
     names = ("lubricant", "slide_to_roll_ratio", *(f"{name}_level" for name in GROUPS))
     point = list(zip(*(table[name].values.tolist() for name in names), strict=True))
     share = table["measured_share"].values
@@ -277,7 +277,7 @@ def _contradictions(table):
 
 
 def _errors(table):
-    """Standard deviation of each record's share between pairs of rollers, by the first formula."""
+    """Tell how far each record's share scatters between pairs of rollers, by the first formula."""
     first = table.isel(film_formula=0)
     mean = first["simulated_probability"].values
     looks = sample_size(first[PROBABILITY].values, _windows(table))

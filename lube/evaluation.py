@@ -150,7 +150,7 @@ def _pairs(counts):
 
 
 def folded_counts(below, sizes, interval, period):
-    """Counts of a record by the phase of a revolution, all its revolutions together.
+    """Count a record by the phase of a revolution, all its revolutions together.
 
     Parameters
     ----------

@@ -302,12 +302,12 @@ class _Record:
 
     def _turns_a_turn(self):
         """Revolutions of the roller with the faster surface in one of the first roller."""
-        first, second = speed_ratios(self.conditions.slide_to_roll_ratio)
+        first, _ = speed_ratios(self.conditions.slide_to_roll_ratio)
         points = self._study.line_spec.points
         return 1.0 if first == 1.0 else points[0] / points[1] / first
 
     def _periods(self, period):
-        """Times of a revolution of either roller that turns; once if both are the same."""
+        """List the times of a revolution of either roller that turns; one if both are the same."""
         ratios = speed_ratios(self.conditions.slide_to_roll_ratio)
         points = self._study.line_spec.points
         turning = [size / ratio for size, ratio in zip(points, ratios, strict=True) if ratio > 0.0]
@@ -349,8 +349,8 @@ def _thinned(values, interval):
 
 _SIZES = {
     **{f"contact_share{limit}": "threshold" for limit in LIMITS},
-    **{name: "phase" for name in ("folded_share", "folded_deviation")},
-    **{name: "trace_sample" for name in ("trace_time", "trace_resistance")},
+    **dict.fromkeys(("folded_share", "folded_deviation"), "phase"),
+    **dict.fromkeys(("trace_time", "trace_resistance"), "trace_sample"),
 }
 _TEXTS = ("record", "lubricant", "pair")
 _NUMBERS = (

@@ -147,11 +147,9 @@ def _fits(name, tried, truth, logits, contact, comparison):
         fits[o, f] = _fit(np.log(tried), np.log(truth), model, here)
     *found, coverage = np.moveaxis(fits, -1, 0)
     variables = limited(name, found) | {f"{name}_coverage": coverage}
+    dims = ("fitted_lubricant", "film_formula")
     return xr.Dataset(
-        {
-            each: (("fitted_lubricant", "film_formula"), values)
-            for each, values in variables.items()
-        },
+        {each: (dims, values) for each, values in variables.items()},
         coords={"fitted_lubricant": oils, "film_formula": formulas},
     )
 

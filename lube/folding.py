@@ -64,10 +64,10 @@ def fold(shares, interval, nominal_period):
         The folded record.
     """
     found = refined_period(shares, interval, nominal_period)
-    tried = [
-        (_repeatability(shares, interval, period), period) for period in (found, nominal_period)
-    ]
-    repeatability, period = max(tried) if tried[0][0] >= CLEAR else tried[1]
+    period, repeatability = found, _repeatability(shares, interval, found)
+    if not repeatability >= CLEAR:
+        period = nominal_period
+        repeatability = _repeatability(shares, interval, period)
     profile, deviation = _profile(shares, interval, period)
     error = _share_error(shares, interval, period)
     return Fold(period, repeatability, profile, deviation, error)
@@ -162,7 +162,7 @@ def _profile(shares, interval, period):
 
 
 def _share_error(shares, interval, period):
-    """Standard error of the share by the scatter between whole revolutions."""
+    """Take the standard error of the share from the scatter between whole revolutions."""
     _, turn, _ = _phases(shares.size, interval, period)
     whole = int(shares.size * interval / period)
     if whole < 2:

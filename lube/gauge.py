@@ -113,21 +113,22 @@ def gauge_coverage(master, comparison):
     Returns
     -------
     xarray.Dataset
-        ``closed_coverage``, of the intervals with two limits, ``one_sided_coverage`` of the
-        others, and ``closed_share``, how many have two, over ``record``; NaN where there are
-        none, or the ensemble has fewer than three realisations.
+        Over ``record``: ``interval_coverage``, of all intervals, ``closed_coverage`` of those
+        with two limits, ``one_sided_coverage`` of the others, and ``closed_share``, how many
+        have two; NaN where there are none, or the ensemble has fewer than three realisations.
     """
     members = comparison["breakthrough_probability"].values[:, 0]
     count, records = members.shape
-    coverage = np.full((3, records), np.nan)
+    coverage = np.full((4, records), np.nan)
     places = range(records) if count > 2 else ()
     films = np.log(comparison["lambda_ratio"].values[0])
     widths = 2.0 * comparison["contact_half_width"].values
     curve = cache(lambda width: curve_at(master, width))
     for place in places:
         held, closed = _left_out(curve(widths[place]), films[place], members[:, place])
-        coverage[:, place] = _mean(held[closed]), _mean(held[~closed]), np.mean(closed)
-    names = ("closed_coverage", "one_sided_coverage", "closed_share")
+        apart = (_mean(held[closed]), _mean(held[~closed]))
+        coverage[:, place] = np.mean(held), *apart, np.mean(closed)
+    names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")
     return xr.Dataset({name: ("record", row) for name, row in zip(names, coverage, strict=True)})
 
 
@@ -140,7 +141,6 @@ def _left_out(curve, film, shares):
     count = shares.size
     if curve.films.size < 2:
         return np.ones(count, bool), np.zeros(count, bool)
-    closed = np.ones(count, bool)
     places = (curve.films[0], film, curve.films[-1])
     distances = [_distance(curve, place, shares) for place in places]
     limit = quantile(count - 1)

@@ -148,7 +148,7 @@ def scatter_ratio(turns, ratios, points, reach, persistent=0.0, drift=0.0):
     weights = 1.0 / np.array(points) / np.sum(1.0 / np.array(points))
 
     def alone(turns):
-        """What either line alone contributes; a roller at rest shows one place for ever."""
+        """Scatter by either line alone; a roller at rest shows one place for ever."""
         of_each = np.maximum(turns * travel, reach) / points
         return min(persistent * np.sum(weights * repeat_factor(of_each)), 1.0)
 
@@ -194,7 +194,7 @@ def prediction_limits(mean, looks, ratio, realisations, noise=0.0):
 
 
 def standard_error(mean, looks, ratio, realisations, noise=0.0):
-    """Standard error of the difference between one pair's share and the ensemble's mean.
+    """Take the standard error of one pair's share about the ensemble's mean.
 
     Parameters
     ----------

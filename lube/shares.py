@@ -82,11 +82,9 @@ def over_grid(dataset):
     table["repeat"] = table.groupby(list(table.columns)).cumcount()
     index = xr.Coordinates.from_pandas_multiindex(pd.MultiIndex.from_frame(table), "record")
     records = dataset.isel(record=labelled)
-    own = [name for name in records.coords if "record" in records[name].dims and name != "record"]
-    clashing = [name for name in own if name in table.columns]
-    records = records.drop_vars([*clashing, "record"]).reset_coords(
-        [n for n in own if n not in clashing]
-    )
+    own = {name for name in records.coords if "record" in records[name].dims}
+    clashing = own & {*table.columns, "record"}
+    records = records.drop_vars(clashing).reset_coords(own - clashing)
     return records.assign_coords(index).unstack("record")
 
 

@@ -1,6 +1,5 @@
 """What a rig found, measured or simulated, and how the simulation compares with it."""
 
-from lube.schema import oil
 from lube.schema.coordinates import (
     AT_POINTS,
     AT_RECORDS,
@@ -15,7 +14,6 @@ from lube.schema.variables import (
     limited,
     number,
     run_mean,
-    text,
 )
 
 ORIGINS = ("measured", "simulated")
@@ -233,10 +231,14 @@ _GAUGE = {
             ["record"],
             "1",
             "share of realisations, each left out and gauged as the record of one pair, whose "
-            f"{kind.replace('_', '-')} interval holds the film",
+            f"{words} holds the film",
             content="qualityInformation",
         )
-        for kind in ("closed", "one_sided")
+        for kind, words in (
+            ("interval", "interval"),
+            ("closed", "two-sided interval"),
+            ("one_sided", "one-sided interval"),
+        )
     },
     "closed_share": number(
         ["record"], "1", "share of realisations whose gauged film has both limits"
@@ -259,9 +261,9 @@ _GAUGE = {
 KINDS = {
     "experiment": FileKind(
         _EXPERIMENT,
-        "Of each record its conditions, the share of time that the resistance is below a threshold, "
-        "the record folded by the revolution, and its first revolution; the coordinate `origin` "
-        "says whether the rig was measured or simulated.",
+        "Of each record its conditions, the share of time that its resistance is below a "
+        "threshold, the record folded by the revolution, and its first revolution; the "
+        "coordinate `origin` says whether the rig was measured or simulated.",
         ("refused", "remarks"),
     ),
     "rig": FileKind(
