@@ -21,6 +21,7 @@ from lube.citation import citation_file, zenodo_metadata
 from lube.crate import CATALOGUE, crate_metadata
 from lube.errors import DataError, StudyError, shown
 from lube.fields import read_yaml
+from lube.figures import origin, products, wrong_figures
 from lube.files import scratch_beside, why_not, written_whole
 from lube.provenance import config_text, digest, fingerprint
 from lube.records import shipped_records
@@ -48,24 +49,30 @@ def make_archive(study, study_file, results, kinds, figures, folder):
     figures : sequence of str
         Figures to take.
     folder : str or Path
-        The archive; its zip goes beside it. What was there before is replaced when the new one
-        is whole.
+        The archive; its zip and the zip's SHA-256 go beside it. What was there before is replaced
+        when the new one is whole.
 
     Raises
     ------
     DataError
-        If a result is missing, or the archive cannot be written.
+        If a result is missing, a figure or executed notebook is not as the workflow made it
+        from these datasets, or the archive cannot be written.
     """
     folder = Path(folder)
+    for wrong in wrong_figures(figures, results, results):
+        raise DataError(wrong)
     contents = archive_contents(study, study_file, results, kinds, figures)
     try:
         with scratch_beside(folder) as scratch:
             new = scratch / folder.name
             _fill(new, contents, study)
-            _zip(new, folder.with_name(folder.name + ".zip"))
+            packed = folder.with_name(folder.name + ".zip")
+            _zip(new, packed)
             if folder.exists():
                 os.rename(folder, scratch / "old")
             os.rename(new, folder)
+        with written_whole(packed.with_name(packed.name + ".sha256")) as part:
+            part.write_text(f"{fingerprint(packed)}  {packed.name}\n", encoding="utf-8")
     except OSError as error:
         raise DataError(f"{folder}: cannot be archived: {_told(error, folder)}") from error
 
@@ -92,8 +99,7 @@ def archive_contents(study, study_file, results, kinds, figures):
     """
     results = Path(results)
     datasets = {f"data/{kind}.nc": results / f"{kind}.nc" for kind in kinds}
-    drawn = [f"figures/{figure}.{suffix}" for figure in figures for suffix in ("pdf", "png")]
-    drawn += [f"notebooks/{figure}.ipynb" for figure in figures]
+    drawn = [name for figure in figures for name in (*products(figure), origin(figure))]
     written = written_files(study, study_file)
     archived_as = next(iter(written))
     return {

@@ -54,7 +54,8 @@ The model is that of the paper *{PAPER}*.
 | here | what it is |
 | --- | --- |
 {rows}
-| `figures/`, `notebooks/` | each figure as PNG and PDF, and the executed notebook that drew it |
+| `figures/`, `notebooks/` | each figure as PNG and PDF, what it was drawn from, and the \
+executed notebook that drew it |
 | `study/{study_file}` | the study as it was written |
 | `values.json` | its values as they were understood: SI units, but r/min and °C |
 | `lubricants/` | the records of its lubricants, with their sources |

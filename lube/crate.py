@@ -29,7 +29,7 @@ _FORMATS = {
 
 _FOLDERS = {
     "data/": "the datasets, NetCDF by the CF and ACDD conventions",
-    "figures/": "each figure as PNG and PDF",
+    "figures/": "each figure as PNG and PDF, and fingerprints of what it was drawn from",
     "notebooks/": "the executed notebook of each figure",
     "study/": "the study as it was written, and its values as they were understood",
     "lubricants/": "the records of its lubricants",

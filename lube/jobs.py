@@ -60,9 +60,10 @@ def begin_job(log_file):
     if SNAKEMAKE in os.environ:
         threading.Thread(target=_end_with, args=(int(os.environ[SNAKEMAKE]),), daemon=True).start()
     terminal = logging.StreamHandler()
+    terminal.setLevel(logging.INFO)  # a notebook's traceback is for the log alone
     terminal.addFilter(_NowAndThen())
     logging.basicConfig(level=logging.WARNING, handlers=[terminal], format="%(message)s")
-    logging.getLogger("lube").setLevel(logging.INFO)
+    logging.getLogger("lube").setLevel(logging.DEBUG)
     logging.raiseExceptions = False  # a log on a full disk has nothing to add to the job's error
     logging.getLogger().addHandler(_log_handler(Path(log_file)))
 

@@ -5,23 +5,37 @@ the notebook does not know; and it writes clock times into its output. Here the 
 errors and the last is taken out, so that an executed notebook is the same whenever it is made.
 """
 
-import ast
 import contextlib
+import logging
 import os
+import re
+import tempfile
+from pathlib import Path
 
 import nbformat
 import papermill
 from nbclient.exceptions import DeadKernelError
 from papermill.exceptions import PapermillExecutionError
 
+from lube.cells import parameters_of
 from lube.errors import LubeError
 from lube.files import written_whole
+from lube.provenance import DRAWN_BY
+
+log = logging.getLogger(__name__)
 
 # A kernel that is stopped after its last cell reports a KeyboardInterrupt; it alarms for nothing.
 _QUIET_KERNEL = ["--log-level=CRITICAL"]
 
+_ADDED = {"injected-parameters", "papermill-error-cell-tag"}
+"""Tags of the cells that papermill adds."""
 
-def execute_notebook(notebook, output, parameters):
+# What IPython writes into a traceback.
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
+_LED_TO = re.compile(r"The above exception was the direct cause|During handling of the above")
+
+
+def execute_notebook(notebook, output, parameters, drawn_by):
     """Execute a notebook with the given parameters and save the executed copy.
 
     Parameters
@@ -29,9 +43,13 @@ def execute_notebook(notebook, output, parameters):
     notebook : str or Path
         Notebook to execute; it stays as it is.
     output : str or Path
-        Where the executed copy goes, written only if all cells succeed.
+        Where the executed copy goes, such as ``fig02_film.ipynb``, written only if all cells
+        succeed. Else what was executed goes beside it, to ``fig02_film.failed.ipynb``, which
+        the next success removes; and the traceback goes to the log.
     parameters : dict
         Values for the names in the cell tagged ``parameters``.
+    drawn_by : str
+        What its stamps say of notebook and code, as from `lube.provenance.drawn_by`.
 
     Raises
     ------
@@ -40,26 +58,81 @@ def execute_notebook(notebook, output, parameters):
         parameter, a cell fails, the kernel is killed, or the copy cannot be written.
     """
     _check_parameters(notebook, parameters)
-    try:
-        with _kernel_kept_quiet():
-            executed = papermill.execute_notebook(
-                str(notebook),
-                None,
-                parameters,
-                kernel_name="python3",
-                language="python",
-                progress_bar=False,
-                # Else what a cell prints is in one piece or several, as the clock will.
-                coalesce_streams=True,
-                extra_arguments=_QUIET_KERNEL,
-            )
-    except PapermillExecutionError as error:
-        reason = " ".join(f"{error.ename}: {error.evalue}".split())
-        raise LubeError(f"{notebook}: cell {error.cell_index} fails: {reason}") from error
-    except DeadKernelError as error:
-        raise LubeError(f"{notebook}: its kernel was killed, perhaps for want of memory") from error
-    with written_whole(output) as part:
+    output = Path(output)
+    failed = output.with_name(f"{output.stem}.failed.ipynb")
+    with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
+        executed = Path(scratch) / output.name
+        try:
+            with environment({DRAWN_BY: drawn_by}):
+                _execute(notebook, executed, parameters)
+        except (PapermillExecutionError, DeadKernelError) as error:
+            cells = nbformat.read(executed, as_version=4)
+            told = _failure(error, cells)
+            _save(cells, failed)
+            log.debug("What was executed of it: %s", failed)
+            raise LubeError(f"{notebook}: {told}") from error
+        _save(nbformat.read(executed, as_version=4), output)
+    failed.unlink(missing_ok=True)
+
+
+def _execute(notebook, output, parameters):
+    """Let papermill execute a notebook; its output is there even if a cell fails."""
+    with _kernel_kept_quiet():
+        papermill.execute_notebook(
+            str(notebook),
+            str(output),
+            parameters,
+            kernel_name="python3",
+            language="python",
+            progress_bar=False,
+            # Else what a cell prints is in one piece or several, as the clock will.
+            coalesce_streams=True,
+            extra_arguments=_QUIET_KERNEL,
+        )
+
+
+def _failure(error, executed):
+    """Tell in one line which cell fails, where and why; the log gets the whole traceback."""
+    cells = [cell for cell in executed.cells if not _ADDED & set(cell.metadata.get("tags", []))]
+    # Counted from 1, text included, as a reader of the notebook counts.
+    number = max(n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time)
+    if isinstance(error, DeadKernelError):
+        return f"its kernel was killed in cell {number}, perhaps for want of memory"
+    named = {f"Cell In[{cell.get('execution_count')}]": n for n, cell in enumerate(cells, 1)}
+    traceback = _COLOUR.sub("", "\n".join(error.traceback))
+    for count, cell_number in named.items():
+        traceback = traceback.replace(count, f"Cell {cell_number}")
+    log.debug("%s", traceback)
+    # The first frame of the error itself, behind those of errors that led to it.
+    lines = re.findall(rf"Cell {number}, line (\d+)", _LED_TO.split(traceback)[-1])
+    place = f" at line {lines[0]}" if lines else ""
+    return f"cell {number} fails{place}: {' '.join(f'{error.ename}: {error.evalue}'.split())}"
+
+
+def _save(executed, path):
+    """Write an executed notebook, the same bytes each time."""
+    with written_whole(path) as part:
         nbformat.write(_without_times(executed), part)
+
+
+@contextlib.contextmanager
+def environment(variables):
+    """Set variables of the environment for a while, for the processes begun in it.
+
+    Parameters
+    ----------
+    variables : dict
+        From name to value.
+    """
+    before = {name: os.environ.get(name) for name in variables}
+    os.environ.update(variables)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name)
+            if value is not None:
+                os.environ[name] = value
 
 
 @contextlib.contextmanager
@@ -78,39 +151,6 @@ def _kernel_kept_quiet():
         os.close(terminal)
 
 
-def parameters_of(notebook):
-    """Names that a notebook takes: those assigned in its cell tagged ``parameters``.
-
-    Parameters
-    ----------
-    notebook : str or Path
-        The notebook.
-
-    Returns
-    -------
-    list of str
-        The names in order.
-
-    Raises
-    ------
-    LubeError
-        If the file is not there or no notebook, or has no such cell of Python.
-    """
-    try:
-        cells = nbformat.read(notebook, as_version=4).cells
-    except OSError as error:
-        raise LubeError(f"{notebook}: cannot be read: {error.strerror}") from None
-    except ValueError:
-        raise LubeError(f"{notebook}: not a Jupyter notebook, damaged or foreign") from None
-    tagged = [cell for cell in cells if "parameters" in cell.metadata.get("tags", [])]
-    if not tagged:
-        raise LubeError(f"{notebook}: no cell is tagged 'parameters', need one with the paths")
-    try:
-        return _assigned_names(tagged[0].source)
-    except (SyntaxError, ValueError):
-        raise LubeError(f"{notebook}: its parameters cell is not Python") from None
-
-
 def _check_parameters(notebook, parameters):
     known = parameters_of(notebook)
     for name in parameters:
@@ -119,12 +159,6 @@ def _check_parameters(notebook, parameters):
                 f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
                 f"{', '.join(known)}"
             )
-
-
-def _assigned_names(code):
-    assignments = [node for node in ast.parse(code).body if isinstance(node, ast.Assign)]
-    targets = [target for assignment in assignments for target in assignment.targets]
-    return [target.id for target in targets if isinstance(target, ast.Name)]
 
 
 def _without_times(executed):

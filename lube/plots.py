@@ -269,15 +269,16 @@ def interval_bars(axes, x, mean, lower, upper, **style):
 
 
 def save_figure(figure, stem, *shown):
-    """Save a figure as PNG and PDF, the same bytes each time, with a stamp of its origin.
+    """Stamp a figure with its origin; save it as PNG and PDF, the same bytes each time.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
         Figure to save; in constrained layout, as `use_style` sets it, the stamp gets a strip of
         its own.
-    stem : str or Path
-        Path without suffix.
+    stem : str or Path or None
+        Path without suffix; None, as where a notebook is run by hand, writes nothing: Jupyter
+        shows the figure below the cell.
     *shown : xarray.Dataset
         What the figure shows, as loaded, or selections of it.
 
@@ -288,6 +289,8 @@ def save_figure(figure, stem, *shown):
     """
     told = stamp(shown)
     _write_below(figure, told)
+    if stem is None:
+        return
     # No clock time, no version in the files.
     unmarked = {
         "png": {"Software": None, "Description": told},

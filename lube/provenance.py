@@ -8,13 +8,16 @@ the same study makes the same bytes.
 import contextlib
 import hashlib
 import json
+import os
+import sys
 from collections import Counter
 from importlib.metadata import version
 from pathlib import Path
 
 from lube.about import LICENCES, PAPER
+from lube.cells import cells_of, reduced
 from lube.errors import DataError
-from lube.repository import commit
+from lube.repository import ROOT, changed_since, commit, text_in
 from lube.schema import SUMMARIES
 
 CONVENTIONS = "CF-1.11, ACDD-1.3"
@@ -22,6 +25,8 @@ LIBRARIES = ("numpy", "scipy", "numba", "CoolProp", "xarray", "netCDF4")
 """Libraries whose version may change the numbers, or the bytes that hold them."""
 SHORT = 10
 """Digits of a fingerprint where people read it."""
+DRAWN_BY = "LUBE_DRAWN_BY"
+"""Variable of the environment that tells a notebook's stamps what `drawn_by` says."""
 WAY_OUT = "; take it away and run snakemake again"
 """What to do about a result of other values, at the end of its line."""
 
@@ -253,7 +258,8 @@ def stamp(datasets):
     -------
     str
         For each study: its name, the fingerprint of its values behind the figure, and the
-        code's commit.
+        code's commit. Behind them, what `drawn_by` adds: of a notebook that the workflow
+        executes, as it was told; of one run by hand, whose file nobody knows, for the code.
 
     Raises
     ------
@@ -265,11 +271,63 @@ def stamp(datasets):
     studies = {}
     for dataset in datasets:
         studies.setdefault(dataset.attrs.get("study"), []).append(dataset)
-    return "; ".join(
+    line = "; ".join(
         f"study {name} · config {digest(merged_config(of))[:SHORT]} · "
         f"commit {', '.join(sorted({_short_commit(dataset) for dataset in of}))}"
         for name, of in studies.items()
     )
+    told = os.environ.get(DRAWN_BY)
+    if told is None:
+        told = drawn_by([dataset.attrs["code_commit"] for dataset in datasets], _loaded_code())
+    return f"{line} · {told}" if told else line
+
+
+def drawn_by(commits, code, notebook=None):
+    """Tell what a figure was drawn by, if not as in the commits of the code behind its datasets.
+
+    Parameters
+    ----------
+    commits : iterable of str
+        Those commits, as the datasets tell them.
+    code : iterable of str
+        Files of code behind the figure, below the folder of the Snakefile.
+    notebook : str or Path, optional
+        Its notebook; what counts are its cells, not their outputs.
+
+    Returns
+    -------
+    str
+        Such as ``drawn at commit 0123456789 · changed notebook``: the clone's commit, if another,
+        and what differs from it. Empty if notebook and code are as in one of the commits, or
+        nobody knows, as in an unpacked archive.
+    """
+    code, head = list(code), commit().partition("+")[0]
+    made_at = {name.partition("+")[0] for name in commits}
+    since = {name: _changes(name, code, notebook) for name in (*made_at, head)}
+    if since[head] is None or any(since[name] == [] for name in made_at):
+        return ""
+    place = [] if head in made_at else [f"drawn at commit {head[:SHORT]}"]
+    return " · ".join([*place, *since[head]])
+
+
+def _changes(name, code, notebook):
+    """Tell what is not as in a commit, in words; None if nobody knows."""
+    changed = changed_since(name, code)
+    if changed is None:
+        return None
+    words = ["changed code"] if changed else []
+    if notebook is None:
+        return words
+    before = text_in(name, Path(os.path.relpath(notebook, ROOT)).as_posix())
+    if before is None:
+        return ["new notebook", *words]
+    return ["changed notebook", *words] if reduced(before) != cells_of(notebook) else words
+
+
+def _loaded_code():
+    """Files of lube that this process has loaded, below the folder of the Snakefile."""
+    loaded = [module for name, module in sys.modules.items() if name.split(".")[0] == "lube"]
+    return sorted(Path(module.__file__).relative_to(ROOT).as_posix() for module in loaded)
 
 
 def _short_commit(dataset):

@@ -1,12 +1,12 @@
 """The figures of an archive, drawn again from what is in it and compared with those that are."""
 
-import contextlib
 import os
 from pathlib import Path
 
 from lube.archive import check_is_archive
 from lube.errors import DataError
-from lube.notebooks import execute_notebook, parameters_of
+from lube.figures import paths_for, read_origin
+from lube.notebooks import environment, execute_notebook
 
 
 def redraw(folder, target, figures=()):
@@ -44,29 +44,20 @@ def redraw(folder, target, figures=()):
     for figure in figures:
         if figure not in archived:
             raise DataError(f"got {figure}, need a figure of the archive: {', '.join(archived)}")
-    with _code_first(folder / "code"):
+    datasets = list((folder / "data").glob("*.nc"))
+    with environment({"PYTHONPATH": _with_code_first(folder / "code")}):
         for figure in figures or archived:
             notebook = folder / "code/notebooks" / f"{figure}.ipynb"
-            paths = {path.stem: path for path in (folder / "data").glob("*.nc")}
-            paths |= {"figure": target / figure}
-            # What else stands in its cell keeps its value, as in the workflow.
-            names = [name for name in parameters_of(notebook) if name in paths]
-            parameters = {name: str(paths[name]) for name in names}
-            execute_notebook(notebook, target / notebook.name, parameters)
+            # What else stands in its parameters cell keeps its value, as in the workflow.
+            parameters = {**paths_for(notebook, datasets), "figure": str(target / figure)}
+            told = read_origin(figure, folder)["drawn_by"]
+            execute_notebook(notebook, target / notebook.name, parameters, told)
             for name in (f"{figure}.png", f"{figure}.pdf"):
                 kept = folder / "figures" / name
                 same = kept.is_file() and kept.read_bytes() == (target / name).read_bytes()
                 yield name, same
 
 
-@contextlib.contextmanager
-def _code_first(code):
-    """Let notebooks use the archived code, whatever else is installed."""
-    before = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(code), before]))
-    try:
-        yield
-    finally:
-        del os.environ["PYTHONPATH"]
-        if before is not None:
-            os.environ["PYTHONPATH"] = before
+def _with_code_first(code):
+    """Search path by which notebooks use the archived code, whatever else is installed."""
+    return os.pathsep.join(filter(None, [str(code), os.environ.get("PYTHONPATH")]))

@@ -1,6 +1,7 @@
 """The code that runs: where it lies, at which commit, and which files it is made of."""
 
 import functools
+import re
 import subprocess
 from pathlib import Path
 
@@ -15,6 +16,8 @@ _CODE = (
     *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
     *("workflow/report/*", "workflow/docs/probability.png", "profiles/*/config.yaml"),
 )
+
+_COMMIT = re.compile("[0-9a-f]{7,64}")
 
 
 def code_files():
@@ -66,6 +69,40 @@ def commit():
     return told if head is None else head + ("+changes" if changed else "")
 
 
+def changed_since(name, files):
+    """List the files that are not as in a commit.
+
+    Parameters
+    ----------
+    name : str
+        The commit.
+    files : iterable of str
+        Their paths below `ROOT`.
+
+    Returns
+    -------
+    list of str
+        Those that differ, new files included; None if nobody knows: there is no Git, or no such
+        commit.
+    """
+    files = list(files)
+    if not _COMMIT.fullmatch(name) or not (ROOT / ".git").exists():
+        return None
+    if not files:  # Git would take it for all
+        return []
+    git = functools.partial(_git, "--literal-pathspecs")
+    changed = git("diff", "--name-only", "-z", name, "--", *files)
+    new = git("ls-files", "--others", "-z", "--", *files)
+    if changed is None or new is None:
+        return None
+    return sorted({*changed.split("\0"), *new.split("\0")} - {""})
+
+
+def text_in(name, file):
+    """Text of a file, told by its path below `ROOT`, in a commit; None if it is not there."""
+    return _git("show", f"{name}:{file}")
+
+
 @functools.cache
 def commit_date():
     """Day of the commit of the code that runs, such as 2026-11-21, or None."""
@@ -79,7 +116,8 @@ def _git(*arguments):
             ["git", "--no-optional-locks", *arguments],
             cwd=ROOT,
             capture_output=True,
-            text=True,
+            encoding="utf-8",
+            errors="surrogateescape",
             timeout=30,
             check=True,
         )

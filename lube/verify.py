@@ -16,6 +16,7 @@ from urllib.parse import unquote
 from lube.archive import SUMS, VALUES, check_is_archive, files_of, values_text
 from lube.crate import CATALOGUE
 from lube.errors import DataError, LubeError, shown
+from lube.figures import wrong_figures
 from lube.files import why_not
 from lube.io import opened
 from lube.provenance import WAY_OUT, fingerprint, names_of, told_inputs
@@ -24,6 +25,7 @@ from lube.seals import holds
 from lube.study import load_study
 
 _INPUTS = ("data/", "lubricants/")
+_DRAWN = ("figures/", "notebooks/")
 
 # What Python's zipfile says of a file that is none, damaged, or locked by a password.
 _UNREADABLE = (OSError, EOFError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error)
@@ -78,7 +80,7 @@ def _root(scratch, path):
 
 
 def verify_archive(folder):
-    """Check an archive: fingerprints, catalogue, study, and datasets, and how they hang together.
+    """Check an archive: fingerprints, catalogue, study, datasets, figures, how they hang together.
 
     Parameters
     ----------
@@ -99,7 +101,7 @@ def verify_archive(folder):
     check_is_archive(folder)
     folder = Path(folder).resolve()
     # What one finds wrong, the next would only repeat.
-    for look in (_wrong_sums, _wrong_catalogue, _wrong_datasets):
+    for look in (_wrong_sums, _wrong_catalogue, _wrong_datasets, _wrong_figures):
         wrong = [line.replace(f"{folder}{os.sep}", "") for line in look(folder)]
         if wrong:
             return [line.removesuffix(WAY_OUT) for line in wrong]
@@ -181,6 +183,12 @@ def _wrong_datasets(folder):
             yield str(error)
     if text != values_text(study, DATASETS, study_file):
         yield f"{VALUES}: not what study/{study_file} says"
+
+
+def _wrong_figures(folder):
+    """Compare figures and executed notebooks with what the workflow made of the datasets."""
+    drawn = {Path(name).stem for name in _sums(folder) if name.startswith(_DRAWN)}
+    yield from wrong_figures(sorted(drawn), folder, folder / "data")
 
 
 def _wrong_names(dataset, path, wanted):

@@ -26,7 +26,7 @@ LAYERS = [
     },
     {
         *("formulas", "markdown", "fields", "files", "fluids", "seals", "steps", "points"),
-        *("evaluation", "shares", "signals", "tables", "sizes"),
+        *("evaluation", "shares", "signals", "tables", "sizes", "cells"),
     },
     {
         *("about", "apparatus", "records", "surfaces", "rig", "manifest", "excerpts", "map_curves"),
@@ -37,9 +37,9 @@ LAYERS = [
         *("lubricant", "film", "roughness", "contact", "trace", "ensemble"),
         *("experiment", "rig_records", "comparison", "gauge"),
     },
-    {"provenance", "notebooks", "jobs", "reference"},
-    {"io", "plots", "citation"},
-    {"crate", "explanation", "configuration", "overview"},
+    {"provenance", "jobs", "reference"},
+    {"io", "plots", "citation", "notebooks"},
+    {"crate", "explanation", "configuration", "overview", "figures"},
     {"archive_page"},
     {"archive"},
     {"verify", "redraw"},
@@ -150,6 +150,7 @@ def loaded_after(statement):
         ("import lube.study", {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp"}),
         ("from lube.study import load_study; import lube.jobs", {"xarray", "papermill"}),
         ("import lube.markdown", {"numpy", "docutils"}),
+        ("import lube.cells", {"xarray", "nbformat", "papermill"}),
     ],
 )
 def test_what_snakemake_imports_at_every_start_is_light(statement, heavy):

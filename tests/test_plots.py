@@ -111,6 +111,16 @@ def test_a_figure_bears_the_stamp_of_what_it_shows_below_everything_else(tmp_pat
         assert picture.text["Description"] == stamp([shown])
 
 
+def test_a_figure_without_a_place_is_stamped_and_written_nowhere(tmp_path, shown, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    figure, _ = plt.subplots()
+    plots.save_figure(figure, None, shown)
+    assert [written.get_text() for written in figure.texts] == [stamp([shown])]
+    assert plt.fignum_exists(figure.number)  # for Jupyter to show
+    plt.close(figure)
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_figure_of_no_dataset_is_refused(tmp_path):
     figure, _ = plt.subplots()
     with pytest.raises(DataError, match="a figure needs the datasets that it shows"):

@@ -6,7 +6,14 @@ import subprocess
 import pytest
 
 from lube import repository
-from lube.repository import changed_code, code_files, commit, commit_date
+from lube.repository import (
+    changed_code,
+    changed_since,
+    code_files,
+    commit,
+    commit_date,
+    text_in,
+)
 
 
 @pytest.fixture
@@ -66,8 +73,39 @@ def test_code_tells_which_of_its_files_are_not_in_the_commit(place):
     assert changed_code() == ["lube/gauge.py", "lube/new.py", "notebooks/fig1.ipynb"]
 
 
+@pytest.mark.skipif(shutil.which("git") is None, reason="needs Git")
+def test_files_are_compared_with_any_commit(place):
+    names = ["film.py", "plots.py", "[a].py"]
+    for name in names:
+        (place / name).write_text("1 µm")
+    git(place, "init")
+    git(place, "add", ".")
+    git(place, "commit", "-m", "first")
+    first = git(place, "rev-parse", "HEAD")
+    (place / "film.py").write_text("2")
+    git(place, "commit", "-am", "second")
+    second = git(place, "rev-parse", "HEAD")
+    (place / "[a].py").write_text("2")
+    (place / "new.py").write_text("1")
+    names.append("new.py")
+    assert changed_since(first, names) == ["[a].py", "film.py", "new.py"]
+    assert changed_since(second, names) == ["[a].py", "new.py"]
+    assert changed_since(second, ["plots.py"]) == changed_since(second, []) == []
+    assert (text_in(first, "film.py"), text_in(second, "film.py")) == ("1 µm", "2")
+    assert text_in(second, "new.py") is None
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="needs Git")
+@pytest.mark.parametrize("name", ["unknown", "0123456789abcdef", "--output=stolen", "HEAD"])
+def test_of_what_is_no_commit_nobody_knows(place, name):
+    git(place, "init")
+    assert changed_since(name, ["film.py"]) is None
+    assert not (place / "stolen").exists()
+
+
 def test_code_outside_git_knows_of_no_changes(place):
     assert changed_code() == []
+    assert changed_since("0123456789abcdef", ["film.py"]) is None
 
 
 def test_code_in_git_has_a_day_and_code_elsewhere_has_none(place):

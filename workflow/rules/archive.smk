@@ -7,6 +7,8 @@ rule archive:
         # Replaced when the new ones are whole, not taken away before.
         zip=update(result(f"archive/{STUDY.name}.zip")),
         sums=update(result(f"archive/{STUDY.name}/SHA256SUMS")),
+        # This one goes first: an archive that stays of a failed job would pass for new without it.
+        zip_sum=result(f"archive/{STUDY.name}.zip.sha256"),
     log:
         result("logs/archive.log"),
     benchmark:

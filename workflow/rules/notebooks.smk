@@ -1,53 +1,21 @@
 # What the figures' notebooks depend on and say, read from their cells before any job.
 import functools
 
+from lube.cells import cells_of, datasets_of, python_of
 from lube.markdown import plain, title_and_text, to_html
 
 
 @functools.cache
 def notebook_cells(figure):
     """Cells of a figure's notebook, reduced to what decides on it; outputs do not."""
-    path = Path(f"notebooks/{figure}.ipynb")
-    check_name(str(path))
-    try:
-        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
-        return [
-            {
-                "type": cell["cell_type"],
-                "source": "".join(cell["source"]),
-                "tags": cell.get("metadata", {}).get("tags", []),
-            }
-            for cell in cells
-        ]
-    except (ValueError, KeyError, TypeError):
-        raise LubeError(f"{path}: not a Jupyter notebook, damaged or foreign") from None
-
-
-def python_of(cell, figure):
-    """Python of a code cell, without the lines that only Jupyter understands."""
-    lines = cell["source"].splitlines()
-    code = "\n".join(line for line in lines if not line.lstrip().startswith(("%", "!")))
-    try:
-        ast.parse(code)
-    except SyntaxError as error:
-        came = repr((error.text or "").strip())
-        raise LubeError(f"notebooks/{figure}.ipynb: got {came}, which is not Python") from None
-    return code
+    check_name(f"notebooks/{figure}.ipynb")
+    return cells_of(f"notebooks/{figure}.ipynb")
 
 
 def figure_datasets(figure):
-    """Datasets that a notebook names in its parameters cell, such as `film = "..."`."""
-    cells = [cell for cell in notebook_cells(figure) if "parameters" in cell["tags"]]
-    if not cells:
-        raise LubeError(f"notebooks/{figure}.ipynb: no cell is tagged 'parameters', need one")
-    assigned = [
-        target.id
-        for node in ast.parse(python_of(cells[0], figure)).body
-        if isinstance(node, ast.Assign)
-        for target in node.targets
-        if isinstance(target, ast.Name)
-    ]
-    return [result(f"{name}.nc") for name in assigned if name in (*DATASETS, *MEASURED)]
+    """Datasets that a notebook names in its parameters cell, such as `"../film.nc"`."""
+    kinds = datasets_of(f"notebooks/{figure}.ipynb").values()
+    return sorted({result(f"{kind}.nc") for kind in kinds})
 
 
 def wanted(figure):
@@ -61,7 +29,7 @@ def wanted(figure):
 def figure_sources(figure):
     """Files of the lube package that a figure depends on, by its notebook or its script."""
     cells = [cell for cell in notebook_cells(figure) if cell["type"] == "code"]
-    code = "\n".join(python_of(cell, figure) for cell in cells)
+    code = "\n".join(python_of(cell, f"notebooks/{figure}.ipynb") for cell in cells)
     return sorted({*sources(code), *script_sources("figure")})
 
 
@@ -127,9 +95,9 @@ config["report"] = {
 
 
 def products(figures):
-    """Files made of some figures: pictures and executed notebooks."""
+    """Files made of some figures: pictures, of what they were drawn, and executed notebooks."""
     for figure in figures:
-        yield from (result(f"figures/{figure}.{suffix}") for suffix in ("png", "pdf"))
+        yield from (result(f"figures/{figure}.{suffix}") for suffix in ("png", "pdf", "json"))
         yield result(f"notebooks/{figure}.ipynb")
 
 

@@ -2,13 +2,10 @@
 
 from pathlib import Path
 
+from lube.figures import draw_figure
 from lube.jobs import begin_job
-from lube.notebooks import execute_notebook
 
 begin_job(snakemake.log[0])
-datasets = {Path(path).stem: path for path in snakemake.input.datasets}
-execute_notebook(
-    snakemake.input.notebook,
-    snakemake.output.notebook,
-    {**datasets, "figure": str(Path(snakemake.output[0]).with_suffix(""))},
-)
+notebook, results = snakemake.input.notebook, Path(snakemake.output.notebook).parents[1]
+code = [*snakemake.input.sources, "workflow/scripts/figure.py"]
+draw_figure(notebook, snakemake.input.datasets, code, results)
