@@ -98,6 +98,6 @@ OVER_ALL = {"cell_methods": "revolutions: mean (then over the realisations)"}
 OVER_RECORD = {"cell_methods": "duration: mean"}
 
 
-def run_mean(dims, units, long_name):
+def run_mean(dims, units, long_name, **attributes):
     """Describe a mean over the revolutions of a run."""
-    return number(dims, units, long_name, attributes=OVER_RUN)
+    return number(dims, units, long_name, attributes=OVER_RUN | attributes)
