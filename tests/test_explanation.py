@@ -112,6 +112,7 @@ def test_an_explanation_tells_what_a_number_follows_from(folder, study):
     assert f"SeedSequence(({study.seed}, 2)).spawn(2)" in words
     for told in ("1600.0 N", "80.0 degC", "entrainment speed", "5e-09 m", "the same bits"):
         assert told in words
+    assert "nominal load of a patch 2a x 2a" in words
 
 
 @pytest.mark.parametrize(
