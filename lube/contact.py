@@ -43,9 +43,17 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), 
     Returns
     -------
     xarray.Dataset
-        The ``contact_batch`` file of `lube.schema`: probabilities, mean contact length (m)
-        and mean contact force (N) over (realisation, slide_to_roll_ratio, lubricant,
-        film_formula, temperature, speed, force).
+        The ``contact_batch`` file of `lube.schema`: probabilities, mean contact length (m),
+        mean contact force (N) and its share of the load, over (realisation,
+        slide_to_roll_ratio, lubricant, film_formula, temperature, speed, force).
+
+    Notes
+    -----
+    The force is that of one line. A line stands for a patch as long and as wide as itself: the
+    springs of a window are as stiff together as a disc of diameter 2a pressed in (E* 2a), or a
+    square of about that side. So the share is the force over what a patch 2a x 2a carries on
+    average, F_N 2a/L'. It compares operating points; the film still carries all of F_N, for the
+    film formula knows nothing of the asperities.
     """
     thickness, half_width = (
         array.transpose(*OPERATING_DIMS)
@@ -54,6 +62,7 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), 
     results = _run(
         lines, film, boundary_layer, thickness, half_width, slide_to_roll_ratio, revolutions
     )
+    results["contact_load_share"] = results["mean_contact_force"] / _patch_load(film)
     ratios = np.asarray(slide_to_roll_ratio, float)
     dataset = results.assign_coords(
         slide_to_roll_ratio=ratios,
@@ -61,6 +70,12 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), 
         **{name: film[name] for name in OPERATING_DIMS},
     )
     return label(dataset, "contact_batch")
+
+
+def _patch_load(film):
+    """Nominal load of a patch 2a x 2a, F_N 2a/L' in N: pi/4 of the Hertzian maximum, over it."""
+    width = 2.0 * film["contact_half_width"]
+    return np.pi / 4.0 * film["hertz_pressure"] * width * width
 
 
 def contact_map(lines, film, boundary_layer, lambda_levels=40, width_levels=9):

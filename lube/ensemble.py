@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import DataError
-from lube.intervals import probability_limits
+from lube.intervals import mean_over_first, probability_limits
 from lube.schema import label
 from lube.steps import speed_ratios
 
@@ -32,12 +32,13 @@ def effective_looks(probabilities):
         Shape (...): p (1 - p) / (s^2 / R), infinite where there is no scatter, NaN for a
         single realisation.
     """
-    mean = probabilities.mean(axis=0)
+    mean = mean_over_first(probabilities)
     realisations = probabilities.shape[0]
     if realisations == 1:
         return np.full(mean.shape, np.nan)
+    offsets = probabilities - mean
     with np.errstate(divide="ignore", invalid="ignore"):
-        return mean * (1.0 - mean) * realisations / probabilities.var(axis=0, ddof=1)
+        return mean * (1.0 - mean) * (realisations - 1) / mean_over_first(offsets * offsets)
 
 
 def probability_interval(probabilities, windows):
@@ -62,7 +63,7 @@ def probability_interval(probabilities, windows):
         Shape (...) each.
     """
     realisations = probabilities.shape[0]
-    mean = probabilities.mean(axis=0)
+    mean = mean_over_first(probabilities)
     # Asked of the values themselves: the variance of equal ones need not round to zero.
     scattered = np.ptp(probabilities, axis=0) > 0.0
     looks = np.where(scattered, effective_looks(probabilities), np.nan)

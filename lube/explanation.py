@@ -117,7 +117,11 @@ def explain(path, realisation=0, **levels):
         table.sel({name: cell[name].values for name in CONTACT_DIMS if name in table.dims})
         for table in (lubricant, film)
     )
-    again = _made_again(cell, point, run)
+    # Only the names of the realisations and the slip: the stored results stay out of its reach.
+    realisations, ratios = (
+        cell[name].values.tolist() for name in ("realisation", "slide_to_roll_ratio")
+    )
+    again = _made_again(realisations, ratios, point, run)
     if realisation is None:
         again = with_intervals(again, point)
     return Explanation(cell, oil, point, values, again)
@@ -153,11 +157,11 @@ def _level(coordinate, path, wanted):
     return index
 
 
-def _made_again(cell, film, run):
-    """Draw the roughness of a cell's realisations anew, and run the model on it."""
+def _made_again(realisations, ratios, film, run):
+    """Draw the roughness of some realisations anew, and run the model on it."""
     layer = BoundaryLayer.model_construct(**dict(run.boundary_layer))
-    ratios, parts = cell["slide_to_roll_ratio"].values, []
-    for realisation in cell["realisation"].values.tolist():
+    parts = []
+    for realisation in realisations:
         lines = roughness_batch(run.lines, run.seed, [realisation])
         parts.append(contact_statistics(lines, film, layer, ratios, run.revolutions))
     return xr.concat(

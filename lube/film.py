@@ -114,7 +114,7 @@ def _dimensionless_groups(lubricant, rollers, force, contact):
 
 def _regime(load, speed, material):
     moes_load, moes_material = groups.moes_numbers(load, speed, material)
-    flag = xr.apply_ufunc(regime, load, speed, material, join="exact")
+    flag = xr.apply_ufunc(regime, moes_load, moes_material, join="exact")
     return xr.Dataset(
         {
             "moes_load": moes_load,

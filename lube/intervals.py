@@ -11,6 +11,29 @@ import scipy.stats
 CONFIDENCE = 0.95
 
 
+def mean_over_first(values):
+    """Mean over the first axis, its terms added one after the other.
+
+    NumPy's own sum pairs the terms by the array's shape and memory layout, and so the last digit
+    of one column depends on the columns beside it. Here it does not, and one operating point
+    made again by itself has the bits that it had among many.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        Shape (R, ...).
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (...).
+    """
+    total = np.zeros(values.shape[1:])
+    for row in values:
+        total = total + row
+    return total / len(values)
+
+
 def score_interval(mean, looks, quantile):
     """Wilson's score interval of a probability.
 
@@ -33,11 +56,12 @@ def score_interval(mean, looks, quantile):
     E. B. Wilson, Probable inference, the law of succession, and statistical inference,
     J. Am. Stat. Assoc. 22 (1927) 209-212.
     """
-    shrink = 1.0 + quantile**2 / looks
-    centre = (mean + quantile**2 / (2.0 * looks)) / shrink
-    half = (
-        quantile * np.sqrt(mean * (1.0 - mean) / looks + (quantile / (2.0 * looks)) ** 2) / shrink
-    )
+    # Products, not powers: NumPy may round the power of a single number otherwise than of many.
+    square = quantile * quantile
+    shrink = 1.0 + square / looks
+    centre = (mean + square / (2.0 * looks)) / shrink
+    variance = mean * (1.0 - mean) / looks + square / (4.0 * looks * looks)
+    half = quantile * np.sqrt(variance) / shrink
     return np.maximum(centre - half, 0.0), np.minimum(centre + half, 1.0)
 
 

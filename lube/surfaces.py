@@ -100,7 +100,11 @@ class Roughness(StrictModel):
         WithJsonSchema(
             {"type": "string", "format": f"quantity in m, or the words `{AUTOMATIC_WAVELENGTH}`"}
         ),
-    ] = Field(description="2 pi / q_min; the automatic choice changes with the largest force")
+    ] = Field(
+        description="2 pi / q_min; with the automatic choice a larger force level redraws all "
+        "lines and changes the probability at all points: adding 3200 N to the paper's study "
+        "multiplies it by 0.86 to 0.61"
+    )
     shortest_wavelength: Annotated[
         float | str,
         BeforeValidator(_shortest_wavelength),

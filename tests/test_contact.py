@@ -11,9 +11,11 @@ import xarray as xr
 
 from lube import BoundaryLayer, contact_map, contact_statistics, gather_map, roughness_lines
 from lube.errors import DataError
+from lube.film import film_table
 from lube.kernels.layer import layer_factor
 from lube.kernels.scan import scan_statistics
 from lube.kernels.strips import strip_statistics
+from lube.lubricant import lubricant_table
 from lube.roughness import draw_realisation
 from lube.schema import OPERATING_DIMS
 from lube.steps import layer_factor_of, line_pair, speed_ratios, whole_numbers
@@ -249,6 +251,46 @@ def test_mean_force_is_the_windows_share_of_the_whole_circumference(lines, film,
             force = film["reduced_modulus"].item() * spacing * width * overlap
             found = contact["mean_contact_force"].sel(realisation=realisation, **place)
             assert found.item() == pytest.approx(force, rel=1e-6, abs=1e-12)
+
+
+def test_load_share_is_the_force_over_the_load_of_a_patch_as_long_as_wide(contact, film, study):
+    """F_N 2a/L', with force, length and Eq. 2 themselves."""
+    width = 2.0 * study.rollers.contact_half_width(film["force"])
+    load = film["force"] * width / study.rollers.length
+    expected = contact["mean_contact_force"] / load
+    assert (contact["contact_load_share"] > 0.0).any()
+    np.testing.assert_allclose(contact["contact_load_share"], expected, rtol=1e-12)
+
+
+def test_load_share_of_rollers_side_by_side_is_that_of_one(lines, study, layer):
+    """Twice the length under twice the force: the same pressure, the same patch."""
+    oil = lubricant_table(study.lubricants, [80.0])
+    twice = study.rollers.model_copy(update={"length": 2.0 * study.rollers.length})
+    one, both = (
+        contact_statistics(lines, film_table(oil, rollers, [force], [100.0], ["paper"]), layer)
+        for rollers, force in ((study.rollers, 1600.0), (twice, 3200.0))
+    )
+    for name in (*MEANS, "contact_load_share"):
+        np.testing.assert_allclose(one[name], both[name], rtol=1e-12)
+
+
+def test_springs_pressed_flat_carry_what_their_stiffness_says(film, layer):
+    """A smooth line pressed in by d everywhere: E* 2a d, over the load of the patch."""
+    points, depth = 20_000, 1e-7
+    spacing = 2.0 * np.pi * 0.05 / points
+    heights = np.full((1, 2, points), 0.5 * depth)
+    few = film.isel(temperature=[0], speed=[0], film_formula=[0])
+    few = few.assign(film_thickness=0.0 * few["film_thickness"])
+    lines = xr.Dataset(
+        {"height": (("realisation", "roller", "position"), heights)},
+        {"realisation": [0]},
+        {"spacing": spacing, "height_step": 1e-12, "points": [points] * 2, "q_min": 1e4},
+    )
+    share = contact_statistics(lines, few, layer)["contact_load_share"].squeeze()
+    window = (2 * np.floor(few["contact_half_width"] / spacing) + 1) * spacing
+    force = few["reduced_modulus"] * window * depth
+    load = few["hertz_pressure"] * np.pi * few["contact_half_width"] ** 2
+    np.testing.assert_allclose(share, force / load, rtol=1e-9)
 
 
 def test_next_to_no_slip_is_pure_rolling(lines, film, layer):

@@ -101,14 +101,26 @@ def test_effective_looks_of_coins_are_the_coins():
     assert effective_looks(shares) == pytest.approx(coins * realisations, rel=0.05)
 
 
-def test_columns_are_treated_one_by_one():
-    shares = np.random.default_rng(2).beta(2.0, 5.0, (6, 3, 4))
-    windows = np.linspace(10.0, 400.0, 4)
-    together = np.array(probability_interval(shares, windows))
-    for i in range(3):
-        for k in range(4):
-            alone = probability_interval(shares[:, i, k], windows[k])
-            np.testing.assert_allclose(together[:, i, k], alone)
+SHAPES = [(1,), (7,), (40, 1), (1, 40), (3, 4, 5), (2, 1, 1, 5, 5, 5)]
+
+
+@pytest.mark.parametrize("realisations", [1, 2, 5, 8, 64, 129, 1000])
+@pytest.mark.parametrize("shape", SHAPES, ids=str)
+@pytest.mark.parametrize("layout", ["C", "F", "strided", "last"])
+def test_a_column_alone_has_the_bits_that_it_has_among_others(realisations, shape, layout):
+    rng = np.random.default_rng(realisations)
+    shares = np.rint(1e6 * rng.beta(0.5, 3.0, (realisations, *shape))) / 1e6
+    windows = np.linspace(10.0, 400.0, shape[-1])
+    laid = {
+        "C": np.ascontiguousarray,
+        "F": np.asfortranarray,
+        "strided": lambda values: np.repeat(values, 2, axis=-1)[..., ::2],
+        "last": lambda values: np.moveaxis(np.moveaxis(values, 0, -1).copy(), -1, 0),
+    }[layout](shares)
+    together = probability_interval(laid, windows)
+    for place in np.ndindex(shape):
+        alone = probability_interval(shares[:, *place].copy(), windows[place[-1]])
+        assert [each[place] for each in together] == [each.item() for each in alone]
 
 
 def coverage(shares, size, windows, truth):

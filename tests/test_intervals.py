@@ -1,17 +1,29 @@
 """Limits of a probability: exact cases, and what the looks, the degrees and the windows do."""
 
+import functools
+import operator
+
 import numpy as np
 import pytest
 import scipy.stats
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lube.intervals import probability_limits, score_interval
+from lube.intervals import mean_over_first, probability_limits, score_interval
 
 NORMAL = scipy.stats.norm.ppf(0.975)
 # Whole numbers of a million samples, as real shares of time are.
 probabilities = st.integers(0, 10**6).map(lambda samples: samples / 1e6)
 counts = st.floats(1.0, 1e6)
+
+
+@given(st.lists(st.lists(probabilities, min_size=3, max_size=3), min_size=1, max_size=30))
+def test_a_mean_adds_its_terms_one_after_the_other(rows):
+    for values in (np.array(rows), np.asfortranarray(rows)):
+        found = mean_over_first(values).tolist()
+        assert found == [
+            functools.reduce(operator.add, each) / len(rows) for each in zip(*rows, strict=True)
+        ]
 
 
 @given(probabilities, counts, st.floats(0.5, 20.0))

@@ -44,7 +44,20 @@ _CONTACT_RUN = {
     **_LAYER,
     **{name: run_mean(_RUN_DIMS, "1", long_name) for name, long_name in _PROBABILITIES.items()},
     "mean_contact_length": run_mean(_RUN_DIMS, "m", "mean contact length"),
-    "mean_contact_force": run_mean(_RUN_DIMS, "N", "mean contact force"),
+    "mean_contact_force": run_mean(
+        _RUN_DIMS,
+        "N",
+        "mean contact force of one line's springs",
+        comment="E* dx sum(overlap), Eq. 5. One line stands for a patch of about 2a x 2a, "
+        "not for the length of the rollers",
+    ),
+    "contact_load_share": run_mean(
+        _RUN_DIMS,
+        "1",
+        "mean contact force over the nominal load of a patch 2a x 2a",
+        comment="mean_contact_force / (F_N 2a / L'): the patch carries the mean Hertzian "
+        "pressure, F_N / (2a L'), over its area, (2a)^2",
+    ),
 }
 
 
@@ -93,8 +106,8 @@ KINDS = {
     "contact_batch": FileKind(_CONTACT_RUN, attributes=_RUN_ATTRIBUTES),
     "contact": FileKind(
         {**_CONTACT_RUN, **_intervals(CONTACT_DIMS)},
-        "The answer: probabilities, contact length and contact force of every realisation, "
-        "and means with intervals.",
+        "The answer: probabilities, contact length, contact force and its share of the load, of "
+        "every realisation, and means with intervals.",
         _RUN_ATTRIBUTES,
     ),
     "master_batch": FileKind(_MASTER_RUN, attributes=_RUN_ATTRIBUTES),

@@ -99,6 +99,6 @@ OVER_REALISATIONS = {"cell_methods": "realisation: mean"}
 OVER_RECORD = {"cell_methods": "duration: mean"}
 
 
-def run_mean(dims, units, long_name):
+def run_mean(dims, units, long_name, **attributes):
     """Describe a mean over the revolutions of a run."""
-    return number(dims, units, long_name, attributes=OVER_RUN)
+    return number(dims, units, long_name, attributes=OVER_RUN | attributes)
