@@ -68,4 +68,5 @@ def datasets_of_every_kind(study, make_spec):
         "gauge": gauge_records(master, film, contact, experiment),
         "speed": measured_times("speed"),
         "reading": measured_times("reading"),
+        "coverage": measured_times("coverage"),
     }
