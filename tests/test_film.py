@@ -8,7 +8,7 @@ import xarray as xr
 
 from lube import formulas, schema
 from lube.errors import DataError, LubeError
-from lube.film import film_table
+from lube.film import film_at, film_table
 
 FORCE = [100.0, 200.0, 400.0, 800.0, 1600.0]
 SPEED = [600 / 7, 100.0, 120.0, 150.0, 200.0]
@@ -102,6 +102,20 @@ def test_every_point_agrees_with_the_plain_formula(table):
             expected = radius * row.evaluate(load, speed_number, alpha * modulus)
             found = table["film_thickness"].isel(lubricant=0).sel(film_formula=name, **at)
             assert float(found) == pytest.approx(expected, rel=1e-12)
+
+
+def test_records_at_their_own_conditions_have_the_film_of_the_grid_there(table):
+    """Force, speed and oil along one dimension, in place of three: to the last bit."""
+    rows = [(800.0, 100.0, 40.0), (100.0, 200.0, 80.0), (800.0, 100.0, 60.0)]
+    force, speed, temperature = (xr.DataArray(each, dims="record") for each in np.transpose(rows))
+    oil = oils().isel(lubricant=0).sel(temperature=temperature).reset_coords(drop=True)
+    found = film_at(oil, ROLLERS, force, speed, ["paper", "moes"])
+    for number, (here, turning, warm) in enumerate(rows):
+        at = table.isel(lubricant=0).sel(force=here, speed=turning, temperature=warm)
+        at = at.sel(film_formula=["paper", "moes"])
+        for name in ("film_thickness", "lambda_ratio", "moes_load", "contact_half_width"):
+            record = found[name].isel(record=number)
+            np.testing.assert_array_equal(record.values, at[name].values)
 
 
 def test_grids_may_have_one_value_and_any_order():
