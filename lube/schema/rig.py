@@ -46,7 +46,7 @@ _EXPERIMENT = {
         content="record",
     ),
     "repeatability": number(
-        ["record"], "1", "mean correlation between two revolutions", content="record"
+        ["record"], "1", "correlation between two revolutions", content="record"
     ),
     "share_error": number(
         ["record"],
@@ -59,6 +59,7 @@ _EXPERIMENT = {
         "1",
         "share of time in contact at a phase of the revolution",
         content="record",
+        attributes=OVER_RECORD,
     ),
     "folded_deviation": number(
         ["record", "phase"],
