@@ -236,10 +236,24 @@ class _Record:
         self._first, self._touched, self._steps = [], 0, 0
         self._wanted = max(round(self._period() / self._interval), 1)
 
+    @property
+    def _ratios(self):
+        return speed_ratios(self.conditions.slide_to_roll_ratio)
+
+    def _lasting(self):
+        """Time steps that a revolution of either roller lasts, without one at rest.
+
+        In a time step the faster surface passes one grid point. The first of them is timed: the
+        first roller, unless it is at rest.
+        """
+        sizes = zip(self._study.line_spec.points, self._ratios, strict=True)
+        return [size / ratio for size, ratio in sizes if ratio > 0.0]
+
     def _period(self):
-        """Time of a revolution of the first roller, by the speed."""
-        conditions = self.conditions
-        return 60.0 / conditions.speed / max(1.0 + conditions.slide_to_roll_ratio / 2.0, 1e-9)
+        """Time of a revolution of the timed roller, by the speed."""
+        conditions, points = self.conditions, self._study.line_spec.points
+        faster = conditions.speed * (1.0 + abs(conditions.slide_to_roll_ratio) / 2.0)
+        return 60.0 / faster * (self._lasting()[0] / points[0])
 
     @property
     def samples(self):
@@ -301,24 +315,21 @@ class _Record:
         self.conditions = replace(conditions, speed=speed)
 
     def _turns_a_turn(self):
-        """Revolutions of the roller with the faster surface in one of the first roller."""
-        first, _ = speed_ratios(self.conditions.slide_to_roll_ratio)
-        points = self._study.line_spec.points
-        return 1.0 if first == 1.0 else points[0] / points[1] / first
+        """Revolutions of the roller with the faster surface in one of the timed roller."""
+        faster = 0 if self._ratios[0] == 1.0 else 1
+        return self._lasting()[0] / self._study.line_spec.points[faster]
 
     def _periods(self, period):
         """List the times of a revolution of either roller that turns; one if both are the same."""
-        ratios = speed_ratios(self.conditions.slide_to_roll_ratio)
-        points = self._study.line_spec.points
-        turning = [size / ratio for size, ratio in zip(points, ratios, strict=True) if ratio > 0.0]
-        return sorted({period * each / (points[0] / ratios[0]) for each in turning if ratios[0]})
+        lasting = self._lasting()
+        return sorted({period * each / lasting[0] for each in lasting})
 
     def _windows(self, turns):
         """Windows in the record that share no roughness."""
         spec, conditions = self._study.line_spec, self.conditions
         reach = 2.0 * self._study.rollers.contact_half_width(conditions.force)
         reach = (reach + 2.0 * np.pi / spec.q_min) / spec.spacing
-        ratios = speed_ratios(conditions.slide_to_roll_ratio)
+        ratios = self._ratios
         faster = 0 if ratios[0] == 1.0 else 1
         shift = round(spec.points[faster] * ratios[1 - faster])
         seen = min(turns, distinct_alignments(turns, shift, spec.points[1 - faster], reach))

@@ -16,6 +16,8 @@ SPAN = 0.05
 """The period is looked for so far from the nominal one, relative."""
 LEAST_STRETCHES = 8
 """Stretches in a revolution that its repetition can be told from, at least."""
+ALIKE = 0.98
+"""Peaks of the autocorrelation this near the highest may be the turn; then the nearest is taken."""
 CLEAR = 0.5
 """Repeatability from which on the period of a record is believed rather than a stated speed."""
 
@@ -114,10 +116,18 @@ def _autocorrelation(shares):
 
 
 def _peak(correlation, middle, reach):
-    """Lag of the largest correlation about some lag, by a parabola through its neighbours."""
+    """Lag of the peak about some lag, by a parabola through its neighbours.
+
+    What repeats itself more often than once a turn, such as a hum, has many equal peaks.
+    """
     first = max(int(np.floor(middle - reach)), 1)
     last = min(int(np.ceil(middle + reach)), correlation.size - 2)
-    top = first + int(np.argmax(correlation[first : last + 1]))
+    lags = np.arange(first, last + 1)
+    high = correlation[lags].max()
+    ridges = np.split(lags, 1 + np.flatnonzero(np.diff(correlation[lags] > 0.5 * high)))
+    tops = [ridge[np.argmax(correlation[ridge])] for ridge in ridges]
+    tops = [top for top in tops if correlation[top] >= min(ALIKE * high, high)]
+    top = min(tops, key=lambda lag: abs(lag - middle))
     before, here, after = correlation[top - 1 : top + 2]
     if max(before, after) > here:  # the largest in reach is on a slope, not on a peak
         return float(top)

@@ -134,7 +134,7 @@ def with_rig():
 
 @pytest.fixture(scope="session")
 def rig_lines(make_spec, study, with_rig):
-    """The rig's own rollers, two revolutions, on a grid fine enough for some contact."""
+    """The rig's own rollers, one pair, on a grid fine enough for some contact."""
     return roughness_batch(make_spec(60_000), study.seed, with_rig(study).rig_realisations)
 
 

@@ -41,6 +41,12 @@ def test_a_period_far_from_the_nominal_one_is_not_believed():
     assert folded.period == 0.48
 
 
+@pytest.mark.parametrize("waves", [2, 7, 60])
+def test_what_repeats_several_times_a_turn_says_nothing_against_the_nominal_period(waves):
+    record = np.where(np.arange(12_000) * waves // 300 % 2, 1.0, 0.0)  # a turn is 600 long
+    assert fold(record, INTERVAL, 0.6).period == pytest.approx(0.6, rel=1e-3)
+
+
 def test_a_record_that_repeats_itself_exactly_does_so_wholly():
     folded = fold(periodic(0.4, 10), INTERVAL, 0.4)
     assert folded.repeatability == pytest.approx(1.0, abs=1e-9)

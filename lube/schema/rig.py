@@ -42,7 +42,8 @@ _EXPERIMENT = {
     "revolution_period": number(
         ["record"],
         "s",
-        "time of a revolution of the first roller, from the record's repetition where it is clear",
+        "time of a revolution of the first roller that turns, from the record's repetition where "
+        "it is clear",
         content="record",
     ),
     "repeatability": number(
