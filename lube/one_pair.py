@@ -17,22 +17,25 @@ MOST_TURNS = 100_000
 """Turns in which alignments are counted, and drift; longer records are taken as so long."""
 
 
-def quantile(realisations):
+def quantile(realisations, among=1):
     """Two-sided 95 % quantile for a scatter that so many realisations tell.
 
     Parameters
     ----------
     realisations : int
         Number R; with one there is no scatter, and the normal distribution stands in.
+    among : int, optional
+        Values of which, 95 times out of 100, none is to exceed it (Bonferroni's bound).
 
     Returns
     -------
     float
         Student's t of R - 1 degrees of freedom.
     """
+    level = 1.0 - (1.0 - CONFIDENCE) / 2.0 / among
     if realisations < 2:
-        return scipy.stats.norm.ppf(0.5 + CONFIDENCE / 2.0)
-    return scipy.stats.t.ppf(0.5 + CONFIDENCE / 2.0, realisations - 1)
+        return scipy.stats.norm.ppf(level)
+    return scipy.stats.t.ppf(level, realisations - 1)
 
 
 def repeat_factor(turns):

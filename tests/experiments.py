@@ -54,9 +54,9 @@ def experiment_of(shares, force, speed, temperature, **values):
     )
 
 
-def experiment_at(table, shares, **values):
-    """Records at all points of a table, the force changing fastest, with given shares."""
+def experiment_at(levels, shares, **values):
+    """Records at all points of a grid, the force changing fastest, with given shares."""
     names = ("temperature", "speed", "force")
-    grid = np.meshgrid(*(table[name].values for name in names), indexing="ij")
+    grid = np.meshgrid(*(np.asarray(levels[name]) for name in names), indexing="ij")
     conditions = {name: each.ravel() for name, each in zip(names, grid, strict=True)}
     return experiment_of(np.ravel(shares), **(conditions | values))

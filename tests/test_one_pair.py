@@ -181,6 +181,13 @@ def test_few_realisations_have_students_quantile_and_one_the_normal():
     assert quantile(1) == pytest.approx(1.959964, rel=1e-6)
 
 
+@pytest.mark.parametrize("among", [10, 1000])
+def test_of_many_values_none_exceeds_its_quantile_95_times_of_100(among):
+    """Independent ones: the bound is nearly met."""
+    chance = 2.0 * scipy.stats.t.sf(quantile(8, among), 7)
+    assert (1.0 - chance) ** among == pytest.approx(0.95, abs=0.002)
+
+
 # What the ensemble tells
 
 
