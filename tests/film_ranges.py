@@ -1,6 +1,6 @@
 """How far each film formula is from the computed film, over Moes' M and L.
 
-``python tests/film_ranges.py`` computes 888 films in five minutes, and prints for every formula the
+``python tests/film_ranges.py`` computes 888 films in some minutes, and prints for every formula the
 largest box in which it stays within the tolerance, and its errors there: these are the ranges and
 remarks of `lube.formulas`.
 """

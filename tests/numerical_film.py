@@ -29,7 +29,7 @@ class NumericalFilm:
         )
         # Moes' formula lies above the computed film by about so much.
         self.guess = 0.85 * formulas.moes(*numbers) * RADIUS
-        self.step = min(0.02, 0.25 / groups.moes_numbers(*numbers)[0])
+        self.step = min(0.02, 0.5 / groups.moes_numbers(*numbers)[0])
         self.a = np.sqrt(4 * load * RADIUS / (np.pi * MODULUS))
         self.p_hertz = 2 * load / (np.pi * self.a)
         self.hydrodynamic = 12 * viscosity * speed * RADIUS**2 / (self.a**3 * self.p_hertz)

