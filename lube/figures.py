@@ -152,7 +152,7 @@ def read_origin(figure, folder):
             "drawn_by": str(content["drawn_by"]),
         }
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        raise DataError(f"{path}: missing or damaged{WAY_OUT}") from None
+        raise DataError(f"{path}: missing or damaged") from None
 
 
 def wrong_figures(figures, folder, data):
@@ -184,4 +184,4 @@ def wrong_figures(figures, folder, data):
                     path = Path(folder) / products(figure)[0]
                     yield f"{path}: was drawn from another {kind}.nc{WAY_OUT}"
         except DataError as error:
-            yield str(error)
+            yield f"{error}{WAY_OUT}"
