@@ -8,12 +8,14 @@ archive knows whether the files are still what the workflow made.
 import json
 from pathlib import Path
 
+import netCDF4
+
 from lube.cells import datasets_of
 from lube.errors import DataError, LubeError
 from lube.files import written_whole
-from lube.io import opened
 from lube.notebooks import execute_notebook
 from lube.provenance import WAY_OUT, drawn_by, fingerprint
+from lube.seals import holds
 
 
 def products(figure):
@@ -83,7 +85,7 @@ def draw_figure(notebook, datasets, code, results):
     Raises
     ------
     LubeError
-        If a dataset cannot be used, the notebook fails, or it saves no figure.
+        If the notebook fails, or saves no figure.
     """
     results, figure = Path(results), Path(notebook).stem
     stem, executed = results / "figures" / figure, results / "notebooks" / f"{figure}.ipynb"
@@ -108,10 +110,11 @@ def draw_figure(notebook, datasets, code, results):
 
 
 def _commits(datasets):
-    """Yield the commits of the code that made some datasets."""
+    """Yield the commits of the code that made some datasets; damage is for the notebook to tell."""
     for path in datasets:
-        with opened(path, Path(path).stem, raw=False) as dataset:
-            yield dataset.attrs["code_commit"]
+        if holds(path):
+            with netCDF4.Dataset(path) as dataset:
+                yield dataset.getncattr("code_commit")
 
 
 def _state(path):

@@ -9,7 +9,7 @@ from nbformat.v4 import new_code_cell, new_notebook
 from PIL import Image
 
 from lube import provenance
-from lube.errors import DataError, LubeError
+from lube.errors import LubeError
 from lube.figures import draw_figure, origin, paths_for, products, read_origin, wrong_figures
 
 PARAMETERS = 'oil = "../results/paper/film.nc"\nspeed = 100\nfigure = None'
@@ -121,9 +121,10 @@ def test_a_notebook_that_saves_no_figure_is_refused_whatever_was_there(write, re
     assert not (results / origin("fig99_mine")).exists()
 
 
-def test_a_damaged_dataset_is_told_before_the_notebook_is_executed(write, results):
+def test_a_damaged_dataset_is_told_by_the_notebook_that_loads_it(write, results):
     (results / "film.nc").write_bytes(b"no dataset")
-    with pytest.raises(DataError, match=r"film.nc: not a whole NetCDF file"):
+    told = r"fig99_mine.ipynb: cell 3 fails at line 1: DataError: .*film.nc: not a whole NetCDF"
+    with pytest.raises(LubeError, match=told):
         draw(write(DRAW, SAVE), results)
 
 

@@ -75,7 +75,7 @@ def test_a_failing_cell_leaves_its_traceback_and_the_old_figure(spare):
     # It has saved another figure by then.
     write(spare, DRAW.format(2), "x = 1\nx / 0")
     # The second time nothing has changed but that it failed; nor does it help to ask for less.
-    for targets in ([], [], [TARGET], [TARGET]):
+    for targets in ([], [], [TARGET]):
         finished = spare.snakemake(*targets)
         assert finished.returncode != 0
         told = "notebooks/fig99_mine.ipynb: cell 3 fails at line 2: ZeroDivisionError: division by"
