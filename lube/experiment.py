@@ -293,7 +293,7 @@ class _Record:
             "turns": turns,
             "revolution_period": folded.period,
             "repeatability": folded.repeatability,
-            "share_error": folded.share_error,
+            "share_error": folded.share_error if self._repeats() else 0.0,
             "folded_share": folded.profile,
             "folded_deviation": folded.deviation,
             **self._trace(),
@@ -313,6 +313,12 @@ class _Record:
             f"{speed:.6g} rpm, which is believed"
         )
         self.conditions = replace(conditions, speed=speed)
+
+    def _repeats(self):
+        """Whether each revolution is the same as the one before, but for electrical noise."""
+        alike = len(set(self._study.line_spec.points)) == 1
+        rolling = self.conditions.slide_to_roll_ratio == 0.0
+        return alike and rolling and self._study.rig.drift == 0.0
 
     def _turns_a_turn(self):
         """Revolutions of the roller with the faster surface in one of the timed roller."""
