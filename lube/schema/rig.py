@@ -48,6 +48,12 @@ _EXPERIMENT = {
     "repeatability": number(
         ["record"], "1", "mean correlation between two revolutions", content="record"
     ),
+    "speed_ratio": number(
+        ["record"],
+        "1",
+        "speed that a clear repetition of the record tells, over the one stated",
+        content="record",
+    ),
     "share_error": number(
         ["record"],
         "1",
