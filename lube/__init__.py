@@ -24,6 +24,7 @@ _HOMES = {
     "lube.records": ("load_record", "shipped_records"),
     "lube.resistance": ("contact_resistance",),
     "lube.roughness": ("power_spectrum", "roughness_lines"),
+    "lube.shares": ("over_grid",),
     "lube.study": ("Study", "load_study"),
     "lube.surfaces": (
         "BoundaryLayer",

@@ -23,6 +23,7 @@ from lube.errors import DataError, StudyError, shown
 from lube.fields import read_yaml
 from lube.figures import origin, products, wrong_figures
 from lube.files import scratch_beside, why_not, written_whole
+from lube.io import load
 from lube.provenance import config_text, digest, fingerprint
 from lube.records import shipped_records
 from lube.repository import ROOT, code_files, commit
@@ -113,8 +114,13 @@ def archive_contents(study, study_file, results, kinds, figures):
         "versions.txt": exact_versions(),
         "CITATION.cff": citation_file(study),
         ".zenodo.json": zenodo_metadata(study),
-        "README.md": archive_page(study, kinds, archived_as),
+        "README.md": archive_page(study, kinds, archived_as, _refused(results)),
     }
+
+
+def _refused(results):
+    """Lines about the measured records of a study that were not used."""
+    return load(results / "experiment.nc", "experiment").attrs["refused"].splitlines()
 
 
 def written_files(study, study_file):

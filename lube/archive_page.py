@@ -7,7 +7,7 @@ from lube.repository import changed_code, commit
 from lube.schema import SUMMARIES
 
 
-def archive_page(study, kinds, study_file):
+def archive_page(study, kinds, study_file, refused=()):
     """One page for a stranger who opens the archive: its README.md.
 
     Parameters
@@ -18,6 +18,8 @@ def archive_page(study, kinds, study_file):
         Its datasets.
     study_file : str
         Where its file stands in the archive's folder ``study``, with slashes.
+    refused : sequence of str, optional
+        Lines about measured records that were not used, and why.
 
     Returns
     -------
@@ -36,6 +38,9 @@ def archive_page(study, kinds, study_file):
             "\nThe measured records themselves are not in this archive; `data/experiment.nc` holds "
             "their fingerprints in its attribute `inputs_sha256`.\n"
         )
+        if refused:
+            lines = "\n".join(f"- {escaped(line)}" for line in refused)
+            records += f"\nThese records were refused, and are in no result:\n\n{lines}\n"
         anew = "put the measured records where their list expects them, "
     changed = ", ".join(f"`{name}`" for name in changed_code())
     changed = f"; not as in that commit: {changed}" if changed else ""

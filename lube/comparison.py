@@ -9,8 +9,10 @@ whose realisations is left out in turn and compared as if it were the rig's pair
 
 import itertools
 import logging
+import math
 
 import numpy as np
+import pandas as pd
 import scipy.special
 import scipy.stats
 import xarray as xr
@@ -202,8 +204,10 @@ def _expected(table):
         for number in range(table.sizes["film_formula"]):
             members = table[PROBABILITY].values[:, number, recorded]
             figures = _left_out(members, _windows(table)[recorded])
-            with np.errstate(invalid="ignore"):
-                ranges[:, :, number] = np.nanquantile(figures, [0.025, 0.975], axis=0).T
+            for place, values in enumerate(figures.T):
+                known = values[np.isfinite(values)]
+                if known.size:
+                    ranges[place, :, number] = np.quantile(known, [0.025, 0.975])
     return xr.Dataset(
         {
             f"{name}_expected_{side}": ("film_formula", ranges[place, end])
@@ -258,28 +262,27 @@ def _missing(table, levels):
 
 
 def _contradictions(table):
-    """Name records of one operating point that differ more than two pairs of rollers do."""
+    """Name records of one operating point that differ more than two pairs of rollers do.
+
+    Among all that are compared, one by chance in twenty experiments.
+    """
     names = ("lubricant", "slide_to_roll_ratio", *(f"{name}_level" for name in GROUPS))
-    point = list(zip(*(table[name].values.tolist() for name in names), strict=True))
-    share = table["measured_share"].values
-    lines = []
-    for one, other in itertools.combinations(range(len(point)), 2):
-        if point[one] != point[other]:  # nor is a record near no level, whose label is NaN
-            continue
-        error = np.hypot(*_errors(table)[[one, other]])
-        if abs(share[one] - share[other]) > quantile(table.sizes["realisation"]) * error:
-            lines.append(
-                f"{table['record'].values[one]} and {table['record'].values[other]} are of one "
-                f"operating point, but contradict each other: shares {share[one]:.4g} and "
-                f"{share[other]:.4g}"
-            )
-    return lines
+    columns = pd.DataFrame({name: table[name].values for name in names})
+    of_points = columns.groupby(list(names)).indices.values()  # without those near no level
+    couples = [couple for rows in of_points for couple in itertools.combinations(rows, 2)]
+    share, record = table["measured_share"].values, table["record"].values
+    reach = _reach(table, max(len(couples), 1))
+    return [
+        f"{record[one]} and {record[other]} are of one operating point, but contradict each "
+        f"other: shares {share[one]:.4g} and {share[other]:.4g}"
+        for one, other in couples
+        if abs(share[one] - share[other]) > math.hypot(reach[one], reach[other])
+    ]
 
 
-def _errors(table):
-    """Tell how far each record's share scatters between pairs of rollers, by the first formula."""
-    first = table.isel(film_formula=0)
+def _reach(table, among):
+    """Tell how far each record's share may lie from the mean, by the first formula."""
+    first, count = table.isel(film_formula=0), table.sizes["realisation"]
     mean = first["simulated_probability"].values
-    looks = sample_size(first[PROBABILITY].values, _windows(table))
-    variance = mean * (1.0 - mean) / np.maximum(looks / first["scatter_ratio"].values, 1.0)
-    return np.sqrt(variance + first["share_error"].values ** 2)
+    sides = [abs(first[f"predicted_share_{side}"].values - mean) for side in ("lower", "upper")]
+    return np.maximum(*sides) * quantile(count, among) / quantile(count)

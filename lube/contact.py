@@ -52,8 +52,8 @@ def contact_statistics(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), 
     The force is that of one line. A line stands for a patch as long and as wide as itself: the
     springs of a window are as stiff together as a disc of diameter 2a pressed in (E* 2a), or a
     square of about that side. So the share is the force over what a patch 2a x 2a carries on
-    average, F_N 2a/L'. It compares operating points; the film still carries all of F_N, for the
-    film formula knows nothing of the asperities.
+    average, F_N 2a/L'. The film formula knows nothing of the asperities and lets the film carry
+    all of F_N; where the share is not small, the two together carry more than there is.
     """
     thickness, half_width = (
         array.transpose(*OPERATING_DIMS)

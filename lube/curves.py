@@ -127,14 +127,16 @@ def film_interval(curve, share, ratio, realisations, noise=0.0):
     -------
     film, lower, upper : float
         Logarithms of the lambda ratio. Where the curve ends before it contradicts the share, a
-        limit is -inf or +inf, and so is the film where the share is beyond the curve. All are
-        NaN without a share or a curve.
+        limit is -inf or +inf, and so is the film where the share is beyond the curve; where all
+        of the curve contradicts it, the other limit is the curve's end. All are NaN without a
+        share or a curve.
     """
     if np.isnan(share) or curve.films.size < 2:
         return np.nan, np.nan, np.nan
     films, distance = _distances(curve, share, ratio, realisations, noise)
     limit = quantile(realisations)
-    lower, upper = np.interp([-limit, limit], distance, films, left=-np.inf, right=np.inf)
+    lower = np.interp(-limit, distance, films, left=-np.inf, right=films[-1])
+    upper = np.interp(limit, distance, films, left=films[0], right=np.inf)
     return curve.film_at(share), lower, upper
 
 
@@ -205,7 +207,8 @@ def fit_factor(log_factors, logits, shares, looks, covariance, realisations, noi
     Returns
     -------
     factor, lower, upper : float
-        Beyond the levels a limit is 0 or +inf and the factor NaN.
+        Beyond the levels the factor is NaN and a limit 0 or +inf; where all levels are
+        contradicted, the other limit is their end.
 
     References
     ----------
@@ -223,7 +226,8 @@ def fit_factor(log_factors, logits, shares, looks, covariance, realisations, noi
     misfit = np.sum(pull * (shares - model), axis=1) / np.sqrt(variance)
     falling = np.minimum.accumulate(misfit)
     limit = quantile(realisations)
-    wanted = np.array([0.0, -limit, limit])
-    found = np.exp(np.interp(wanted, -falling, log_factors, left=-np.inf, right=np.inf))
-    factor = found[0] if 0.0 < found[0] < np.inf else np.nan
-    return factor, found[1], found[2]
+    first, last = log_factors[[0, -1]]
+    factor = np.interp(0.0, -falling, log_factors, left=np.nan, right=np.nan)
+    lower = np.interp(-limit, -falling, log_factors, left=-np.inf, right=last)
+    upper = np.interp(limit, -falling, log_factors, left=first, right=np.inf)
+    return np.exp(factor), np.exp(lower), np.exp(upper)

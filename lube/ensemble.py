@@ -157,6 +157,8 @@ def gather_map(batches):
 
 def _join(batches):
     """All realisations in order, each once."""
+    # Batches of one study may have been made at different commits, and say so.
+    batches = [_with_attributes(batch) for batch in batches]
     try:
         joined = xr.concat(
             batches,
@@ -174,6 +176,13 @@ def _join(batches):
     if not np.array_equal(found, np.arange(found.size)):
         raise DataError(f"need realisations 0 to {found.size - 1}, each once, got {found.tolist()}")
     return joined
+
+
+def _with_attributes(batch):
+    """Keep of a batch's attributes those that its values follow from."""
+    kept = batch.copy()
+    kept.attrs = {name: batch.attrs[name] for name in ("travel", "longest_wavelength")}
+    return kept
 
 
 def with_intervals(contact, film):

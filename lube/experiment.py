@@ -13,7 +13,7 @@ import xarray as xr
 
 from lube.errors import DataError, LubeError
 from lube.evaluation import folded_counts, record_counter, share_interval
-from lube.folding import CLEAR, PHASES, fold
+from lube.folding import CLEAR, PHASES, SPAN, fold
 from lube.levels import level_near
 from lube.one_pair import distinct_alignments
 from lube.points import operating_points
@@ -236,18 +236,33 @@ class _Record:
         self._first, self._touched, self._steps = [], 0, 0
         self._wanted = max(round(self._period() / self._interval), 1)
 
+    @property
+    def _ratios(self):
+        return speed_ratios(self.conditions.slide_to_roll_ratio)
+
+    def _lasting(self):
+        """Time steps that a revolution of either roller lasts, without one at rest.
+
+        In a time step the faster surface passes one grid point. The first of them is timed: the
+        first roller, unless it is at rest.
+        """
+        sizes = zip(self._study.line_spec.points, self._ratios, strict=True)
+        return [size / ratio for size, ratio in sizes if ratio > 0.0]
+
     def _period(self):
-        """Time of a revolution of the first roller, by the speed."""
-        conditions = self.conditions
-        return 60.0 / conditions.speed / max(1.0 + conditions.slide_to_roll_ratio / 2.0, 1e-9)
+        """Time of a revolution of the timed roller, by the speed."""
+        conditions, points = self.conditions, self._study.line_spec.points
+        faster = conditions.speed * (1.0 + abs(conditions.slide_to_roll_ratio) / 2.0)
+        return 60.0 / faster * (self._lasting()[0] / points[0])
 
     @property
     def samples(self):
         return self._counter.samples
 
     def add(self, values):
-        """Count the next samples, V or ohm; the first revolution is kept for the trace."""
-        missing = self._wanted - sum(part.size for part in self._first)
+        """Count the next samples, V or ohm; for the trace somewhat over a revolution is kept."""
+        wanted = round((1.0 + SPAN) * self._wanted)
+        missing = wanted - sum(part.size for part in self._first)
         if missing > 0:
             self._first.append(np.array(values[:missing], float))
         self._counter.add(values)
@@ -264,7 +279,9 @@ class _Record:
         block = float(sizes[0]) * self._interval
         at = self._study.experiment.thresholds.index(self._study.experiment.threshold)
         folded = fold(below[at] / sizes, block, self._period())
-        self._believe(folded, name, remarks)
+        clear = folded.repeatability >= CLEAR
+        speed_ratio = self._period() / folded.period if clear else np.nan
+        self._believe(speed_ratio, name, remarks)
         duration = self.samples * self._interval
         turns = duration / folded.period * self._turns_a_turn()
         around = [folded_counts(below, sizes, block, each) for each in self._periods(folded.period)]
@@ -279,20 +296,20 @@ class _Record:
             "turns": turns,
             "revolution_period": folded.period,
             "repeatability": folded.repeatability,
-            "share_error": folded.share_error,
+            "speed_ratio": speed_ratio,
+            "share_error": folded.share_error if self._repeats() else 0.0,
             "folded_share": folded.profile,
             "folded_deviation": folded.deviation,
-            **self._trace(),
+            **self._trace(folded.period),
             **({"true_contact_share": self._touched / self._steps} if self._steps else {}),
         }
 
-    def _believe(self, folded, name, remarks):
+    def _believe(self, speed_ratio, name, remarks):
         """Correct a speed that the record's own repetition contradicts."""
         conditions = self.conditions
-        speed = conditions.speed * self._period() / folded.period
-        if not folded.repeatability >= CLEAR:
-            return
-        if remarks is None or abs(speed - conditions.speed) <= conditions.tolerances["speed"]:
+        speed = conditions.speed * speed_ratio
+        apart = abs(speed - conditions.speed) > conditions.tolerances["speed"]
+        if remarks is None or not apart:
             return
         remarks.append(
             f"{name}: its speed is stated as {conditions.speed:.6g} rpm, but it repeats itself at "
@@ -300,33 +317,36 @@ class _Record:
         )
         self.conditions = replace(conditions, speed=speed)
 
+    def _repeats(self):
+        """Whether each revolution is the same as the one before, but for electrical noise."""
+        alike = len(set(self._study.line_spec.points)) == 1
+        rolling = self.conditions.slide_to_roll_ratio == 0.0
+        return alike and rolling and self._study.rig.drift == 0.0
+
     def _turns_a_turn(self):
-        """Revolutions of the roller with the faster surface in one of the first roller."""
-        first, _ = speed_ratios(self.conditions.slide_to_roll_ratio)
-        points = self._study.line_spec.points
-        return 1.0 if first == 1.0 else points[0] / points[1] / first
+        """Revolutions of the roller with the faster surface in one of the timed roller."""
+        faster = 0 if self._ratios[0] == 1.0 else 1
+        return self._lasting()[0] / self._study.line_spec.points[faster]
 
     def _periods(self, period):
         """List the times of a revolution of either roller that turns; one if both are the same."""
-        ratios = speed_ratios(self.conditions.slide_to_roll_ratio)
-        points = self._study.line_spec.points
-        turning = [size / ratio for size, ratio in zip(points, ratios, strict=True) if ratio > 0.0]
-        return sorted({period * each / (points[0] / ratios[0]) for each in turning if ratios[0]})
+        lasting = self._lasting()
+        return sorted({period * each / lasting[0] for each in lasting})
 
     def _windows(self, turns):
         """Windows in the record that share no roughness."""
         spec, conditions = self._study.line_spec, self.conditions
         reach = 2.0 * self._study.rollers.contact_half_width(conditions.force)
         reach = (reach + 2.0 * np.pi / spec.q_min) / spec.spacing
-        ratios = speed_ratios(conditions.slide_to_roll_ratio)
+        ratios = self._ratios
         faster = 0 if ratios[0] == 1.0 else 1
         shift = round(spec.points[faster] * ratios[1 - faster])
         seen = min(turns, distinct_alignments(turns, shift, spec.points[1 - faster], reach))
         return max(seen * spec.points[faster] * min(ratios) / reach, 1.0)
 
-    def _trace(self):
+    def _trace(self, period):
         """Resistance over the first revolution, thinned to its extremes."""
-        values = np.concatenate(self._first)
+        values = np.concatenate(self._first)[: max(round(period / self._interval), 1)]
         if self._quantity == "voltage":
             values = resistance_from_voltage(values, self._study.rig)
         times, values = _thinned(values, self._interval)
@@ -357,7 +377,7 @@ _NUMBERS = (
     *LEVELS,
     *(f"{name}_level" for name in LEVELS),
     *("slide_to_roll_ratio", "true_contact_share", "duration", "sampling_interval", "turns"),
-    *("revolution_period", "repeatability", "share_error"),
+    *("revolution_period", "repeatability", "speed_ratio", "share_error"),
 )
 _COORDINATES = (*_NUMBERS[:7], "duration", "lubricant", "pair", "record")
 

@@ -8,12 +8,14 @@ archive knows whether the files are still what the workflow made.
 import json
 from pathlib import Path
 
+import netCDF4
+
 from lube.cells import datasets_of
 from lube.errors import DataError, LubeError
 from lube.files import written_whole
-from lube.io import opened
 from lube.notebooks import execute_notebook
 from lube.provenance import WAY_OUT, drawn_by, fingerprint
+from lube.seals import holds
 
 
 def products(figure):
@@ -83,7 +85,7 @@ def draw_figure(notebook, datasets, code, results):
     Raises
     ------
     LubeError
-        If a dataset cannot be used, the notebook fails, or it saves no figure.
+        If the notebook fails, or saves no figure.
     """
     results, figure = Path(results), Path(notebook).stem
     stem, executed = results / "figures" / figure, results / "notebooks" / f"{figure}.ipynb"
@@ -108,10 +110,11 @@ def draw_figure(notebook, datasets, code, results):
 
 
 def _commits(datasets):
-    """Yield the commits of the code that made some datasets."""
+    """Yield the commits of the code that made some datasets; damage is for the notebook to tell."""
     for path in datasets:
-        with opened(path, Path(path).stem, raw=False) as dataset:
-            yield dataset.attrs["code_commit"]
+        if holds(path):
+            with netCDF4.Dataset(path) as dataset:
+                yield dataset.getncattr("code_commit")
 
 
 def _state(path):
@@ -152,7 +155,7 @@ def read_origin(figure, folder):
             "drawn_by": str(content["drawn_by"]),
         }
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        raise DataError(f"{path}: missing or damaged{WAY_OUT}") from None
+        raise DataError(f"{path}: missing or damaged") from None
 
 
 def wrong_figures(figures, folder, data):
@@ -184,4 +187,4 @@ def wrong_figures(figures, folder, data):
                     path = Path(folder) / products(figure)[0]
                     yield f"{path}: was drawn from another {kind}.nc{WAY_OUT}"
         except DataError as error:
-            yield str(error)
+            yield f"{error}{WAY_OUT}"

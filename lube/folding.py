@@ -14,6 +14,10 @@ PHASES = 512
 """Phases of a revolution that a record is folded into, at most."""
 SPAN = 0.05
 """The period is looked for so far from the nominal one, relative."""
+LEAST_STRETCHES = 8
+"""Stretches in a revolution that its repetition can be told from, at least."""
+ALIKE = 0.98
+"""Peaks of the autocorrelation this near the highest may be the turn; then the nearest is taken."""
 CLEAR = 0.5
 """Repeatability from which on the period of a record is believed rather than a stated speed."""
 
@@ -28,7 +32,8 @@ class Fold:
         Of a revolution, s: refined from the record if it repeats clearly, else the nominal one.
     repeatability : float
         Mean correlation between two revolutions: 1 if they are the same, 0 if they have nothing
-        in common; NaN of a record that holds no more than one.
+        in common; NaN of a record that holds no more than one, does not vary, or is cut into
+        stretches too long to tell.
     profile : numpy.ndarray
         Shape (PHASES,), share of time in contact at each phase of a revolution.
     deviation : numpy.ndarray
@@ -87,11 +92,12 @@ def refined_period(shares, interval, nominal_period):
     Returns
     -------
     float
-        The period, s; the nominal one if the record is shorter than that or does not vary.
+        The period, s; the nominal one if the record is shorter than that, does not vary, or is
+        cut into stretches too long to tell.
     """
     reach = SPAN * nominal_period / interval
     lag = nominal_period / interval
-    if shares.size < lag + reach + 2 or np.ptp(shares) == 0.0:
+    if shares.size < lag + reach + 2 or lag < LEAST_STRETCHES or np.ptp(shares) == 0.0:
         return nominal_period
     correlation = _autocorrelation(shares)
     multiple = 1
@@ -110,11 +116,21 @@ def _autocorrelation(shares):
 
 
 def _peak(correlation, middle, reach):
-    """Lag of the largest correlation about some lag, by a parabola through its neighbours."""
+    """Lag of the peak about some lag, by a parabola through its neighbours.
+
+    What repeats itself more often than once a turn, such as a hum, has many equal peaks.
+    """
     first = max(int(np.floor(middle - reach)), 1)
     last = min(int(np.ceil(middle + reach)), correlation.size - 2)
-    top = first + int(np.argmax(correlation[first : last + 1]))
+    lags = np.arange(first, last + 1)
+    high = correlation[lags].max()
+    ridges = np.split(lags, 1 + np.flatnonzero(np.diff(correlation[lags] > 0.5 * high)))
+    tops = [ridge[np.argmax(correlation[ridge])] for ridge in ridges]
+    tops = [top for top in tops if correlation[top] >= min(ALIKE * high, high)]
+    top = min(tops, key=lambda lag: abs(lag - middle))
     before, here, after = correlation[top - 1 : top + 2]
+    if max(before, after) > here:  # the largest in reach is on a slope, not on a peak
+        return float(top)
     bend = before - 2.0 * here + after
     return top + (0.5 * (before - after) / bend if bend < 0.0 else 0.0)
 
@@ -137,10 +153,13 @@ def _cells(shares, interval, period):
 
 def _repeatability(shares, interval, period):
     """Mean correlation between two revolutions."""
+    # Asked of the shares themselves: the deviations of equal ones need not round to zero.
+    if np.ptp(shares) == 0.0:
+        return np.nan
     values, phase, phases = _cells(shares - shares.mean(), interval, period)
     times = np.bincount(phase, minlength=phases)
     again = times > 1
-    if not again.any():
+    if not again.any() or phases < LEAST_STRETCHES:
         return np.nan
     sums, squares = (np.bincount(phase, each, phases)[again] for each in (values, values**2))
     times = times[again]

@@ -14,25 +14,28 @@ import scipy.stats
 CONFIDENCE = 0.95
 
 MOST_TURNS = 100_000
-"""Turns in which alignments are counted; there are never more of them than that."""
+"""Turns in which alignments are counted, and drift; longer records are taken as so long."""
 
 
-def quantile(realisations):
+def quantile(realisations, among=1):
     """Two-sided 95 % quantile for a scatter that so many realisations tell.
 
     Parameters
     ----------
     realisations : int
         Number R; with one there is no scatter, and the normal distribution stands in.
+    among : int, optional
+        Values of which, 95 times out of 100, none is to exceed it (Bonferroni's bound).
 
     Returns
     -------
     float
         Student's t of R - 1 degrees of freedom.
     """
+    level = 1.0 - (1.0 - CONFIDENCE) / 2.0 / among
     if realisations < 2:
-        return scipy.stats.norm.ppf(0.5 + CONFIDENCE / 2.0)
-    return scipy.stats.t.ppf(0.5 + CONFIDENCE / 2.0, realisations - 1)
+        return scipy.stats.norm.ppf(level)
+    return scipy.stats.t.ppf(level, realisations - 1)
 
 
 def repeat_factor(turns):
@@ -106,8 +109,8 @@ def drift_factor(turns, drift):
     H. Gebelein, Das statistische Problem der Korrelation als Variations- und
     Eigenwertproblem, Z. Angew. Math. Mech. 21 (1941) 364-379.
     """
-    turns = max(turns, 1.0)
-    lags = np.arange(1, math.ceil(min(turns, MOST_TURNS)))
+    turns = min(max(turns, 1.0), MOST_TURNS)  # the variance does not grow with more of them
+    lags = np.arange(1, math.ceil(turns))
     correlation = np.sqrt(1.0 - drift) ** lags
     return min((1.0 + 2.0 * np.sum((1.0 - lags / turns) * correlation)) / turns, 1.0)
 
@@ -118,7 +121,8 @@ def scatter_ratio(turns, ratios, points, reach, persistent=0.0, drift=0.0):
     The share of one alignment varies from pair to pair by what either line alone does, which
     no new alignment averages out, and by what the two do together, which each new one draws
     again: s^2(M) = s_inf^2 + (s_1^2 - s_inf^2) / M for M alignments. Below one revolution both
-    grow as 1 / turns.
+    grow as 1 / turns. Where the roughness drifts, an alignment that comes again is less and less
+    the same, and the scatter of its visits falls as `drift_factor` says.
 
     Parameters
     ----------
@@ -150,13 +154,15 @@ def scatter_ratio(turns, ratios, points, reach, persistent=0.0, drift=0.0):
     def alone(turns):
         """Scatter by either line alone; a roller at rest shows one place for ever."""
         of_each = np.maximum(turns * travel, reach) / points
-        return min(persistent * np.sum(weights * repeat_factor(of_each)), 1.0)
+        return np.sum(weights * repeat_factor(of_each))
 
     shift = round(travel[1 - faster])
     alignments = min(distinct_alignments(turns, shift, points[1 - faster], reach), turns)
-    together = repeat_factor(turns / alignments) / alignments
-    change = drift_factor(turns, drift)
-    return alone(turns) * change + (1.0 - alone(1.0)) * min(together, max(change, 1.0 / turns))
+    visits, renewed = turns / alignments, 1.0 - (1.0 - drift) ** alignments
+    together = repeat_factor(visits) / alignments * drift_factor(visits, renewed)
+    by_either = min(persistent * alone(1.0), 1.0)
+    later = alone(turns) / alone(1.0) * drift_factor(turns, drift)
+    return by_either * later + (1.0 - by_either) * together
 
 
 def prediction_limits(mean, looks, ratio, realisations, noise=0.0):

@@ -8,7 +8,7 @@ import re
 import sys
 from pathlib import Path
 
-from lube.formulas import FORMULAS
+from lube.formulas import FORMULAS, TOLERANCE
 from lube.manifest import manifest_schema
 from lube.records import LubricantRecord
 from lube.schema import MEASURED, SUMMARIES
@@ -57,7 +57,8 @@ def formula_table():
         Markdown.
     """
     rows = [(f"`{row.name}`", row.place, row.source, row.validity) for row in FORMULAS.values()]
-    return _table(("name", "film", "source", "taken to hold for"), rows)
+    held = f"within {100.0 * TOLERANCE:g} % of the computed film for"
+    return _table(("name", "film", "source", held), rows)
 
 
 def file_table():

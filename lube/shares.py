@@ -88,6 +88,26 @@ def over_grid(dataset):
     return records.assign_coords(index).unstack("record")
 
 
+def refused_in_one_line(experiment):
+    """Name the records that were refused, with the reasons.
+
+    Parameters
+    ----------
+    experiment : xarray.Dataset
+        An ``experiment`` dataset.
+
+    Returns
+    -------
+    str
+        One line; empty if none was refused.
+    """
+    refused = experiment.attrs["refused"].splitlines()
+    if not refused:
+        return ""
+    records = len(refused) + experiment.sizes["record"]
+    return f"Refused: {len(refused)} of {records} records. {'; '.join(refused)}"
+
+
 def levels_named(levels):
     """Name an operating point.
 

@@ -2,9 +2,9 @@
 
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-import xarray as xr
 import yaml
 from every_kind import datasets_of_every_kind
 from hypothesis import settings
@@ -13,10 +13,11 @@ from xdist.scheduler import LoadScopeScheduling
 
 from lube import film_table, line_spec, load_study, roughness_lines
 from lube.about import About
+from lube.contact import contact_map, contact_statistics
+from lube.ensemble import gather, gather_map
 from lube.io import save
 from lube.lubricant import lubricant_table
 from lube.roughness import roughness_batch
-from lube.schema import EXPERIMENT_DIMS, label
 
 # The first example of a test may have to wait for its kernel to be compiled.
 settings.register_profile("lube", deadline=None)
@@ -133,7 +134,7 @@ def with_rig():
 
 @pytest.fixture(scope="session")
 def rig_lines(make_spec, study, with_rig):
-    """The rig's own rollers, two revolutions, on a grid fine enough for some contact."""
+    """The rig's own rollers, one pair, on a grid fine enough for some contact."""
     return roughness_batch(make_spec(60_000), study.seed, with_rig(study).rig_realisations)
 
 
@@ -145,36 +146,41 @@ def rig_film(film, study):
 
 
 @pytest.fixture(scope="session")
-def make_experiment():
-    """An experiment of given shares at 100 ohm; half as much below 10, the same below 1000."""
+def busy_study(study):
+    """A study quickly run in which contact is neither rare nor everywhere, of equal rollers."""
+    grid = {
+        "force": (100.0, 400.0, LARGEST_FORCE),
+        "speed": (60.0, 100.0),
+        "temperature": (60.0, 80.0),
+        "slide_to_roll_ratio": (0.0,),
+    }
+    # So weak a layer that on the coarse grid as many segments break as on the paper's.
+    layer = study.boundary_layer.model_copy(update={"shear_strength": 2e5})
+    return study.model_copy(
+        update={
+            "operating_grid": study.operating_grid.model_copy(update=grid),
+            "roughness": study.roughness.model_copy(update={"points": 50_000}),
+            "boundary_layer": layer,
+            "realisations": 32,
+        }
+    )
 
-    def make(share, lower, upper):
-        shares = xr.Dataset({"": share, "_lower": lower, "_upper": upper})
-        shares = shares.drop_vars(set(shares.coords) - set(EXPERIMENT_DIMS))
-        shares = shares.transpose(*EXPERIMENT_DIMS)
-        thresholds = xr.DataArray([10.0, 100.0, 1000.0], dims="threshold")
-        weights = xr.DataArray([0.5, 1.0, 1.0], dims="threshold")
-        variables = {f"contact_share{name}": shares[name] * weights for name in shares}
-        time = shares[""].where(shares[""].isnull(), 1.0)
-        experiment = xr.Dataset(
-            variables
-            | {
-                "true_contact_share": shares[""],
-                "comparison_threshold": 100.0,
-                "record": time.astype(str),
-                "duration": time,
-                "sampling_interval": 1e-5 * time,
-            }
-            | {
-                f"revolution_share{name}": shares[name].expand_dims(revolution=2, axis=-1)
-                for name in shares
-            },
-            {"threshold": thresholds.values, "origin": "simulated"},
-            {"refused": []},
-        )
-        return label(experiment.set_coords("duration"), "experiment")
 
-    return make
+@pytest.fixture(scope="session")
+def busy(busy_study):
+    """The same with its film table, contact results and master map."""
+    grid, layer = busy_study.operating_grid, busy_study.boundary_layer
+    oil = lubricant_table(busy_study.lubricants, grid.temperature)
+    film = film_table(oil, busy_study.rollers, grid.force, grid.speed, busy_study.film_formulas)
+    realisations = range(busy_study.realisations)
+    lines = roughness_batch(busy_study.line_spec, busy_study.seed, realisations)
+    return SimpleNamespace(
+        study=busy_study,
+        film=film,
+        lines=lines,
+        contact=gather([contact_statistics(lines, film, layer)], film),
+        master=gather_map([contact_map(lines, film, layer)]),
+    )
 
 
 @pytest.fixture
@@ -193,9 +199,9 @@ def paper_with(tmp_path):
 
 
 @pytest.fixture(scope="session")
-def datasets(study, make_spec):
+def datasets(study):
     """One dataset of every kind; not to be changed."""
-    return datasets_of_every_kind(study, make_spec)
+    return datasets_of_every_kind(study)
 
 
 @pytest.fixture(scope="session")

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.at_records import model_at_records
 from lube.comparison import compare
 from lube.contact import contact_map, contact_statistics
 from lube.ensemble import gather, gather_map
@@ -37,21 +38,29 @@ def measured_times(kind):
     return label(xr.Dataset(variables, coords), kind)
 
 
-def datasets_of_every_kind(study, make_spec):
+def datasets_of_every_kind(study):
     """One dataset of every kind, by the stages themselves, on a coarse grid."""
     grid, layer = study.operating_grid, study.boundary_layer
     # Rollers of two sizes, so that the shorter line is padded.
-    spec = make_spec(12_000, second_radius=0.04)
+    second = study.rollers.second.model_copy(update={"radius": 0.04})
+    own = study.model_copy(
+        update={
+            "rollers": study.rollers.model_copy(update={"second": second}),
+            "roughness": study.roughness.model_copy(update={"points": 12_000}),
+        }
+    )
+    spec = own.line_spec
     oil = lubricant_table(study.lubricants, grid.temperature)
-    film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+    film = film_table(oil, own.rollers, grid.force, grid.speed, study.film_formulas)
     lines = roughness_lines(spec, study.seed, [0, 1])
     batch = roughness_batch(spec, study.seed, [0, 1])
     run = contact_statistics(batch, film, layer, study.slips)
-    rig_lines = roughness_batch(spec, study.seed, study.rig_realisations[:1])
+    rig_lines = roughness_batch(spec, study.seed, study.rig_realisations)
     mapped = contact_map(batch, film, layer, 5, 3)
     points = [point | {"slide_to_roll_ratio": 0.0} for point in study.trace_points]
     contact, master = gather([run], film), gather_map([mapped])
-    experiment = simulated_experiment(rig_lines, film, study)
+    experiment = simulated_experiment(rig_lines, film, own)
+    comparison = compare(model_at_records(experiment, film, contact, own), experiment, contact)
     return {
         "lubricant": oil,
         "film": film,
@@ -63,9 +72,9 @@ def datasets_of_every_kind(study, make_spec):
         "master": master,
         "trace": contact_trace(lines, film, points, layer, study.resistivity),
         "experiment": experiment,
-        "rig": rig_records(rig_lines, film, study),
-        "comparison": compare(contact, experiment),
-        "gauge": gauge_records(master, film, contact, experiment),
+        "rig": rig_records(rig_lines, film, own),
+        "comparison": comparison,
+        "gauge": gauge_records(master, contact, comparison),
         "speed": measured_times("speed"),
         "reading": measured_times("reading"),
         "coverage": measured_times("coverage"),

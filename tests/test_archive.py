@@ -118,7 +118,8 @@ def test_results_are_taken_as_datasets_pictures_and_notebooks(study, tmp_path):
     file = ROOT / "workflow/config/smoke.yaml"
     contents = archive_contents(study, file, tmp_path, ["film"], ["fig02_film"])
     assert contents["data/film.nc"] == tmp_path / "film.nc"
-    for name in ("figures/fig02_film.png", "figures/fig02_film.pdf", "notebooks/fig02_film.ipynb"):
+    drawn = [f"figures/fig02_film.{suffix}" for suffix in ("png", "pdf", "json")]
+    for name in (*drawn, "notebooks/fig02_film.ipynb"):
         assert contents[name] == tmp_path / name
 
 
@@ -137,3 +138,15 @@ def test_a_missing_result_is_named_and_the_old_archive_stays(study, tmp_path):
         make_archive(study, file, tmp_path, ["film"], [], tmp_path / "archive")
     assert (tmp_path / "archive/README.md").read_text() == "old"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["archive"]
+
+
+def test_a_figure_that_the_workflow_did_not_make_is_refused_and_the_old_archive_stays(
+    study, tmp_path
+):
+    (tmp_path / "archive").mkdir()
+    (tmp_path / "archive/README.md").write_text("old")
+    file = ROOT / "workflow/config/smoke.yaml"
+    told = r"figures/fig02_film.json: missing or damaged; take it away and run snakemake again"
+    with pytest.raises(DataError, match=told):
+        make_archive(study, file, tmp_path, [], ["fig02_film"], tmp_path / "archive")
+    assert (tmp_path / "archive/README.md").read_text() == "old"

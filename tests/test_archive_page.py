@@ -55,6 +55,14 @@ def test_where_measured_records_belong_is_told(study):
     assert "anew,\nput the measured records where their list expects them" in page
 
 
+def test_refused_records_are_named_with_their_reasons(study):
+    measured = study.experiment.model_copy(update={"manifest": "list.csv"})
+    study = study.model_copy(update={"experiment": measured})
+    page = archive_page(study, DATASETS, "smoke.yaml", ["run_7.csv: line 3: got 'x', need y"])
+    assert "refused, and are in no result" in page
+    assert "run_7.csv: line 3: got 'x', need y" in unescape(shown(page))
+
+
 def test_code_that_is_not_as_in_its_commit_is_named(study, monkeypatch):
     monkeypatch.setattr("lube.archive_page.changed_code", lambda: ["notebooks/fig02_film.ipynb"])
     assert "; not as in that commit: `notebooks/fig02_film.ipynb` |" in page_of(study)

@@ -208,6 +208,11 @@ def test_gathered_batches_are_one_run(batches, few):
     assert whole["realisation"].values.tolist() == [0, 1, 2, 3]
 
 
+def test_batches_made_at_different_commits_are_joined(batches, few):
+    parts = [batches([0]).assign_attrs(code_commit="a"), batches([1]).assign_attrs(code_commit="b")]
+    assert gather(parts, few).equals(gather([batches(range(2))], few))
+
+
 def test_interval_of_every_point_is_that_of_its_realisations(batches, few):
     contact = gather([batches(range(5))], few)
     windows = independent_windows(contact, few)

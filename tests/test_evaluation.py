@@ -10,7 +10,15 @@ from kernels.test_threshold import plain_contact
 
 from lube.apparatus import Experiment, Rig
 from lube.errors import RangeError
-from lube.evaluation import BLOCKS, LEAST_BLOCKS, ContactShare, record_counter, share_interval
+from lube.evaluation import (
+    BLOCKS,
+    LEAST_BLOCKS,
+    STRETCHES,
+    ContactShare,
+    folded_counts,
+    record_counter,
+    share_interval,
+)
 from lube.resistance import divider_voltage
 
 LIMITS = [1.0, 2.5, 4.0]
@@ -47,7 +55,7 @@ def test_every_block_holds_exactly_its_samples(values, hold, releases):
 
 
 @pytest.mark.parametrize("size", [1, 31, 63, 64, 65, 128, 1000, 2**20, 2**20 + 1])
-def test_blocks_are_equal_and_between_32_and_64_of_them_in_a_long_record(size):
+def test_blocks_are_equal_and_as_many_as_fit_in_a_long_record(size):
     values = np.random.default_rng(size).random(size)
     counter = count([values], [0.25])
     sizes = counter.sizes
@@ -225,6 +233,63 @@ def test_limits_are_treated_one_by_one():
     for k in range(4):
         alone = np.array(share_interval(below[k : k + 1], sizes, 40.0))
         np.testing.assert_allclose(together[:, k : k + 1], alone)
+
+
+# Records that repeat themselves
+
+
+def repeated(turns, samples=1000, blocks=200, seed=7):
+    """Counts of a record that shows the same correlated turn again and again."""
+    rng = np.random.default_rng(seed)
+    contact = np.repeat(rng.random(samples // 20) < 0.3, 20)
+    counter = np.tile(contact, turns).reshape(turns * blocks, -1).sum(axis=1)
+    return counter[None], np.full(turns * blocks, samples // blocks)
+
+
+def width(below, sizes, folded=()):
+    _, lower, upper = share_interval(below, sizes, 50.0, folded)
+    return (upper - lower).item()
+
+
+def test_turning_on_without_new_roughness_tells_no_more():
+    few, many = repeated(4), repeated(64)
+    folded = [folded_counts(*counts, 1.0, 200.0) for counts in (few, many)]
+    assert width(*many, folded[1:]) == pytest.approx(width(*few, folded[:1]))
+    assert width(*many) < 0.3 * width(*many, folded[1:])
+
+
+def test_folded_or_not_a_record_of_one_turn_tells_the_same():
+    one = repeated(1)
+    assert width(*one, [folded_counts(*one, 1.0, 200.0)]) == pytest.approx(width(*one), rel=0.6)
+
+
+def test_a_record_that_does_not_repeat_has_hardly_a_wider_interval_by_folding():
+    """Wider by the few stretches of the circumference: of several estimates the largest counts."""
+    ratios = []
+    for seed in range(20):
+        below = np.random.default_rng(seed).binomial(10, 0.3, (1, 12_800))
+        sizes = np.full(12_800, 10)
+        folded = folded_counts(below, sizes, 1.0, 200.0)
+        ratios.append(width(below, sizes, [folded]) / width(below, sizes))
+    assert 1.0 <= np.mean(ratios) < 1.5
+
+
+@given(st.integers(1, 500), st.floats(0.5, 400.0))
+def test_folding_loses_no_sample(blocks, period):
+    rng = np.random.default_rng(blocks)
+    below, sizes = rng.integers(0, 9, (3, blocks)), np.full(blocks, 9)
+    sizes[-1] = 8  # the last may be shorter
+    around, lengths = folded_counts(below, sizes, 1.0, period)
+    assert around.shape == (3, lengths.size) and lengths.size <= STRETCHES
+    np.testing.assert_array_equal(around.sum(axis=1), below.sum(axis=1))
+    assert lengths.sum() == sizes.sum()
+
+
+def test_counts_are_folded_into_their_phase():
+    below = np.tile(np.arange(STRETCHES), 3)[None]
+    around, lengths = folded_counts(below, np.full(below.size, 99), 0.1, 0.1 * STRETCHES)
+    np.testing.assert_array_equal(around, 3 * np.arange(STRETCHES)[None])
+    np.testing.assert_array_equal(lengths, np.full(STRETCHES, 3 * 99))
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import xarray as xr
 
 from lube import formulas, schema
 from lube.errors import DataError, LubeError
-from lube.film import film_table
+from lube.film import film_at, film_table
 
 FORCE = [100.0, 200.0, 400.0, 800.0, 1600.0]
 SPEED = [600 / 7, 100.0, 120.0, 150.0, 200.0]
@@ -104,6 +104,20 @@ def test_every_point_agrees_with_the_plain_formula(table):
             assert float(found) == pytest.approx(expected, rel=1e-12)
 
 
+def test_records_at_their_own_conditions_have_the_film_of_the_grid_there(table):
+    """Force, speed and oil along one dimension, in place of three: to the last bit."""
+    rows = [(800.0, 100.0, 40.0), (100.0, 200.0, 80.0), (800.0, 100.0, 60.0)]
+    force, speed, temperature = (xr.DataArray(each, dims="record") for each in np.transpose(rows))
+    oil = oils().isel(lubricant=0).sel(temperature=temperature).reset_coords(drop=True)
+    found = film_at(oil, ROLLERS, force, speed, ["paper", "moes"])
+    for number, (here, turning, warm) in enumerate(rows):
+        at = table.isel(lubricant=0).sel(force=here, speed=turning, temperature=warm)
+        at = at.sel(film_formula=["paper", "moes"])
+        for name in ("film_thickness", "lambda_ratio", "moes_load", "contact_half_width"):
+            record = found[name].isel(record=number)
+            np.testing.assert_array_equal(record.values, at[name].values)
+
+
 def test_grids_may_have_one_value_and_any_order():
     table = film_table(oils(), ROLLERS, [800.0], [200.0, 100.0], ["paper"])
     assert table["film_thickness"].shape == (1, 1, 5, 2, 1)
@@ -171,9 +185,18 @@ def test_inlet_shear_heating_over_the_grid(table):
 
 
 def test_points_outside_the_validity_range_are_flagged(table):
-    """The power laws fail at 100 and 200 N, in part at 400 N; Moes' formula spans all."""
+    """Every formula has a range of its own, and none holds over the whole grid."""
     outside = ~table["in_validity_range"].isel(lubricant=0)
-    assert outside.sum(["temperature", "speed", "force"]).values.tolist() == [66] * 6 + [0]
+    counts = outside.sum(["temperature", "speed", "force"]).to_series().to_dict()
+    assert counts == {
+        "paper": 66,
+        "pan-hamrock": 62,
+        "pan-hamrock-minimum": 54,
+        "dowson-toyoda": 110,
+        "dowson-higginson-minimum": 44,
+        "grubin": 80,
+        "moes": 111,
+    }
     paper = outside.sel(film_formula="paper")
     assert paper.sum(["temperature", "speed"]).values.tolist() == [25, 25, 15, 1, 0]
     assert bool(paper.sel(force=100, speed=200, temperature=40))

@@ -2,15 +2,16 @@
 
 import subprocess
 import sys
+from itertools import product
 
 import numpy as np
 import pytest
+from film_ranges import OILS, relative_errors
 from hypothesis import given
 from hypothesis import strategies as st
 from numerical_film import NumericalFilm
 from paper_grid import (
     ALPHA,
-    LENGTH,
     MODULUS,
     RADIUS,
     TEMPERATURE,
@@ -26,6 +27,7 @@ from paper_grid import (
 
 from lube import formulas, groups, regimes
 from lube.errors import LubeError
+from lube.formulas import TOLERANCE
 
 ROWS = list(formulas.FORMULAS.values())
 POWER_LAWS = [row for row in ROWS if row.name != "moes"]
@@ -187,9 +189,8 @@ def test_limits_are_included_and_nothing_beyond(row):
     assert row.holds(least_m, least_l) and row.holds(most_m, most_l)
     assert not row.holds(np.nextafter(least_m, -1), most_l)
     assert not row.holds(most_m, np.nextafter(least_l, -1))
-    if np.isfinite(most_m):
-        assert not row.holds(np.nextafter(most_m, np.inf), most_l)
-        assert not row.holds(most_m, np.nextafter(most_l, np.inf))
+    assert not row.holds(np.nextafter(most_m, np.inf), most_l)
+    assert not row.holds(most_m, np.nextafter(most_l, np.inf))
 
 
 @every_row
@@ -226,8 +227,8 @@ def test_importing_the_registry_needs_numpy_only():
 
 def numerical_film(force, speed, temperature):
     at = list(TEMPERATURE).index(temperature)
-    solver = NumericalFilm(force, VISCOSITY[at], ALPHA[at], 2 * np.pi * 0.05 * speed / 60)
-    return solver.solve(film("pan-hamrock", force, speed, temperature))
+    speed = 2 * np.pi * 0.05 * speed / 60
+    return NumericalFilm(force, VISCOSITY[at], ALPHA[at], speed).solve()
 
 
 # Central and minimum film, micrometres: physics.md, section 3.
@@ -244,42 +245,55 @@ def test_numerical_solution_gives_the_reference_films(point, central, minimum):
     np.testing.assert_allclose(numerical_film(*point), (central * 1e-6, minimum * 1e-6), rtol=0.02)
 
 
+def test_the_numerical_solution_is_fully_flooded():
+    """3.92 micrometres with the longest inlet, 3.61 with 40 half-widths: physics-beyond.md, 10."""
+    central, minimum = numerical_film(100, 200, 40)
+    assert central == pytest.approx(3.92e-6, rel=5e-3)
+    assert minimum == pytest.approx(central, rel=1e-3)  # hardly any outlet constriction
+
+
 @pytest.mark.parametrize(
     "point",
-    [(400, 100, 60), (400, 600 / 7, 80), (800, 150, 40), (800, 200, 80), (1600, 200, 40)],
+    [
+        *((200, 600 / 7, 80), (200, 120, 80), (400, 100, 60), (400, 600 / 7, 80), (400, 120, 80)),
+        *((800, 150, 40), (800, 200, 80), (1600, 200, 40), (1600, 600 / 7, 80)),
+    ],
 )
-def test_pan_hamrock_holds_within_ten_per_cent_where_the_grid_is_in_its_range(point):
-    row = formulas.formula("pan-hamrock")
-    assert row.holds(*groups.moes_numbers(*groups_at(*point)))
+def test_formulas_hold_where_the_grid_is_in_their_range(point):
+    """With a hair to spare: the ranges were found at levels of M and L that lie beside."""
     central, minimum = numerical_film(*point)
-    assert film("pan-hamrock", *point) == pytest.approx(central, rel=0.10)
-    assert film("pan-hamrock-minimum", *point) == pytest.approx(minimum, rel=0.10)
+    held = [row for row in ROWS if row.holds(*groups.moes_numbers(*groups_at(*point)))]
+    assert held
+    for row in held:
+        computed = minimum if row.place == "minimum" else central
+        assert film(row.name, *point) == pytest.approx(computed, rel=TOLERANCE + 0.005)
 
 
-@pytest.mark.parametrize("point", [(400, 150, 60), (400, 600 / 7, 40), (400, 200, 60)])
-def test_pan_hamrock_is_more_than_ten_per_cent_off_just_below_its_range(point):
-    assert not formulas.formula("pan-hamrock").holds(*groups.moes_numbers(*groups_at(*point)))
-    assert film("pan-hamrock", *point) > 1.10 * numerical_film(*point)[0]
+@every_row
+def test_formula_holds_at_the_corners_and_in_the_middle_of_its_range(row):
+    corners = list(product(row.moes_load, row.moes_material))
+    middle = (np.sqrt(np.prod(row.moes_load)), np.sqrt(np.prod(row.moes_material)))
+    errors = [relative_errors(*at, *OILS[1])[row.name] for at in [*corners, middle]]
+    print(row.name, [f"{error:+.1%}" for error in errors])
+    assert np.abs(errors).max() <= TOLERANCE
 
 
-@pytest.mark.parametrize("moes_load", [1.5, 8.0, 20.0, 100.0])
-@pytest.mark.parametrize("moes_material", [5.0, 8.0, 12.0])
-def test_pan_hamrock_holds_within_twelve_per_cent_over_its_whole_range(
-    moes_load, moes_material, monkeypatch
-):
-    """Beyond the grid: U = 1e-11, an oil of 0.3 Pa s. The inlet sharpens as M rises."""
-    monkeypatch.setattr(NumericalFilm, "STEP", min(0.02, 0.5 / moes_load))
-    number = 1e-11
-    root = np.sqrt(2 * number)
-    load, material = moes_load * root, moes_material / np.sqrt(root)
-    expected = formulas.pan_hamrock(load, number, material) * RADIUS
-    solver = NumericalFilm(
-        force=load * 2 * MODULUS * RADIUS * LENGTH,
-        viscosity=0.3,
-        alpha=material / (2 * MODULUS),
-        speed=number * 2 * MODULUS * RADIUS / 0.3,
-    )
-    assert expected == pytest.approx(solver.solve(expected)[0], rel=0.125)
+@every_row
+def test_formula_fails_at_lower_loads_than_its_range(row):
+    """At four fifths of its least M it is beyond the tolerance at some L of its range."""
+    low, high = row.moes_material
+    errors = [
+        relative_errors(0.8 * row.moes_load[0], each, *OILS[2])[row.name]
+        for each in (low, np.sqrt(low * high), high)
+    ]
+    print(row.name, [f"{error:+.1%}" for error in errors])
+    assert np.abs(errors).max() > TOLERANCE
+
+
+def test_moes_formula_is_above_the_computed_film_in_all_regimes():
+    """By 12 to 26 % on points of the grid: physics-beyond.md, 10; in all by 6 to 37 %."""
+    for at in [(0.1, 8.0), (1.0, 12.0), (2.5, 5.0), (10.0, 8.0)]:
+        assert 0.06 < relative_errors(*at, *OILS[1])["moes"] < 0.37
 
 
 # --- Printed figures ---------------------------------------------------------------------

@@ -27,7 +27,7 @@ def test_there_is_a_dataset_of_every_kind(datasets):
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_saved_is_loaded_with_its_labels(datasets, files, kind):
     loaded = load_as_jobs_do(files / f"{kind}.nc", kind)
-    for name in {"in_validity_range", "intervals_overlap"} & set(loaded):
+    for name in {"in_validity_range", "within_prediction"} & set(loaded):
         loaded[name] = loaded[name].astype(bool)  # NetCDF has no truth values
     xr.testing.assert_equal(loaded, datasets[kind])
     for name, array in datasets[kind].variables.items():

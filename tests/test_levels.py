@@ -2,7 +2,7 @@
 
 import pytest
 
-from lube.levels import NEAR, SAME, level_index, levels_told
+from lube.levels import NEAR, SAME, level_index, level_near, levels_told
 
 SPEEDS = [60.0, 600.0 / 7.0, 100.0]
 
@@ -33,6 +33,19 @@ def test_what_is_no_number_means_no_number(wanted):
 
 def test_of_two_levels_as_near_the_first_is_meant():
     assert level_index([100.0, 100.1], 100.05) == 0
+
+
+@pytest.mark.parametrize(
+    ("value", "level"),
+    [(80.0, 80.0), (81.0, 80.0), (79.0, 80.0), (81.001, None), (39.5, 40.0), (60.0, None)],
+)
+def test_a_measured_value_means_the_level_within_its_tolerance(value, level):
+    assert level_near([40.0, 80.0], value, 1.0) == level
+
+
+def test_a_value_between_two_levels_means_the_nearer():
+    assert level_near([40.0, 41.0], 40.6, 5.0) == 41.0
+    assert level_near([41.0, 40.0], 40.4, 5.0) == 40.0
 
 
 def test_levels_are_told_in_a_line():

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.special import expit, logit
 
-from lube.map_curves import curve_at, curves_at, logits_on
+from lube.map_curves import curve_at, layer_curve_at, logits_on
 
 WIDTHS = np.array([0.5e-3, 1e-3, 2e-3])
 RATIOS = np.geomspace(0.5, 2.0, 9)
+DIMS = ("lambda_ratio", "contact_width")
 
 
 def chance(ratio, width):
@@ -17,52 +19,63 @@ def chance(ratio, width):
 
 @pytest.fixture
 def master():
-    """A map of such contacts, seen in so many windows that nothing is too rare to be known."""
-    mean = xr.DataArray(
-        chance(RATIOS[:, None], WIDTHS),
-        dims=("lambda_ratio", "contact_width"),
-        coords={"lambda_ratio": RATIOS, "contact_width": WIDTHS},
-    )
-    sides = {"mean": 1.0, "lower": 0.9, "upper": 1.05}
-    variables = {f"breakthrough_probability_{each}": mean * by for each, by in sides.items()}
-    attributes = {"travel": 1e6, "longest_wavelength": 1e-3}
-    return xr.Dataset(variables, {"realisation": [0, 1]}, attributes)
+    """A map of such contacts, from two realisations that differ by a tenth."""
+    mean = chance(RATIOS[:, None], WIDTHS)
+    values = np.stack([0.95 * mean, 1.05 * mean])
+    coords = {"realisation": [0, 1], "lambda_ratio": RATIOS, "contact_width": WIDTHS}
+    variables = {
+        "breakthrough_probability": (("realisation", *DIMS), values),
+        "breakthrough_probability_mean": (DIMS, mean),
+    }
+    return xr.Dataset(variables, coords, {"travel": 1e6, "longest_wavelength": 1e-3})
 
 
-@pytest.mark.parametrize("width", [*WIDTHS, 0.7e-3, 1.9e-3])
-def test_a_curve_is_right_at_any_width(master, width):
-    curve = curve_at(master["breakthrough_probability_mean"], master, width)
-    share = chance(RATIOS, width)
+@pytest.mark.parametrize("width", [*WIDTHS, 0.7e-3, 1.9e-3, 0.3e-3, 3e-3])
+def test_a_curve_is_right_at_any_width_between_and_beyond_the_maps(master, width):
+    curve = curve_at(master, width)
     np.testing.assert_allclose(
-        curve.logit_at(np.log(RATIOS)), np.log(share / (1.0 - share)), rtol=1e-9
+        expit(curve.logit_at(np.log(RATIOS))), chance(RATIOS, width), rtol=1e-9
     )
 
 
-def test_the_limits_have_curves_on_their_sides(master):
-    mean, lower, upper = (curve.logit_at(np.log(1.0)) for curve in curves_at(master, 0.5e-3))
-    assert lower < mean < upper
+def test_a_map_of_one_width_serves_all(master):
+    curve = curve_at(master.isel(contact_width=[1]), 0.6e-3)
+    np.testing.assert_allclose(curve.logit_at(np.log(RATIOS)), logit(chance(RATIOS, 0.6e-3)))
+
+
+def test_the_sample_size_is_that_of_the_scatter_between_realisations(master):
+    curve = curve_at(master, WIDTHS[1])
+    mean = chance(RATIOS, WIDTHS[1])
+    variance = 2.0 * (0.05 * mean) ** 2  # of two values, on either side of their mean
+    np.testing.assert_allclose(curve.looks, mean * (1.0 - mean) / variance)
+
+
+def test_beyond_the_maps_widths_the_sample_size_is_that_of_the_nearest(master):
+    wide, widest = curve_at(master, WIDTHS[-1]), curve_at(master, 2.0 * WIDTHS[-1])
+    np.testing.assert_allclose(widest.looks, wide.looks[: widest.looks.size])
+
+
+def test_another_layers_curve_has_no_known_scatter(master):
+    layer = master["breakthrough_probability_mean"].rename(
+        lambda_ratio="layer_lambda_ratio", contact_width="layer_contact_width"
+    )
+    curve = layer_curve_at(layer, master, 0.7e-3)
+    np.testing.assert_array_equal(curve.logits, curve_at(master, 0.7e-3).logits)
+    assert np.isnan(curve.looks).all()
 
 
 def test_what_was_not_seen_in_all_windows_is_not_known(master):
     rare = master.assign_attrs(travel=0.003)  # two windows of each realisation
-    mean = rare["breakthrough_probability_mean"]
-    known = curve_at(mean, master, 0.5e-3).films.max()
-    assert curve_at(mean, rare, 0.5e-3).films.max() < known
+    assert curve_at(rare, WIDTHS[0]).films.max() < curve_at(master, WIDTHS[0]).films.max()
 
 
-def test_each_force_is_read_off_at_its_own_width(master):
-    forces = xr.DataArray([100.0, 400.0], dims="force", name="force")
-    film = xr.Dataset({"contact_half_width": ("force", WIDTHS[1:] / 2.0)}, {"force": forces})
-    levels = {"temperature": [40.0, 80.0], "speed": [60.0], "film_formula": ["paper"]}
-    levels |= {"lubricant": ["oil"], "force": forces.values}
+def test_each_record_is_read_off_at_its_own_width(master):
+    widths = xr.DataArray([1e-3, 0.7e-3, 1e-3], dims="record")
     ratios = xr.DataArray(
-        np.array([[0.8, 0.9], [1.3, 1.4]])[:, None, None, None, :],
-        dims=("temperature", "speed", "film_formula", "lubricant", "force"),
-        coords=levels,
+        np.array([[0.8, 0.9, 1.0], [1.3, 1.4, 1.5]]), dims=("film_formula", "record")
     )
-    logits = logits_on(lambda width: curves_at(master, width)[0], film, ratios)
-    assert logits.dims == ("lubricant", "film_formula", "temperature", "speed", "force")
-    for number, width in enumerate(WIDTHS[1:]):
-        curve = curves_at(master, width)[0]
-        expected = curve.logit_at(np.log(ratios.isel(force=number)))
-        np.testing.assert_array_equal(logits.isel(force=number).squeeze(), np.squeeze(expected))
+    logits = logits_on(lambda width: curve_at(master, width), widths, ratios.T)
+    assert logits.dims == ("film_formula", "record")
+    for number, width in enumerate(widths.values):
+        expected = curve_at(master, width).logit_at(np.log(ratios.values[:, number]))
+        np.testing.assert_array_equal(logits.values[:, number], expected)

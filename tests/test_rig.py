@@ -1,5 +1,7 @@
 """The simulated rig: its contacts, and the right voltages, in whole steps, with their noise."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from lube.contact import contact_statistics
 from lube.points import operating_points
 from lube.resistance import divider_voltage, resistance_from_voltage
 from lube.rig import SimulatedRig, logged_voltage
+from lube.roughness import roughness_batch
 
 TIME_STEP, SPOT, CAPACITANCE = 6e-7, 0.64, 2.7e-10
 QUIET = {"noise": "0 V", "resolution": 32}
@@ -90,51 +93,125 @@ def test_a_large_capacitance_hides_how_soon_a_contact_ends():
 
 
 @pytest.fixture(scope="module")
-def points(rig_film):
-    return operating_points(rig_film.isel(film_formula=0), 0.1)
+def lines_of(make_spec, study):
+    """The rollers that a study's rig draws, on a grid fine enough for some contact."""
+    spec = make_spec(60_000)
+    return lambda changed: roughness_batch(spec, study.seed, changed.rig_realisations)
 
 
 @pytest.fixture(scope="module")
-def revolutions(rig_lines, study, points):
-    return list(SimulatedRig(rig_lines, study, points).revolutions())
+def points(rig_film):
+    return operating_points(rig_film.isel(film_formula=0, force=[1], temperature=[0, 1]), 0.0)
 
 
-def test_every_revolution_passes_all_points_in_order(revolutions, rig_lines, points):
-    numbers = [number for number, _ in revolutions]
-    assert numbers == [*range(len(points))] * rig_lines.sizes["realisation"]
-    assert all(revolution.point is points[number] for number, revolution in revolutions)
+@pytest.fixture(scope="module")
+def slipping(rig_film):
+    return operating_points(rig_film.isel(film_formula=0), 0.1)
 
 
-def test_its_contacts_are_those_of_the_contact_stage(revolutions, rig_lines, rig_film, study):
-    found = contact_statistics(rig_lines, rig_film, study.boundary_layer, [0.1])
-    expected = found.breakthrough_probability.isel(film_formula=0)
-    expected = expected.transpose("realisation", ..., "temperature", "speed", "force")
-    shares = [np.mean(revolution.contact > 0) for _, revolution in revolutions]
-    np.testing.assert_allclose(shares, expected.values.ravel(), rtol=1e-12)
-    assert max(shares) > 0.01
+def run(lines, study, points):
+    return list(SimulatedRig(lines, study, points).revolutions())
 
 
-def test_the_faster_surface_passes_one_grid_point_each_time_step(revolutions, rig_lines, study):
-    _, revolution = revolutions[0]
+def test_every_pair_passes_all_points_for_all_its_revolutions(lines_of, study, with_rig, points):
+    several = with_rig(study, pairs=3, revolutions=2.5)
+    passed = run(lines_of(several), several, points)
+    assert [(pair, number) for pair, number, _ in passed] == [
+        (pair, number) for pair in range(3) for _turn in range(3) for number in range(len(points))
+    ]
+    assert all(revolution.point is points[number] for _, number, revolution in passed)
+    sizes = [
+        revolution.contact.size for pair, number, revolution in passed if (pair, number) == (0, 0)
+    ]
+    assert sizes == [60_000, 60_000, 30_000]
+
+
+@pytest.mark.parametrize(("slip", "within"), [(0.0, 1e-12), (0.1, 0.01)])
+def test_its_contacts_are_those_of_the_contact_stage(
+    lines_of, study, with_rig, rig_film, slip, within
+):
+    """With slip the second turn goes on where the first ended, to half a grid point."""
+    two = with_rig(study, pairs=2, revolutions=2)
+    lines = lines_of(two)
+    found = contact_statistics(lines, rig_film, study.boundary_layer, [slip], revolutions=2)
+    expected = found["breakthrough_probability"].isel(film_formula=0, slide_to_roll_ratio=0)
+    points = operating_points(rig_film.isel(film_formula=0), slip)
+    touched = np.zeros((2, len(points)))
+    for pair, number, revolution in run(lines, two, points):
+        touched[pair, number] += np.mean(revolution.contact > 0) / 2.0
+    np.testing.assert_allclose(touched.ravel(), expected.values.ravel(), rtol=within, atol=2e-5)
+    assert touched.max() > 0.01
+
+
+def test_rollers_repeat_themselves_in_rolling_but_not_with_slip(
+    lines_of, study, with_rig, points, slipping
+):
+    two = with_rig(study, revolutions=2)
+    lines = lines_of(two)
+    for among, alike in ((points, True), (slipping, False)):
+        contacts = [r.contact for _, number, r in run(lines, two, among) if number == 1]
+        assert np.array_equal(*contacts) == alike
+
+
+def test_pairs_are_not_alike_and_do_not_hang_on_their_number(lines_of, study, with_rig, points):
+    one, two = (with_rig(study, pairs=pairs, revolutions=1) for pairs in (1, 2))
+    alone, both = (run(lines_of(each), each, points) for each in (one, two))
+    for (_, _, here), (_, _, there) in zip(alone, both, strict=False):
+        np.testing.assert_array_equal(here.contact, there.contact)
+        np.testing.assert_array_equal(here.voltage(study.rig), there.voltage(study.rig))
+    assert not np.array_equal(both[0][2].contact, both[len(points)][2].contact)
+
+
+@pytest.mark.parametrize(("drift", "kept"), [(0.3, 0.7**0.5), (1.0, 0.0)])
+def test_drift_renews_its_share_of_the_variance_each_turn(
+    lines_of, study, with_rig, points, drift, kept
+):
+    drifting = with_rig(study, drift=drift, revolutions=3)
+    rig = SimulatedRig(lines_of(drifting), drifting, points)
+    first, second, third = (pair[0] for pair in rig._rollers(drifting.rig_realisations))
+    assert np.corrcoef(first, second)[0, 1] == pytest.approx(kept, abs=0.05)
+    assert np.corrcoef(first, third)[0, 1] == pytest.approx(kept**2, abs=0.05)
+    assert np.std(third) == pytest.approx(np.std(first), rel=0.05)
+
+
+def test_the_faster_surface_passes_one_grid_point_each_time_step(
+    lines_of, study, with_rig, slipping
+):
+    one = with_rig(study, revolutions=1)
+    lines = lines_of(one)
+    _, _, revolution = run(lines, one, slipping)[0]
     faster = 1.05 * revolution.point.entrainment_speed
-    assert revolution.time_step == pytest.approx(rig_lines.attrs["spacing"] / faster)
+    assert revolution.time_step == pytest.approx(lines.attrs["spacing"] / faster)
     turn = 2.0 * np.pi * study.rollers.first.radius / faster
     assert revolution.contact.size * revolution.time_step == pytest.approx(turn)
 
 
-def test_noise_is_of_its_revolution_and_point_and_no_other(revolutions, study, points):
-    one, same, beside, later = (
-        revolutions[number][1].voltage(study.rig) for number in (0, 0, 1, len(points))
-    )
-    np.testing.assert_array_equal(one, same)
-    assert not np.array_equal(one, beside) and not np.array_equal(one, later)
+def test_noise_is_of_its_pair_point_and_turn_and_no_other(lines_of, study, with_rig, points):
+    two = with_rig(study, pairs=2, revolutions=2)
+    passed = {}
+    for pair, number, revolution in run(lines_of(two), two, points):
+        passed.setdefault((pair, number), []).append(revolution)
+    silent = np.zeros(60_000, np.int32)
+
+    def noise(pair, number, turn):
+        return replace(passed[pair, number][turn], contact=silent).voltage(two.rig)
+
+    np.testing.assert_array_equal(noise(0, 0, 0), noise(0, 0, 0))
+    for other in ((1, 0, 0), (0, 0, 1)):
+        assert not np.array_equal(noise(0, 0, 0), noise(*other))
+    beside = noise(0, 1, 0)
+    assert not np.array_equal(noise(0, 0, 0), beside[: noise(0, 0, 0).size])
 
 
 def test_how_many_points_are_held_at_once_changes_nothing(
-    revolutions, rig_lines, study, points, monkeypatch
+    lines_of, study, with_rig, slipping, monkeypatch
 ):
+    two = with_rig(study, revolutions=2)
+    lines = lines_of(two)
+    expected = {}
+    for pair, number, revolution in run(lines, two, slipping):
+        expected.setdefault((pair, number), []).append(revolution.contact)
     monkeypatch.setattr(module, "TOGETHER", 3)
-    again = SimulatedRig(rig_lines, study, points).revolutions()
-    for (number, revolution), (expected, other) in zip(again, revolutions, strict=True):
-        assert number == expected
-        np.testing.assert_array_equal(revolution.contact, other.contact)
+    for pair, number, revolution in run(lines, two, slipping):
+        np.testing.assert_array_equal(revolution.contact, expected[pair, number].pop(0))
+    assert not any(expected.values())

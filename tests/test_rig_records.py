@@ -6,6 +6,7 @@ import pytest
 from lube.experiment import simulated_experiment
 from lube.rig_records import rig_records
 from lube.schema import EXPERIMENT_DIMS
+from lube.shares import over_grid
 
 
 @pytest.fixture(scope="module")
@@ -21,10 +22,10 @@ def record(rig_lines, rig_film, slow_points):
 
 
 def test_the_trace_points_record_belongs_to_the_same_rig(record, rig_lines, rig_film, slow_points):
-    everything = simulated_experiment(rig_lines, rig_film, slow_points)
+    everything = over_grid(simulated_experiment(rig_lines, rig_film, slow_points))
     for number, point in enumerate(slow_points.trace_points):
         levels = {name: point[name] for name in EXPERIMENT_DIMS}
-        here, there = record.isel(operating_point=number), everything.sel(levels)
+        here, there = record.isel(operating_point=number), everything.sel(levels).squeeze("repeat")
         assert {name: here[name].item() for name in EXPERIMENT_DIMS} == levels
         assert here.true_contact_share == there.true_contact_share
         np.testing.assert_allclose(

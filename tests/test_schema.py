@@ -9,6 +9,8 @@ from lube.schema import ATTRIBUTES, COORDINATES, FILES, check, label
 
 KINDS = list(FILES)
 VARIABLES = [(kind, name) for kind in KINDS for name in FILES[kind]]
+# Over one revolution in rolling, of which a record's own conditions tell nothing.
+NO_RECORDS = ("comparison", "breakthrough_probability")
 SIZE = 2
 
 
@@ -67,7 +69,7 @@ def test_every_variable_is_described(row):
     assert (row.units is None) == (row.kind == "U")
 
 
-@pytest.mark.parametrize(("kind", "name"), VARIABLES)
+@pytest.mark.parametrize(("kind", "name"), [each for each in VARIABLES if each != NO_RECORDS])
 def test_what_is_a_mean_says_over_what(kind, name):
     row = FILES[kind][name]
     words = ("mean ", "share of time", "breakthrough probability", "probability of", "rms diff")
@@ -124,14 +126,14 @@ def test_a_variable_that_does_not_belong_there_is_refused(kind):
         label(dataset, kind)
 
 
-@pytest.mark.parametrize("kind", ["lubricant", "film", "contact", "trace"])
+@pytest.mark.parametrize("kind", ["lubricant", "film", "contact", "trace", "experiment"])
 def test_a_missing_coordinate_is_refused(kind):
     dataset = label(example(kind), kind)
     name = next(name for name in dataset.indexes if name in COORDINATES)
     assert f"coordinate {name!r} is missing" in refusal(dataset.drop_vars(name), kind)
 
 
-@pytest.mark.parametrize("kind", ["lubricant", "film", "contact", "trace"])
+@pytest.mark.parametrize("kind", ["lubricant", "film", "contact", "trace", "gauge"])
 def test_a_coordinate_that_repeats_a_value_is_refused(kind):
     dataset = label(example(kind), kind)
     name = next(name for name in dataset.indexes if name in COORDINATES)
@@ -144,6 +146,22 @@ def test_a_file_of_another_kind_is_refused(kind):
     dataset = label(example(kind), kind)
     for other in set(KINDS) - {kind}:
         refusal(dataset, other)
+
+
+@pytest.mark.parametrize("kind", ["experiment", "comparison", "gauge"])
+def test_each_record_has_its_own_conditions_and_the_levels_it_is_near(kind):
+    for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio", "pair"):
+        assert FILES[kind][name].dims == ("record",)
+    for name in ("force", "speed", "temperature"):
+        assert FILES[kind][f"{name}_level"].units == FILES[kind][name].units
+
+
+@pytest.mark.parametrize("origin", ["measured", "simulated"])
+def test_what_is_recorded_is_a_measurement_only_if_it_was_measured(origin):
+    dataset = example("experiment")
+    dataset["origin"] = origin
+    word = label(dataset, "experiment")["repeatability"].attrs["coverage_content_type"]
+    assert word == {"measured": "physicalMeasurement", "simulated": "modelResult"}[origin]
 
 
 def test_truth_values_may_be_stored_as_small_integers():

@@ -1,105 +1,106 @@
-"""Shares of a rig brought to the study's levels, or refused in one line."""
+"""Shares of a rig's records: the compared threshold, views over the grid, and lines about them."""
 
 import logging
+import warnings
 
 import numpy as np
 import pytest
-import xarray as xr
+from experiments import experiment_at, experiment_of
 
 from lube.errors import DataError
-from lube.levels import levels_told
 from lube.schema import EXPERIMENT_DIMS, FILES
-from lube.shares import (
-    at_comparison_threshold,
-    in_pure_rolling,
-    limited,
-    lines_of,
-    log_lines,
-    on_study_levels,
-)
+from lube.shares import at_comparison_threshold, levels_named, limited, log_lines, over_grid
+
+SHARES = np.linspace(0.0, 0.5, 12)
 
 
 @pytest.fixture(scope="module")
-def share(film):
-    """A share of its own at every operating point, in pure rolling."""
-    points = film["film_thickness"].isel(film_formula=0, drop=True)
-    share = points.copy(data=np.linspace(0.0, 0.9, points.size).reshape(points.shape))
-    return share.expand_dims(slide_to_roll_ratio=[0.0]).transpose(*EXPERIMENT_DIMS)
+def experiment(busy_study):
+    """A record at each of the 12 points of the grid."""
+    return experiment_at(busy_study.operating_grid.model_dump(), SHARES)
 
 
-@pytest.fixture(scope="module")
-def experiment(make_experiment, share):
-    return make_experiment(share, 0.9 * share, 1.1 * share)
+# The threshold
 
 
-def refusal(call, *arguments):
-    with pytest.raises(DataError) as caught:
-        call(*arguments)
-    assert "\n" not in str(caught.value)
-    return str(caught.value)
+@pytest.mark.parametrize(("threshold", "factor"), [(10.0, 0.5), (100.0, 1.0)])
+def test_the_threshold_to_compare_is_picked(experiment, threshold, factor):
+    shares = at_comparison_threshold(experiment.assign(comparison_threshold=threshold))
+    np.testing.assert_array_equal(shares["contact_share"], factor * SHARES)
+    assert shares["contact_share"].dims == ("record",)
+    assert shares["contact_share"]["origin"].item() == "simulated"
 
 
-def test_levels_that_differ_by_rounding_become_the_studys(experiment, film, share):
-    rounded = experiment.assign_coords(
-        speed=experiment["speed"] * (1.0 + 3e-10), force=experiment["force"] * (1.0 - 3e-10)
+def test_a_threshold_that_was_not_evaluated_is_refused(experiment):
+    with pytest.raises(DataError, match=r"threshold 50 ohm is not among .* 10, 100, 1000$"):
+        at_comparison_threshold(experiment.assign(comparison_threshold=50.0))
+
+
+# Over the grid
+
+
+def test_one_record_a_point_becomes_a_table_of_the_grid(experiment):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        table = over_grid(experiment)
+    assert set(table["contact_share"].dims) == {*EXPERIMENT_DIMS, "repeat", "threshold"}
+    assert table.sizes["repeat"] == 1 and table["contact_share"].notnull().all()
+    for record in range(12):
+        here = experiment.isel(record=record)
+        levels = {name: here[name].item() for name in EXPERIMENT_DIMS}
+        there = table.sel(levels).isel(repeat=0)
+        np.testing.assert_array_equal(there["contact_share"], here["contact_share"])
+
+
+def test_all_records_of_a_point_are_there_once_and_come_back(experiment):
+    """Round trip: every record, however many a point has, and NaN elsewhere."""
+    chosen = experiment.isel(record=[3, 0, 3, 7, 3, 0])
+    chosen = chosen.assign(share_error=("record", np.arange(1.0, 7.0)))
+    table = over_grid(chosen)
+    assert table.sizes["repeat"] == 3
+    stacked = table["share_error"].stack(record=[*EXPERIMENT_DIMS, "repeat"]).dropna("record")
+    assert sorted(stacked.values) == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+    for level, expected in ((3, [1.0, 3.0, 5.0]), (0, [2.0, 6.0, np.nan])):
+        here = experiment.isel(record=level)
+        levels = {name: here[name].item() for name in EXPERIMENT_DIMS}
+        np.testing.assert_array_equal(table["share_error"].sel(levels), expected)
+
+
+def test_a_record_stands_under_the_level_it_is_near_and_without_one_is_left_out():
+    experiment = experiment_of(
+        [0.1, 0.2, 0.3],
+        force=[803.0, 800.0, 555.0],
+        speed=100.0,
+        temperature=[40.4, 80.0, 40.0],
+        force_level=[800.0, 800.0, np.nan],
+        temperature_level=[40.0, 80.0, 40.0],
     )
-    found = on_study_levels(rounded, film)
-    for name in ("speed", "force", "temperature", "lubricant"):
-        np.testing.assert_array_equal(found[name], film[name])
-    np.testing.assert_array_equal(found["contact_share"].sel(threshold=100.0), share)
+    table = over_grid(experiment)
+    assert table["force"].values.tolist() == [800.0]
+    shares = table["contact_share"].sel(threshold=100.0).squeeze()
+    assert shares.sel(temperature=40.0) == 0.1 and shares.sel(temperature=80.0) == 0.2
 
 
-def test_levels_in_another_order_keep_their_shares(experiment, film, share):
-    turned = experiment.isel(force=slice(None, None, -1), temperature=[2, 0, 3, 1])
-    found = on_study_levels(turned, film)["contact_share"].sel(threshold=100.0)
-    np.testing.assert_array_equal(found, share)
+def test_slips_and_lubricants_are_kept_apart():
+    experiment = experiment_of(
+        [0.1, 0.2, 0.3],
+        force=800.0,
+        speed=100.0,
+        temperature=40.0,
+        slide_to_roll_ratio=[0.0, 0.1, 0.1],
+        lubricant=["thin", "thin", "thick"],
+    )
+    shares = over_grid(experiment)["contact_share"].sel(threshold=100.0).squeeze()
+    assert shares.sel(slide_to_roll_ratio=0.1, lubricant="thick") == 0.3
+    assert shares.sel(slide_to_roll_ratio=0.0, lubricant="thick").isnull()
 
 
-def test_levels_without_a_record_are_there_as_gaps(experiment, film):
-    found = on_study_levels(experiment.isel(force=[0, 3]), film)["contact_share"]
-    assert found.sizes["force"] == film.sizes["force"]
-    gaps = found.isnull().all([name for name in found.dims if name != "force"])
-    np.testing.assert_array_equal(gaps, [False, True, True, False, True])
+def test_records_near_no_level_leave_an_empty_table():
+    experiment = experiment_of([0.1], [555.0], [100.0], [40.0], force_level=np.nan)
+    assert over_grid(experiment)["contact_share"].size == 0
 
 
-def test_the_origin_is_carried_along(experiment, film):
-    shares = at_comparison_threshold(on_study_levels(experiment, film), experiment)
-    assert shares["origin"].item() == "simulated"
-    assert shares["contact_share"].isel(force=0)["origin"].item() == "simulated"
-
-
-@pytest.mark.parametrize(
-    ("name", "level"), [("force", 123.0), ("speed", 100.001), ("lubricant", "butter")]
-)
-def test_levels_that_are_not_the_studys_are_refused(experiment, film, name, level):
-    levels = experiment[name].values.astype("U30" if name == "lubricant" else float)
-    levels[-1] = level
-    message = refusal(on_study_levels, experiment.assign_coords({name: levels}), film)
-    assert message.startswith(f"experiment: {name} {level} is not a level of the study")
-    assert levels_told(film[name].values[:1].tolist()) in message
-
-
-def test_the_threshold_to_compare_is_picked(experiment, film):
-    shares = on_study_levels(experiment, film)
-    other = experiment.assign(comparison_threshold=10.0)
-    for which, threshold in ((experiment, 100.0), (other, 10.0)):
-        found = at_comparison_threshold(shares, which)["contact_share"]
-        np.testing.assert_array_equal(found, shares["contact_share"].sel(threshold=threshold))
-
-
-def test_a_threshold_that_was_not_evaluated_is_refused(experiment, film):
-    shares = on_study_levels(experiment, film)
-    message = refusal(at_comparison_threshold, shares, experiment.assign(comparison_threshold=50.0))
-    assert "threshold 50 ohm is not among those evaluated, 10, 100, 1000" in message
-
-
-def test_pure_rolling_is_picked_or_missed(experiment):
-    rolling = in_pure_rolling(experiment)
-    assert "slide_to_roll_ratio" not in rolling.coords
-    assert rolling.contact_share.notnull().any()
-    slipping = in_pure_rolling(experiment.assign_coords(slide_to_roll_ratio=[0.1]))
-    assert slipping.contact_share.sizes == rolling.contact_share.sizes
-    assert slipping.contact_share.isnull().all()
+# Words
 
 
 def test_a_value_and_its_limits_are_named_as_in_the_schema():
@@ -112,23 +113,9 @@ def test_a_value_and_its_limits_are_named_as_in_the_schema():
     assert set(named) <= set(FILES["experiment"])
 
 
-# Lists of points
-
-
-def test_points_are_told_in_the_rigs_terms():
-    absent = xr.DataArray(
-        [[False, True], [False, False]],
-        coords={"speed": [600.0 / 7.0, 100.0], "force": [100.0, 800.0]},
-        dims=("speed", "force"),
-    ).expand_dims(temperature=[40.0], lubricant=["oil"], slide_to_roll_ratio=[0.0])
-    assert lines_of(absent, "no record") == ["800 N, 85.7143 rpm, 40 degC: no record"]
-    several = xr.concat([absent, absent], xr.Variable("slide_to_roll_ratio", [0.0, 0.1]))
-    assert lines_of(several, "no record")[1].endswith("40 degC, slide-to-roll ratio 0.1: no record")
-
-
-def test_nothing_missing_is_no_line():
-    absent = xr.DataArray([False], coords={"force": [1.0]}, dims="force")
-    assert lines_of(absent.expand_dims(speed=[1.0], temperature=[1.0]), "no record") == []
+def test_a_point_is_named_in_the_rigs_terms():
+    point = {"force": 800.0, "speed": 600.0 / 7.0, "temperature": 40.0}
+    assert levels_named(point) == "800 N, 85.7143 rpm, 40 degC"
 
 
 @pytest.mark.parametrize(("count", "told"), [(0, 0), (10, 10), (11, 11), (125, 11)])

@@ -42,11 +42,18 @@ _EXPERIMENT = {
     "revolution_period": number(
         ["record"],
         "s",
-        "time of a revolution of the first roller, from the record's repetition where it is clear",
+        "time of a revolution of the first roller that turns, from the record's repetition where "
+        "it is clear",
         content="record",
     ),
     "repeatability": number(
-        ["record"], "1", "mean correlation between two revolutions", content="record"
+        ["record"], "1", "correlation between two revolutions", content="record"
+    ),
+    "speed_ratio": number(
+        ["record"],
+        "1",
+        "speed that a clear repetition of the record tells, over the one stated",
+        content="record",
     ),
     "share_error": number(
         ["record"],
@@ -59,6 +66,7 @@ _EXPERIMENT = {
         "1",
         "share of time in contact at a phase of the revolution",
         content="record",
+        attributes=OVER_RECORD,
     ),
     "folded_deviation": number(
         ["record", "phase"],

@@ -3,7 +3,6 @@
 import contextlib
 import hashlib
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -11,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
+
+from lube.cells import datasets_of
 
 ROOT = Path(__file__).parents[2]
 COPIED = (
@@ -147,19 +148,19 @@ def copy_of_the_repository(folder):
     return Repository(folder)
 
 
-def datasets_of(repository, figure):
-    """Datasets that the parameters cell of a figure's notebook names."""
-    cells = yaml.safe_load((repository / f"notebooks/{figure}.ipynb").read_text("utf-8"))["cells"]
-    tagged = [cell for cell in cells if "parameters" in cell["metadata"].get("tags", [])]
-    return set(re.findall(r"^(\w+) *=", "".join(tagged[0]["source"]), re.MULTILINE)) - {"figure"}
-
-
 def products_of(figure):
     """Files that a figure's job makes."""
-    return {f"figures/{figure}.png", f"figures/{figure}.pdf", f"notebooks/{figure}.ipynb"}
+    return {
+        *(f"figures/{figure}.{suffix}" for suffix in ("png", "pdf", "json")),
+        f"notebooks/{figure}.ipynb",
+    }
 
 
 def figures_of(repository, *datasets):
     """Files of all figures that use one of some datasets."""
-    users = [one for one in repository.notebooks if datasets_of(repository, one) & set(datasets)]
+    users = [
+        figure
+        for figure in repository.notebooks
+        if set(datasets_of(repository / f"notebooks/{figure}.ipynb").values()) & set(datasets)
+    ]
     return {name for figure in users for name in products_of(figure)}

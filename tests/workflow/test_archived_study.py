@@ -6,7 +6,7 @@ import sys
 import zipfile
 
 from crates import issues_of
-from repository import environment
+from repository import environment, products_of
 
 from lube.archive import SUMS, VALUES, files_of
 from lube.provenance import fingerprint
@@ -32,7 +32,7 @@ def test_the_archive_holds_results_study_records_code_and_metadata(smoke, archiv
     for path in smoke.results.glob("*.nc"):
         assert (archive / "data" / path.name).read_bytes() == path.read_bytes()
     for figure in smoke.notebooks:
-        for name in (f"figures/{figure}.png", f"figures/{figure}.pdf", f"notebooks/{figure}.ipynb"):
+        for name in products_of(figure):
             assert (archive / name).read_bytes() == (smoke.results / name).read_bytes()
     assert {
         *("README.md", "CITATION.cff", ".zenodo.json", "ro-crate-metadata.json", SUMS, VALUES),

@@ -4,6 +4,7 @@ import json
 import shutil
 
 import pytest
+from PIL import Image
 
 from lube.errors import DataError, LubeError
 from lube.redraw import redraw
@@ -62,3 +63,19 @@ def test_what_a_notebook_sets_besides_paths_stays_when_it_is_drawn_again(spoilt,
     notebook.write_text(json.dumps(content), "utf-8")
     drawn = dict(redraw(spoilt, tmp_path / "new", ["fig02_film"]))
     assert drawn == {"fig02_film.png": True, "fig02_film.pdf": True}
+
+
+def test_what_a_stamp_says_of_changed_code_is_said_again(spoilt, tmp_path):
+    origin = spoilt / "figures/fig02_film.json"
+    text = origin.read_text("utf-8")
+    origin.write_text(text.replace('"drawn_by": ""', '"drawn_by": "changed notebook"'), "utf-8")
+    drawn = dict(redraw(spoilt, tmp_path / "new", ["fig02_film"]))
+    assert drawn == {"fig02_film.png": False, "fig02_film.pdf": False}
+    with Image.open(tmp_path / "new/fig02_film.png") as picture:
+        assert picture.text["Description"].endswith(" · changed notebook")
+
+
+def test_a_figure_of_unknown_origin_is_told(spoilt, tmp_path):
+    (spoilt / "figures/fig02_film.json").unlink()
+    with pytest.raises(DataError, match=r"figures/fig02_film.json: missing or damaged$"):
+        list(redraw(spoilt, tmp_path / "new", ["fig02_film"]))

@@ -144,7 +144,7 @@ def test_another_batch_size_on_one_core_makes_the_same_bytes(smoke):
         smoke.run("--cores", "1", *targets, study=study)
         again = smoke.products()
     assert again == {name: first[name] for name in again}
-    assert len(again) == len(DATASETS) + 3
+    assert len(again) == len(DATASETS) + 4
 
 
 # What the terminal says

@@ -1,6 +1,7 @@
 """What the checks of an archive find wrong, and what they let pass."""
 
 import errno
+import json
 import os
 import shutil
 import zipfile
@@ -77,6 +78,35 @@ def test_a_file_of_another_run_is_found_out_by_the_chain_of_fingerprints(spoilt)
     wrong = verify_archive(spoilt)
     assert wrong
     assert all("was made from another film.nc than the archive's" in line for line in wrong)
+
+
+@pytest.mark.parametrize("name", ["figures/fig02_film.pdf", "notebooks/fig02_film.ipynb"])
+def test_a_forged_figure_is_found_out_by_what_was_made(spoilt, name):
+    with (spoilt / name).open("ab") as file:
+        file.write(b"\n")
+    with_true_sums(spoilt)
+    assert verify_archive(spoilt) == [f"{name}: not as the workflow made it"]
+
+
+def test_a_figure_of_other_data_is_found_out(spoilt):
+    path = spoilt / "figures/fig02_film.json"
+    text = path.read_text("utf-8")
+    digits = fingerprint(spoilt / "data/film.nc")
+    assert text.count(digits) == 1
+    path.write_text(text.replace(digits, digits[::-1]), "utf-8")
+    with_true_sums(spoilt)
+    told = "figures/fig02_film.png: was drawn from another film.nc"
+    assert verify_archive(spoilt) == [told]
+
+
+def test_a_figure_whose_origin_was_taken_away_is_named(spoilt):
+    (spoilt / "figures/fig02_film.json").unlink()
+    catalogue = spoilt / "ro-crate-metadata.json"
+    graph = json.loads(catalogue.read_text("utf-8"))
+    kept = [one for one in graph["@graph"] if one["@id"] != "figures/fig02_film.json"]
+    catalogue.write_text(json.dumps({"@graph": kept}), "utf-8")
+    with_true_sums(spoilt)
+    assert verify_archive(spoilt) == ["figures/fig02_film.json: missing or damaged"]
 
 
 def test_a_record_of_another_run_is_found_out(spoilt):

@@ -1,5 +1,6 @@
 # The study's configuration, checked before any job, and the helpers all rules share.
 import ast
+import atexit
 import hashlib
 import json
 import os

@@ -34,8 +34,8 @@ rule roughness_batch:
         "../scripts/roughness_batch.py"
 
 
-onsuccess:
-    # After a failed run Snakemake forgets lines whose readers have all finished in it.
+def remove_used_lines():
+    """Remove lines that a failed run left: Snakemake forgets those whose readers all finished."""
     for first in STUDY.batches:
         lines = Path(result(f"batches/roughness_{first}.nc"))
         readers = [lines.with_name(f"{kind}_{first}.nc") for kind in ("contact", "master")]

@@ -1,0 +1,62 @@
+"""Experiments of given shares, for tests of what is done with them."""
+
+import numpy as np
+import xarray as xr
+from studies import OIL
+
+from lube.folding import PHASES
+from lube.schema import label
+
+THRESHOLDS = np.array([10.0, 100.0, 1000.0])
+
+
+def experiment_of(shares, force, speed, temperature, **values):
+    """Records with given shares below 100 ohm; half as much below 10, the same below 1000.
+
+    Unless told otherwise they are of one turn in rolling, of one pair of rollers, and each is
+    at the level that its conditions say.
+    """
+    count = len(shares)
+    conditions = {"force": force, "speed": speed, "temperature": temperature}
+    records = (
+        {f"{name}_level": level for name, level in conditions.items()}
+        | {"lubricant": OIL, "slide_to_roll_ratio": 0.0, "pair": "1", "duration": 1.0}
+        | {"sampling_interval": 1e-5, "turns": 1.0, "revolution_period": 1.0}
+        | {"repeatability": 1.0, "share_error": 0.0, "true_contact_share": np.asarray(shares)}
+        | {"record": [f"record {number}" for number in range(count)]}
+        | conditions
+        | values
+    )
+    variables = {
+        name: ("record", np.broadcast_to(value, count).copy()) for name, value in records.items()
+    }
+    below = np.asarray(shares)[:, None] * np.array([0.5, 1.0, 1.0])
+    for limit, factor in (("", 1.0), ("_lower", 0.9), ("_upper", 1.0)):
+        variables[f"contact_share{limit}"] = ("record", "threshold"), factor * below
+    folded = ("record", "phase"), np.full((count, PHASES), np.nan)
+    trace = ("record", "trace_sample"), np.full((count, 4), np.nan)
+    variables |= dict.fromkeys(("folded_share", "folded_deviation"), folded)
+    variables |= dict.fromkeys(("trace_time", "trace_resistance"), trace)
+    coords = {
+        "threshold": THRESHOLDS,
+        "phase": (np.arange(PHASES) + 0.5) / PHASES,
+        "origin": "simulated",
+    }
+    experiment = xr.Dataset(variables, coords, {"refused": "", "remarks": ""})
+    pairs = len(set(experiment["pair"].values.tolist()))
+    experiment = experiment.assign(comparison_threshold=100.0, drift=0.0, pairs=pairs)
+    labels = [f"{name}_level" for name in conditions]
+    return label(
+        experiment.set_coords(
+            [*conditions, *labels, "lubricant", "slide_to_roll_ratio", "pair", "duration"]
+        ),
+        "experiment",
+    )
+
+
+def experiment_at(levels, shares, **values):
+    """Records at all points of a grid, the force changing fastest, with given shares."""
+    names = ("temperature", "speed", "force")
+    grid = np.meshgrid(*(np.asarray(levels[name]) for name in names), indexing="ij")
+    conditions = {name: each.ravel() for name, each in zip(names, grid, strict=True)}
+    return experiment_of(np.ravel(shares), **(conditions | values))

@@ -1,0 +1,200 @@
+"""The model at each record's own conditions: what the grid has, and what a literal run finds."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from experiments import experiment_at, experiment_of
+from studies import OIL
+
+from lube import contact_statistics, film_table
+from lube.at_records import model_at_records
+from lube.lubricant import lubricant_table
+from lube.one_pair import repeat_factor, sample_size
+from lube.records import load_record
+from lube.roughness import roughness_batch
+
+PROBABILITY = "breakthrough_probability"
+CONDITIONS = [(250.0, 77.0, 66.6), (1234.5, 60.0, 79.3), (100.0, 100.0, 60.0), (90.0, 63.0, 80.4)]
+
+
+def experiment_off_the_grid(order=(0, 1, 2, 3), **values):
+    conditions = np.array(CONDITIONS)[list(order)].T
+    return experiment_of(np.full(conditions.shape[1], 0.1), *conditions, **values)
+
+
+@pytest.fixture(scope="module")
+def few(busy):
+    """The busy study with three realisations, for what has to be run."""
+    study = busy.study.model_copy(update={"realisations": 3})
+    return study, busy.film, busy.contact.isel(realisation=slice(3))
+
+
+@pytest.fixture(scope="module")
+def off_grid(few):
+    study, film, contact = few
+    return model_at_records(experiment_off_the_grid(), film, contact, study)
+
+
+def literal_run(study, force, speed, temperature, realisations=3, slips=(0.0,)):
+    """Film table and statistics of one operating point, by the stages themselves."""
+    oil = lubricant_table(study.lubricants, [temperature])
+    film = film_table(oil, study.rollers, [force], [speed], study.film_formulas)
+    lines = roughness_batch(study.line_spec, study.seed, range(realisations))
+    return film.squeeze(), contact_statistics(lines, film, study.boundary_layer, slips)
+
+
+# Films and probabilities
+
+
+def test_records_on_the_grid_have_the_values_of_the_grid_to_the_last_bit(busy):
+    experiment = experiment_at(busy.film, np.zeros(12)).isel(record=[5, 0, 11, 5, 7])
+    model = model_at_records(experiment, busy.film, busy.contact, busy.study)
+    for number in range(experiment.sizes["record"]):
+        record = experiment.isel(record=number)
+        levels = {name: record[name].item() for name in ("force", "speed", "temperature")}
+        here = model.isel(record=number)
+        table, found = busy.film.sel(levels).squeeze(), busy.contact.sel(levels).squeeze()
+        np.testing.assert_array_equal(here[PROBABILITY], found[PROBABILITY].values)
+        for name in ("film_thickness", "lambda_ratio", "contact_half_width"):
+            np.testing.assert_array_equal(here[name], table[name].values)
+
+
+def test_what_the_grid_has_is_taken_from_its_file_and_not_run_again(busy):
+    """A contact.nc with other values shows which records are taken from it."""
+    other = busy.contact.assign({PROBABILITY: busy.contact[PROBABILITY] / 2.0})
+    experiment = experiment_off_the_grid()
+    taken = model_at_records(experiment, busy.film, other, busy.study)[PROBABILITY]
+    right = model_at_records(experiment, busy.film, busy.contact, busy.study)[PROBABILITY]
+    ratio = (taken / right).isel(realisation=0, film_formula=0)
+    np.testing.assert_array_equal(ratio, [1.0, 1.0, 0.5, 1.0])
+
+
+@pytest.mark.parametrize("change", ["slip", "revolutions"])
+def test_without_rolling_over_one_turn_in_the_file_the_grid_is_run_to_the_same_bits(few, change):
+    study, film, contact = few
+    if change == "slip":
+        other = contact.assign_coords(slide_to_roll_ratio=[0.1])
+    else:
+        other = contact.assign_coords(revolutions=2)
+    other = other.assign({PROBABILITY: np.nan * contact[PROBABILITY]})
+    experiment = experiment_at(film, np.zeros(12))
+    run = model_at_records(experiment, film, other, study)
+    xr.testing.assert_equal(run, model_at_records(experiment, film, contact, study))
+
+
+def test_records_off_the_grid_are_those_of_a_literal_run(off_grid, few):
+    for number, conditions in enumerate(CONDITIONS):
+        table, found = literal_run(few[0], *conditions)
+        here = off_grid.isel(record=number)
+        np.testing.assert_array_equal(here[PROBABILITY], found[PROBABILITY].squeeze())
+        assert 0.0 < here[PROBABILITY].mean() < 1.0
+        for name in ("film_thickness", "lambda_ratio", "moes_load", "moes_material"):
+            np.testing.assert_array_equal(here[name], table[name].values)
+
+
+def test_neither_the_order_nor_the_number_of_records_changes_one(off_grid, few):
+    study, film, contact = few
+    for order in ([3, 1, 0, 2, 1, 1], [2], [0]):
+        model = model_at_records(experiment_off_the_grid(order), film, contact, study)
+        expected = off_grid.isel(record=order)
+        for name in off_grid.data_vars:
+            np.testing.assert_array_equal(model[name], expected[name])
+
+
+def test_slip_changes_no_expected_probability(off_grid, few):
+    study, film, contact = few
+    slipping = experiment_off_the_grid(slide_to_roll_ratio=0.1)
+    model = model_at_records(slipping, film, contact, study)
+    xr.testing.assert_equal(model[PROBABILITY], off_grid[PROBABILITY])
+
+
+def test_each_record_has_the_film_of_its_own_lubricant(few):
+    study, film, contact = few
+    study = study.model_copy(update={"lubricants": (*study.lubricants, load_record("n-dodecane"))})
+    experiment = experiment_off_the_grid([0, 0], lubricant=["n-dodecane", OIL])
+    model = model_at_records(experiment, film, contact, study)
+    oil = lubricant_table(study.lubricants, [66.6])
+    table = film_table(oil, study.rollers, [250.0], [77.0], study.film_formulas).squeeze()
+    for record, name in enumerate(("n-dodecane", OIL)):
+        expected = table["film_thickness"].sel(lubricant=name)
+        np.testing.assert_array_equal(model["film_thickness"][:, record], expected)
+
+
+# Scatter of one record
+
+
+def test_equal_rollers_in_rolling_repeat_themselves_and_learn_nothing_new(few):
+    turns = np.array([0.4, 1.0, 1.5, 1000.0])
+    model = model_at_records(experiment_off_the_grid(turns=turns), few[1], few[2], few[0])
+    for ratios in model["scatter_ratio"].values:
+        np.testing.assert_allclose(ratios, repeat_factor(turns), rtol=1e-12)
+
+
+def test_one_revolution_with_slip_scatters_as_the_realisations_do(busy):
+    experiment = experiment_off_the_grid([0], slide_to_roll_ratio=0.1)
+    study = busy.study
+    model = model_at_records(experiment, busy.film, busy.contact, study)
+    _, found = literal_run(study, *CONDITIONS[0], study.realisations, (0.0, 0.1))
+    rolling, slipping = found[PROBABILITY].var("realisation", ddof=1).squeeze()
+    np.testing.assert_allclose(model["scatter_ratio"][:, 0], slipping / rolling, rtol=1e-9)
+
+
+def unequal(study):
+    second = study.rollers.second.model_copy(update={"radius": 0.04})
+    rollers = study.rollers.model_copy(update={"second": second})
+    return study.model_copy(update={"rollers": rollers})
+
+
+@pytest.mark.parametrize("how", ["slip", "unequal rollers"])
+def test_new_alignments_make_a_long_record_scatter_less(busy, how):
+    study, slip = (busy.study, 0.1) if how == "slip" else (unequal(busy.study), 0.0)
+    turns = np.array([1.0, 4.0, 40.0])
+    experiment = experiment_off_the_grid([0, 0, 0], turns=turns, slide_to_roll_ratio=slip)
+    contact = busy.contact.isel(realisation=slice(16))
+    ratios = model_at_records(experiment, busy.film, contact, study)["scatter_ratio"]
+    assert (ratios.isel(record=1) < 0.7 * ratios.isel(record=0)).all()
+    assert (ratios.isel(record=2) <= ratios.isel(record=1)).all()
+    # What either line does alone stays.
+    assert (ratios.isel(record=2) > 0.02 * ratios.isel(record=0)).all()
+
+
+def test_the_scatter_of_unequal_rollers_is_that_of_a_literal_run(busy):
+    """Four turns of the first are five of the second: four alignments, and then the same again."""
+    study = unequal(busy.study)
+    realisations = 48
+    experiment = experiment_off_the_grid([0], turns=4.0)
+    contact = busy.contact.isel(
+        realisation=np.arange(realisations) % 32
+    )  # of which nothing is taken
+    contact = contact.assign_coords(realisation=range(realisations))
+    model = model_at_records(experiment, busy.film, contact, study)
+    oil = lubricant_table(study.lubricants, [CONDITIONS[0][2]])
+    film = film_table(
+        oil, study.rollers, [CONDITIONS[0][0]], [CONDITIONS[0][1]], study.film_formulas
+    )
+    lines = roughness_batch(study.line_spec, study.seed, range(realisations))
+    one, four = (
+        contact_statistics(lines, film, study.boundary_layer, revolutions=turns)[PROBABILITY]
+        .var("realisation", ddof=1)
+        .squeeze()
+        for turns in (1, 4)
+    )
+    # Two estimated variances of 48 pairs: known to some 20 % each.
+    np.testing.assert_allclose(model["scatter_ratio"][:, 0], four / one, rtol=0.4)
+
+
+def test_drift_makes_equal_rollers_scatter_less(few):
+    study, film, contact = few
+    drifting = study.model_copy(update={"rig": study.rig.model_copy(update={"drift": 0.5})})
+    experiment = experiment_off_the_grid(turns=50.0)
+    ratios = model_at_records(experiment, film, contact, drifting)["scatter_ratio"]
+    assert (ratios < 0.2).all() and (ratios >= 0.02).all()
+
+
+def test_one_realisation_tells_no_scatter_and_counts_whole(busy):
+    study = busy.study.model_copy(update={"realisations": 1})
+    experiment = experiment_off_the_grid(turns=40.0, slide_to_roll_ratio=0.1)
+    model = model_at_records(experiment, busy.film, busy.contact.isel(realisation=[0]), study)
+    # As if all persisted: to be wide is to be honest.
+    assert (model["scatter_ratio"] > 0.9).all()
+    assert sample_size(model[PROBABILITY].values, 7.0).tolist() == [[7.0] * 4] * 2
