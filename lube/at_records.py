@@ -24,14 +24,15 @@ log = logging.getLogger(__name__)
 PROBABILITY = "breakthrough_probability"
 POINT_VALUES = ("film_thickness", "contact_half_width")
 
-ALIGNMENTS = 64
-"""Alignments of each pair's lines, from which it is learnt what new ones average out."""
 MOST_PAIRS = 64
-"""Pairs of lines that are tried so, at most."""
+"""Pairs of lines whose scatter is learnt from runs of their own, at most."""
+AT_ONCE = 16
+"""First lines that are kept while all second ones pass: a matter of memory."""
 STRETCHES = 8
 """Stretches of each realisation that a record of less than a turn is tried on, at most."""
 ALIGNMENT_RATIOS = np.linspace(1.0, 3.5, 6)
-"""Lambda ratios at which they are: where contact is not too rare to scatter among so many."""
+"""Lambda ratios at which the lines are paired crosswise: where contact is not too rare to scatter
+among so many."""
 
 
 def model_at_records(experiment, film, contact, study):
@@ -220,7 +221,8 @@ def _slip_change(study, lines, points, variance, realisations, slip):
 def _persistent(study, lines, model, slips, turns):
     """Share of the scatter in rolling that no new alignment averages out, shape (P,).
 
-    Taken from many alignments of the ensemble's own lines; only where a record has several.
+    Taken from the ensemble's own lines, paired crosswise; only where a record has several
+    alignments.
     """
     ratio = model["lambda_ratio"].values.ravel()
     alike = study.line_spec.points[0] == study.line_spec.points[1]
@@ -230,20 +232,24 @@ def _persistent(study, lines, model, slips, turns):
     thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
     half_width = model["contact_half_width"].mean().item()
     levels = np.stack(whole_numbers(thickness, np.full(thickness.size, half_width), lines))
-    shares = [
-        _aligned(study, lines, realisation, levels)
-        for realisation in range(min(model.sizes["realisation"], MOST_PAIRS))
-    ]
-    found = persistent_share(np.array(shares))
+    found = persistent_share(
+        _crossed(study, lines, min(model.sizes["realisation"], MOST_PAIRS), levels)
+    )
     known = np.isfinite(found)
     if not known.any():
         return np.ones(ratio.size)
     return np.interp(ratio, ALIGNMENT_RATIOS[known], found[known])
 
 
-def _aligned(study, lines, realisation, levels):
-    """Probability of one pair at several alignments of its lines, shape (alignments, levels)."""
-    first, second = draw_realisation(study.line_spec, study.seed, realisation)
-    shifts = np.arange(ALIGNMENTS) * (second.size // ALIGNMENTS)
-    log.info("alignments of realisation %d", realisation)
-    return [_run(study, lines, (first, np.roll(second, s)), 0.0, levels) for s in shifts]
+def _crossed(study, lines, count, levels):
+    """Probability of each first line with each second one, shape (count, count, levels)."""
+    shares = np.empty((count, count, levels.shape[1]))
+    for begin in range(0, count, AT_ONCE):
+        numbers = range(begin, min(begin + AT_ONCE, count))
+        firsts = [draw_realisation(study.line_spec, study.seed, number)[0] for number in numbers]
+        for other in range(count):
+            _, second = draw_realisation(study.line_spec, study.seed, other)
+            for number, first in zip(numbers, firsts, strict=True):
+                shares[number, other] = _run(study, lines, (first, second), 0.0, levels)
+        log.info("lines %d to %d, paired with all others: done", begin, numbers[-1])
+    return shares
