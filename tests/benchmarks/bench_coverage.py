@@ -15,6 +15,7 @@ With slip a pair takes seconds, so `PAIRS` has fewer of them there; ``--all`` ta
 
 import argparse
 import itertools
+import logging
 import math
 import multiprocessing
 import os
@@ -99,11 +100,16 @@ def variant(study, rollers, motion="rolling"):
 # What the study knows
 
 
-def make_ensemble(study, first, pool):
-    """Contact and master map of the realisations from some one on, numbered from 0."""
+def film_of(study):
+    """Film table of a study's operating grid."""
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
-    film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+    return film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+
+
+def make_ensemble(study, first, pool):
+    """Contact and master map of the realisations from some one on, numbered from 0."""
+    film = film_of(study)
     wanted = [(study, film, first, number) for number in range(study.realisations)]
     runs, maps = zip(*pool(_realisation, wanted), strict=True)
     return Ensemble(film, gather(runs, film), gather_map(maps))
@@ -145,7 +151,7 @@ def record_shares(study, table, slip, turns, realisation):
     cycle = _cycle(pair, ratios) * turn
     whole, rest = ends // cycle, ends % cycle
     marks = np.unique([0, *rest, *(cycle * (whole > 0))])
-    counts = _counts(study, pair, ratios, table, marks)
+    counts = counts_up_to(study, pair, ratios, table, marks)
     # The last mark is the cycle's end where there is a whole one.
     return (whole[:, None] * counts[-1] + counts[np.searchsorted(marks, rest)]) / ends[:, None]
 
@@ -157,7 +163,7 @@ def _cycle(pair, ratios):
     return other // math.gcd(round(pair[faster].size * ratios[1 - faster]), other)
 
 
-def _counts(study, pair, ratios, table, marks):
+def counts_up_to(study, pair, ratios, table, marks):
     """Steps in contact up to each of some marks, the first of them 0, shape (marks, points)."""
     lines = xr.Dataset(attrs=line_attributes(study.line_spec))
     factor = layer_factor_of(lines, study.rollers.reduced_modulus, study.boundary_layer)
@@ -174,7 +180,7 @@ def _counts(study, pair, ratios, table, marks):
 
 
 def held_out_shares(study, table, motion, pairs, pool):
-    """Shares of the records of pairs that no ensemble has seen, shape (pairs, turns, points)."""
+    """Shares of the records of pairs that no ensemble has seen, shape (pairs, TURNS, points)."""
     run = partial(record_shares, study, table, MOTIONS[motion], TURNS)
     return np.array(list(pool(run, range(HELD_OUT, HELD_OUT + pairs))))
 
@@ -330,9 +336,10 @@ def _middle(ratios):
 
 
 def _spread(values):
-    """Width of what holds 95 % of the pairs in its middle."""
+    """Width of what holds 95 % of the pairs in its middle; infinite where it has no end."""
+    beyond = np.where(np.isnan(values), np.inf, values)
+    lower, upper = np.quantile(beyond, [0.025, 0.975], axis=0, method="nearest")
     with np.errstate(invalid="ignore"):
-        lower, upper = np.nanquantile(values, [0.025, 0.975], axis=0, method="nearest")
         return np.where(upper > lower, upper - lower, np.nan)
 
 
@@ -511,6 +518,8 @@ def main():
     parser.add_argument("output", nargs="?")
     parser.add_argument("--all", action="store_true", help="as many pairs with slip as without")
     options = parser.parse_args()
+    # Records stand at chosen points only, and no warning is needed of the others.
+    logging.getLogger("lube").setLevel(logging.ERROR)
     study = load_study(options.study)
     pairs, files = dict(PAIRS), FILES
     if options.all:
