@@ -197,7 +197,8 @@ def _perfect(comparison, chosen):
     )
     if not math.isfinite(lower):
         return ""
-    return f"; a right model would have {_percent(lower)} to {_percent(upper)} of them there"
+    ends = " to ".join(_percent(end) for end in sorted({lower, upper}))
+    return f"; a right model would have {ends} of them there"
 
 
 def _points(points, film, contact, comparison):
