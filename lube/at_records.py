@@ -53,7 +53,8 @@ def model_at_records(experiment, film, contact, study):
     xarray.Dataset
         ``film_thickness`` (m), ``lambda_ratio``, ``moes_load``, ``moes_material`` and
         ``contact_half_width`` (m) of each record, ``breakthrough_probability`` over
-        (realisation, film_formula, record) and ``scatter_ratio`` over (film_formula, record);
+        (realisation, film_formula, record), ``scatter_ratio`` over (film_formula, record), and
+        ``record_deviation`` over all three;
         the attributes ``travel`` and ``longest_wavelength``, both m, of one realisation.
 
         The probabilities are those of one revolution of pure rolling: in expectation slip does
@@ -68,8 +69,9 @@ def model_at_records(experiment, film, contact, study):
     rolling = _probabilities(study, lines, points, realisations, known)
     dims = ("realisation", "film_formula", "record")
     model[PROBABILITY] = dims, rolling.reshape(-1, *model["film_thickness"].shape)
-    ratio = _scatter_ratios(experiment, model, study, lines, points, rolling)
+    ratio, deviation = _scatter(experiment, model, study, lines, points, rolling)
     model["scatter_ratio"] = dims[1:], ratio.reshape(model["film_thickness"].shape)
+    model["record_deviation"] = dims, deviation.reshape(model[PROBABILITY].shape)
     model = model.assign_coords(realisation=contact["realisation"].values)
     return model.assign_attrs(
         {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
@@ -132,32 +134,82 @@ def _run(study, lines, pair, slide_to_roll_ratio, points, turns=1.0):
     return strip_statistics(*pair, ratios, steps, films, half_windows, factor)[:, 1] / steps
 
 
-def _scatter_ratios(experiment, model, study, lines, points, rolling):
-    """Variance of each record's share over that of one revolution in rolling, shape (P,)."""
+def _scatter(experiment, model, study, lines, points, rolling):
+    """How far each record's share lies from the mean over pairs.
+
+    Returns
+    -------
+    ratios : numpy.ndarray
+        Shape (P,), variance over that of one revolution in rolling.
+    deviations : numpy.ndarray
+        Shape (R, P), of each realisation in such a record, from which the correlation between
+        records of one pair follows; their size means nothing. NaN for realisations beyond
+        `MOST_PAIRS` where they have not been run.
+    """
     slips, turns = experiment["slide_to_roll_ratio"].values, experiment["turns"].values
     times = points.shape[1] // model.sizes["record"]  # all records by each film formula
     slips, turns = np.tile(slips, times), np.tile(turns, times)
     variance = rolling.var(axis=0, ddof=1) if len(rolling) > 1 else np.zeros(turns.size)
-    persistent = _persistent(study, lines, model, slips, turns)
-    ratios = 1.0 / turns
+    persistent, effects = _persistent(study, lines, model, slips, turns)
+    ratios, deviations = 1.0 / turns, rolling - rolling.mean(axis=0)
     for slip in np.unique(slips):
-        long = (slips == slip) & (turns >= 1.0)
-        change = _slip_change(study, lines, points[:, long], variance[long], len(rolling), slip)
-        for place, number in enumerate(np.flatnonzero(long)):
-            ratios[number] = change[place] * scatter_ratio(
-                turns[number],
-                speed_ratios(slip),
-                study.line_spec.points,
-                _reach(study),
-                min(persistent[number] / change[place], 1.0),
-                study.rig.drift,
-            )
+        long = np.flatnonzero((slips == slip) & (turns >= 1.0))
+        turn = _one_turn(study, lines, points[:, long], rolling[:, long], slip)
+        change = _change(turn, variance[long])
+        part = np.minimum(persistent[long] / change, 1.0)
+        parts = [
+            _parts(study, slip, turns[place], of) for place, of in zip(long, part, strict=True)
+        ]
+        alone, together = np.reshape(parts, (-1, 2)).T
+        ratios[long] = change * (alone + together)
+        if effects is not None:
+            mixed = _mixed(alone, together, effects[:, long], turn)
+            deviations[: len(mixed), long] = mixed
+            deviations[len(mixed) :, long] = np.nan
     short = (turns < 1.0) & (variance > 0.0)
     scatter = _short_scatter(
         study, lines, points[:, short], slips[short], turns[short], len(rolling)
     )
     ratios[short] = np.where(scatter > 0.0, scatter / variance[short], ratios[short])
-    return ratios
+    return ratios, deviations
+
+
+def _parts(study, slip, turns, persistent):
+    """Scatter ratio of a record by what its lines do alone, and by what they do together."""
+    motion = speed_ratios(slip), study.line_spec.points, _reach(study)
+    whole, renewed = (
+        scatter_ratio(turns, *motion, part, study.rig.drift) for part in (persistent, 0.0)
+    )
+    together = min((1.0 - persistent) * renewed, whole)
+    return whole - together, together
+
+
+def _mixed(alone, together, effects, turn):
+    """Deviations of each realisation in records of several alignments, shape (R, P).
+
+    What its lines do alone, whatever they meet, differs between pairs in other proportions from
+    point to point than what they do together: contact at neighbouring films is more alike. So
+    the two are added, each as large as in such a record.
+
+    Parameters
+    ----------
+    alone, together : numpy.ndarray
+        Shape (P,), both parts of the variance.
+    effects : numpy.ndarray
+        Shape (R, P), of the lines alone.
+    turn : numpy.ndarray
+        Shape (R, P) or more realisations, of one turn, which holds both.
+    """
+    effects, turn = _standardised(effects), _standardised(turn[: len(effects)])
+    rest = _standardised(turn - effects * np.mean(effects * turn, axis=0))
+    return np.sqrt(alone) * effects + np.sqrt(together) * rest
+
+
+def _standardised(values):
+    """Values with the mean 0 and the variance 1 over the realisations, or all 0."""
+    offsets = values - values.mean(axis=0)
+    scale = offsets.std(axis=0)
+    return offsets / np.where(scale > 0.0, scale, 1.0)
 
 
 def _short_scatter(study, lines, points, slips, turns, realisations):
@@ -201,44 +253,60 @@ def _reach(study):
     return 2.0 * np.pi / spec.q_min / spec.spacing
 
 
-def _slip_change(study, lines, points, variance, realisations, slip):
-    """Variance between realisations with slip over that in rolling, shape (P,).
-
-    With slip an alignment changes while the contact is passed, so that contacts are shorter and
-    more, and their share scatters less.
-    """
-    if slip == 0.0 or not variance.any():
-        return np.ones(variance.size)
-    slipping = np.empty((min(realisations, MOST_PAIRS), variance.size))
+def _one_turn(study, lines, points, rolling, slip):
+    """Probability of every realisation over one turn with slip, shape (R, P)."""
+    if slip == 0.0 or not points.size:
+        return rolling
+    slipping = np.empty((min(len(rolling), MOST_PAIRS), points.shape[1]))
     for realisation, row in enumerate(slipping):
         pair = draw_realisation(study.line_spec, study.seed, realisation)
         row[:] = _run(study, lines, pair, slip, points)
         log.info("records with slip %g: realisation %d: done", slip, realisation)
-    seen = (variance > 0.0) & (slipping.var(axis=0, ddof=1) > 0.0)
-    return np.where(seen, slipping.var(axis=0, ddof=1) / np.where(seen, variance, 1.0), 1.0)
+    return slipping
+
+
+def _change(turn, variance):
+    """Variance between realisations over one turn with slip over that in rolling, shape (P,).
+
+    With slip an alignment changes while the contact is passed, so that contacts are shorter and
+    more, and their share scatters less.
+    """
+    slipping = turn.var(axis=0, ddof=1) if len(turn) > 1 else np.zeros(variance.size)
+    seen = (variance > 0.0) & (slipping > 0.0)
+    return np.where(seen, slipping / np.where(seen, variance, 1.0), 1.0)
 
 
 def _persistent(study, lines, model, slips, turns):
-    """Share of the scatter in rolling that no new alignment averages out, shape (P,).
+    """Tell what no new alignment averages out: either line by itself, whatever it meets.
 
     Taken from the ensemble's own lines, paired crosswise; only where a record has several
     alignments.
+
+    Returns
+    -------
+    share : numpy.ndarray
+        Shape (P,), its part of the scatter in rolling.
+    effects : numpy.ndarray or None
+        Shape (R, P), of each realisation, up to `MOST_PAIRS` of them; None if none were run.
     """
     ratio = model["lambda_ratio"].values.ravel()
     alike = study.line_spec.points[0] == study.line_spec.points[1]
     one_alignment = alike and not slips.any()
     if one_alignment or not (turns > 1.0).any() or model.sizes["realisation"] < 2:
-        return np.zeros(ratio.size) if one_alignment else np.ones(ratio.size)
+        return (np.zeros if one_alignment else np.ones)(ratio.size), None
     thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
     half_width = model["contact_half_width"].mean().item()
     levels = np.stack(whole_numbers(thickness, np.full(thickness.size, half_width), lines))
-    found = persistent_share(
-        _crossed(study, lines, min(model.sizes["realisation"], MOST_PAIRS), levels)
-    )
+    shares = _crossed(study, lines, min(model.sizes["realisation"], MOST_PAIRS), levels)
+    found = persistent_share(shares)
     known = np.isfinite(found)
     if not known.any():
-        return np.ones(ratio.size)
-    return np.interp(ratio, ALIGNMENT_RATIOS[known], found[known])
+        return np.ones(ratio.size), None
+    effects = _standardised(shares.mean(axis=1) + shares.mean(axis=0))
+    *effects, share = (
+        np.interp(ratio, ALIGNMENT_RATIOS[known], row[known]) for row in (*effects, found)
+    )
+    return share, np.array(effects)
 
 
 def _crossed(study, lines, count, levels):

@@ -212,9 +212,15 @@ def fit_records(log_factors, logits, comparison):
     comparison = comparison.isel(record=used)
     probabilities, looks = _members(comparison)
     count = probabilities.shape[0]
-    covariance = realisation_correlation(probabilities) * (_of_records(comparison) + 1.0 / count)
+    covariance = _correlation(comparison["record_deviation"].values) * _of_records(comparison)
+    covariance += realisation_correlation(probabilities) / count
     noise = comparison["share_error"].values
     return fit_factor(log_factors, logits[:, used], shares[used], looks, covariance, count, noise)
+
+
+def _correlation(deviations):
+    """Correlation between the records of one pair, by the realisations that tell it."""
+    return realisation_correlation(deviations[np.isfinite(deviations).all(axis=1)])
 
 
 def _members(comparison):

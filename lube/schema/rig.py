@@ -162,6 +162,11 @@ _COMPARISON = {
         "1",
         "variance of the record's share between pairs over that of one revolution in rolling",
     ),
+    "record_deviation": number(
+        ["realisation", *_BY_FORMULA],
+        "1",
+        "deviation of each realisation in such a record, for the correlation between records",
+    ),
     **{
         f"predicted_share_{side}": number(
             _BY_FORMULA,
