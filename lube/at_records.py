@@ -163,9 +163,9 @@ def _scatter(experiment, model, study, lines, points, rolling):
         alone, together = np.reshape(parts, (-1, 2)).T
         ratios[long] = change * (alone + together)
         if effects is not None:
-            mixed = _mixed(alone, together, effects[:, long], turn)
-            deviations[: len(mixed), long] = mixed
-            deviations[len(mixed) :, long] = np.nan
+            turn = _mixed(alone, together, effects[:, long], turn)
+        deviations[: len(turn), long] = turn - turn.mean(axis=0)
+        deviations[len(turn) :, long] = np.nan
     short = (turns < 1.0) & (variance > 0.0)
     scatter = _short_scatter(
         study, lines, points[:, short], slips[short], turns[short], len(rolling)

@@ -7,7 +7,7 @@ from experiments import experiment_at, experiment_of
 from studies import OIL
 
 from lube import contact_statistics, film_table
-from lube.at_records import model_at_records
+from lube.at_records import _mixed, model_at_records
 from lube.kernels.scan import scan_statistics
 from lube.lubricant import lubricant_table
 from lube.one_pair import repeat_factor, sample_size
@@ -130,6 +130,23 @@ def test_equal_rollers_in_rolling_repeat_themselves_and_learn_nothing_new(few):
     model = model_at_records(experiment_off_the_grid(turns=turns), few[1], few[2], few[0])
     for ratios in model["scatter_ratio"].values:
         np.testing.assert_allclose(ratios, repeat_factor(turns), rtol=1e-12)
+
+
+def test_records_of_one_alignment_are_correlated_as_the_realisations_are(off_grid):
+    deviation = off_grid[PROBABILITY] - off_grid[PROBABILITY].mean("realisation")
+    np.testing.assert_allclose(off_grid["record_deviation"], deviation, atol=1e-12)
+
+
+def test_several_alignments_mix_what_lines_do_alone_and_together():
+    """Alone all points are alike, together all are their own."""
+    rng = np.random.default_rng(6)
+    lines, meeting = rng.normal(size=(20_000, 1)), rng.normal(size=(20_000, 3))
+    effects = np.repeat(lines, 3, axis=1)
+    turn = np.sqrt(0.1) * effects + np.sqrt(0.9) * meeting
+    alone, together = np.array([0.1, 0.1, 0.0]), np.array([0.3, 0.1, 0.2])
+    found = _mixed(alone, together, effects, turn)
+    expected = np.sqrt(alone[:, None] * alone) + np.diag(together)
+    np.testing.assert_allclose(np.cov(found.T), expected, atol=0.01)
 
 
 @pytest.mark.parametrize("slip", [0.0, 0.1])
