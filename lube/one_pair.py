@@ -223,22 +223,28 @@ def _standard_error(mean, looks, here, realisations, noise):
 def persistent_share(probabilities):
     """Share of one alignment's scatter that no number of alignments averages out.
 
+    It is what either line does whatever it meets. Each first line is paired with each second
+    one, so that both their parts follow from the analysis of variance of two crossed factors:
+    twice as many degrees of freedom as there are pairs of lines.
+
     Parameters
     ----------
     probabilities : numpy.ndarray
-        Shape (R, K, P): of each pair at several alignments of its lines, at each point.
+        Shape (R, K, P): of each of R first lines with each of K second ones, at each point.
 
     Returns
     -------
     numpy.ndarray
-        Shape (P,), s_inf^2 / s_1^2 by the analysis of variance, from 0 to 1; NaN where
-        nothing scatters.
+        Shape (P,), s_inf^2 / s_1^2, from 0 to 1; NaN where nothing scatters.
     """
-    alignments = probabilities.shape[1]
-    within = probabilities.var(axis=1, ddof=1).mean(axis=0)
-    between = probabilities.mean(axis=1).var(axis=0, ddof=1) - within / alignments
+    firsts, seconds = probabilities.shape[:2]
+    first, second = (probabilities.mean(axis=axis, keepdims=True) for axis in (1, 0))
+    rest = probabilities - first - second + probabilities.mean(axis=(0, 1))
+    together = np.sum(rest**2, axis=(0, 1)) / ((firsts - 1) * (seconds - 1))
+    alone = np.clip(first.var(axis=(0, 1), ddof=1) - together / seconds, 0.0, None)
+    alone += np.clip(second.var(axis=(0, 1), ddof=1) - together / firsts, 0.0, None)
     with np.errstate(invalid="ignore"):
-        return np.clip(between, 0.0, None) / (np.clip(between, 0.0, None) + within)
+        return alone / (alone + together)
 
 
 def sample_size(probabilities, windows):
