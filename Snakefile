@@ -17,6 +17,7 @@ include: "workflow/rules/gauge.smk"
 include: "workflow/rules/figure.smk"
 include: "workflow/rules/speed.smk"
 include: "workflow/rules/reading.smk"
+include: "workflow/rules/coverage.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/archive.smk"
 

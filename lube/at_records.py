@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from lube.film import film_at
+from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_statistics
 from lube.lubricant import lubricant_table
 from lube.one_pair import persistent_share, scatter_ratio
@@ -23,12 +24,15 @@ log = logging.getLogger(__name__)
 PROBABILITY = "breakthrough_probability"
 POINT_VALUES = ("film_thickness", "contact_half_width")
 
-ALIGNMENTS = 64
-"""Alignments of each pair's lines, from which it is learnt what new ones average out."""
 MOST_PAIRS = 64
-"""Pairs of lines that are tried so, at most."""
+"""Pairs of lines whose scatter is learnt from runs of their own, at most."""
+AT_ONCE = 16
+"""First lines that are kept while all second ones pass: a matter of memory."""
+STRETCHES = 8
+"""Stretches of each realisation that a record of less than a turn is tried on, at most."""
 ALIGNMENT_RATIOS = np.linspace(1.0, 3.5, 6)
-"""Lambda ratios at which they are: where contact is not too rare to scatter among so many."""
+"""Lambda ratios at which the lines are paired crosswise: where contact is not too rare to scatter
+among so many."""
 
 
 def model_at_records(experiment, film, contact, study):
@@ -119,10 +123,10 @@ def _probabilities(study, lines, points, realisations, known):
     return values[:, back.ravel()]
 
 
-def _run(study, lines, pair, slide_to_roll_ratio, points):
-    """Probability of breakthrough over one revolution, shape (P,)."""
+def _run(study, lines, pair, slide_to_roll_ratio, points, turns=1.0):
+    """Probability of breakthrough over one revolution, or a part of it, shape (P,)."""
     ratios = speed_ratios(slide_to_roll_ratio)
-    steps = revolution(pair, ratios)
+    steps = max(round(turns * revolution(pair, ratios)), 1)
     factor = layer_factor_of(lines, study.rollers.reduced_modulus, study.boundary_layer)
     films, half_windows = np.ascontiguousarray(points)
     return strip_statistics(*pair, ratios, steps, films, half_windows, factor)[:, 1] / steps
@@ -131,23 +135,64 @@ def _run(study, lines, pair, slide_to_roll_ratio, points):
 def _scatter_ratios(experiment, model, study, lines, points, rolling):
     """Variance of each record's share over that of one revolution in rolling, shape (P,)."""
     slips, turns = experiment["slide_to_roll_ratio"].values, experiment["turns"].values
-    records = model.sizes["record"]
+    times = points.shape[1] // model.sizes["record"]  # all records by each film formula
+    slips, turns = np.tile(slips, times), np.tile(turns, times)
+    variance = rolling.var(axis=0, ddof=1) if len(rolling) > 1 else np.zeros(turns.size)
     persistent = _persistent(study, lines, model, slips, turns)
-    ratios = np.empty(points.shape[1])
+    ratios = 1.0 / turns
     for slip in np.unique(slips):
-        here = np.tile(slips == slip, points.shape[1] // records)
-        change = _slip_change(study, lines, points[:, here], rolling[:, here], slip)
-        for place, number in enumerate(np.flatnonzero(here)):
-            alone = min(persistent[number] / change[place], 1.0)
+        long = (slips == slip) & (turns >= 1.0)
+        change = _slip_change(study, lines, points[:, long], variance[long], len(rolling), slip)
+        for place, number in enumerate(np.flatnonzero(long)):
             ratios[number] = change[place] * scatter_ratio(
-                turns[number % records],
+                turns[number],
                 speed_ratios(slip),
                 study.line_spec.points,
                 _reach(study),
-                alone,
+                min(persistent[number] / change[place], 1.0),
                 study.rig.drift,
             )
+    short = (turns < 1.0) & (variance > 0.0)
+    scatter = _short_scatter(
+        study, lines, points[:, short], slips[short], turns[short], len(rolling)
+    )
+    ratios[short] = np.where(scatter > 0.0, scatter / variance[short], ratios[short])
     return ratios
+
+
+def _short_scatter(study, lines, points, slips, turns, realisations):
+    """Variance between the shares of records of less than a turn, shape (P,).
+
+    It is not in proportion to 1 / turns: the waves of a whole line have their amplitudes by the
+    study's spectrum, those of a part of it have not, so that parts differ the more. So it is
+    taken from stretches of the ensemble's own lines.
+    """
+    motions = sorted(set(zip(slips.tolist(), turns.tolist(), strict=True)))
+    shares = [[] for _ in motions]
+    for realisation in range(min(realisations, MOST_PAIRS)) if motions else ():
+        pair = draw_realisation(study.line_spec, study.seed, realisation)
+        for (slip, part), found in zip(motions, shares, strict=True):
+            here = points[:, (slips == slip) & (turns == part)]
+            found += _stretches(study, lines, pair, slip, part, here)
+        log.info("short records: realisation %d: done", realisation)
+    scatter = np.zeros(turns.size)
+    for (slip, part), found in zip(motions, shares, strict=True):
+        scatter[(slips == slip) & (turns == part)] = np.var(found, axis=0, ddof=1)
+    return scatter
+
+
+def _stretches(study, lines, pair, slip, turns, points):
+    """Shares of one pair's records that begin at several places, a list of shape (P,) each."""
+    ratios = speed_ratios(slip)
+    count = min(int(1.0 / turns), STRETCHES)
+    shares = []
+    for begin in np.arange(count) * revolution(pair, ratios) // count:
+        begun = [
+            np.roll(line, -surface_position(begin, ratio))
+            for line, ratio in zip(pair, ratios, strict=True)
+        ]
+        shares.append(_run(study, lines, begun, slip, points, turns))
+    return shares
 
 
 def _reach(study):
@@ -156,16 +201,15 @@ def _reach(study):
     return 2.0 * np.pi / spec.q_min / spec.spacing
 
 
-def _slip_change(study, lines, points, rolling, slip):
+def _slip_change(study, lines, points, variance, realisations, slip):
     """Variance between realisations with slip over that in rolling, shape (P,).
 
     With slip an alignment changes while the contact is passed, so that contacts are shorter and
     more, and their share scatters less.
     """
-    variance = rolling.var(axis=0, ddof=1) if len(rolling) > 1 else np.zeros(points.shape[1])
     if slip == 0.0 or not variance.any():
-        return np.ones(points.shape[1])
-    slipping = np.empty((min(len(rolling), MOST_PAIRS), points.shape[1]))
+        return np.ones(variance.size)
+    slipping = np.empty((min(realisations, MOST_PAIRS), variance.size))
     for realisation, row in enumerate(slipping):
         pair = draw_realisation(study.line_spec, study.seed, realisation)
         row[:] = _run(study, lines, pair, slip, points)
@@ -177,7 +221,8 @@ def _slip_change(study, lines, points, rolling, slip):
 def _persistent(study, lines, model, slips, turns):
     """Share of the scatter in rolling that no new alignment averages out, shape (P,).
 
-    Taken from many alignments of the ensemble's own lines; only where a record has several.
+    Taken from the ensemble's own lines, paired crosswise; only where a record has several
+    alignments.
     """
     ratio = model["lambda_ratio"].values.ravel()
     alike = study.line_spec.points[0] == study.line_spec.points[1]
@@ -187,20 +232,24 @@ def _persistent(study, lines, model, slips, turns):
     thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
     half_width = model["contact_half_width"].mean().item()
     levels = np.stack(whole_numbers(thickness, np.full(thickness.size, half_width), lines))
-    shares = [
-        _aligned(study, lines, realisation, levels)
-        for realisation in range(min(model.sizes["realisation"], MOST_PAIRS))
-    ]
-    found = persistent_share(np.array(shares))
+    found = persistent_share(
+        _crossed(study, lines, min(model.sizes["realisation"], MOST_PAIRS), levels)
+    )
     known = np.isfinite(found)
     if not known.any():
         return np.ones(ratio.size)
     return np.interp(ratio, ALIGNMENT_RATIOS[known], found[known])
 
 
-def _aligned(study, lines, realisation, levels):
-    """Probability of one pair at several alignments of its lines, shape (alignments, levels)."""
-    first, second = draw_realisation(study.line_spec, study.seed, realisation)
-    shifts = np.arange(ALIGNMENTS) * (second.size // ALIGNMENTS)
-    log.info("alignments of realisation %d", realisation)
-    return [_run(study, lines, (first, np.roll(second, s)), 0.0, levels) for s in shifts]
+def _crossed(study, lines, count, levels):
+    """Probability of each first line with each second one, shape (count, count, levels)."""
+    shares = np.empty((count, count, levels.shape[1]))
+    for begin in range(0, count, AT_ONCE):
+        numbers = range(begin, min(begin + AT_ONCE, count))
+        firsts = [draw_realisation(study.line_spec, study.seed, number)[0] for number in numbers]
+        for other in range(count):
+            _, second = draw_realisation(study.line_spec, study.seed, other)
+            for number, first in zip(numbers, firsts, strict=True):
+                shares[number, other] = _run(study, lines, (first, second), 0.0, levels)
+        log.info("lines %d to %d, paired with all others: done", begin, numbers[-1])
+    return shares

@@ -13,7 +13,7 @@ import xarray as xr
 
 from lube.errors import DataError, LubeError
 from lube.evaluation import folded_counts, record_counter, share_interval
-from lube.folding import CLEAR, PHASES, fold
+from lube.folding import CLEAR, PHASES, SPAN, fold
 from lube.levels import level_near
 from lube.one_pair import distinct_alignments
 from lube.points import operating_points
@@ -260,8 +260,9 @@ class _Record:
         return self._counter.samples
 
     def add(self, values):
-        """Count the next samples, V or ohm; the first revolution is kept for the trace."""
-        missing = self._wanted - sum(part.size for part in self._first)
+        """Count the next samples, V or ohm; for the trace somewhat over a revolution is kept."""
+        wanted = round((1.0 + SPAN) * self._wanted)
+        missing = wanted - sum(part.size for part in self._first)
         if missing > 0:
             self._first.append(np.array(values[:missing], float))
         self._counter.add(values)
@@ -278,7 +279,9 @@ class _Record:
         block = float(sizes[0]) * self._interval
         at = self._study.experiment.thresholds.index(self._study.experiment.threshold)
         folded = fold(below[at] / sizes, block, self._period())
-        self._believe(folded, name, remarks)
+        clear = folded.repeatability >= CLEAR
+        speed_ratio = self._period() / folded.period if clear else np.nan
+        self._believe(speed_ratio, name, remarks)
         duration = self.samples * self._interval
         turns = duration / folded.period * self._turns_a_turn()
         around = [folded_counts(below, sizes, block, each) for each in self._periods(folded.period)]
@@ -293,20 +296,20 @@ class _Record:
             "turns": turns,
             "revolution_period": folded.period,
             "repeatability": folded.repeatability,
+            "speed_ratio": speed_ratio,
             "share_error": folded.share_error if self._repeats() else 0.0,
             "folded_share": folded.profile,
             "folded_deviation": folded.deviation,
-            **self._trace(),
+            **self._trace(folded.period),
             **({"true_contact_share": self._touched / self._steps} if self._steps else {}),
         }
 
-    def _believe(self, folded, name, remarks):
+    def _believe(self, speed_ratio, name, remarks):
         """Correct a speed that the record's own repetition contradicts."""
         conditions = self.conditions
-        speed = conditions.speed * self._period() / folded.period
-        if not folded.repeatability >= CLEAR:
-            return
-        if remarks is None or abs(speed - conditions.speed) <= conditions.tolerances["speed"]:
+        speed = conditions.speed * speed_ratio
+        apart = abs(speed - conditions.speed) > conditions.tolerances["speed"]
+        if remarks is None or not apart:
             return
         remarks.append(
             f"{name}: its speed is stated as {conditions.speed:.6g} rpm, but it repeats itself at "
@@ -341,9 +344,9 @@ class _Record:
         seen = min(turns, distinct_alignments(turns, shift, spec.points[1 - faster], reach))
         return max(seen * spec.points[faster] * min(ratios) / reach, 1.0)
 
-    def _trace(self):
+    def _trace(self, period):
         """Resistance over the first revolution, thinned to its extremes."""
-        values = np.concatenate(self._first)
+        values = np.concatenate(self._first)[: max(round(period / self._interval), 1)]
         if self._quantity == "voltage":
             values = resistance_from_voltage(values, self._study.rig)
         times, values = _thinned(values, self._interval)
@@ -374,7 +377,7 @@ _NUMBERS = (
     *LEVELS,
     *(f"{name}_level" for name in LEVELS),
     *("slide_to_roll_ratio", "true_contact_share", "duration", "sampling_interval", "turns"),
-    *("revolution_period", "repeatability", "share_error"),
+    *("revolution_period", "repeatability", "speed_ratio", "share_error"),
 )
 _COORDINATES = (*_NUMBERS[:7], "duration", "lubricant", "pair", "record")
 

@@ -47,9 +47,26 @@ def fit_alpha(master, contact, comparison):
         infinity. ``alpha_factor_coverage`` is the share of realisations whose interval, each
         left out and taken as the records, holds 1.
     """
+    logits = alpha_logits(master, comparison)
+    return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison)
+
+
+def alpha_logits(master, comparison):
+    """Logits of the map's mean probability at the records, for each of `ALPHA_FACTORS`.
+
+    Parameters
+    ----------
+    master, comparison : xarray.Dataset
+        Datasets of these kinds, of one study.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over (factor, film_formula, record).
+    """
     factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
     logits = _mean_logits(master, comparison, _ratios(comparison, factor))
-    return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison)
+    return logits.transpose("factor", "film_formula", "record")
 
 
 def fit_layer_strength(master, contact, comparison):
@@ -69,16 +86,34 @@ def fit_layer_strength(master, contact, comparison):
         film_formula). Beyond the strengths of the map it is NaN, a limit 0 or infinity.
         ``fitted_layer_strength_coverage`` as in `fit_alpha`.
     """
+    tried, logits = strength_logits(master, contact, comparison)
+    truth = study_strength(contact)
+    return _fits("fitted_layer_strength", tried, truth, logits, contact, comparison)
+
+
+def strength_logits(master, contact, comparison):
+    """Logits of the map's mean probability at the records, for many strengths of the layer.
+
+    Parameters
+    ----------
+    master, contact, comparison : xarray.Dataset
+        Datasets of these kinds, of one study.
+
+    Returns
+    -------
+    tried : numpy.ndarray
+        The strengths, shape (factor,), Pa/m, rising.
+    logits : xarray.DataArray
+        Over (factor, film_formula, record).
+    """
     tried = np.geomspace(*master["layer_strength"].values[[0, -1]], STRENGTH_LEVELS)
-    study = study_strength(contact)
-    logits = _strength_logits(master, comparison, study)
+    logits = _strength_logits(master, comparison, study_strength(contact))
     # A record at which some layer's contact is too rare for the map is left out.
     known = logits.notnull().all("layer_strength")
     spline = scipy.interpolate.PchipInterpolator(
         np.log(logits["layer_strength"]), logits.fillna(0.0)
     )
-    logits = known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
-    return _fits("fitted_layer_strength", tried, study, logits, contact, comparison)
+    return tried, known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
 
 
 def _ratios(comparison, factor):
@@ -143,8 +178,9 @@ def _fits(name, tried, truth, logits, contact, comparison):
     for o, f in np.ndindex(fits.shape[:-1]):
         records = comparison["lubricant"].values == oils[o]
         here = comparison.isel(film_formula=f, record=records)
-        model = logits.isel(film_formula=f, record=records).transpose(..., "record").values
-        fits[o, f] = _fit(np.log(tried), np.log(truth), model, here)
+        model = logits.isel(film_formula=f, record=records).values
+        coverage = _coverage(np.log(tried), np.log(truth), model, here)
+        fits[o, f] = *fit_records(np.log(tried), model, here), coverage
     *found, coverage = np.moveaxis(fits, -1, 0)
     variables = limited(name, found) | {f"{name}_coverage": coverage}
     dims = ("fitted_lubricant", "film_formula")
@@ -154,20 +190,38 @@ def _fits(name, tried, truth, logits, contact, comparison):
     )
 
 
-def _fit(log_factors, truth, logits, comparison):
-    """Fit a factor to the records of one lubricant, by one film formula, and tell its coverage."""
+def fit_records(log_factors, logits, comparison):
+    """Fit a factor to records of one lubricant, by one film formula.
+
+    Parameters
+    ----------
+    log_factors : numpy.ndarray
+        Logarithms of the factor, shape (F,), rising.
+    logits : numpy.ndarray
+        Of the model's probability, shape (F, P).
+    comparison : xarray.Dataset
+        A ``comparison`` dataset of these P records and one film formula, without its dimension.
+
+    Returns
+    -------
+    factor, lower, upper : float
+        From `lube.curves.fit_factor`.
+    """
     shares = comparison["measured_share"].values
     used = np.isfinite(shares) & np.isfinite(logits).all(axis=0)
-    logits, comparison = logits[:, used], comparison.isel(record=used)
+    comparison = comparison.isel(record=used)
+    probabilities, looks = _members(comparison)
+    count = probabilities.shape[0]
+    covariance = realisation_correlation(probabilities) * (_of_records(comparison) + 1.0 / count)
+    noise = comparison["share_error"].values
+    return fit_factor(log_factors, logits[:, used], shares[used], looks, covariance, count, noise)
+
+
+def _members(comparison):
+    """Probabilities of the realisations at the records, and their effective sample size."""
     probabilities = comparison["breakthrough_probability"].values
     widths = 2.0 * comparison["contact_half_width"].values
-    looks = sample_size(probabilities, independent_windows(comparison, widths))
-    correlation = realisation_correlation(probabilities)
-    count = probabilities.shape[0]
-    covariance = correlation * (_of_records(comparison) + 1.0 / count)
-    noise = comparison["share_error"].values
-    fitted = fit_factor(log_factors, logits, shares[used], looks, covariance, count, noise)
-    return *fitted, _coverage(log_factors, truth, logits, probabilities, looks)
+    return probabilities, sample_size(probabilities, independent_windows(comparison, widths))
 
 
 def _of_records(comparison):
@@ -177,12 +231,15 @@ def _of_records(comparison):
     return np.where(pair[:, None] == pair, ratio[:, None] * ratio, 0.0)
 
 
-def _coverage(log_factors, truth, logits, probabilities, looks):
+def _coverage(log_factors, truth, logits, comparison):
     """Share of the realisations, each left out and taken as the records, whose interval is right.
 
     The interval is all that the misfit does not contradict, so it holds the truth where the
     misfit there is within its quantile.
     """
+    used = np.isfinite(comparison["measured_share"].values) & np.isfinite(logits).all(axis=0)
+    logits = logits[:, used]
+    probabilities, looks = _members(comparison.isel(record=used))
     count = probabilities.shape[0]
     if count < 3 or not looks.size:
         return np.nan

@@ -188,14 +188,15 @@ def prediction_limits(mean, looks, ratio, realisations, noise=0.0):
     Returns
     -------
     lower, upper : numpy.ndarray
-        Within 0 and 1. Where all realisations agree on 0 or 1, on the other side as far as
-        the effective sample size allows, at 95 % one-sided.
+        Within 0 and 1. Where all realisations agree on 0 or 1, the mean is taken as far from
+        it as they allow, at 95 % one-sided.
     """
-    here = np.maximum(looks / ratio, 1.0)  # a record is at least one look
-    half = quantile(realisations) * _standard_error(mean, looks, here, realisations, noise)
-    never_met = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / here)
-    lower = np.where(mean == 1.0, 1.0 - never_met, np.maximum(mean - half, 0.0))
-    upper = np.where(mean == 0.0, never_met, np.minimum(mean + half, 1.0))
+    never_met = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / (looks * realisations))
+    likely = np.clip(mean, never_met, 1.0 - never_met)
+    likely = np.where((mean == 0.0) | (mean == 1.0), likely, mean)
+    half = quantile(realisations) * standard_error(likely, looks, ratio, realisations, noise)
+    lower = np.where(mean == 0.0, 0.0, np.maximum(likely - half, 0.0))
+    upper = np.where(mean == 1.0, 1.0, np.minimum(likely + half, 1.0))
     return lower, upper
 
 
@@ -212,10 +213,7 @@ def standard_error(mean, looks, ratio, realisations, noise=0.0):
     numpy.ndarray
         (p (1 - p) (v / n + 1 / (n R)) + noise^2)^(1/2).
     """
-    return _standard_error(mean, looks, np.maximum(looks / ratio, 1.0), realisations, noise)
-
-
-def _standard_error(mean, looks, here, realisations, noise):
+    here = np.maximum(looks / ratio, 1.0)  # a record is at least one look
     variance = mean * (1.0 - mean) * (1.0 / here + 1.0 / (looks * realisations))
     return np.sqrt(variance + np.square(noise))
 
@@ -223,22 +221,28 @@ def _standard_error(mean, looks, here, realisations, noise):
 def persistent_share(probabilities):
     """Share of one alignment's scatter that no number of alignments averages out.
 
+    It is what either line does whatever it meets. Each first line is paired with each second
+    one, so that both their parts follow from the analysis of variance of two crossed factors:
+    twice as many degrees of freedom as there are pairs of lines.
+
     Parameters
     ----------
     probabilities : numpy.ndarray
-        Shape (R, K, P): of each pair at several alignments of its lines, at each point.
+        Shape (R, K, P): of each of R first lines with each of K second ones, at each point.
 
     Returns
     -------
     numpy.ndarray
-        Shape (P,), s_inf^2 / s_1^2 by the analysis of variance, from 0 to 1; NaN where
-        nothing scatters.
+        Shape (P,), s_inf^2 / s_1^2, from 0 to 1; NaN where nothing scatters.
     """
-    alignments = probabilities.shape[1]
-    within = probabilities.var(axis=1, ddof=1).mean(axis=0)
-    between = probabilities.mean(axis=1).var(axis=0, ddof=1) - within / alignments
+    firsts, seconds = probabilities.shape[:2]
+    first, second = (probabilities.mean(axis=axis, keepdims=True) for axis in (1, 0))
+    rest = probabilities - first - second + probabilities.mean(axis=(0, 1))
+    together = np.sum(rest**2, axis=(0, 1)) / ((firsts - 1) * (seconds - 1))
+    alone = np.clip(first.var(axis=(0, 1), ddof=1) - together / seconds, 0.0, None)
+    alone += np.clip(second.var(axis=(0, 1), ddof=1) - together / firsts, 0.0, None)
     with np.errstate(invalid="ignore"):
-        return np.clip(between, 0.0, None) / (np.clip(between, 0.0, None) + within)
+        return alone / (alone + together)
 
 
 def sample_size(probabilities, windows):

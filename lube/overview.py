@@ -5,6 +5,8 @@ import platform
 from html import escape
 from importlib.metadata import version
 
+import numpy as np
+
 from lube.pages import html_table
 from lube.provenance import LIBRARIES
 from lube.repository import commit
@@ -88,10 +90,14 @@ def _experiment(study):
     threshold = with_unit(study.experiment.threshold, "ohm")
     if study.experiment.manifest is not None:
         return f"measured records; below {threshold} counts as contact"
-    turns = _counted(study.rig.revolutions, "revolution")
+    turns = f"{study.rig.revolutions:g} revolution{'' if study.rig.revolutions == 1 else 's'}"
+    pairs = study.rig.pairs
+    rollers = "one pair of rollers turns" if pairs == 1 else f"{pairs} pairs of rollers turn"
+    drift = f", which renew {100.0 * study.rig.drift:g} % of their roughness's variance each"
     return (
-        f"a simulated rig, {turns} a record, each with a roughness of its own; below {threshold} "
-        "counts as contact. No measured value enters this study."
+        f"a simulated rig: {rollers} {turns} at every operating point"
+        f"{drift if study.rig.drift else ''}; below {threshold} counts as contact. "
+        "No measured value enters this study."
     )
 
 
@@ -165,16 +171,34 @@ def _outside(inside):
 
 
 def _agreement(comparison, chosen):
-    """Say how far simulation and rig agree; nothing where they have no point in common."""
+    """Say how far simulation and rig agree; nothing where there is no record."""
     chosen = chosen | {"threshold": comparison["comparison_threshold"].item()}
-    bias, spread = (float(_at(comparison[name], chosen)) for name in ("bias", "rms_difference"))
+    bias, spread, inside = (
+        float(_at(comparison[name], chosen)) for name in ("bias", "rms_difference", "overlap_share")
+    )
     if not math.isfinite(bias):
         return ""
     rig = "a simulated rig" if comparison["origin"].item() == "simulated" else "the rig"
+    records = int(_at(comparison["compared_records"], chosen))
     return (
-        f"Against {rig} the simulation is on average {abs(100.0 * bias):.2g} percentage points too "
-        f"{'high' if bias > 0.0 else 'low'}; the rms difference is {100.0 * spread:.2g} points."
+        f"Against {rig} ({_counted(records, 'record')} of "
+        f"{_counted(comparison['pairs'].item(), 'pair')} of rollers) the simulation is on average "
+        f"{abs(100.0 * bias):.2g} percentage points too {'high' if bias > 0.0 else 'low'}; the rms "
+        f"difference is {100.0 * spread:.2g} points. {_percent(inside)} of the records lie where "
+        f"95 % of single pairs should{_perfect(comparison, chosen)}."
     )
+
+
+def _perfect(comparison, chosen):
+    """Tell what share of its records a right model would have within the prediction."""
+    lower, upper = (
+        float(_at(comparison[f"overlap_share_expected_{side}"], chosen))
+        for side in ("lower", "upper")
+    )
+    if not math.isfinite(lower):
+        return ""
+    ends = " to ".join(_percent(end) for end in sorted({lower, upper}))
+    return f"; a right model would have {ends} of them there"
 
 
 def _points(points, film, contact, comparison):
@@ -185,13 +209,32 @@ def _points(points, film, contact, comparison):
             with_unit(_rounded(_at(film["film_thickness"], point)), "m"),
             f"{float(_at(film['lambda_ratio'], point)):.3g}",
             _with_interval(contact.sel(point)),
-            _percent(_at(comparison["measured_share"], point)),
+            _range(_measured_near(comparison, point)),
         )
         for point in points
     ]
     head = ("operating point", "film", "lambda ratio",
             "time with metal contact (95 % interval)", "by the rig")  # fmt: skip
     return html_table(head, rows)
+
+
+def _measured_near(comparison, point):
+    """Shares of the records near an operating point, as far as they are known."""
+    names = {name: f"{name}_level" for name in ("force", "speed", "temperature")}
+    names |= {name: name for name in ("lubricant", "slide_to_roll_ratio")}
+    near = np.logical_and.reduce(
+        [comparison[name].values == point[level] for level, name in names.items()]
+    )
+    shares = comparison["measured_share"].values[near]
+    return shares[np.isfinite(shares)]
+
+
+def _range(shares):
+    """Tell one share, or the least and the greatest of several."""
+    if not shares.size:
+        return "–"
+    ends = [_percent(end) for end in sorted({shares.min(), shares.max()})]
+    return " to ".join(ends) + (f" ({shares.size} records)" if shares.size > 1 else "")
 
 
 def _with_interval(contact):

@@ -68,6 +68,7 @@ _AXIS_UNITS = {
 
 
 _STAMP_STRIP = 0.12  # inches
+_LONGEST_NAME = 32  # of a record; of a longer one the end is told
 
 
 def use_style():
@@ -179,6 +180,81 @@ def point_name(place, *variables):
     """
     names = variables or ("force", "speed", "temperature")
     return ", ".join(level_name(place[name].item(), COORDINATES[name].units) for name in names)
+
+
+def rig_name(dataset):
+    """Rig behind some records as text: ``simulated rig, 1 pair of rollers``.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An ``experiment``, ``comparison`` or ``gauge`` dataset.
+
+    Returns
+    -------
+    str
+        Its origin and its pairs of rollers, and how fast their roughness drifts if it does.
+    """
+    pairs, drift = dataset["pairs"].item(), dataset["drift"].item()
+    words = [f"{dataset['origin'].item()} rig", f"{pairs} pair{'s' * (pairs != 1)} of rollers"]
+    words += [f"drift {drift:g} a revolution"] * (drift > 0.0)
+    return ", ".join(words)
+
+
+def record_name(record, pairs=1):
+    """Record as text: what it is called, and its conditions in a line of their own.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        One record, with its conditions and the coordinate ``origin``.
+    pairs : int, optional
+        Pairs of rollers behind all records; if several, the record's is named.
+
+    Returns
+    -------
+    str
+        Such as ``run1.nc (list.csv: line 2), pair A`` and ``1603 N, 100 r/min, 80 °C``; a
+        simulated record has no name but its conditions.
+    """
+    name = record["record"].item() if record["origin"].item() == "measured" else ""
+    name = name if len(name) <= _LONGEST_NAME else "…" + name[1 - _LONGEST_NAME :]
+    words = [name] * bool(name) + [f"pair {record['pair'].item()}"] * (pairs > 1)
+    return "\n".join([", ".join(words)] * bool(words) + [point_name(record)])
+
+
+def level_groups(records, name):
+    """Group records by the level that they are near, with a style for each level.
+
+    Parameters
+    ----------
+    records : xarray.Dataset
+        With the dimension ``record``.
+    name : str
+        Operating variable, such as ``force``.
+
+    Returns
+    -------
+    list of tuple
+        For each level, rising, its name, colour and marker and its records; last those near
+        no level, if there are any.
+    """
+    near = records[f"{name}_level"].values
+    levels = np.unique(near[np.isfinite(near)])
+    colours, markers = level_colours(levels), level_markers(levels)
+    groups = [
+        (
+            level_name(level, COORDINATES[name].units),
+            colours[level],
+            markers[level],
+            records.isel(record=near == level),
+        )
+        for level in levels.tolist()
+    ]
+    if np.isnan(near).any():
+        other = records.isel(record=np.isnan(near))
+        groups.append(("near no level", COLOURS["black"], "X", other))
+    return groups
 
 
 def footnote(figure, dataset):

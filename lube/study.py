@@ -54,6 +54,7 @@ _FORERUNNERS = {
     ),
     "speed": ("lubricant", "film", "roughness", "contact"),
     "reading": (),
+    "coverage": ("lubricant", "film", "roughness", "contact", "master", "experiment"),
 }
 
 
@@ -249,6 +250,7 @@ class Study(StrictModel):
             "gauge": {},
             "speed": {},
             "reading": {},
+            "coverage": {"realisations": self.realisations},
         }
         return inputs[stage]
 

@@ -77,4 +77,5 @@ def datasets_of_every_kind(study):
         "gauge": gauge_records(master, contact, comparison),
         "speed": measured_times("speed"),
         "reading": measured_times("reading"),
+        "coverage": measured_times("coverage"),
     }

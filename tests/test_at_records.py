@@ -8,10 +8,12 @@ from studies import OIL
 
 from lube import contact_statistics, film_table
 from lube.at_records import model_at_records
+from lube.kernels.scan import scan_statistics
 from lube.lubricant import lubricant_table
 from lube.one_pair import repeat_factor, sample_size
 from lube.records import load_record
 from lube.roughness import roughness_batch
+from lube.steps import layer_factor_of, line_pair, speed_ratios, whole_numbers
 
 PROBABILITY = "breakthrough_probability"
 CONDITIONS = [(250.0, 77.0, 66.6), (1234.5, 60.0, 79.3), (100.0, 100.0, 60.0), (90.0, 63.0, 80.4)]
@@ -124,10 +126,34 @@ def test_each_record_has_the_film_of_its_own_lubricant(few):
 
 
 def test_equal_rollers_in_rolling_repeat_themselves_and_learn_nothing_new(few):
-    turns = np.array([0.4, 1.0, 1.5, 1000.0])
+    turns = np.array([1.0, 1.3, 1.5, 1000.0])
     model = model_at_records(experiment_off_the_grid(turns=turns), few[1], few[2], few[0])
     for ratios in model["scatter_ratio"].values:
         np.testing.assert_allclose(ratios, repeat_factor(turns), rtol=1e-12)
+
+
+@pytest.mark.parametrize("slip", [0.0, 0.1])
+def test_a_part_of_a_turn_scatters_as_parts_of_the_realisations_do(busy, slip):
+    """Halves of each line, counted by hand; they differ by more than sqrt(2) times the whole."""
+    study, film, contact = busy.study, busy.film, busy.contact
+    experiment = experiment_off_the_grid([0], turns=0.5, slide_to_roll_ratio=slip)
+    model = model_at_records(experiment, film, contact, study).isel(record=0)
+    lines = roughness_batch(study.line_spec, study.seed, range(study.realisations))
+    factor = layer_factor_of(lines, study.rollers.reduced_modulus, study.boundary_layer)
+    thickness = model["film_thickness"].values
+    points = whole_numbers(thickness, np.full(thickness.size, model["contact_half_width"]), lines)
+    half, ratios = study.line_spec.points[0] // 2, speed_ratios(slip)
+    shares = []
+    for pair in (line_pair(lines, number) for number in range(study.realisations)):
+        for begin in (0, half):
+            begun = [
+                np.roll(line, -int(np.floor(begin * ratio + 0.5)))
+                for line, ratio in zip(pair, ratios, strict=True)
+            ]
+            counts = scan_statistics(*begun, ratios, half, *points, factor)
+            shares.append(counts[:, 1] / half)
+    expected = np.var(shares, axis=0, ddof=1) / model[PROBABILITY].var("realisation", ddof=1)
+    np.testing.assert_allclose(model["scatter_ratio"], expected, rtol=1e-9)
 
 
 def test_one_revolution_with_slip_scatters_as_the_realisations_do(busy):

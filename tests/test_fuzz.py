@@ -37,7 +37,7 @@ TIMES_AS_MANY = int(os.environ.get("LUBE_FUZZ", "1"))
 
 STAGES = (
     *("lubricant", "film", "roughness", "contact", "trace", "master"),
-    *("experiment", "rig", "comparison", "gauge", "speed", "reading"),
+    *("experiment", "rig", "comparison", "gauge", "speed", "reading", "coverage"),
 )
 
 

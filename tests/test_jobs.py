@@ -44,6 +44,17 @@ def test_progress_goes_to_the_log_and_not_at_once_to_the_terminal(run):
     assert finished.stderr == ""
 
 
+def test_what_is_for_the_log_alone_never_goes_to_the_terminal(run):
+    code = f"""
+        import time
+        time.sleep({TERMINAL_PAUSE} + 0.1)
+        log.debug('a traceback')
+    """
+    finished, log = run(code)
+    assert log == "a traceback\n"
+    assert finished.stderr == ""
+
+
 def test_other_packages_chatter_stays_out(run):
     _, log = run("logging.getLogger('matplotlib').info('a font'); log.info('done')")
     assert log == "done\n"

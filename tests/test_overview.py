@@ -16,10 +16,17 @@ def test_the_numbers_of_the_study_are_told(study):
         "20,000 points",
         "critical thickness 5 nm, shear strength 1 MPa",
         "4 pairs of roughness lines, 1 revolution each; seed 20181109",
-        "a simulated rig, 4 revolutions a record",
+        "a simulated rig: one pair of rollers turns 4 revolutions at every operating point; below",
         "numpy 2",
     ):
         assert words.replace("'", "&#x27;") in told
+
+
+def test_several_pairs_and_their_drift_are_told(study):
+    rig = study.rig.model_copy(update={"pairs": 3, "drift": 0.3})
+    told = facts(study.model_copy(update={"rig": rig}))
+    assert "3 pairs of rollers turn 4 revolutions at every operating point" in told
+    assert "renew 30 % of their roughness&#x27;s variance each; below" in told
 
 
 def test_unequal_rollers_many_levels_and_measured_records_are_told(study):
@@ -66,15 +73,29 @@ def datasets(study):
             "in_validity_range": filled.temperature + filled == 40.0,
         }
     )
+    # Two records of the point with contact, one near no level.
+    records = {
+        "force": [1600.0] * 3,
+        "speed": [100.0] * 3,
+        "temperature": [80.0, 80.0, np.nan],
+    }
     agreement = xr.DataArray(
         np.full((2, 3), -0.012), {"film_formula": coords["film_formula"],
                                   "threshold": list(study.experiment.thresholds)}
     )  # fmt: skip
     comparison = xr.Dataset(
         {
-            "measured_share": mean.sel(film_formula="paper", drop=True) + 0.01,
+            **{f"{name}_level": ("record", levels) for name, levels in records.items()},
+            "lubricant": ("record", coords["lubricant"] * 3),
+            "slide_to_roll_ratio": ("record", [0.0] * 3),
+            "measured_share": ("record", [0.4421, 0.4321, 0.2]),
             "bias": agreement,
             "rms_difference": -2.0 * agreement,
+            "overlap_share": agreement + 0.762,
+            "overlap_share_expected_lower": ("film_formula", [0.6, 0.6]),
+            "overlap_share_expected_upper": ("film_formula", [1.0, 1.0]),
+            "compared_records": 3 + 0 * agreement.astype(int),
+            "pairs": 1,
             "comparison_threshold": study.experiment.threshold,
         },
         {"origin": "simulated"},
@@ -87,14 +108,16 @@ def test_the_answers_are_those_of_the_datasets(study, datasets):
     assert "at 1 of 8 operating points; at the other 7 it was never seen" in told
     assert "<strong>43.2 %</strong> of the time, at 1600 N, 100 r/min, 80 °C" in told
     assert "4 of 8 operating points lie outside" in told
-    assert "Against a simulated rig the simulation is on average 1.2 percentage points" in told
-    assert "too low; the rms difference is 2.4 points" in told
+    assert "Against a simulated rig (3 records of 1 pair of rollers) the simulation is on" in told
+    assert "average 1.2 percentage points too low; the rms difference is 2.4 points." in told
+    assert "75 % of the records lie where 95 % of single pairs should; a right model" in told
+    assert "would have 60 % to 100 % of them there." in told
     rows = [line for line in told.splitlines() if line.startswith("<tr><td>")]
     assert len(rows) == len(study.traces)
-    cells = ["1600 N, 100 r/min, 80 °C", "0.283 µm", "1",
-             "<strong>43.2 %</strong> (21.6 % to 86.4 %)", "44.2 %"]  # fmt: skip
+    contact = ("<strong>43.2 %</strong> (21.6 % to 86.4 %)", "43.2 % to 44.2 % (2 records)")
+    cells = ["1600 N, 100 r/min, 80 °C", "0.283 µm", "1", *contact]
     assert rows[1] == f"<tr>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>"
-    assert "<strong>0 %</strong> (0 % to 0.01 %)" in rows[0]
+    assert "<strong>0 %</strong> (0 % to 0.01 %)</td><td>–</td>" in rows[0]
 
 
 def test_a_study_without_contact_and_records_says_so(study, datasets):

@@ -68,6 +68,46 @@ def test_a_probability_never_seen_is_zero_on_a_linear_scale():
     assert limits.size == 0
 
 
+@pytest.fixture
+def records():
+    """Three records of two pairs of rollers, the last near no level of force."""
+    columns = {
+        "force": [1603.0, 800.0, 1205.0],
+        "speed": [100.0, 100.0, 93.0],
+        "temperature": [80.0, 80.0, 71.3],
+        "force_level": [1600.0, 800.0, np.nan],
+        "pair": ["A", "A", "B"],
+    }
+    coords = {name: ("record", values) for name, values in columns.items()}
+    names = ["run1.nc (list.csv: line 2)", "b", "in-a-folder-of-a-long-name.csv (list.csv: line 4)"]
+    coords |= {"record": names, "origin": "measured"}
+    return xr.Dataset({"pairs": 2, "drift": 0.0}, coords)
+
+
+def test_the_rig_behind_records_is_named(records):
+    assert plots.rig_name(records) == "measured rig, 2 pairs of rollers"
+    one = records.assign(pairs=1, drift=0.3).assign_coords(origin="simulated")
+    assert plots.rig_name(one) == "simulated rig, 1 pair of rollers, drift 0.3 a revolution"
+
+
+def test_a_measured_record_has_its_name_and_a_simulated_one_its_conditions(records):
+    first, last = records.isel(record=0), records.isel(record=2)
+    conditions = "1603 N, 100 r/min, 80 °C"
+    assert plots.record_name(first) == f"run1.nc (list.csv: line 2)\n{conditions}"
+    assert plots.record_name(last).splitlines()[0] == "…ong-name.csv (list.csv: line 4)"
+    assert plots.record_name(first, pairs=2).splitlines()[0].endswith("line 2), pair A")
+    simulated = first.assign_coords(origin="simulated")
+    assert plots.record_name(simulated) == conditions
+    assert plots.record_name(simulated, pairs=2) == f"pair A\n{conditions}"
+
+
+def test_records_are_grouped_by_the_levels_they_are_near(records):
+    groups = plots.level_groups(records, "force")
+    assert [name for name, *_ in groups] == ["800 N", "1600 N", "near no level"]
+    assert [here.force.values.tolist() for *_, here in groups] == [[800.0], [1603.0], [1205.0]]
+    assert len(plots.level_groups(records.isel(record=[0]), "force")) == 1
+
+
 def test_panels_are_lettered_before_their_titles():
     plots.use_style()
     figure, panels = plt.subplots(1, 2)

@@ -14,7 +14,7 @@ from lube.study import load_study
 
 STAGES = (
     *("lubricant", "film", "roughness", "contact", "trace", "master"),
-    *("experiment", "rig", "comparison", "gauge", "speed", "reading"),
+    *("experiment", "rig", "comparison", "gauge", "speed", "reading", "coverage"),
 )
 
 

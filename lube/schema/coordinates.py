@@ -47,6 +47,10 @@ COORDINATES = {
     "least_lambda": number(["least_lambda"], "1", "least lambda ratio of the operating points"),
     "line_points": number(["line_points"], "1", "points around the first roller", kind="i"),
     "operating_points": number(["operating_points"], "1", "number of operating points", kind="i"),
+    "scenario": text(["scenario"], "rollers, their motion, and where their records come from"),
+    "record_turns": number(["record_turns"], "1", "turns in the record"),
+    "point": number(["point"], "1", "operating point, by rising lambda ratio", kind="i"),
+    "ensemble": number(["ensemble"], "1", "ensemble", kind="i"),
     "realisations": number(["realisations"], "1", "number of realisations", kind="i"),
 }
 """Coordinates, by name: the same in every file that has them."""

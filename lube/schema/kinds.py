@@ -1,8 +1,8 @@
 """All kinds of file, by their names."""
 
-from lube.schema import clocks, lines, oil, rig
+from lube.schema import benchmarks, lines, oil, rig
 
-_KINDS = {**oil.KINDS, **lines.KINDS, **rig.KINDS, **clocks.KINDS}
+_KINDS = {**oil.KINDS, **lines.KINDS, **rig.KINDS, **benchmarks.KINDS}
 
 FILES = {kind: file.variables for kind, file in _KINDS.items()}
 """Variables of each kind of file, by the kind's name."""
@@ -10,8 +10,8 @@ FILES = {kind: file.variables for kind, file in _KINDS.items()}
 SUMMARIES = {kind: file.summary for kind, file in _KINDS.items() if file.summary}
 """What is in each kind of file that stays, in a sentence or two."""
 
-MEASURED = tuple(clocks.KINDS)
-"""Files of measured clock times, by `snakemake benchmark`; they are no part of the results."""
+MEASURED = tuple(benchmarks.KINDS)
+"""Files that `snakemake benchmark` measures; they are no part of the results."""
 
 DATASETS = tuple(kind for kind in SUMMARIES if kind not in MEASURED)
 """The results of a study, a file each."""

@@ -49,6 +49,12 @@ _EXPERIMENT = {
     "repeatability": number(
         ["record"], "1", "correlation between two revolutions", content="record"
     ),
+    "speed_ratio": number(
+        ["record"],
+        "1",
+        "speed that a clear repetition of the record tells, over the one stated",
+        content="record",
+    ),
     "share_error": number(
         ["record"],
         "1",

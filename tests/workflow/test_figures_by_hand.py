@@ -156,12 +156,8 @@ def test_a_stamp_says_when_notebook_or_code_are_not_as_committed(spare):
     assert stamp_of(spare / TARGET) == f"{clean} · new notebook"
     git("add", ".")
     git("commit", "--quiet", "-m", "second")
-    spare.run("--forcerun", TARGET, TARGET)
-    assert stamp_of(spare / TARGET).startswith(f"{clean} · drawn at commit ")
-    spare.run("--forcerun", "results/smoke/film.nc", TARGET)
-    clean = stamp_of(spare / TARGET)
-    assert re.fullmatch(r"study smoke · config \w{10} · commit [0-9a-f]{10}", clean)
     write(spare, DRAW.format(2))
     spare.append("lube/plots.py", "# changed")
     spare.run(TARGET)
-    assert stamp_of(spare / TARGET) == f"{clean} · changed notebook · changed code"
+    added = stamp_of(spare / TARGET).removeprefix(clean)
+    assert re.fullmatch(r" · drawn at commit \w{10} · changed notebook · changed code", added)

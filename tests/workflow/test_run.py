@@ -192,7 +192,7 @@ def test_logs_of_contact_show_its_progress(smoke):
 
 
 def test_there_is_a_kind_of_file_for_every_dataset():
-    studied = {kind for kind in FILES if not kind.endswith("_batch")} - {"speed", "reading"}
+    studied = {kind for kind in FILES if not kind.endswith("_batch")} - set(schema.MEASURED)
     assert studied == set(DATASETS) == set(schema.DATASETS)
 
 
@@ -208,6 +208,7 @@ def test_benchmarks_are_measured_saved_and_drawn_when_asked_for(spare):
     reading = load(spare.results / "reading.nc", "reading")
     for name, values in reading.data_vars.items():
         assert (values > 0).all(), name
-    figures = [*products_of("bench01_speed"), *products_of("bench02_records")]
-    assert set(added) == {"speed.nc", "reading.nc", *figures}
+    names = ("bench01_speed", "bench02_records", "bench03_coverage")
+    figures = [product for name in names for product in products_of(name)]
+    assert set(added) == {"speed.nc", "reading.nc", "coverage.nc", *figures}
     assert spare.planned() == set()
