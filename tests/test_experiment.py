@@ -330,6 +330,19 @@ def test_less_than_a_window_without_contact_rules_nothing_out(measured, tmp_path
     assert np.isnan(here["repeatability"])
 
 
+def test_without_contact_many_turns_of_equal_rollers_rule_out_no_more_than_one(measured, tmp_path):
+    """New windows come with slip alone."""
+    uppers = {}
+    for turns in (1, 30):
+        written(tmp_path / "some.csv", np.full(600 * turns, 1e5), 1e-3)
+        for slip in (0.0, 0.1):
+            row = f"some.csv,800,100,40,{slip}"
+            here = at_100_ohm(measured(row, header=f"{COLUMNS},slide_to_roll_ratio"))
+            uppers[turns, slip] = here["contact_share_upper"].item()
+    assert uppers[30, 0.0] == pytest.approx(uppers[1, 0.0])
+    assert uppers[30, 0.1] < 0.1 * uppers[1, 0.1]
+
+
 # What cannot be used
 
 

@@ -244,6 +244,15 @@ def test_more_pairs_of_rollers_tell_a_factor_better_but_more_records_of_one_do_n
     assert many / alone == pytest.approx(np.sqrt((1 / 16 + 1 / 32) / (1 + 1 / 32)), rel=0.05)
 
 
+def test_electrical_noise_of_the_records_widens_the_interval_of_a_factor(busy, own):
+    widths = []
+    for noise in (0.0, 0.05):
+        noisy = own.assign(share_error=own["share_error"].copy(data=np.full(12, noise)))
+        found = fit_alpha(busy.master, busy.contact, noisy).sel(FORMULA)
+        widths.append(np.log(found["alpha_factor_upper"] / found["alpha_factor_lower"]).item())
+    assert widths[1] > 1.2 * widths[0]
+
+
 def test_each_lubricant_has_its_own_fit(busy, own):
     contact = xr.concat([busy.contact] * 2, "lubricant", data_vars="minimal")
     oil = busy.contact["lubricant"].values.tolist()
@@ -276,16 +285,19 @@ def test_intervals_of_films_hold_the_truth_about_95_times_of_100(busy, own):
 def test_the_coverage_is_that_of_gauging_every_realisation(busy, own, compared):
     """Literally: gauge each member's share, by the map with it among the realisations."""
     members = own["breakthrough_probability"].sel(FORMULA).values
-    held = []
+    held, closed = [], []
     for member in members:
         comparison = own.assign(measured_share=own["measured_share"].copy(data=member))
         gauged = gauge_film(busy.master, comparison)
         truth = own["lambda_ratio"].sel(FORMULA)
         lower, upper = (gauged[f"gauged_lambda_ratio{limit}"] for limit in LIMITS[1:])
         held.append(((lower <= truth) & (truth <= upper)).values)
-    found = gauge_coverage(busy.master, own)["interval_coverage"]
+        closed.append(((lower > 0.0) & (upper < np.inf)).values)
+    found = gauge_coverage(busy.master, own)
     # With the member among them the others' limits are a little wider.
-    np.testing.assert_allclose(found, np.mean(held, axis=0), atol=2.5 / 32)
+    for name, literal in (("interval_coverage", held), ("closed_share", closed)):
+        np.testing.assert_allclose(found[name], np.mean(literal, axis=0), atol=2.5 / 32)
+    assert found["closed_share"].min() < 1.0 == found["closed_share"].max()
 
 
 def test_fits_hold_the_truth_about_95_times_of_100(busy, own):
