@@ -218,7 +218,7 @@ GRID = {"experiment"}  # whose records are labelled by the levels that they are 
         ("rig.drift", 0.1, {"experiment"}),
         ("experiment.speed_tolerance", 0.02, {"experiment"}),
         ("experiment.threshold", "10 ohm", {"experiment"}),
-        ("realisations", 128, set()),
+        ("realisations", 128, {"coverage"}),
         ("batch_size", 16, set()),
         ("kept_realisations", [0, 1], set()),
         ("name", "another", set()),
