@@ -114,12 +114,14 @@ def archive_contents(study, study_file, results, kinds, figures):
         "versions.txt": exact_versions(),
         "CITATION.cff": citation_file(study),
         ".zenodo.json": zenodo_metadata(study),
-        "README.md": archive_page(study, kinds, archived_as, _refused(results)),
+        "README.md": archive_page(study, kinds, archived_as, _refused(results, kinds)),
     }
 
 
-def _refused(results):
+def _refused(results, kinds):
     """Lines about the measured records of a study that were not used."""
+    if "experiment" not in kinds:
+        return ()
     return load(results / "experiment.nc", "experiment").attrs["refused"].splitlines()
 
 

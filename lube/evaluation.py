@@ -166,13 +166,14 @@ def folded_counts(below, sizes, interval, period):
     Returns
     -------
     below, sizes : numpy.ndarray
-        The same over at most `STRETCHES` phases, shapes (K, F) and (F,).
+        The same over at most `STRETCHES` phases, those that were seen, shapes (K, F) and (F,).
     """
     phases = min(STRETCHES, max(int(period / interval), 1))
     turns = (np.arange(sizes.size) + 0.5) * interval / period
     phase = np.minimum((turns % 1.0 * phases).astype(np.int64), phases - 1)
-    counts = [np.bincount(phase, row, phases) for row in (*below, sizes)]
-    return np.array(counts[:-1]), counts[-1]
+    counts = np.array([np.bincount(phase, row, phases) for row in (*below, sizes)])
+    counts = counts[:, counts[-1] > 0]
+    return counts[:-1], counts[-1]
 
 
 def share_interval(below, sizes, windows, folded=()):

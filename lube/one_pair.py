@@ -188,14 +188,15 @@ def prediction_limits(mean, looks, ratio, realisations, noise=0.0):
     Returns
     -------
     lower, upper : numpy.ndarray
-        Within 0 and 1. Where all realisations agree on 0 or 1, on the other side as far as
-        the effective sample size allows, at 95 % one-sided.
+        Within 0 and 1. Where all realisations agree on 0 or 1, the mean is taken as far from
+        it as they allow, at 95 % one-sided.
     """
-    here = np.maximum(looks / ratio, 1.0)  # a record is at least one look
-    half = quantile(realisations) * _standard_error(mean, looks, here, realisations, noise)
-    never_met = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / here)
-    lower = np.where(mean == 1.0, 1.0 - never_met, np.maximum(mean - half, 0.0))
-    upper = np.where(mean == 0.0, never_met, np.minimum(mean + half, 1.0))
+    never_met = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / (looks * realisations))
+    likely = np.clip(mean, never_met, 1.0 - never_met)
+    likely = np.where((mean == 0.0) | (mean == 1.0), likely, mean)
+    half = quantile(realisations) * standard_error(likely, looks, ratio, realisations, noise)
+    lower = np.where(mean == 0.0, 0.0, np.maximum(likely - half, 0.0))
+    upper = np.where(mean == 1.0, 1.0, np.minimum(likely + half, 1.0))
     return lower, upper
 
 
@@ -212,10 +213,7 @@ def standard_error(mean, looks, ratio, realisations, noise=0.0):
     numpy.ndarray
         (p (1 - p) (v / n + 1 / (n R)) + noise^2)^(1/2).
     """
-    return _standard_error(mean, looks, np.maximum(looks / ratio, 1.0), realisations, noise)
-
-
-def _standard_error(mean, looks, here, realisations, noise):
+    here = np.maximum(looks / ratio, 1.0)  # a record is at least one look
     variance = mean * (1.0 - mean) * (1.0 / here + 1.0 / (looks * realisations))
     return np.sqrt(variance + np.square(noise))
 

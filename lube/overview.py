@@ -131,6 +131,31 @@ def findings(study, film, contact, comparison):
     return f"<p>{_which(study)}</p>\n<ul>\n{items}\n</ul>\n{points}"
 
 
+def notes(experiment, comparison):
+    """Tell which records were refused, and what was remarked of the others.
+
+    Parameters
+    ----------
+    experiment, comparison : xarray.Dataset
+        The study's datasets of these names.
+
+    Returns
+    -------
+    str
+        HTML: a list under each heading; empty if there is nothing to tell.
+    """
+    remarks = experiment.attrs["remarks"].splitlines() + comparison.attrs["remarks"].splitlines()
+    told = {
+        "Records that were refused, and are in no result": experiment.attrs["refused"].splitlines(),
+        "Remarks on records": remarks,
+    }
+    return "".join(
+        f"\n<p>{heading}:</p>\n<ul>\n{''.join(f'<li>{escape(line)}</li>' for line in lines)}\n</ul>"
+        for heading, lines in told.items()
+        if lines
+    )
+
+
 def _which(study):
     """Say of which part of the study the sentences below tell."""
     return (

@@ -58,7 +58,11 @@ def _arrays(study):
     return [
         ("kept_realisations", "their lines", pair * len(study.kept_realisations)),
         ("batch_size", "the lines of a batch", pair * batch),
-        ("rig.revolutions", "the lines of the rig", pair * len(study.rig_realisations)),
+        (
+            "rig.revolutions" if rig.drift > 0.0 else "rig.pairs",
+            "the lines of the rig",
+            pair * len(study.rig_realisations),
+        ),
         ("traces", "the traces", max(points) * len(study.traces)),
         ("rig.sampling_rate", "its samples of the traces", samples * len(study.traces)),
         ("experiment.debounce", "its samples", rig.sampling_rate * study.experiment.debounce),

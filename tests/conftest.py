@@ -36,7 +36,7 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 # The two processes get these in turn: while one makes the smoke study, the other needs none.
-FIRST = ("test_archived_study.py", "test_fuzz.py", "test_faults.py", "test_gauge.py")
+FIRST = ("test_archived_study.py", "test_fuzz.py", "test_faults.py")
 
 
 def pytest_collection_modifyitems(items):

@@ -201,29 +201,33 @@ def test_new_alignments_make_a_long_record_scatter_less(busy, how):
     assert (ratios.isel(record=2) > 0.02 * ratios.isel(record=0)).all()
 
 
-def test_the_scatter_of_unequal_rollers_is_that_of_a_literal_run(busy):
-    """Four turns of the first are five of the second: four alignments, and then the same again."""
-    study = unequal(busy.study)
-    realisations = 48
-    experiment = experiment_off_the_grid([0], turns=4.0)
-    contact = busy.contact.isel(
-        realisation=np.arange(realisations) % 32
-    )  # of which nothing is taken
-    contact = contact.assign_coords(realisation=range(realisations))
+@pytest.mark.parametrize(
+    ("change", "slip", "turns"),
+    [
+        (lambda study: study, 0.1, 40),  # 40 alignments: three quarters of the scatter persist
+        (unequal, 0.0, 4),  # four turns of the first are five of the second: all four alignments
+    ],
+    ids=["slip", "unequal rollers"],
+)
+def test_the_scatter_of_a_long_record_is_that_of_a_literal_run(busy, change, slip, turns):
+    study, pairs = change(busy.study), 48
+    force, speed, temperature = CONDITIONS[0]
+    experiment = experiment_off_the_grid([0], turns=float(turns), slide_to_roll_ratio=slip)
+    # Nothing of it is taken, but for how many realisations there are.
+    contact = busy.contact.isel(realisation=np.arange(pairs) % 32)
+    contact = contact.assign_coords(realisation=range(pairs))
     model = model_at_records(experiment, busy.film, contact, study)
-    oil = lubricant_table(study.lubricants, [CONDITIONS[0][2]])
-    film = film_table(
-        oil, study.rollers, [CONDITIONS[0][0]], [CONDITIONS[0][1]], study.film_formulas
-    )
-    lines = roughness_batch(study.line_spec, study.seed, range(realisations))
-    one, four = (
-        contact_statistics(lines, film, study.boundary_layer, revolutions=turns)[PROBABILITY]
+    oil = lubricant_table(study.lubricants, [temperature])
+    film = film_table(oil, study.rollers, [force], [speed], study.film_formulas)
+    lines = roughness_batch(study.line_spec, study.seed, range(pairs))
+    one, long = (
+        contact_statistics(lines, film, study.boundary_layer, *run)[PROBABILITY]
         .var("realisation", ddof=1)
         .squeeze()
-        for turns in (1, 4)
+        for run in (([0.0], 1), ([slip], turns))
     )
     # Two estimated variances of 48 pairs: known to some 20 % each.
-    np.testing.assert_allclose(model["scatter_ratio"][:, 0], four / one, rtol=0.4)
+    np.testing.assert_allclose(model["scatter_ratio"][:, 0], long / one, rtol=0.4)
 
 
 def test_drift_makes_equal_rollers_scatter_less(few):

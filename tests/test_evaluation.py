@@ -274,6 +274,21 @@ def test_a_record_that_does_not_repeat_has_hardly_a_wider_interval_by_folding():
     assert 1.0 <= np.mean(ratios) < 1.5
 
 
+def test_a_record_shorter_than_a_turn_of_the_slower_roller_keeps_its_scatter():
+    below, sizes = repeated(1)
+    around, lengths = folded_counts(below, sizes, 1.0, 250.0)  # a fifth of it was not seen
+    assert (lengths > 0).all() and abs(lengths.size - 0.8 * STRETCHES) <= 1
+    assert width(below, sizes, [(around, lengths)]) == pytest.approx(width(below, sizes), rel=0.6)
+
+
+def test_what_changes_slowly_over_many_turns_is_not_folded_away():
+    share = np.linspace(0.1, 0.9, 6400)
+    below, sizes = np.rint(100 * share)[None], np.full(6400, 100)
+    folded = folded_counts(below, sizes, 1.0, 100.0)
+    assert width(below, sizes) > 0.2
+    assert width(below, sizes, [folded]) == pytest.approx(width(below, sizes))
+
+
 @given(st.integers(1, 500), st.floats(0.5, 400.0))
 def test_folding_loses_no_sample(blocks, period):
     rng = np.random.default_rng(blocks)

@@ -114,13 +114,23 @@ def test_several_pairs_make_several_records_of_each_point(simulated):
     assert len(set(at_100_ohm(several)["contact_share"].values)) == 6
 
 
-def test_drift_lowers_the_repeatability_and_shows_as_an_error_of_the_share(simulated):
+def test_drift_lowers_the_repeatability(simulated):
     steady, little, much = (simulated(drift=drift, revolutions=8) for drift in (0.0, 0.05, 1.0))
     for more, less in ((steady, little), (little, much)):
         assert (more["repeatability"] > less["repeatability"] + 0.1).all()
-        assert (more["share_error"] < less["share_error"]).all()
     np.testing.assert_allclose(much["repeatability"], 0.0, atol=0.05)
     assert much["drift"] == 1.0
+
+
+def test_the_error_of_the_share_is_electrical_noise_alone(simulated):
+    """What drift changes from turn to turn is roughness, which the model's scatter has already."""
+    quiet, noisy, drifting = (
+        simulated(revolutions=8, **values)
+        for values in ({}, {"noise": "10 mV"}, {"drift": 0.3, "noise": "10 mV"})
+    )
+    assert (quiet["share_error"] < 1e-12).all()
+    assert (noisy["share_error"] > 1e-5).all()
+    assert (drifting["share_error"] == 0.0).all()
 
 
 def test_less_than_a_turn_tells_no_repetition(simulated):
@@ -285,6 +295,8 @@ def test_turns_are_those_of_the_faster_surface(measured, tmp_path, slip, period,
     result = measured(row, header=f"{COLUMNS},slide_to_roll_ratio")
     assert result["revolution_period"].item() == pytest.approx(period)
     assert result["turns"].item() == pytest.approx(turns)
+    # With slip the turns differ by their roughness, not by noise alone.
+    assert (result["share_error"] == 0.0) == (slip != 0.0)
 
 
 # Short records
@@ -316,6 +328,19 @@ def test_less_than_a_window_without_contact_rules_nothing_out(measured, tmp_path
     assert here["contact_share"] == here["contact_share_lower"] == 0.0
     assert here["contact_share_upper"].item() == pytest.approx(0.95)
     assert np.isnan(here["repeatability"])
+
+
+def test_without_contact_many_turns_of_equal_rollers_rule_out_no_more_than_one(measured, tmp_path):
+    """New windows come with slip alone."""
+    uppers = {}
+    for turns in (1, 30):
+        written(tmp_path / "some.csv", np.full(600 * turns, 1e5), 1e-3)
+        for slip in (0.0, 0.1):
+            row = f"some.csv,800,100,40,{slip}"
+            here = at_100_ohm(measured(row, header=f"{COLUMNS},slide_to_roll_ratio"))
+            uppers[turns, slip] = here["contact_share_upper"].item()
+    assert uppers[30, 0.0] == pytest.approx(uppers[1, 0.0])
+    assert uppers[30, 0.1] < 0.1 * uppers[1, 0.1]
 
 
 # What cannot be used

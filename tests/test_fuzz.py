@@ -219,7 +219,7 @@ def use(study):
     assert study.batch(study.batches[-1])[-1] == study.realisations - 1
     spec = study.line_spec
     assert max(spec.points) <= 2**24
-    assert len(study.rig_realisations) == study.rig.revolutions
+    assert len(study.rig_realisations) >= study.rig.pairs
     for stage in STAGES:
         json.dumps([study.stage_inputs(stage), study.origin(stage)], allow_nan=False)
     study.model_dump_json()

@@ -22,22 +22,22 @@ LAYERS = [
     {"errors", "repository", "processors", "classic_netcdf"},
     {
         *("units", "texts", "hertz", "groups", "regimes", "inlet_heating", "viscosity"),
-        *("resistance", "curves", "intervals", "levels", "schema", "kernels", "pages"),
+        *("resistance", "intervals", "one_pair", "folding", "levels", "schema", "kernels", "pages"),
     },
     {
         *("formulas", "markdown", "fields", "files", "fluids", "seals", "steps", "points"),
-        *("evaluation", "shares", "signals", "tables", "sizes", "cells"),
+        *("evaluation", "curves", "shares", "signals", "tables", "sizes", "cells"),
     },
     {
         *("about", "apparatus", "records", "surfaces", "rig", "manifest", "excerpts", "map_curves"),
         *("text_signals", "binary_signals"),
     },
-    {"study", "recordings", "fits"},
+    {"study", "recordings", "fits", "ensemble"},
     {
-        *("lubricant", "film", "roughness", "contact", "trace", "ensemble"),
+        *("lubricant", "film", "roughness", "contact", "trace"),
         *("experiment", "rig_records", "comparison", "gauge"),
     },
-    {"provenance", "jobs", "reference"},
+    {"provenance", "jobs", "reference", "at_records"},
     {"io", "plots", "citation", "notebooks"},
     {"crate", "explanation", "configuration", "overview", "figures"},
     {"archive_page"},
@@ -58,7 +58,7 @@ FOUNDATIONS = {
         "formulas",
         "inlet_heating",
     ),
-    *("viscosity", "resistance", "curves", "intervals"),
+    *("viscosity", "resistance", "curves", "intervals", "one_pair", "folding"),
 }
 STAGES = LAYERS[5]
 

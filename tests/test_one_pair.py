@@ -169,11 +169,16 @@ def test_limits_are_probabilities_and_enclose_the_mean(mean, looks, ratio, reali
 
 
 @pytest.mark.parametrize("looks", [1.0, 7.5, 1e5])
-def test_what_no_realisation_saw_is_bounded_by_the_looks(looks):
-    lower, upper = prediction_limits(np.array([0.0, 1.0]), np.array([looks] * 2), 1.0, 64)
-    assert (lower[0], upper[1]) == (0.0, 1.0)
-    assert (1.0 - upper[0]) ** looks == pytest.approx(0.05)
-    assert lower[1] == pytest.approx(1.0 - upper[0])
+def test_what_no_realisation_saw_may_be_as_likely_as_they_allow(looks):
+    never, always = np.array([0.0]), np.array([1.0])
+    _, upper = prediction_limits(never, looks, 1.0, 64)
+    likely = 1.0 - 0.05 ** (1.0 / (64 * looks))
+    assert upper == prediction_limits(np.array([likely]), looks, 1.0, 64)[1]
+    lower, _ = prediction_limits(always, looks, 1.0, 64)
+    assert lower[0] == pytest.approx(1.0 - upper[0])
+    assert prediction_limits(never, looks, 1.0, 64)[0] == 0.0
+    assert prediction_limits(always, looks, 1.0, 64)[1] == 1.0
+    assert prediction_limits(never, looks, 1.0, 1000)[1] < upper
 
 
 def test_few_realisations_have_students_quantile_and_one_the_normal():

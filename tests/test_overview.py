@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from lube.overview import facts, findings
+from lube.overview import facts, findings, notes
 
 
 def test_the_numbers_of_the_study_are_told(study):
@@ -129,3 +129,12 @@ def test_a_study_without_contact_and_records_says_so(study, datasets):
     assert "Metal touched metal at none of 8 operating points." in told
     assert "rig the simulation" not in told and "<td>–</td>" in told
     assert "All operating points lie within" in told
+
+
+def test_refused_records_and_remarks_are_listed_with_their_reasons():
+    quiet = xr.Dataset(attrs={"refused": "", "remarks": ""})
+    assert notes(quiet, quiet) == ""
+    experiment = quiet.assign_attrs(refused="a.csv: line 3: <no> number\nb.csv: no such file")
+    told = notes(experiment, quiet.assign_attrs(remarks="c and d contradict each other"))
+    assert told.count("<li>") == 3
+    assert "a.csv: line 3: &lt;no&gt; number" in told and "contradict each other" in told

@@ -47,7 +47,19 @@ def levels(count, units):
             {"realisations": 10**5, "batch_size": 10, "kept_realisations": list(range(30_000))},
             "kept_realisations: their lines take 1.2e+09 numbers",
         ),
-        ({"rig__revolutions": 1000, "roughness__points": 10**6}, "rig.revolutions: the lines of"),
+        (
+            {"rig__revolutions": 1000, "rig__drift": 0.1, "roughness__points": 10**6},
+            "rig.revolutions: the lines of the rig take 2e+09 numbers",
+        ),
+        (
+            {"rig__pairs": 1000, "roughness__points": 10**6},
+            "rig.pairs: the lines of the rig take 2e+09 numbers",
+        ),
+        (
+            {"rig__pairs": 1000, "operating_grid__force": levels(20, "N")}
+            | {"traces": [{"force": "800 N", "speed": "100 rpm", "temperature": "40 degC"}]},
+            "rig.pairs: its folded records take 1.6e+09 numbers",
+        ),
         ({"rig__sampling_rate": "1 THz"}, "rig.sampling_rate: its samples of the traces take"),
         ({"experiment__debounce": "1 year"}, "experiment.debounce: its samples take 6.31e+11"),
         (
@@ -69,7 +81,7 @@ def test_a_study_that_no_machine_can_hold_is_refused(load, changes, told):
 
 
 def test_a_large_study_that_a_machine_can_hold_is_accepted(load):
-    study = load(roughness__points=2**24, realisations=10**5, batch_size=10, rig__revolutions=20)
+    study = load(roughness__points=2**24, realisations=10**5, batch_size=10, rig__revolutions=1000)
     assert len(study.batches) == 10_000
 
 

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from studies import CONFIG, OIL, PAPER
 
 from lube.apparatus import Experiment, Rig
+from lube.errors import StudyError
 from lube.records import SHIPPED_FOLDER
 from lube.study import load_study
 
@@ -88,7 +89,26 @@ def test_the_defaults_of_the_rig_are_those_of_the_papers_study():
 def test_the_rigs_rollers_are_none_of_the_simulation(paper_with):
     study = load_study(paper_with(("realisations", 10**6), ("batch_size", 100)))
     assert not set(study.rig_realisations) & set(range(study.realisations))
-    assert len(study.rig_realisations) == study.rig.revolutions
+
+
+@pytest.mark.parametrize(
+    ("pairs", "revolutions", "drift", "drawn"),
+    [(1, 12, 0, 1), (1, 0.3, 0, 1), (5, 12, 0, 5), (1, 12, 0.1, 12), (5, 2.5, 0.1, 15)],
+)
+def test_the_rig_draws_one_realisation_a_pair_and_for_drift_one_a_turn(
+    paper_with, pairs, revolutions, drift, drawn
+):
+    changes = ("rig.pairs", pairs), ("rig.revolutions", revolutions), ("rig.drift", drift)
+    assert len(load_study(paper_with(*changes)).rig_realisations) == drawn
+
+
+def test_a_force_of_a_record_needs_a_window_that_the_grid_resolves():
+    study = load_study(PAPER)
+    study.check_window(123.4)
+    with pytest.raises(StudyError, match=r"contact at 1e-06 N is .* need at least two grid spac"):
+        study.check_window(1e-6)
+    with pytest.raises(StudyError, match="need less than a roller's perimeter"):
+        study.check_window(1e12)
 
 
 def test_a_manifest_is_looked_for_beside_its_study(paper_with, tmp_path):
@@ -171,6 +191,7 @@ def changed_stages(paper_with):
 MECHANICS = {"contact", "trace", "experiment"}
 LAYER = MECHANICS | {"master"}  # which is for pure rolling
 LINES = LAYER | {"roughness"}
+GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 
 
 @pytest.mark.parametrize(
@@ -190,12 +211,14 @@ LINES = LAYER | {"roughness"}
         ("rollers.first.young_modulus", "220 GPa", LINES | {"film"}),
         ("rollers.first.radius", "60 mm", LINES | {"film"}),
         ("film_formulas", ["paper"], {"film"}),
-        ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, {"film"}),
-        ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, {"lubricant"}),
+        ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
+        ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
         ("traces.1.temperature", "60 degC", {"trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"experiment"}),
+        ("rig.drift", 0.1, {"experiment"}),
+        ("experiment.speed_tolerance", 0.02, {"experiment"}),
         ("experiment.threshold", "10 ohm", {"experiment"}),
-        ("realisations", 128, set()),
+        ("realisations", 128, {"coverage"}),
         ("batch_size", 16, set()),
         ("kept_realisations", [0, 1], set()),
         ("name", "another", set()),
@@ -207,9 +230,9 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(
     assert changed_stages((key, value)) == stages
 
 
-def test_a_force_below_the_largest_changes_the_film_alone(changed_stages):
+def test_a_force_below_the_largest_changes_the_film_and_the_labels_of_records(changed_stages):
     forces = {"values": [150, 400, 800, 1600], "units": "N"}
-    assert changed_stages(("operating_grid.force", forces)) == {"film"}
+    assert changed_stages(("operating_grid.force", forces)) == GRID | {"film"}
 
 
 def test_the_largest_force_changes_the_lines_by_its_contact_width(changed_stages):

@@ -7,8 +7,8 @@ from lube.schema.coordinates import (
     EXPERIMENT_DIMS,
 )
 from lube.schema.variables import (
-    OVER_REALISATIONS,
     OVER_RECORD,
+    OVER_RECORDS,
     FileKind,
     flag,
     limited,
@@ -149,13 +149,14 @@ _COMPARISON = {
         ["realisation", *_BY_FORMULA],
         "1",
         "probability of boundary layer breakthrough of each realisation, in rolling",
+        attributes=OVER_RECORD,
     ),
     **limited(
         "simulated_probability",
         _BY_FORMULA,
         "1",
         "simulated breakthrough probability, mean over realisations",
-        attributes=OVER_REALISATIONS,
+        attributes=OVER_RECORDS,
     ),
     "scatter_ratio": number(
         _BY_FORMULA,

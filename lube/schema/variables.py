@@ -95,8 +95,8 @@ def limited(name, dims, units, long_name, value="", meaning="", **more):
 # What is a mean says over what, by CF's cell methods, which name a coordinate of the variable.
 OVER_RUN = {"cell_methods": "revolutions: mean"}
 OVER_ALL = {"cell_methods": "revolutions: mean (then over the realisations)"}
-OVER_REALISATIONS = {"cell_methods": "realisation: mean"}
 OVER_RECORD = {"cell_methods": "duration: mean"}
+OVER_RECORDS = {"cell_methods": "duration: mean (then over the realisations)"}
 
 
 def run_mean(dims, units, long_name, **attributes):

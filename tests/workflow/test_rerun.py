@@ -26,7 +26,9 @@ def made(repository, *datasets, batches=()):
     if "contact" in made:
         made |= {"master", "comparison", "gauge"}
     if "experiment" in made:
-        made |= {"comparison", "gauge"}
+        made |= {"comparison"}
+    if "comparison" in made:
+        made |= {"gauge"}
     files = {f"{name}.nc" for name in made}
     return files | set(batches) | figures_of(repository, *made)
 
@@ -92,7 +94,11 @@ def test_the_plan_is_what_a_dry_run_announces(spare):
         ("experiment", ("experiment",), ()),
         ("rig_records", ("rig",), ()),
         ("manifest", ("experiment",), ()),
+        ("folding", ("experiment",), ()),
+        ("one_pair", ("experiment",), ()),
+        ("at_records", ("comparison",), ()),
         ("comparison", ("comparison",), ()),
+        ("curves", ("gauge",), ()),
         ("gauge", ("gauge",), ()),
         ("plots", (), ()),
         ("reference", (), ()),
@@ -219,6 +225,7 @@ def test_a_public_name_of_the_package_is_followed_to_its_module(spare, edit_note
     [
         ({"resistivity": "0.3 uohm*m"}, ("trace", "rig", "experiment"), ()),
         ({"rig__noise": "30 uV"}, ("rig", "experiment"), ()),
+        ({"rig__drift": 0.1}, ("rig", "experiment"), ()),
         ({"experiment__debounce": "1 ms"}, ("rig", "experiment"), ()),
         ({"traces": [{"force": "800 N", "speed": "100 rpm", "temperature": "40 degC"}]},
          ("trace", "rig"), ()),

@@ -9,6 +9,7 @@ from repository import products_of
 from lube import schema
 from lube.io import load
 from lube.schema import FILES, check
+from lube.shares import over_grid
 
 DATASETS = (
     *("lubricant", "film", "roughness", "contact", "trace", "master"),
@@ -108,9 +109,11 @@ def test_measured_records_take_the_simulated_rigs_place(spare):
     experiment = load(spare.results / "experiment.nc", "experiment")
     compared = load(spare.results / "comparison.nc", "comparison")
     assert experiment.origin.item() == compared.origin.item() == "measured"
+    assert compared.measured_share.values.tolist() == [0.1]
+    assert compared.record.item() == "run.csv (records.csv: line 2)"
     place = {"slide_to_roll_ratio": 0.0, "force": 800, "speed": 100, "temperature": 40}
-    assert compared.measured_share.sel(place).item() == 0.1
-    assert int(compared.measured_share.notnull().sum()) == 1
+    assert over_grid(compared).measured_share.sel(place).item() == 0.1
+    assert len(compared.missing.splitlines()) == 7
     spare.append("run.csv", "\n0.5,5")
     assert "experiment.nc" in spare.planned(study)  # a record's change is seen
 

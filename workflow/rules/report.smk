@@ -2,6 +2,7 @@ rule pages:
     input:
         film=result("film.nc"),
         contact=result("contact.nc"),
+        experiment=result("experiment.nc"),
         comparison=result("comparison.nc"),
         # Told from here, so that the tree can be moved.
         study=os.path.relpath(config["study_file"]),

@@ -7,20 +7,21 @@ from lube.excerpts import excerpts
 from lube.files import written_whole
 from lube.io import load
 from lube.jobs import begin_job
-from lube.overview import facts, findings
+from lube.overview import facts, findings, notes
 from lube.pages import html_page
 from lube.study import load_study
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
-datasets = (load(snakemake.input[kind], kind, study) for kind in ("film", "contact", "comparison"))
+kinds = ("film", "contact", "experiment", "comparison")
+film, contact, experiment, comparison = (load(snakemake.input[kind], kind, study) for kind in kinds)
 written, readme, style = (
     Path(snakemake.input[name]).read_text(encoding="utf-8") for name in ("study", "readme", "style")
 )
 parts = excerpts(readme)
 parts |= {
     "facts": facts(study),
-    "findings": findings(study, *datasets),
+    "findings": findings(study, film, contact, comparison) + notes(experiment, comparison),
     "configuration": html_page("Configuration", configuration(study, written), style),
     "assumptions": html_page("What the paper leaves open", parts["assumptions"], style),
 }
