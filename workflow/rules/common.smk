@@ -173,6 +173,30 @@ def batch_limits(wildcards):
     return batch[0], batch[-1]
 
 
+def remove_used_lines():
+    """Remove lines that a failed run left: Snakemake forgets those whose readers all finished."""
+    for first in STUDY.batches:
+        lines = Path(result(f"batches/roughness_{first}.nc"))
+        readers = [lines.with_name(f"{kind}_{first}.nc") for kind in ("contact", "master")]
+        kept = workflow.storage_settings.notemp or str(lines) in sys.argv
+        if all(path.exists() for path in readers) and not kept:
+            lines.unlink(missing_ok=True)
+
+
+def tell_refused_records():
+    """Name the records that were refused, and why, in the very last line of the run."""
+    experiment = Path(result("experiment.nc"))
+    if STUDY.experiment.manifest is None or not experiment.exists():
+        return
+    from lube.io import load
+    from lube.shares import refused_in_one_line
+
+    told = refused_in_one_line(load(experiment, "experiment"))
+    if told:
+        # When Snakemake has said all that it has to say.
+        atexit.register(print, told, file=sys.stderr)
+
+
 onstart:
     with told_in_one_line():
         check_writable(RESULTS)  # Snakemake would end in a traceback
@@ -182,3 +206,8 @@ onstart:
                 "its last line has no end; if the file was cut short, its last value is wrong"
             )
             print(f"Warning: {file}: {told}", file=sys.stderr)
+
+
+onsuccess:
+    remove_used_lines()
+    tell_refused_records()

@@ -1,22 +1,3 @@
-def tell_refused_records():
-    """Name the records that were refused, and why, in the very last line of the run."""
-    experiment = Path(result("experiment.nc"))
-    if STUDY.experiment.manifest is None or not experiment.exists():
-        return
-    from lube.io import load
-    from lube.shares import refused_in_one_line
-
-    told = refused_in_one_line(load(experiment, "experiment"))
-    if told:
-        # When Snakemake has said all that it has to say.
-        atexit.register(print, told, file=sys.stderr)
-
-
-onsuccess:
-    remove_used_lines()
-    tell_refused_records()
-
-
 rule rig:
     input:
         film=result("film.nc"),

@@ -32,13 +32,3 @@ rule roughness_batch:
         "Roughness: realisations {params.realisations[0]} to {params.realisations[1]}"
     script:
         "../scripts/roughness_batch.py"
-
-
-def remove_used_lines():
-    """Remove lines that a failed run left: Snakemake forgets those whose readers all finished."""
-    for first in STUDY.batches:
-        lines = Path(result(f"batches/roughness_{first}.nc"))
-        readers = [lines.with_name(f"{kind}_{first}.nc") for kind in ("contact", "master")]
-        kept = workflow.storage_settings.notemp or str(lines) in sys.argv
-        if all(path.exists() for path in readers) and not kept:
-            lines.unlink(missing_ok=True)
