@@ -102,7 +102,7 @@ def _read(values, wanted, signal):
 
 @dataclass(frozen=True)
 class _Array:
-    """One array of a file: what the file tells of it, its values, and its attributes."""
+    """One array of a file, with what the file states of it, its values and its attributes."""
 
     channel: Channel
     values: object

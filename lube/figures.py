@@ -118,7 +118,7 @@ def _commits(datasets):
 
 
 def _state(path):
-    """Tell by what one sees that a file is written anew, whatever is written."""
+    """State of a file that changes whenever it is written, even with the same content."""
     try:
         found = path.stat()
     except OSError:

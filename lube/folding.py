@@ -15,11 +15,11 @@ PHASES = 512
 SPAN = 0.05
 """The period is looked for so far from the nominal one, relative."""
 LEAST_STRETCHES = 8
-"""Stretches in a revolution that its repetition can be told from, at least."""
+"""Fewer stretches in a revolution than this do not show whether it repeats."""
 ALIKE = 0.98
 """Peaks of the autocorrelation this near the highest may be the turn; then the nearest is taken."""
 CLEAR = 0.5
-"""Repeatability from which on the period of a record is believed rather than a stated speed."""
+"""From this repeatability up, a record's own period is believed rather than a stated speed."""
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,7 @@ def _cells(shares, interval, period):
 
 def _repeatability(shares, interval, period):
     """Mean correlation between two revolutions."""
-    # Asked of the shares themselves: the deviations of equal ones need not round to zero.
+    # Decided by the shares themselves: deviations of equal shares may not round to zero.
     if np.ptp(shares) == 0.0:
         return np.nan
     values, phase, phases = _cells(shares - shares.mean(), interval, period)
