@@ -44,7 +44,7 @@ def figures_of(coarse):
     @functools.cache
     def ensembles(rollers):
         study = bench.variant(coarse, rollers)
-        return [bench.make_ensemble(study, n * REALISATIONS, map) for n in range(ENSEMBLES)]
+        return bench.make_ensembles(study, ENSEMBLES, map)
 
     @functools.cache
     def scenario(rollers, motion):

@@ -64,8 +64,9 @@ SLIP_LAMBDAS = np.geomspace(1.3, 3.8, 7)
 HELD_OUT = 100_000
 """First realisation of the pairs that no ensemble has seen."""
 PAIRS = {"rolling": 1000, "slipping": 200}
-ENSEMBLES, ENSEMBLE_PAIRS = 8, 200
-"""Disjoint ensembles that the same pairs are judged by, for equal rollers in rolling."""
+ENSEMBLES, ENSEMBLE_PAIRS = 4, 200
+"""Ensembles that share no realisation. Each judges its part of a scenario's pairs, so that no
+figure is the luck of one ensemble; and all judge these pairs, for equal rollers in rolling."""
 FILES, FILE_TURNS = 30, 10.4
 TOY = 8
 """Pairs of the smoke study, whose figures mean nothing."""
@@ -78,6 +79,7 @@ LEAST = 1e-3
 class Ensemble:
     """What a study knows of its rollers: films, contact and master map."""
 
+    seed: int
     film: xr.Dataset
     contact: xr.Dataset
     master: xr.Dataset
@@ -107,18 +109,22 @@ def film_of(study):
     return film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
 
 
-def make_ensemble(study, first, pool):
-    """Contact and master map of the realisations from some one on, numbered from 0."""
+def make_ensembles(study, count, pool):
+    """Ensembles of the study's rollers by as many seeds, which share no realisation."""
+    return [make_ensemble(study, study.seed + number, pool) for number in range(count)]
+
+
+def make_ensemble(study, seed, pool):
+    """Contact and master map of the study's realisations by one seed."""
     film = film_of(study)
-    wanted = [(study, film, first, number) for number in range(study.realisations)]
+    wanted = [(study, film, seed, number) for number in range(study.realisations)]
     runs, maps = zip(*pool(_realisation, wanted), strict=True)
-    return Ensemble(film, gather(runs, film), gather_map(maps))
+    return Ensemble(seed, film, gather(runs, film), gather_map(maps))
 
 
 def _realisation(job):
-    study, film, first, number = job
-    lines = roughness_batch(study.line_spec, study.seed, [first + number])
-    lines = lines.assign_coords(realisation=[number])
+    study, film, seed, number = job
+    lines = roughness_batch(study.line_spec, seed, [number])
     layer = study.boundary_layer
     return contact_statistics(lines, film, layer), contact_map(lines, film, layer)
 
@@ -212,7 +218,8 @@ def comparisons(study, ensemble, table, motion, turns=TURNS):
     """One comparison for each number of turns; the model is made for all of them at once."""
     experiments = [experiment_of(study, table, motion, each) for each in turns]
     joined = xr.concat(experiments, "record", data_vars="minimal", join="exact")
-    model = model_at_records(joined, ensemble.film, ensemble.contact, study)
+    own = study.model_copy(update={"seed": ensemble.seed})
+    model = model_at_records(joined, ensemble.film, ensemble.contact, own)
     parts = np.split(np.arange(joined.sizes["record"]), len(turns))
     return [
         compare(model.isel(record=part), joined.isel(record=part), ensemble.contact)
@@ -235,7 +242,8 @@ def judge(ensemble, comparison, shares):
     Returns
     -------
     dict of str to numpy.ndarray
-        ``inside``: whether a share is within its prediction, shape (pairs, points); ``film``
+        ``probability`` and ``predicted``, the mean over the ensemble and the width of the
+        prediction, and ``inside``, whether a share is within it, shape (pairs, points); ``film``
         with its limits, as logarithms of the lambda ratio, shape (pairs, points, 3); ``alpha``
         and ``layer`` with theirs, as logarithms of their ratio to the truth, shape (pairs, 3).
     """
@@ -246,7 +254,10 @@ def judge(ensemble, comparison, shares):
         "alpha": (ALPHA_FACTORS, alpha_logits(ensemble.master, comparison), 1.0),
         "layer": (*strength, study_strength(ensemble.contact)),
     }
+    everyone = np.ones((len(shares), 1))
     found = {
+        "probability": everyone * one["simulated_probability"].values,
+        "predicted": everyone * (upper - lower),
         "inside": (lower <= shares) & (shares <= upper),
         "film": _films(ensemble, comparison, shares),
     }
@@ -273,10 +284,21 @@ def _films(ensemble, comparison, shares):
         return np.log(np.stack(limits, axis=-1)).reshape(pairs, points, 3)
 
 
-def judge_all(ensemble, comparison, shares, pool):
-    """As `judge`, the pairs shared out among processes."""
-    parts = np.array_split(shares, math.ceil(len(shares) / 25))
-    judged = list(pool(partial(judge, ensemble, comparison), parts))
+def judge_all(ensembles, compared, shares, pool):
+    """As `judge`: each ensemble judges its part of the pairs, shared out among processes."""
+    jobs = [
+        (ensemble, comparison, part)
+        for ensemble, comparison, own in zip(
+            ensembles, compared, np.array_split(shares, len(ensembles)), strict=True
+        )
+        for part in np.array_split(own, math.ceil(len(own) / 25))
+    ]
+    return join(pool(judge, *zip(*jobs, strict=True)))
+
+
+def join(judged):
+    """Join what `judge` says of several parts of the pairs."""
+    judged = list(judged)
     return {name: np.concatenate([part[name] for part in judged]) for name in judged[0]}
 
 
@@ -292,14 +314,14 @@ def figures(comparison, shares, judged):
         Variables of the ``coverage`` file; those over points as arrays.
     """
     one = comparison.isel(film_formula=0)
-    probability = one["simulated_probability"].values
-    counted = probability > LEAST
+    probability = judged["probability"]
+    counted = probability.mean(axis=0) > LEAST
     film, inside = judged["film"], judged["inside"]
     held = _holds(film, np.log(one["lambda_ratio"].values))
     closed = np.isfinite(film[..., 1:]).all(axis=-1)
     beyond = np.where(shares < probability, np.inf, -np.inf)
     gauged = np.where(np.isnan(film[..., 0]), beyond, film[..., 0])
-    predicted = one["predicted_share_upper"].values - one["predicted_share_lower"].values
+    predicted = np.median(judged["predicted"], axis=0)
     return {
         "film_coverage": _mean(held[:, counted]),
         "closed_coverage": _mean(held[closed]),
@@ -408,8 +430,7 @@ def through_files(study, ensemble, table, pairs, folder):
         own = own.sortby(own["lambda_ratio"].isel(film_formula=0))
         shares.append(own["measured_share"].values)
         judged.append(judge(ensemble, own, shares[-1][None]))
-    judged = {name: np.concatenate([each[name] for each in judged]) for name in judged[0]}
-    return own, figures(own, np.array(shares), judged)
+    return own, figures(own, np.array(shares), join(judged))
 
 
 # The whole
@@ -420,34 +441,33 @@ def scenario_name(rollers, motion):
     return f"{rollers} rollers, {motion}"
 
 
-def measure_scenario(study, ensemble, rollers, motion, pairs, pool):
+def measure_scenario(study, ensembles, rollers, motion, pairs, pool):
     """Figures of one scenario, one row for each number of turns, and its points."""
     begin = time.perf_counter()
     study = variant(study, rollers, motion)
-    table = operating_table(ensemble.film, motion)
+    table = operating_table(ensembles[0].film, motion)
     shares = held_out_shares(study, table, motion, pairs, pool)
     ran = time.perf_counter()
     rows = []
-    for number, comparison in enumerate(comparisons(study, ensemble, table, motion)):
-        judged = judge_all(ensemble, comparison, shares[:, number], pool)
-        rows.append(figures(comparison, shares[:, number], judged))
+    made = [comparisons(study, ensemble, table, motion) for ensemble in ensembles]
+    for number, compared in enumerate(zip(*made, strict=True)):
+        judged = judge_all(ensembles, compared, shares[:, number], pool)
+        rows.append(figures(compared[0], shares[:, number], judged))
         tell(f"{scenario_name(rollers, motion)}, {TURNS[number]:g} turns", pairs, rows[-1])
     now = time.perf_counter()
     print(f"{scenario_name(rollers, motion)}: runs {ran - begin:.0f} s, judged {now - ran:.0f} s")
-    return rows, comparison, shares
+    return rows, compared[0], shares
 
 
-def measure_ensembles(study, shares, ensemble, pool):
-    """Figures of the same pairs by several ensembles that share no realisation."""
+def measure_ensembles(study, shares, ensembles, pool):
+    """Figures of the same pairs by each ensemble."""
     study = variant(study, "equal")
     at, rows = TURNS.index(FILE_TURNS), []
-    for number in range(ENSEMBLES):
-        if number:
-            ensemble = make_ensemble(study, number * study.realisations, pool)
+    for number, ensemble in enumerate(ensembles):
         table = operating_table(ensemble.film, "rolling")
-        (comparison,) = comparisons(study, ensemble, table, "rolling", [FILE_TURNS])
-        judged = judge_all(ensemble, comparison, shares[:ENSEMBLE_PAIRS, at], pool)
-        rows.append(figures(comparison, shares[:ENSEMBLE_PAIRS, at], judged))
+        compared = comparisons(study, ensemble, table, "rolling", [FILE_TURNS])
+        judged = judge_all([ensemble], compared, shares[:ENSEMBLE_PAIRS, at], pool)
+        rows.append(figures(compared[0], shares[:ENSEMBLE_PAIRS, at], judged))
         tell(f"ensemble {number}", len(shares[:ENSEMBLE_PAIRS]), rows[-1])
     return rows
 
@@ -469,16 +489,17 @@ def measure(study, pairs, files, pool, folder):
     """Measure everything, as the ``coverage`` file of `lube.schema`."""
     found, of_ensembles = {}, None
     for rollers in ("equal", "unequal"):
-        ensemble = make_ensemble(variant(study, rollers), 0, pool)
+        ensembles = make_ensembles(variant(study, rollers), ENSEMBLES, pool)
         for motion in MOTIONS:
             rows, comparison, shares = measure_scenario(
-                study, ensemble, rollers, motion, pairs[motion], pool
+                study, ensembles, rollers, motion, pairs[motion], pool
             )
             found[scenario_name(rollers, motion)] = pairs[motion], TURNS, rows, comparison
             if of_ensembles is None:
-                of_ensembles = measure_ensembles(study, shares, ensemble, pool)
-                table = operating_table(ensemble.film, "slipping")  # the fewer points
-                own, row = through_files(variant(study, "equal"), ensemble, table, files, folder)
+                of_ensembles = measure_ensembles(study, shares, ensembles, pool)
+                first, equal = ensembles[0], variant(study, "equal")
+                table = operating_table(first.film, "slipping")  # the fewer points
+                own, row = through_files(equal, first, table, files, folder)
                 name = f"{scenario_name(rollers, motion)}, through files"
                 tell(name, files, row)
                 found[name] = files, (FILE_TURNS,), [row], own
