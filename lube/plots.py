@@ -11,10 +11,10 @@ import numpy as np
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
-from lube.files import written_whole
-from lube.provenance import stamp
 from lube.schema import COORDINATES
+from lube.storage.files import written_whole
 from lube.units import convert
+from lube.workflow.stamps import stamp
 
 COLOURS = {
     "black": "#000000",

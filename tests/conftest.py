@@ -1,23 +1,22 @@
 """Shared fixtures: the rollers of the smoke study on grids fine or small enough for a test."""
 
 import subprocess
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 import yaml
 from every_kind import datasets_of_every_kind
 from hypothesis import settings
-from studies import PAPER_CONTENT, with_value
+from studies import PAPER_CONTENT, SMOKE, with_value
 from xdist.scheduler import LoadScopeScheduling
 
 from lube import film_table, line_spec, load_study, roughness_lines
-from lube.about import About
-from lube.contact import contact_map, contact_statistics
-from lube.ensemble import gather, gather_map
-from lube.io import save
-from lube.lubricant import lubricant_table
-from lube.roughness import roughness_batch
+from lube.stages.contact import contact_map, contact_statistics
+from lube.stages.ensemble import gather, gather_map
+from lube.stages.lubricant import lubricant_table
+from lube.stages.roughness import roughness_batch
+from lube.storage.netcdf import save
+from lube.study.metadata import About
 
 # The first example of a test may have to wait for its kernel to be compiled.
 settings.register_profile("lube", deadline=None)
@@ -50,7 +49,6 @@ def pytest_collection_modifyitems(items):
     items.sort(key=rank)
 
 
-SMOKE = Path(__file__).parents[1] / "workflow" / "config" / "smoke.yaml"
 LARGEST_FORCE = 1600.0
 
 

@@ -10,7 +10,7 @@ from requests.adapters import BaseAdapter
 from requests_cache import CachedSession
 from rocrate_validator import models, services
 
-from lube.crate import RO_CRATE
+from lube.archive.crate import RO_CRATE
 
 CONTEXT = f"https://w3id.org/ro/crate/{RO_CRATE}/context"
 

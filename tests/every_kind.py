@@ -2,20 +2,20 @@
 
 import numpy as np
 import xarray as xr
+from experiments import model_of_records
 
-from lube.at_records import model_at_records
-from lube.comparison import compare
-from lube.contact import contact_map, contact_statistics
-from lube.ensemble import gather, gather_map
-from lube.experiment import simulated_experiment
-from lube.film import film_table
-from lube.gauge import gauge_records
-from lube.io import opened
-from lube.lubricant import lubricant_table
-from lube.rig_records import rig_records
-from lube.roughness import roughness_batch, roughness_lines
 from lube.schema import COORDINATES, FILES, label
-from lube.trace import contact_trace
+from lube.stages.comparison import compare
+from lube.stages.contact import contact_map, contact_statistics
+from lube.stages.ensemble import gather, gather_map
+from lube.stages.experiment import simulated_experiment
+from lube.stages.film import film_table
+from lube.stages.gauge import gauge_records
+from lube.stages.lubricant import lubricant_table
+from lube.stages.rig import rig_records
+from lube.stages.roughness import roughness_batch, roughness_lines
+from lube.stages.trace import contact_trace
+from lube.storage.netcdf import opened
 
 KINDS = list(FILES)
 
@@ -60,7 +60,7 @@ def datasets_of_every_kind(study):
     points = [point | {"slide_to_roll_ratio": 0.0} for point in study.trace_points]
     contact, master = gather([run], film), gather_map([mapped])
     experiment = simulated_experiment(rig_lines, film, own)
-    comparison = compare(model_at_records(experiment, film, contact, own), experiment, contact)
+    comparison = compare(model_of_records(experiment, film, contact, own), experiment, contact)
     return {
         "lubricant": oil,
         "film": film,

@@ -4,8 +4,11 @@ import numpy as np
 import xarray as xr
 from studies import OIL
 
-from lube.folding import PHASES
+from lube.rig.at_records import model_at_records
 from lube.schema import label
+from lube.stages.film import film_at_records
+from lube.stages.lubricant import lubricant_table
+from lube.statistics.folding import PHASES
 
 THRESHOLDS = np.array([10.0, 100.0, 1000.0])
 
@@ -65,3 +68,10 @@ def experiment_at(levels, shares, **values):
     grid = np.meshgrid(*(np.asarray(levels[name]) for name in names), indexing="ij")
     conditions = {name: each.ravel() for name, each in zip(names, grid, strict=True)}
     return experiment_of(np.ravel(shares), **(conditions | values))
+
+
+def model_of_records(experiment, film, contact, study):
+    """The model at the conditions of each record, as the workflow makes it."""
+    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+    films = film_at_records(experiment, oils, study.rollers, study.film_formulas)
+    return model_at_records(films, experiment, film, contact, study)

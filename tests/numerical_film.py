@@ -3,7 +3,7 @@
 import numpy as np
 from paper_grid import LENGTH, MODULUS, RADIUS
 
-from lube import formulas, groups
+from lube.physics import dimensionless, film_formulas
 
 FLOODED = 1000.0
 """Height of the inlet over the film: with 40 half-widths, less at low load, the film is up to
@@ -23,13 +23,13 @@ class NumericalFilm:
     def __init__(self, force, viscosity, alpha, speed):
         load = force / LENGTH
         numbers = (
-            groups.dimensionless_load(load, 2 * MODULUS, RADIUS),
-            groups.dimensionless_speed(viscosity, speed, 2 * MODULUS, RADIUS),
-            groups.dimensionless_material(alpha, 2 * MODULUS),
+            dimensionless.dimensionless_load(load, 2 * MODULUS, RADIUS),
+            dimensionless.dimensionless_speed(viscosity, speed, 2 * MODULUS, RADIUS),
+            dimensionless.dimensionless_material(alpha, 2 * MODULUS),
         )
         # Moes' formula lies above the computed film by about so much.
-        self.guess = 0.85 * formulas.moes(*numbers) * RADIUS
-        self.step = min(0.02, 0.5 / groups.moes_numbers(*numbers)[0])
+        self.guess = 0.85 * film_formulas.moes(*numbers) * RADIUS
+        self.step = min(0.02, 0.5 / dimensionless.moes_numbers(*numbers)[0])
         self.a = np.sqrt(4 * load * RADIUS / (np.pi * MODULUS))
         self.p_hertz = 2 * load / (np.pi * self.a)
         self.hydrodynamic = 12 * viscosity * speed * RADIUS**2 / (self.a**3 * self.p_hertz)
@@ -115,7 +115,7 @@ def solve_at(moes_load, moes_material, viscosity, alpha):
 
     The oil is given, as its Roelands law knows more of it than M and L; speed and force follow.
     """
-    material = groups.dimensionless_material(alpha, 2 * MODULUS)
+    material = dimensionless.dimensionless_material(alpha, 2 * MODULUS)
     speed = (moes_material / material) ** 4 / 2
     load = moes_load * np.sqrt(2 * speed)
     scale = 2 * MODULUS * RADIUS

@@ -3,7 +3,7 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from lube import formulas, groups, hertz
+from lube.physics import dimensionless, film_formulas, hertz
 
 RADIUS, LENGTH = 0.025, 0.01
 MODULUS = hertz.reduced_modulus(210e9, 0.3, 210e9, 0.3)
@@ -23,11 +23,11 @@ def groups_at(force, speed, temperature):
     """W, U and G of one operating point of the paper's grid."""
     at = list(TEMPERATURE).index(temperature)
     return (
-        groups.dimensionless_load(force / LENGTH, 2 * MODULUS, RADIUS),
-        groups.dimensionless_speed(
+        dimensionless.dimensionless_load(force / LENGTH, 2 * MODULUS, RADIUS),
+        dimensionless.dimensionless_speed(
             VISCOSITY[at], 2 * np.pi * 0.05 * speed / 60, 2 * MODULUS, RADIUS
         ),
-        groups.dimensionless_material(ALPHA[at], 2 * MODULUS),
+        dimensionless.dimensionless_material(ALPHA[at], 2 * MODULUS),
     )
 
 
@@ -35,16 +35,16 @@ def groups_of_the_grid():
     """W, U and G of all 125 points, shapes broadcasting to (temperature, speed, force)."""
     entrainment = 2 * np.pi * 0.05 * SPEED / 60
     return (
-        groups.dimensionless_load(FORCE / LENGTH, 2 * MODULUS, RADIUS),
-        groups.dimensionless_speed(
+        dimensionless.dimensionless_load(FORCE / LENGTH, 2 * MODULUS, RADIUS),
+        dimensionless.dimensionless_speed(
             VISCOSITY[:, None, None], entrainment[:, None], 2 * MODULUS, RADIUS
         ),
-        groups.dimensionless_material(ALPHA[:, None, None], 2 * MODULUS),
+        dimensionless.dimensionless_material(ALPHA[:, None, None], 2 * MODULUS),
     )
 
 
 def film(name, *point):
-    return formulas.formula(name).evaluate(*groups_at(*point)) * RADIUS
+    return film_formulas.formula(name).evaluate(*groups_at(*point)) * RADIUS
 
 
 def log_slope(function, arguments, which):

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import yaml
 
-CONFIG = Path(__file__).parents[1] / "workflow" / "config"
+ROOT = Path(__file__).parents[1]
+CONFIG = ROOT / "workflow" / "config"
 PAPER = CONFIG / "paper.yaml"
+SMOKE = CONFIG / "smoke.yaml"
 PAPER_CONTENT = yaml.safe_load(PAPER.read_text(encoding="utf-8"))
 OIL = "mobilgear-shc-xmp-320"
 REMOVED = object()

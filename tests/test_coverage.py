@@ -17,8 +17,8 @@ from benchmarks import bench_coverage as bench
 from studies import PAPER
 
 from lube import load_study
-from lube.roughness import draw_realisation
-from lube.steps import revolution, speed_ratios
+from lube.grid.discretise import revolution, speed_ratios
+from lube.surfaces.synthetic import draw_realisation
 
 ENSEMBLES, REALISATIONS = 2, 32
 PAIRS = {"rolling": 120, "slipping": 60}

@@ -17,50 +17,20 @@ MODULES = {
     if path.name != "__init__.py"
 }
 
-# Each module may import those of the layers above its own.
-LAYERS = [
-    {"errors", "repository", "processors", "classic_netcdf"},
-    {
-        *("units", "texts", "hertz", "groups", "regimes", "inlet_heating", "viscosity"),
-        *("resistance", "intervals", "one_pair", "folding", "levels", "schema", "kernels", "pages"),
-    },
-    {
-        *("formulas", "markdown", "fields", "files", "fluids", "seals", "steps", "points"),
-        *("evaluation", "curves", "shares", "signals", "tables", "sizes", "cells"),
-    },
-    {
-        *("about", "apparatus", "records", "surfaces", "rig", "manifest", "excerpts", "map_curves"),
-        *("text_signals", "binary_signals"),
-    },
-    {"study", "recordings", "fits", "ensemble"},
-    {
-        *("lubricant", "film", "roughness", "contact", "trace"),
-        *("experiment", "rig_records", "comparison", "gauge"),
-    },
-    {"provenance", "jobs", "reference", "at_records"},
-    {"io", "plots", "citation", "notebooks"},
-    {"crate", "explanation", "configuration", "overview", "figures"},
-    {"archive_page"},
-    {"archive"},
-    {"verify", "redraw"},
-    {"command"},
+# A folder, or a module beside them, imports from those of the floors before its own.
+FLOORS = [
+    {"errors", "kernels"},
+    {"units", "schema", "physics", "statistics", "surfaces"},
+    {"grid"},
+    {"study"},
+    {"rig", "storage"},
+    {"recordings"},
+    {"stages"},
+    {"workflow", "report"},
+    {"archive", "plots"},
+    {"cli"},
 ]
-LAYER_OF = {name: number for number, layer in enumerate(LAYERS) for name in layer}
-FOUNDATIONS = {
-    *(
-        "errors",
-        "units",
-        "texts",
-        "fields",
-        "hertz",
-        "groups",
-        "regimes",
-        "formulas",
-        "inlet_heating",
-    ),
-    *("viscosity", "resistance", "curves", "intervals", "one_pair", "folding"),
-}
-STAGES = LAYERS[5]
+FLOOR_OF = {room: number for number, floor in enumerate(FLOORS) for room in floor}
 
 
 def imported(path):
@@ -89,47 +59,36 @@ def outside_imports(path):
     return {name.split(".")[0] for name in imported(path)} - {"lube"}
 
 
-def test_every_module_has_its_layer():
-    assert {part(module) for module in MODULES} == set(LAYER_OF)
+def test_every_room_has_its_floor():
+    assert {part(module) for module in MODULES} == set(FLOOR_OF)
 
 
-@pytest.mark.parametrize("module", sorted(MODULES))
-def test_imports_go_up_the_layers_only(module):
-    own = part(module)
-    for name in own_imports(MODULES[module]) - {own}:
-        assert LAYER_OF[name] < LAYER_OF[own], f"{module} imports lube.{name}"
+def test_imports_go_down_the_floors_only():
+    for module, path in MODULES.items():
+        for room in own_imports(path) - {part(module)}:
+            assert FLOOR_OF[room] < FLOOR_OF[part(module)], f"{module} imports {room}"
 
 
-@pytest.mark.parametrize("module", sorted(m for m in MODULES if part(m) in STAGES))
-def test_stages_meet_as_datasets_and_never_import_one_another(module):
-    assert not own_imports(MODULES[module]) & STAGES
+def test_stages_meet_as_datasets_and_never_import_one_another():
+    for module, path in MODULES.items():
+        if part(module) == "stages":
+            assert "stages" not in own_imports(path), module
 
 
-@pytest.mark.parametrize("module", sorted(m for m in MODULES if part(m) == "kernels"))
-def test_kernels_know_arrays_and_nothing_else(module):
-    known = {"numpy", "numba", "math"}
-    if module == "lube.kernels.compiler":
-        known |= {"hashlib", "os", "pathlib"}  # where the compiled kernels are kept
-    assert outside_imports(MODULES[module]) <= known
-    assert own_imports(MODULES[module]) <= {"kernels"}
+def test_kernels_know_arrays_and_nothing_else():
+    for module, path in MODULES.items():
+        if part(module) == "kernels":
+            known = {"numpy", "numba", "math"}
+            if module == "lube.kernels.compiler":
+                known |= {"hashlib", "os", "pathlib"}  # where the compiled kernels are kept
+            assert outside_imports(path) <= known, module
 
 
-@pytest.mark.parametrize("module", sorted(m for m in MODULES if part(m) in FOUNDATIONS))
-def test_the_mathematics_knows_neither_datasets_nor_files(module):
-    assert not outside_imports(MODULES[module]) & {"xarray", "netCDF4", "matplotlib", "numba"}
-
-
-def test_modules_that_import_each_other_form_no_ring():
-    ahead = {module: {f"lube.{n}" for n in own_imports(p)} for module, p in MODULES.items()}
-
-    def reached(module, trail):
-        assert module not in trail, f"ring of imports: {trail}"
-        for name in ahead.get(module, ()):
-            reached(name, [*trail, module])
-
-    for module in MODULES:
-        if part(module) != "kernels":
-            reached(module, [])
+def test_the_mathematics_knows_neither_datasets_nor_files():
+    for module, path in MODULES.items():
+        if part(module) in ("physics", "statistics", "surfaces"):
+            outside = outside_imports(path) & {"xarray", "netCDF4", "matplotlib", "numba"}
+            assert not outside, f"{module} imports {outside}"
 
 
 def loaded_after(statement):
@@ -147,10 +106,16 @@ def loaded_after(statement):
     ("statement", "heavy"),
     [
         ("import lube", {"numpy", "xarray", "numba", "pydantic", "pint"}),
-        ("import lube.study", {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp"}),
-        ("from lube.study import load_study; import lube.jobs", {"xarray", "papermill"}),
-        ("import lube.markdown", {"numpy", "docutils"}),
-        ("import lube.cells", {"xarray", "nbformat", "papermill"}),
+        (
+            "import lube.study.study",
+            {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp"},
+        ),
+        (
+            "from lube.study.study import load_study; import lube.workflow.jobs",
+            {"xarray", "papermill"},
+        ),
+        ("import lube.report.markdown", {"numpy", "docutils"}),
+        ("import lube.workflow.cells", {"xarray", "nbformat", "papermill"}),
     ],
 )
 def test_what_snakemake_imports_at_every_start_is_light(statement, heavy):

@@ -8,7 +8,8 @@ from PIL import Image
 
 from lube import plots
 from lube.errors import DataError
-from lube.provenance import global_attributes, stamp
+from lube.storage.provenance import global_attributes
+from lube.workflow.stamps import stamp
 
 matplotlib.use("Agg")
 plt = plots.plt

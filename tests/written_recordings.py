@@ -8,7 +8,7 @@ from nptdms import ChannelObject, TdmsWriter
 from refusals import one_line
 
 from lube.errors import DataError
-from lube.recordings import open_recording
+from lube.recordings.reader import open_recording
 
 INTERVAL = 2e-5
 SAMPLES = 3000

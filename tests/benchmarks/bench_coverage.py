@@ -30,25 +30,26 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from lube.at_records import model_at_records
-from lube.comparison import compare
-from lube.contact import contact_map, contact_statistics
-from lube.ensemble import gather, gather_map
-from lube.experiment import measured_experiment
-from lube.film import film_table
-from lube.fits import ALPHA_FACTORS, alpha_logits, fit_records, strength_logits, study_strength
-from lube.gauge import gauge_film
-from lube.io import save
+from lube.grid.discretise import layer_factor_of, revolution, speed_ratios, whole_numbers
+from lube.grid.operating_points import operating_points
 from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_statistics
-from lube.lubricant import lubricant_table
-from lube.manifest import Entry, Manifest, read_manifest
-from lube.points import operating_points
-from lube.rig import SimulatedRig
-from lube.roughness import draw_realisation, line_attributes, roughness_batch
+from lube.recordings.manifest import Entry, Manifest, read_manifest
+from lube.rig.at_records import model_at_records
+from lube.rig.fits import ALPHA_FACTORS, alpha_logits, fit_records, strength_logits, study_strength
+from lube.rig.simulator import SimulatedRig
 from lube.schema import LIMITS, label
-from lube.steps import layer_factor_of, revolution, speed_ratios, whole_numbers
-from lube.study import load_study
+from lube.stages.comparison import compare
+from lube.stages.contact import contact_map, contact_statistics
+from lube.stages.ensemble import gather, gather_map
+from lube.stages.experiment import measured_experiment
+from lube.stages.film import film_at_records, film_table
+from lube.stages.gauge import gauge_film
+from lube.stages.lubricant import lubricant_table
+from lube.stages.roughness import roughness_batch
+from lube.storage.netcdf import save
+from lube.study.study import load_study
+from lube.surfaces.synthetic import draw_realisation, line_attributes
 
 TURNS = (0.01, 0.3, 1.0, 10.4, 100.4)
 SLIP = 2.0 * (1.0 - 0.9) / (1.0 + 0.9)
@@ -219,12 +220,19 @@ def comparisons(study, ensemble, table, motion, turns=TURNS):
     experiments = [experiment_of(study, table, motion, each) for each in turns]
     joined = xr.concat(experiments, "record", data_vars="minimal", join="exact")
     own = study.model_copy(update={"seed": ensemble.seed})
-    model = model_at_records(joined, ensemble.film, ensemble.contact, own)
+    model = model_of(joined, ensemble, own)
     parts = np.split(np.arange(joined.sizes["record"]), len(turns))
     return [
         compare(model.isel(record=part), joined.isel(record=part), ensemble.contact)
         for part in parts
     ]
+
+
+def model_of(experiment, ensemble, study):
+    """What an ensemble knows of some records."""
+    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+    films = film_at_records(experiment, oils, study.rollers, study.film_formulas)
+    return model_at_records(films, experiment, ensemble.film, ensemble.contact, study)
 
 
 def judge(ensemble, comparison, shares):
@@ -422,7 +430,7 @@ def through_files(study, ensemble, table, pairs, folder):
     study = study.model_copy(update={"rig": rig})
     manifest = read_manifest(records_on_file(study, table, folder))
     experiment = measured_experiment(manifest, study)
-    model = model_at_records(experiment, ensemble.film, ensemble.contact, study)
+    model = model_of(experiment, ensemble, study)
     comparison = compare(model, experiment, ensemble.contact)
     judged, shares = [], []
     for pair in range(pairs):

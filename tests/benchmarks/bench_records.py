@@ -30,11 +30,11 @@ import xarray as xr
 from nptdms import ChannelObject, TdmsWriter
 
 from lube.errors import DataError
-from lube.evaluation import ContactShare
-from lube.io import save
-from lube.recordings import open_recording
+from lube.recordings.reader import open_recording
+from lube.rig.contact_share import ContactShare
 from lube.schema import label
-from lube.study import load_study
+from lube.storage.netcdf import save
+from lube.study.study import load_study
 
 SAMPLES, ROWS = 10**8, 10**7
 SMOKE_SAMPLES, SMOKE_ROWS = 10**6, 10**5

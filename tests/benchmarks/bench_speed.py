@@ -19,17 +19,17 @@ import numpy as np
 import scipy.fft
 import xarray as xr
 
-from lube.film import film_table
-from lube.io import save
+from lube.grid.discretise import revolution, speed_ratios
 from lube.kernels.layer import layer_factor
 from lube.kernels.scan import scan_statistics
 from lube.kernels.strips import strip_statistics
-from lube.lubricant import lubricant_table
-from lube.roughness import draw_line, draw_realisation
 from lube.schema import label
-from lube.steps import revolution, speed_ratios
-from lube.study import load_study
-from lube.surfaces import line_spec
+from lube.stages.film import film_table
+from lube.stages.lubricant import lubricant_table
+from lube.storage.netcdf import save
+from lube.study.rollers import line_spec
+from lube.study.study import load_study
+from lube.surfaces.synthetic import draw_line, draw_realisation
 
 SLIPS = (0.0, 0.01, 0.1, 0.5, 1.0, 2.0)
 LEAST_LAMBDAS = (0.0, 3.0)

@@ -16,7 +16,7 @@ from lube.kernels.strips import (
     strip_statistics,
     strip_trace,
 )
-from lube.roughness import draw_realisation
+from lube.surfaces.synthetic import draw_realisation
 
 ROLLING = (1.0, 1.0)
 slower = st.one_of(

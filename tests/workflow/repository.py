@@ -11,7 +11,7 @@ from pathlib import Path
 
 import yaml
 
-from lube.cells import datasets_of
+from lube.workflow.cells import datasets_of
 
 ROOT = Path(__file__).parents[2]
 COPIED = (

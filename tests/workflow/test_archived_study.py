@@ -8,14 +8,14 @@ import zipfile
 from crates import issues_of
 from repository import environment, products_of
 
-from lube.archive import SUMS, VALUES, files_of
-from lube.provenance import fingerprint
+from lube.archive.build import SUMS, VALUES, files_of
+from lube.storage.provenance import fingerprint
 
 
 def lube(*arguments, folder, code):
     """Run the command `lube` of an archive's own code, somewhere else."""
     return subprocess.run(
-        [sys.executable, "-m", "lube.command", *map(str, arguments)],
+        [sys.executable, "-m", "lube.cli", *map(str, arguments)],
         cwd=folder,
         env=environment() | {"PYTHONPATH": str(code)},
         capture_output=True,
@@ -37,7 +37,12 @@ def test_the_archive_holds_results_study_records_code_and_metadata(smoke, archiv
     assert {
         *("README.md", "CITATION.cff", ".zenodo.json", "ro-crate-metadata.json", SUMS, VALUES),
         *("versions.txt", "study/smoke.yaml", "lubricants/mobilgear-shc-xmp-320.yaml"),
-        *("code/Snakefile", "code/lube/film.py", "code/notebooks/fig02_film.ipynb", "code/COMMIT"),
+        *(
+            "code/Snakefile",
+            "code/lube/stages/film.py",
+            "code/notebooks/fig02_film.ipynb",
+            "code/COMMIT",
+        ),
     } <= set(names)
     assert not [name for name in names if "__pycache__" in name or "log" in name.split("/")]
     assert "numpy==" in (archive / "versions.txt").read_text()

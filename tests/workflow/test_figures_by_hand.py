@@ -10,15 +10,16 @@ from nbformat.v4 import new_code_cell, new_notebook
 from PIL import Image
 from repository import environment, products_of
 
-from lube.verify import verify_archive
+from lube.archive.verify import verify_archive
 
 PICTURE, TARGET = "figures/fig99_mine.png", "results/smoke/figures/fig99_mine.png"
 DRAW = """\
 import matplotlib.pyplot as plt
-from lube import io, plots
+from lube import plots
+from lube.storage import netcdf
 canvas, axes = plt.subplots()
 line = axes.plot([{}, speed])
-plots.save_figure(canvas, figure, io.load(oil, "film"))
+plots.save_figure(canvas, figure, netcdf.load(oil, "film"))
 """
 
 

@@ -6,9 +6,9 @@ import shutil
 import pytest
 from PIL import Image
 
+from lube.archive.redraw import redraw
+from lube.archive.verify import verify_archive
 from lube.errors import DataError, LubeError
-from lube.redraw import redraw
-from lube.verify import verify_archive
 
 
 def test_an_archive_without_figures_has_none_to_draw(spoilt, tmp_path):

@@ -43,7 +43,7 @@ def test_a_mistaken_study_ends_in_one_line_before_any_job(smoke, changes, told):
 
 
 def test_a_name_that_snakemake_takes_for_a_wildcard_is_refused(spare):
-    shipped = (spare / "lube/lubricants/mobilgear-shc-xmp-320.yaml").read_text("utf-8")
+    shipped = (spare / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml").read_text("utf-8")
     (spare / "{oil}.yaml").write_text(shipped, encoding="utf-8")
     message = refusal(spare, study=spare.with_values(lubricants=["{oil}.yaml"]))
     assert "{oil}.yaml: got a name with braces, need one without" in message
@@ -122,7 +122,7 @@ def test_a_study_writes_nothing_outside_its_results(smoke):
 
 
 def test_a_record_without_sources_is_refused(spare):
-    shipped = (spare / "lube/lubricants/mobilgear-shc-xmp-320.yaml").read_text("utf-8")
+    shipped = (spare / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml").read_text("utf-8")
     record = yaml.safe_load(shipped)
     del record["density"]["source"]
     (spare / "mine-oil.yaml").write_text(yaml.safe_dump(record), encoding="utf-8")

@@ -8,7 +8,7 @@ import shutil
 import pytest
 from repository import products_of
 
-from lube.markdown import plain, title_and_text, to_html
+from lube.report.markdown import plain, title_and_text, to_html
 
 
 @pytest.fixture(scope="module")

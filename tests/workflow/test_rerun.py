@@ -131,12 +131,12 @@ def test_what_all_jobs_import_makes_all_datasets(spare, module):
 
 
 def test_how_a_study_is_read_makes_nothing_while_its_values_stay(spare):
-    spare.append("lube/study.py", "# changed")
+    spare.append("lube/study/study.py", "# changed")
     assert spare.planned() == set()
 
 
 def test_the_execution_of_notebooks_makes_all_figures_and_no_dataset(spare):
-    spare.append("lube/notebooks.py", "# changed")
+    spare.append("lube/workflow/notebooks.py", "# changed")
     planned = spare.planned()
     assert planned == {name for figure in spare.notebooks for name in products_of(figure)}
 
@@ -147,12 +147,12 @@ def test_a_script_makes_its_own_stage_and_what_follows(spare):
 
 
 def test_a_lubricants_record_makes_what_follows_from_it(spare):
-    spare.append("lube/lubricants/mobilgear-shc-xmp-320.yaml", "# changed")
+    spare.append("lube/study/lubricants/mobilgear-shc-xmp-320.yaml", "# changed")
     assert spare.planned() == made(spare, "lubricant", "film", "contact", "trace", batches=BATCHES)
 
 
 def test_another_lubricants_record_makes_nothing(spare):
-    spare.append("lube/lubricants/n-dodecane.yaml", "# changed")
+    spare.append("lube/study/lubricants/n-dodecane.yaml", "# changed")
     assert spare.planned() == set()
 
 
@@ -213,7 +213,7 @@ def test_a_public_name_of_the_package_is_followed_to_its_module(spare, edit_note
     figure = edit_notebook(change)
     spare.run("--touch")
     assert spare.planned() == set()
-    spare.append("lube/ensemble.py", "# changed")
+    spare.append("lube/stages/ensemble.py", "# changed")
     assert products_of(figure) <= spare.planned()
 
 

@@ -7,9 +7,9 @@ import pytest
 from repository import products_of
 
 from lube import schema
-from lube.io import load
+from lube.rig.study_shares import over_grid
 from lube.schema import FILES, check
-from lube.shares import over_grid
+from lube.storage.netcdf import load
 
 DATASETS = (
     *("lubricant", "film", "roughness", "contact", "trace", "master"),
@@ -134,7 +134,7 @@ def test_a_second_run_does_nothing(smoke):
 
 
 def test_a_clone_runs_its_own_lube_and_not_the_installed_one(spare):
-    spare.append("lube/trace.py", "raise RuntimeError('the lube beside this workflow')")
+    spare.append("lube/stages/trace.py", "raise RuntimeError('the lube beside this workflow')")
     finished = spare.snakemake("results/smoke/trace.nc")
     assert "RuntimeError: the lube beside this workflow" in finished.stdout
 

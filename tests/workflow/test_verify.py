@@ -12,11 +12,11 @@ import pytest
 import xarray as xr
 from refusals import in_time
 
-from lube.archive import SUMS, VALUES, files_of
+from lube.archive.build import SUMS, VALUES, files_of
+from lube.archive.verify import unpacked, verify_archive
 from lube.errors import DataError
-from lube.provenance import fingerprint
-from lube.seals import seal
-from lube.verify import unpacked, verify_archive
+from lube.storage.provenance import fingerprint
+from lube.storage.seals import seal
 
 FOREIGN = f": does not belong to the archive: not in {SUMS}"
 
@@ -32,7 +32,8 @@ def with_true_sums(folder):
 
 
 @pytest.mark.parametrize(
-    "name", ["data/film.nc", "figures/fig02_film.png", "study/smoke.yaml", "code/lube/film.py"]
+    "name",
+    ["data/film.nc", "figures/fig02_film.png", "study/smoke.yaml", "code/lube/stages/film.py"],
 )
 def test_a_changed_file_is_named(spoilt, name):
     with (spoilt / name).open("r+b") as file:

@@ -35,4 +35,4 @@ rule verify:
     message:
         "Verify: {params.archive}"
     shell:
-        "{params.python:q} -m lube.command verify {params.archive:q} 2>&1 | tee {log}"
+        "{params.python:q} -m lube.cli verify {params.archive:q} 2>&1 | tee {log}"

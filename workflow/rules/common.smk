@@ -17,16 +17,16 @@ elsewhere = dict(os.environ).get("PYTHONPATH")
 os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, [str(ROOT), elsewhere])))
 
 import lube
-from lube.processors import compute_alike
+from lube.workflow.processors import compute_alike
 
 # For all jobs, before one of them imports NumPy.
 compute_alike()
 
 from lube.errors import LubeError
-from lube.files import check_writable, cut_within_a_line
-from lube.jobs import SNAKEMAKE
+from lube.storage.files import check_writable, cut_within_a_line
+from lube.workflow.jobs import SNAKEMAKE
 from lube.schema import DATASETS, MEASURED
-from lube.study import load_study
+from lube.study.study import load_study
 
 # Jobs end when this process does.
 os.environ[SNAKEMAKE] = str(os.getpid())
@@ -90,8 +90,8 @@ def imported_modules(code):
     """Names of the modules that a piece of Python imports, as far as they may be lube's."""
     for node in ast.walk(ast.parse(code)):
         if isinstance(node, ast.ImportFrom) and node.module:
-            # `from lube import io`, `from lube import load` and `from lube.io import load`
-            # all mean lube.io: the package's public names come from their home modules.
+            # `from lube import io`, `from lube import load` and `from lube.storage.netcdf import load`
+            # all mean lube.storage.netcdf: the package's public names come from their home modules.
             names = [f"{node.module}.{alias.name}" for alias in node.names]
             yield from [node.module, *names]
             if node.module == "lube":
@@ -105,7 +105,7 @@ def imported_modules(code):
 def sources(code):
     """Files of the lube package that some code depends on, by following its imports."""
     # The study reaches a stage through its values only, and those are parameters of its rule.
-    found, waiting = {ROOT / "lube/study.py"}, list(imported_modules(code))
+    found, waiting = {ROOT / "lube/study/study.py"}, list(imported_modules(code))
     while waiting:
         path = ROOT / Path(*waiting.pop().split("."))
         path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
@@ -113,7 +113,7 @@ def sources(code):
             found.add(path)
             waiting += imported_modules(path.read_text(encoding="utf-8"))
     # The package's __init__ names everything and computes nothing.
-    found -= {ROOT / "lube/__init__.py", ROOT / "lube/study.py"}
+    found -= {ROOT / "lube/__init__.py", ROOT / "lube/study/study.py"}
     return sorted(str(path.relative_to(ROOT)) for path in found)
 
 
@@ -140,7 +140,7 @@ def measured_files():
     """Manifest and measured records, as far as there are any; what is missing is told later."""
     if STUDY.experiment.manifest is None:
         return []
-    from lube.manifest import read_manifest
+    from lube.recordings.manifest import read_manifest
 
     with told_in_one_line():
         entries = read_manifest(STUDY.experiment.manifest).entries
@@ -150,9 +150,9 @@ def measured_files():
 
 def archived_texts():
     """What people wrote and an archive holds: the study's file, its records, the code."""
-    from lube.archive import written_files
-    from lube.citation import check_about
-    from lube.repository import code_files
+    from lube.archive.build import written_files
+    from lube.archive.citation import check_about
+    from lube.storage.git import code_files
 
     with told_in_one_line():
         check_about(STUDY)
@@ -162,7 +162,7 @@ def archived_texts():
 
 def state_of_code():
     """What an archive says of its code besides the code itself."""
-    from lube.repository import changed_code, commit, commit_date
+    from lube.storage.git import changed_code, commit, commit_date
 
     return commit(), commit_date(), changed_code()
 
@@ -188,8 +188,8 @@ def tell_refused_records():
     experiment = Path(result("experiment.nc"))
     if STUDY.experiment.manifest is None or not experiment.exists():
         return
-    from lube.io import load
-    from lube.shares import refused_in_one_line
+    from lube.storage.netcdf import load
+    from lube.rig.study_shares import refused_in_one_line
 
     told = refused_in_one_line(load(experiment, "experiment"))
     if told:

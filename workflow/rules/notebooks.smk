@@ -1,8 +1,8 @@
 # What the figures' notebooks depend on and say, read from their cells before any job.
 import functools
 
-from lube.cells import cells_of, datasets_of, python_of
-from lube.markdown import plain, title_and_text, to_html
+from lube.workflow.cells import cells_of, datasets_of, python_of
+from lube.report.markdown import plain, title_and_text, to_html
 
 
 @functools.cache

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from lube.archive import make_archive
-from lube.jobs import begin_job
-from lube.study import load_study
+from lube.archive.build import make_archive
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study_file, sums = snakemake.config["study_file"], Path(snakemake.output.sums)

@@ -1,15 +1,21 @@
 """Make comparison.nc: simulation and records side by side, and how far they agree."""
 
-from lube.at_records import model_at_records
-from lube.comparison import compare
-from lube.io import load, save
-from lube.jobs import begin_job
-from lube.study import load_study
+import numpy as np
+
+from lube.rig.at_records import model_at_records
+from lube.stages.comparison import compare
+from lube.stages.film import film_at_records
+from lube.stages.lubricant import lubricant_table
+from lube.storage.netcdf import load, save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])
 inputs = {kind: snakemake.input[kind] for kind in ("film", "contact", "experiment")}
 film, contact, experiment = (load(path, kind, study) for kind, path in inputs.items())
-model = model_at_records(experiment, film, contact, study)
+oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+at_records = film_at_records(experiment, oils, study.rollers, study.film_formulas)
+model = model_at_records(at_records, experiment, film, contact, study)
 result = compare(model, experiment, contact)
 save(result, snakemake.output[0], "comparison", study, inputs.values())

@@ -1,9 +1,9 @@
 """Make contact.nc: all realisations side by side, and the interval of every probability."""
 
-from lube.ensemble import gather
-from lube.io import load, save
-from lube.jobs import begin_job
-from lube.study import load_study
+from lube.stages.ensemble import gather
+from lube.storage.netcdf import load, save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

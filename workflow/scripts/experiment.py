@@ -1,11 +1,11 @@
 """Make experiment.nc: share of time with contact, from measured records or a simulated rig."""
 
-from lube.experiment import measured_experiment, simulated_experiment
-from lube.io import load, save
-from lube.jobs import begin_job
-from lube.manifest import read_manifest
-from lube.roughness import roughness_batch
-from lube.study import load_study
+from lube.recordings.manifest import read_manifest
+from lube.stages.experiment import measured_experiment, simulated_experiment
+from lube.stages.roughness import roughness_batch
+from lube.storage.netcdf import load, save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from lube.figures import draw_figure
-from lube.jobs import begin_job
+from lube.workflow.figures import draw_figure
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 notebook, results = snakemake.input.notebook, Path(snakemake.output.notebook).parents[1]

@@ -1,9 +1,9 @@
 """Make film.nc: film thickness and contact geometry over the operating grid."""
 
-from lube.film import film_table
-from lube.io import load, save
-from lube.jobs import begin_job
-from lube.study import load_study
+from lube.stages.film import film_table
+from lube.storage.netcdf import load, save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

@@ -1,9 +1,9 @@
 """Make gauge.nc: film, pressure-viscosity coefficient and boundary layer from the records."""
 
-from lube.gauge import gauge_records
-from lube.io import load, save
-from lube.jobs import begin_job
-from lube.study import load_study
+from lube.stages.gauge import gauge_records
+from lube.storage.netcdf import load, save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

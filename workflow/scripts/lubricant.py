@@ -1,9 +1,9 @@
 """Make lubricant.nc: properties of every lubricant at the study's temperatures."""
 
-from lube.io import save
-from lube.jobs import begin_job
-from lube.lubricant import lubricant_table
-from lube.study import load_study
+from lube.stages.lubricant import lubricant_table
+from lube.storage.netcdf import save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

@@ -1,9 +1,9 @@
 """Run the contact model on one batch of realisations, over all films and windows it spans."""
 
-from lube.contact import contact_map
-from lube.io import load, opened, save
-from lube.jobs import begin_job
-from lube.study import load_study
+from lube.stages.contact import contact_map
+from lube.storage.netcdf import load, opened, save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

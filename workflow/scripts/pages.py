@@ -2,14 +2,14 @@
 
 from pathlib import Path
 
-from lube.configuration import configuration
-from lube.excerpts import excerpts
-from lube.files import written_whole
-from lube.io import load
-from lube.jobs import begin_job
-from lube.overview import facts, findings, notes
-from lube.pages import html_page
-from lube.study import load_study
+from lube.report.configuration import configuration
+from lube.report.excerpts import excerpts
+from lube.report.pages import html_page
+from lube.report.summary import facts, findings, notes
+from lube.storage.files import written_whole
+from lube.storage.netcdf import load
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

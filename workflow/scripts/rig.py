@@ -1,10 +1,10 @@
 """Make rig.nc: what the simulated rig logs at the trace points."""
 
-from lube.io import load, save
-from lube.jobs import begin_job
-from lube.rig_records import rig_records
-from lube.roughness import roughness_batch
-from lube.study import load_study
+from lube.stages.rig import rig_records
+from lube.stages.roughness import roughness_batch
+from lube.storage.netcdf import load, save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

@@ -1,9 +1,9 @@
 """Make roughness.nc: the kept realisations of the roughness lines, with their moments."""
 
-from lube.io import save
-from lube.jobs import begin_job
-from lube.roughness import roughness_lines
-from lube.study import load_study
+from lube.stages.roughness import roughness_lines
+from lube.storage.netcdf import save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

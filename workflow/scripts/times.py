@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from lube.files import written_whole
-from lube.jobs import begin_job
-from lube.pages import html_page, run_times
+from lube.report.pages import html_page, run_times
+from lube.storage.files import written_whole
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 style = Path(snakemake.input.style).read_text(encoding="utf-8")

@@ -1,9 +1,9 @@
 """Make trace.nc: contact length and resistance at every step of one revolution."""
 
-from lube.io import load, save
-from lube.jobs import begin_job
-from lube.study import load_study
-from lube.trace import contact_trace
+from lube.stages.trace import contact_trace
+from lube.storage.netcdf import load, save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(snakemake.config["study_file"])

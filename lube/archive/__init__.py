@@ -1,0 +1,1 @@
+"""A study for others: built, checked, drawn again, explained."""

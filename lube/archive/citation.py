@@ -1,0 +1,138 @@
+"""How an archive is cited: CITATION.cff, and what Zenodo asks for."""
+
+import datetime
+import html
+import json
+from importlib.metadata import version
+
+import yaml
+
+from lube.errors import StudyError
+from lube.storage.git import commit_date
+from lube.storage.provenance import title_of
+from lube.study.metadata import PAPER
+
+
+def publication_date(study):
+    """Day that an archive bears.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+
+    Returns
+    -------
+    datetime.date
+        As the study says; else that of the code's commit.
+
+    Raises
+    ------
+    StudyError
+        If neither is known.
+    """
+    if study.about.date is not None:
+        return study.about.date
+    if commit_date() is None:
+        raise StudyError(
+            "about.date: missing, and the code has no commit whose day could stand for it; need "
+            "the day of publication, such as 2026-11-21"
+        )
+    return datetime.date.fromisoformat(commit_date())
+
+
+def check_about(study):
+    """Refuse a study that does not say enough of itself for an archive.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+
+    Raises
+    ------
+    StudyError
+        If it names no creators, or there is no day of publication.
+    """
+    if not study.about.creators:
+        raise StudyError(
+            "about.creators: missing, an archive needs someone who made it, such as "
+            "about: {creators: [{name: 'Family, Given'}]}"
+        )
+    publication_date(study)
+
+
+def citation_file(study):
+    """Text of CITATION.cff, by the Citation File Format 1.2.0.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+
+    Returns
+    -------
+    str
+        YAML.
+    """
+    about = study.about
+    content = {
+        "cff-version": "1.2.0",
+        "message": "If you use these results, please cite them and the paper whose model they use.",
+        "type": "dataset",
+        "title": title_of(study),
+        "authors": [_cff_person(creator) for creator in about.creators],
+        "abstract": about.summary,
+        "keywords": list(about.keywords),
+        "license": about.licence,
+        "date-released": publication_date(study),
+        **({"doi": about.doi} if about.doi else {}),
+        "references": [
+            {"type": "article", "title": PAPER, "authors": [{"name": "The authors of the paper"}]},
+            {
+                "type": "software",
+                "title": "lube",
+                "version": version("lube"),
+                "authors": [{"name": "The authors of lube"}],
+            },
+        ],
+    }
+    return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=90)
+
+
+def _cff_person(creator):
+    family, comma, given = (part.strip() for part in creator.name.partition(","))
+    names = {"family-names": family, "given-names": given} if comma else {"name": creator.name}
+    if comma and creator.affiliation:
+        names["affiliation"] = creator.affiliation  # CFF has none for an entity
+    return names | ({"orcid": f"https://orcid.org/{creator.orcid}"} if creator.orcid else {})
+
+
+def zenodo_metadata(study):
+    """Text of .zenodo.json, the metadata of a deposit on Zenodo.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+
+    Returns
+    -------
+    str
+        JSON.
+    """
+    about = study.about
+    content = {
+        "upload_type": "dataset",
+        "title": title_of(study),
+        "description": f"<p>{html.escape(about.summary)}</p><p>The model is that of: {PAPER}.</p>",
+        "creators": [creator.model_dump(exclude_none=True) for creator in about.creators],
+        "publication_date": publication_date(study).isoformat(),
+        "access_right": "open",
+        "license": about.licence.lower(),
+        "keywords": list(about.keywords),
+        "notes": "Made with lube. README.md tells how to check the files and make the figures "
+        "again.",
+        **({"doi": about.doi} if about.doi else {}),
+    }
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"

@@ -1,0 +1,121 @@
+"""The command ``lube``: check an archive, draw its figures again, trace a number.
+
+``lube --help`` tells the rest.
+"""
+
+import argparse
+import os
+import sys
+
+from lube.errors import LubeError, shown
+from lube.workflow.processors import compute_alike
+
+
+def main(arguments=None):
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Its arguments; those of the process if not given.
+
+    Returns
+    -------
+    int
+        0 if all is well, 1 if something was found wrong, 2 if the command could not be carried
+        out.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="backslashreplace")  # whatever letters the terminal knows
+    options = _parser().parse_args(arguments)
+    compute_alike()
+    try:
+        code = options.run(options)
+        sys.stdout.flush()
+        return code
+    except LubeError as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("Interrupted", file=sys.stderr)
+        return 2
+    except BrokenPipeError:  # nobody reads on, as behind `| head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 2
+
+
+def _parser():
+    parser = argparse.ArgumentParser(prog="lube", description=__doc__.splitlines()[0])
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    verify = commands.add_parser("verify", help="check an archive")
+    verify.add_argument("path", help="its folder or zip")
+    verify.set_defaults(run=_verify)
+    figures = commands.add_parser("figures", help="draw an archive's figures again and compare")
+    figures.add_argument("path", help="its folder or zip")
+    figures.add_argument("figure", nargs="*", help="such as fig02_film; else all of them")
+    figures.add_argument("--to", required=True, help="folder for the new figures")
+    figures.set_defaults(run=_figures)
+    explain = commands.add_parser("explain", help="trace a number of contact.nc and make it again")
+    explain.add_argument("path", help="a contact.nc, its film.nc and lubricant.nc beside it")
+    units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
+    for name in (*units, "slide-to-roll-ratio"):
+        told = f"a level of the file{units.get(name, '')}, to within half a per cent"
+        explain.add_argument(f"--{name}", type=float, help=told)
+    for name in ("lubricant", "film-formula"):
+        explain.add_argument(f"--{name}", help="by name; else the first")
+    explain.add_argument(
+        "--realisation",
+        type=_realisation,
+        default=0,
+        help="its number, or `all` for the mean and its interval; by default 0",
+    )
+    explain.set_defaults(run=_explain)
+    return parser
+
+
+def _realisation(text):
+    """Read the number of a realisation; None stands for all."""
+    try:
+        return None if text == "all" else int(text)
+    except ValueError:
+        told = f"got {shown(text)}, need a whole number or `all`"
+        raise argparse.ArgumentTypeError(told) from None
+
+
+def _verify(options):
+    from lube.archive.verify import unpacked, verify_archive
+
+    with unpacked(options.path) as folder:
+        wrong = verify_archive(folder)
+    for line in wrong:
+        print(f"Wrong: {line}")
+    print(f"{options.path}: {len(wrong) or 'nothing'} wrong")
+    return 1 if wrong else 0
+
+
+def _figures(options):
+    from lube.archive.redraw import redraw
+    from lube.archive.verify import unpacked
+
+    compared = []
+    with unpacked(options.path) as folder:
+        for name, same in redraw(folder, options.to, options.figure):
+            print(f"{name}: {'the same bytes' if same else 'NOT the same'}", flush=True)
+            compared.append(same)
+    print(f"{sum(compared)} of {len(compared)} the same, byte for byte")
+    return 0 if all(compared) else 1
+
+
+def _explain(options):
+    from lube.archive.explain import explain, in_words
+
+    names = ("force", "speed", "temperature", "slide_to_roll_ratio", "lubricant", "film_formula")
+    levels = {name: getattr(options, name) for name in names}
+    given = {name: level for name, level in levels.items() if level is not None}
+    explanation = explain(options.path, options.realisation, **given)
+    print(in_words(explanation))
+    return 1 if explanation.differing else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Operating points, their levels, and the step from metres to whole numbers."""

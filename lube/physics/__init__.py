@@ -1,0 +1,1 @@
+"""Physics of the contact in SI units, plain functions on numbers and arrays."""

@@ -1,0 +1,1 @@
+"""Measured files, in the formats of the field."""

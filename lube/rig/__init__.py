@@ -1,0 +1,1 @@
+"""The twin-disc rig: what it would record, and what records tell."""

@@ -1,0 +1,231 @@
+"""The simulated rig: from the metallic contact of its own rollers to the voltage that it logs.
+
+Its rollers are of realisations that no simulation uses. One pair of them turns at all operating
+points, again and again, as on a rig; several pairs take turns, and the roughness drifts from
+revolution to revolution, where the study says so.
+
+A bias voltage drives a current through a series resistor, the leads and the contact. The film
+around the contact is a capacitor, and some current leaks past it. An amplifier of finite range
+looks at the voltage over leads and contact; what it gives is low-pass filtered, sampled, and
+rounded to the steps of the converter.
+
+    bias --[ series ]--+--[ leads ]--+-- contact --+
+                       |             +-- leak -----+-- ground
+                   amplifier         +-- film -----+
+"""
+
+import logging
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
+from lube.grid.operating_points import OperatingPoint
+from lube.kernels.circuit import sampled_voltage
+from lube.kernels.motion import surface_position
+from lube.kernels.strips import strip_trace
+from lube.physics.electrical import contact_resistance, film_capacitance
+
+log = logging.getLogger(__name__)
+
+TOGETHER = 16
+"""Operating points whose contact at all time steps is held at once: a matter of memory."""
+
+
+class SimulatedRig:
+    """A rig that runs its own rollers at some operating points.
+
+    Parameters
+    ----------
+    lines : xarray.Dataset
+        A ``roughness_batch`` dataset of `Study.rig_realisations`.
+    study : Study
+        Its rig, boundary layer, rollers, resistivity and seed.
+    points : list of OperatingPoint
+        From `lube.grid.operating_points.operating_points`; all of one slide-to-roll ratio.
+    """
+
+    def __init__(self, lines, study, points):
+        self._lines, self._study, self._points = lines, study, points
+        self._ratios = speed_ratios(points[0].slide_to_roll_ratio)
+
+    def revolutions(self):
+        """Run all pairs of rollers, each at all operating points.
+
+        Yields
+        ------
+        pair : int
+            Which pair of rollers, from 0.
+        number : int
+            Which of the operating points.
+        revolution : Revolution
+            What happens there, one revolution after the other.
+        """
+        rig, realisations = self._study.rig, self._lines["realisation"].values
+        for pair, drawn in enumerate(np.split(realisations, rig.pairs)):
+            for begin in range(0, len(self._points), TOGETHER):
+                some = range(begin, min(begin + TOGETHER, len(self._points)))
+                for turn, contacts in enumerate(self._turns(drawn, some)):
+                    for number, contact in zip(some, contacts, strict=True):
+                        seed = (self._study.seed, int(drawn[0]), number + 1, turn)
+                        yield pair, number, self._revolution(contact, number, seed)
+                log.info("simulated rig: pair %d, %d operating points", pair + 1, some.stop)
+
+    def _turns(self, drawn, some):
+        """Points in metallic contact at all time steps, turn by turn, at some operating points."""
+        rig, contacts = self._study.rig, None
+        for turn, pair in enumerate(self._rollers(drawn)):
+            steps = revolution(pair, self._ratios)
+            if contacts is None or not self._repeats(pair):
+                begun = tuple(
+                    np.roll(line, -surface_position(turn * steps, ratio))
+                    for line, ratio in zip(pair, self._ratios, strict=True)
+                )
+                contacts = self._contacts(begun, steps, some)
+            part = min(rig.revolutions - turn, 1.0)
+            yield contacts[:, : max(round(part * steps), 1)]
+
+    def _repeats(self, pair):
+        """Whether each revolution is the same as the one before."""
+        alike = pair[0].size == pair[1].size and self._ratios[0] == self._ratios[1]
+        return alike and self._study.rig.drift == 0.0
+
+    def _rollers(self, drawn):
+        """Lines of a pair of rollers in each of its revolutions."""
+        drift = self._study.rig.drift
+        pair = line_pair(self._lines, drawn[0])
+        for turn in range(math.ceil(self._study.rig.revolutions)):
+            if turn and drift > 0.0:
+                pair = tuple(
+                    _renewed(old, new, drift)
+                    for old, new in zip(pair, line_pair(self._lines, drawn[turn]), strict=True)
+                )
+            yield pair
+
+    def _contacts(self, pair, steps, some):
+        """Points in metallic contact over one revolution, shape (operating points, steps)."""
+        points = [self._points[number] for number in some]
+        modulus = points[0].reduced_modulus
+        factor = layer_factor_of(self._lines, modulus, self._study.boundary_layer)
+        films, half_windows = whole_numbers(
+            [point.film_thickness for point in points],
+            [point.contact_half_width for point in points],
+            self._lines,
+        )
+        return strip_trace(*pair, self._ratios, steps, films, half_windows, factor)
+
+    def _revolution(self, contact, number, seed):
+        point, spacing = self._points[number], self._lines.attrs["spacing"]
+        return Revolution(
+            contact,
+            point,
+            time_step=spacing / point.faster_speed,
+            spot_resistance=self._study.resistivity / spacing,
+            length=self._study.rollers.length,
+            seed=seed,
+        )
+
+
+def _renewed(line, other, drift):
+    """Line of which a share of the variance has become another's, int32 steps."""
+    kept, new = math.sqrt(1.0 - drift), math.sqrt(drift)
+    return np.rint(kept * line + new * other).astype(np.int32)
+
+
+@dataclass(frozen=True)
+class Revolution:
+    """One revolution of a simulated rig at one operating point.
+
+    Attributes
+    ----------
+    contact : numpy.ndarray
+        Shape (T,), int32, points in metallic contact at each time step.
+    point : OperatingPoint
+        The operating point.
+    time_step : float
+        Time between two steps, s.
+    spot_resistance : float
+        Contact resistance of one point, rho / dx, ohm (paper, Eq. 1).
+    length : float
+        Length L' of the line contact, m.
+    seed : tuple of int
+        What the noise hangs on.
+    """
+
+    contact: np.ndarray
+    point: OperatingPoint
+    time_step: float
+    spot_resistance: float
+    length: float
+    seed: tuple
+
+    def voltage(self, rig):
+        """Log the revolution with a rig's circuit; all have the same noise but for its size.
+
+        Parameters
+        ----------
+        rig : Rig
+            Circuit, amplifier and sampling.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (samples,), V.
+        """
+        capacitance = film_capacitance(
+            self.point.film_thickness,
+            self.point.contact_half_width,
+            self.length,
+            rig.oil_permittivity,
+        )
+        generator = np.random.default_rng(np.random.SeedSequence(self.seed))
+        return logged_voltage(
+            self.contact, self.time_step, self.spot_resistance, capacitance, rig, generator
+        )
+
+
+def logged_voltage(contact, time_step, spot_resistance, capacitance, rig, generator):
+    """Record that the rig logs of a contact that is known at every time step.
+
+    Parameters
+    ----------
+    contact : numpy.ndarray
+        Shape (T,), points in metallic contact at each time step.
+    time_step : float
+        Time between two steps, s.
+    spot_resistance : float
+        Contact resistance of one point, rho / dx, ohm (paper, Eq. 1).
+    capacitance : float
+        Of the film, F.
+    rig : Rig
+        Circuit, amplifier and sampling.
+    generator : numpy.random.Generator
+        Source of the noise.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples,), float64, V, whole steps of the converter.
+    """
+    points = np.arange(contact.max() + 1)
+    feed = rig.series_resistance + rig.lead_resistance
+    conductance = 1.0 / contact_resistance(points, spot_resistance) + 1.0 / rig.leak_resistance
+    targets = rig.bias_voltage / (1.0 + feed * conductance)
+    memories = np.exp(-time_step * (conductance + 1.0 / feed) / capacitance)
+    gain = rig.series_resistance / feed
+    voltage = sampled_voltage(
+        contact,
+        targets,
+        memories,
+        gain,
+        rig.bias_voltage * (1.0 - gain),
+        rig.amplifier_range,
+        np.exp(-2.0 * np.pi * rig.bandwidth * time_step),
+        1.0 / (rig.sampling_rate * time_step),
+        int(contact.size * time_step * rig.sampling_rate) or 1,
+    )
+    voltage += rig.noise * generator.standard_normal(voltage.size, np.float32)
+    steps = np.rint(voltage / rig.resolved_voltage)
+    most = 2 ** (rig.resolution - 1)
+    return np.clip(steps, -most, most - 1) * rig.resolved_voltage

@@ -1,0 +1,1 @@
+"""The stages of the study: datasets in, datasets out. None imports another."""

@@ -1,0 +1,1 @@
+"""Files, their origin, and the repository they belong to."""

@@ -1,0 +1,1 @@
+"""A study as people write it in YAML, checked, in frozen values."""

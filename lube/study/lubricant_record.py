@@ -1,0 +1,392 @@
+"""Lubricant records: one YAML file a lubricant, checked as a whole and frozen.
+
+A record gives its viscosity in one of three ways: as points, as a CSV file of one's own
+measurements beside the record, or by naming a CoolProp fluid. Every section names its
+source, or says ``assumed: ...`` and why. This module only reads and checks; what follows
+from a record at a temperature is computed in `lube.stages.lubricant`.
+"""
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, PrivateAttr, StringConstraints, model_validator
+
+from lube.errors import RangeError, RecordError, shown
+from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_range
+from lube.physics.viscosity import GOLD_BASES, VISCOSITY_LAWS, ZERO_CELSIUS
+from lube.study.field_types import Slug, StrictModel, quantity, read_yaml, validate
+from lube.study.small_csv import HEADER_CELL, delimiter_of, numbered_lines, split_cells
+
+SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
+
+# Numbers read as K or degF and turned into degC may miss a limit by rounding.
+_ROUNDING = 1e-6
+
+Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
+OilTemperature = quantity("degC", above=-ZERO_CELSIUS, most=1000.0)
+KinematicViscosity = quantity("m^2/s", above=0.0)
+DynamicViscosity = quantity("Pa*s", above=0.0)
+
+
+class Sourced(StrictModel):
+    """A section of a record, which must say where its values come from."""
+
+    source: Text = Field(description="where the values come from, or 'assumed: ...' and why")
+
+
+class ViscosityPoint(StrictModel):
+    """Viscosity at one temperature, kinematic or dynamic."""
+
+    temperature: OilTemperature
+    kinematic_viscosity: KinematicViscosity | None = None
+    dynamic_viscosity: DynamicViscosity | None = None
+
+    @model_validator(mode="after")
+    def _check_one_viscosity(self):
+        if (self.kinematic_viscosity is None) == (self.dynamic_viscosity is None):
+            raise ValueError("need either kinematic_viscosity or dynamic_viscosity")
+        return self
+
+
+class Viscosity(Sourced):
+    """Where the viscosity comes from: points, a CSV file or a CoolProp fluid."""
+
+    points: tuple[ViscosityPoint, ...] | None = Field(
+        None, description="viscosities at two temperatures or more; from the CSV file, if any"
+    )
+    csv: Text | None = Field(None, description="CSV file in the record's folder")
+    coolprop_fluid: Text | None = Field(None, description="CoolProp's name of a pure fluid")
+
+    @model_validator(mode="after")
+    def _check_one_way(self):
+        ways = ("points", "csv", "coolprop_fluid")
+        given = [way for way in ways if getattr(self, way) is not None]
+        if len(given) != 1:
+            raise ValueError(f"got {' and '.join(given) or 'none'}, need one of {', '.join(ways)}")
+        return self
+
+
+class Density(Sourced):
+    """Density falling linearly with temperature about 15 degC."""
+
+    at_15_degC: quantity("kg/m^3", above=0.0) = Field(description="density at 15 degC")
+    thermal_coefficient: quantity("1/K", least=0.0, below=2e-3) = Field(
+        description="relative fall of the density per kelvin"
+    )
+
+
+class PressureViscosity(Sourced):
+    """Pressure-viscosity coefficient: Gold's form, a measured value, or CoolProp's."""
+
+    gold_base: Literal[tuple(GOLD_BASES)] | None = Field(
+        None, description="base oil, for Gold's form alpha = s nu^t"
+    )
+    value: quantity("1/Pa", above=0.0) | None = Field(
+        None, description="measured coefficient, the same at all temperatures"
+    )
+    definition: Literal["slope-at-atmospheric", "secant", "reciprocal-asymptotic"] | None = Field(
+        None, description="definition of the measured, or CoolProp's, coefficient"
+    )
+    pressure: quantity("Pa", above=ATMOSPHERIC_PRESSURE) | None = Field(
+        None, description="pressure to which the secant runs"
+    )
+
+    @model_validator(mode="after")
+    def _check_definition(self):
+        if (self.gold_base is None) == (self.definition is None):
+            raise ValueError("need either gold_base, or definition")
+        if self.gold_base is not None and self.value is not None:
+            raise ValueError("need either gold_base or value, got both")
+        if (self.pressure is None) == (self.definition == "secant"):
+            raise ValueError("pressure: need it with definition 'secant', and only there")
+        return self
+
+    @property
+    def definition_text(self):
+        """Definition of the coefficient in words, to be stored with its values."""
+        if self.gold_base is not None:
+            s, t = GOLD_BASES[self.gold_base]
+            return f"Gold's form {s:g} nu^{t:g} 1/GPa, nu in mm2/s ({self.gold_base})"
+        if self.definition == "secant":
+            return (
+                f"secant of ln viscosity from atmospheric pressure to {self.pressure / 1e6:g} MPa"
+            )
+        return {
+            "slope-at-atmospheric": "slope of ln viscosity at atmospheric pressure",
+            "reciprocal-asymptotic": "reciprocal asymptotic isoviscous pressure",
+        }[self.definition]
+
+
+class ThermalConductivity(Sourced):
+    """Thermal conductivity, the same at all temperatures."""
+
+    value: quantity("W/m/K", above=0.0) = Field(description="thermal conductivity")
+
+
+class TemperatureRange(Sourced):
+    """Temperatures at which the record may be used, if not those of its data."""
+
+    lowest: OilTemperature
+    highest: OilTemperature
+
+    @model_validator(mode="after")
+    def _check_order(self):
+        if not self.lowest < self.highest:
+            raise ValueError(
+                f"highest: got {self.highest:g} degC, need more than lowest, {self.lowest:g} degC"
+            )
+        return self
+
+
+class LubricantRecord(StrictModel):
+    """A lubricant, in SI units (but temperatures in degC). Read it with `load_record`."""
+
+    name: Slug = Field(description="label of the lubricant in all files")
+    title: Text = Field(description="name of the lubricant in figures")
+    viscosity: Viscosity
+    viscosity_law: Literal[tuple(VISCOSITY_LAWS)] | None = Field(
+        None, description="law that gives the viscosity between the data; by default astm-d341"
+    )
+    density: Density | None = None
+    pressure_viscosity: PressureViscosity
+    thermal_conductivity: ThermalConductivity | None = None
+    temperature_range: TemperatureRange | None = None
+
+    _files: tuple[Path, ...] = PrivateAttr(())
+
+    @model_validator(mode="after")
+    def _check_sections(self):
+        fluid = self.viscosity.coolprop_fluid
+        measured = {
+            "density": self.density,
+            "thermal_conductivity": self.thermal_conductivity,
+            "pressure_viscosity.gold_base or value": self.pressure_viscosity.gold_base
+            or self.pressure_viscosity.value,
+        }
+        for key, value in measured.items():
+            if fluid is None and value is None:
+                raise ValueError(f"{key}: missing, need it unless CoolProp gives it")
+            if fluid is not None and value is not None:
+                raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
+        if fluid is not None:
+            self._check_coolprop_only()
+        return self
+
+    def _check_coolprop_only(self):
+        if self.viscosity_law is not None:
+            raise ValueError("viscosity_law: not allowed, CoolProp gives the viscosity")
+        if self.pressure_viscosity.definition == "reciprocal-asymptotic":
+            raise ValueError(
+                "pressure_viscosity.definition: got 'reciprocal-asymptotic', which needs "
+                "viscosities beyond CoolProp's pressures; need slope-at-atmospheric or secant"
+            )
+
+    @property
+    def files(self):
+        """Files the record was read from, as paths: the YAML file, and its CSV file if any."""
+        return self._files
+
+    @property
+    def law_used(self):
+        """What gives the viscosity: ``coolprop``, or a key of `VISCOSITY_LAWS`."""
+        if self.viscosity.coolprop_fluid is not None:
+            return "coolprop"
+        return self.viscosity_law or "astm-d341"
+
+    @property
+    def valid_temperatures(self):
+        """Lowest and highest temperature at which the record holds, degC.
+
+        Those of `temperature_range` if it is written, else of the data, else of the liquid
+        in CoolProp, which then is imported.
+        """
+        if self.temperature_range is not None:
+            return self.temperature_range.lowest, self.temperature_range.highest
+        if self.viscosity.points is not None:
+            temperatures = [point.temperature for point in self.viscosity.points]
+            return min(temperatures), max(temperatures)
+        lowest, highest = liquid_range(self.viscosity.coolprop_fluid)
+        return lowest - ZERO_CELSIUS, highest - ZERO_CELSIUS
+
+
+def shipped_records():
+    """Names of the records that come with the package.
+
+    Returns
+    -------
+    tuple of str
+        The names, sorted.
+    """
+    return tuple(sorted(path.stem for path in SHIPPED_FOLDER.glob("*.yaml")))
+
+
+def load_record(name_or_path, folder=None):
+    """Read and check a lubricant record.
+
+    Parameters
+    ----------
+    name_or_path : str or Path
+        Name of a shipped record, or path of a ``.yaml`` file.
+    folder : str or Path, optional
+        Folder that a relative path starts from; else the working folder.
+
+    Returns
+    -------
+    LubricantRecord
+        The record, with the points of its CSV file if it names one.
+
+    Raises
+    ------
+    RecordError
+        Which key, what came, what is needed.
+    """
+    path = _record_path(name_or_path, folder)
+    record = validate(LubricantRecord, read_yaml(path, RecordError), path, RecordError)
+    files = (path,)
+    if record.viscosity.csv is not None:
+        data_path = _beside(path, record.viscosity.csv)
+        points = read_viscosity_csv(data_path)
+        viscosity = record.viscosity.model_copy(update={"points": points})
+        record = record.model_copy(update={"viscosity": viscosity})
+        files = (path, data_path)
+    if record.viscosity.points is not None:
+        _check_points(record.viscosity.points, files[-1])
+    record._files = files
+    return record
+
+
+def _record_path(name_or_path, folder):
+    if Path(name_or_path).suffix in (".yaml", ".yml"):
+        return Path(folder or ".") / name_or_path
+    if str(name_or_path) not in shipped_records():
+        raise RecordError(
+            f"lubricant: got {shown(str(name_or_path))}, need one of "
+            f"{', '.join(shipped_records())}, or the path of a .yaml file"
+        )
+    return SHIPPED_FOLDER / f"{name_or_path}.yaml"
+
+
+def _beside(record_path, name):
+    """Path of a data file, which must lie in its record's folder."""
+    folder = record_path.parent
+    try:
+        inside = (folder / name).resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError, ValueError):  # no name of a file, or links in a ring
+        inside = False
+    if Path(name).is_absolute() or not inside:
+        raise RecordError(
+            f"{record_path}: viscosity.csv: got {shown(name)}, need a file in the record's folder"
+        )
+    return folder / name
+
+
+def _check_points(points, where):
+    """Refuse data through which no viscosity law can go."""
+    if len({point.temperature for point in points}) < 2:
+        raise RecordError(f"{where}: viscosity: need values at two temperatures or more")
+    for kind in ("kinematic_viscosity", "dynamic_viscosity"):
+        known = [point for point in points if getattr(point, kind) is not None]
+        for cold, hot in pairwise(sorted(known, key=lambda point: point.temperature)):
+            rises = getattr(cold, kind) <= getattr(hot, kind)
+            if rises and cold.temperature < hot.temperature:
+                raise RecordError(
+                    f"{where}: viscosity: got no less at {hot.temperature:g} degC than at "
+                    f"{cold.temperature:g} degC, need a viscosity that falls with temperature"
+                )
+
+
+def read_viscosity_csv(path):
+    """Read measured viscosities against temperature.
+
+    The first line names the columns with their units: ``temperature [degC]`` and either
+    ``kinematic_viscosity [mm^2/s]`` or ``dynamic_viscosity [mPa*s]``. Columns are parted by
+    commas, or by semicolons or tabs, and then a decimal comma is understood. Empty lines and lines
+    that begin with ``#`` are passed over.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, UTF-8 text.
+
+    Returns
+    -------
+    tuple of ViscosityPoint
+        One point a row.
+
+    Raises
+    ------
+    RecordError
+        Which line and column, what came, what is needed.
+    """
+    lines = numbered_lines(path, RecordError)
+    if not lines:
+        raise RecordError(f"{path}: empty, need a line of column names and rows of values")
+    (header_line, header), *rows = lines
+    delimiter = delimiter_of(header)
+    columns = _csv_columns(header, delimiter, f"{path}: line {header_line}")
+    decimal_comma = delimiter != "," and any("," in text for _, text in rows)
+    points = []
+    for number, text in rows:
+        where = f"{path}: line {number}"
+        cells = split_cells(text, delimiter)
+        if len(cells) != len(columns):
+            raise RecordError(f"{where}: got {len(cells)} values, need {len(columns)}")
+        if decimal_comma:
+            _refuse_points(cells, where)
+            cells = [cell.replace(",", ".") for cell in cells]
+        content = {
+            name: f"{cell} {units}"
+            for (name, units), cell in zip(columns.items(), cells, strict=True)
+        }
+        points.append(validate(ViscosityPoint, content, where, RecordError))
+    return tuple(points)
+
+
+def _refuse_points(cells, where):
+    """Where numbers have a decimal comma, a point is one of thousands, or a mistake."""
+    for cell in cells:
+        if "." in cell:
+            raise RecordError(
+                f"{where}: got {shown(cell)} in a file with decimal commas, need no point"
+            )
+
+
+def _csv_columns(header, delimiter, where):
+    """Units by column name, in the order of the columns."""
+    columns = {}
+    needed = "temperature [degC] and kinematic_viscosity [mm^2/s] or dynamic_viscosity [mPa*s]"
+    for cell in split_cells(header, delimiter):
+        match = HEADER_CELL.fullmatch(cell)
+        if not match or match[1] not in ViscosityPoint.model_fields or match[1] in columns:
+            raise RecordError(f"{where}: got the column {shown(cell)}, need {needed}")
+        columns[match[1]] = match[2]
+    if "temperature" not in columns or len(columns) != 2:
+        raise RecordError(f"{where}: got the columns {', '.join(columns)}, need {needed}")
+    return columns
+
+
+def check_temperatures(record, temperatures):
+    """Refuse temperatures at which a record does not hold.
+
+    Cheap unless the record names a CoolProp fluid and no range: then CoolProp is asked.
+
+    Parameters
+    ----------
+    record : LubricantRecord
+        The lubricant.
+    temperatures : sequence of float
+        Temperatures, degC.
+
+    Raises
+    ------
+    RangeError
+        At the first temperature outside, with the record's name and its range.
+    """
+    lowest, highest = record.valid_temperatures
+    for temperature in temperatures:
+        if not lowest - _ROUNDING <= temperature <= highest + _ROUNDING:
+            raise RangeError(
+                f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC, "
+                "the range of the record"
+            )

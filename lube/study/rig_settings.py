@@ -1,0 +1,100 @@
+"""The rig that measures contact by electrical resistance, and how its records are judged.
+
+Every default but the threshold of 100 ohm is assumed: of its circuit the paper tells nothing.
+Voltages far below a volt are usual, so that the film does not break down electrically.
+"""
+
+from typing import Annotated
+
+from pydantic import Field, StrictInt
+
+from lube.study.field_types import StrictModel, levels, pure_number, quantity
+
+RIG_REALISATIONS = 1_000_000
+"""First realisation of the rig's own rollers; a study's realisations end before it."""
+
+_Resistance = quantity("ohm", above=0.0)
+
+
+class Rig(StrictModel, validate_default=True):
+    """Circuit, amplifier and sampling of a simulated twin-disc rig."""
+
+    bias_voltage: quantity("V", above=0.0) = Field(
+        "50 mV", description="voltage over rollers and series resistor"
+    )
+    series_resistance: _Resistance = Field(
+        "100 ohm", description="resistor in series with the rollers"
+    )
+    lead_resistance: quantity("ohm", least=0.0) = Field(
+        "0.2 ohm", description="leads and slip rings, known and subtracted"
+    )
+    leak_resistance: _Resistance = Field(
+        "1 Mohm", description="insulation in parallel with the contact"
+    )
+    oil_permittivity: pure_number(least=1.0) = Field(
+        2.2, description="relative permittivity, for the film's capacitance; typical of PAO"
+    )
+    amplifier_range: quantity("V", above=0.0) = Field(
+        "100 mV", description="largest voltage of either sign before saturation"
+    )
+    bandwidth: quantity("Hz", above=0.0) = Field(
+        "50 kHz", description="-3 dB frequency of the first-order low-pass"
+    )
+    sampling_rate: quantity("Hz", above=0.0) = Field("100 kHz", description="samples per second")
+    resolution: Annotated[StrictInt, Field(ge=2, le=32)] = Field(
+        16, description="bits of the converter, over the range of both signs"
+    )
+    noise: quantity("V", least=0.0) = Field(
+        "20 uV", description="rms noise at the amplifier's input"
+    )
+    revolutions: pure_number(least=0.01, most=1000.0) = Field(
+        12, description="of the roller with the faster surface in each simulated record"
+    )
+    pairs: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
+        1,
+        description="pairs of rollers that the simulated rig runs, one after the other; each "
+        "makes a record at every operating point",
+    )
+    drift: pure_number(least=0.0, most=1.0) = Field(
+        0,
+        description="share of the variance of the roughness that each revolution renews, of "
+        "the simulated rollers and, as an assumption, of measured ones; 0: rollers stay as they "
+        "are and repeat themselves",
+    )
+
+    @property
+    def resolved_voltage(self):
+        """Voltage of one step of the converter, V."""
+        return 2.0 * self.amplifier_range / 2**self.resolution
+
+
+class Experiment(StrictModel, validate_default=True):
+    """Where the rig's records come from, and when they are taken for contact."""
+
+    manifest: str | None = Field(
+        None, description="CSV or YAML list of measured records; without it the rig is simulated"
+    )
+    thresholds: levels("ohm", above=0.0) = Field(
+        {"values": [10, 30, 100, 300, 1000], "units": "ohm"},
+        description="resistances below which a record shows contact",
+    )
+    threshold: _Resistance = Field(
+        "100 ohm", description="the one of them that is compared with the simulation (the paper's)"
+    )
+    force_tolerance: pure_number(above=0.0, most=1.0) = Field(
+        0.01, description="relative distance within which a record's force means a level's"
+    )
+    speed_tolerance: pure_number(above=0.0, most=1.0) = Field(
+        0.01,
+        description="the same of its rotation speed; and how far the speed may be from the "
+        "one at which the record repeats itself",
+    )
+    temperature_tolerance: quantity("K", above=0.0) = Field(
+        "1 K", description="distance within which a record's temperature means a level's"
+    )
+    release_ratio: pure_number(least=1.0) = Field(
+        1, description="contact ends at so many times the threshold; 1 is no hysteresis"
+    )
+    debounce: quantity("s", least=0.0) = Field(
+        "0 s", description="shortest time that a change must last to count"
+    )

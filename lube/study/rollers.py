@@ -1,0 +1,243 @@
+"""Rollers, their roughness and the layer on them: what a study's contact is made of.
+
+Written in YAML with units, kept in SI. A notebook builds them by hand in the same words:
+``Roller(radius="50 mm", ...)``.
+"""
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field, StrictInt, WithJsonSchema
+
+from lube.errors import LubeError, StudyError
+from lube.physics.hertz import contact_half_width, reduced_modulus, reduced_radius
+from lube.study.field_types import (
+    Length,
+    Pressure,
+    StrictModel,
+    bounded,
+    pure_number,
+    sensible_quantity,
+)
+from lube.study.size_limits import MOST_POINTS
+from lube.units import parse_number
+
+AUTOMATIC_WAVELENGTH = "contact width at the largest force"
+
+
+class Roller(StrictModel):
+    """One roller: a cylinder of some material with a rough surface."""
+
+    radius: Length = Field(description="radius of the cylinder")
+    young_modulus: Pressure = Field(description="Young's modulus")
+    poisson_ratio: pure_number(least=0.0, most=0.5) = Field(description="Poisson's ratio")
+    rms_roughness: Length = Field(description="rms height of the roughness")
+
+
+class RollerPair(StrictModel):
+    """Two rollers pressed together along a line."""
+
+    length: Length = Field(description="length L' of the line contact")
+    first: Roller
+    second: Roller
+
+    @property
+    def reduced_radius(self):
+        """Radius R* of the equivalent cylinder on a plane, m."""
+        return reduced_radius(self.first.radius, self.second.radius)
+
+    @property
+    def reduced_modulus(self):
+        """Reduced modulus E*, Pa."""
+        return reduced_modulus(
+            self.first.young_modulus,
+            self.first.poisson_ratio,
+            self.second.young_modulus,
+            self.second.poisson_ratio,
+        )
+
+    @property
+    def composite_rms_roughness(self):
+        """Rms height of the sum of the two independent lines, m."""
+        return math.hypot(self.first.rms_roughness, self.second.rms_roughness)
+
+    def contact_half_width(self, force):
+        """Hertzian half-width a in m at a normal force in N (the paper's Eq. 2)."""
+        return contact_half_width(force, self.length, self.reduced_radius, self.reduced_modulus)
+
+
+def _wavelength(value):
+    if value == AUTOMATIC_WAVELENGTH:
+        return value
+    try:
+        return sensible_quantity(value, "m", above=0.0)
+    except LubeError as error:
+        raise ValueError(f"{error}, or the words {AUTOMATIC_WAVELENGTH!r}") from None
+
+
+def _shortest_wavelength(value):
+    if isinstance(value, str) and value.endswith(" points"):
+        _points_of(value)
+        return value
+    try:
+        return sensible_quantity(value, "m", above=0.0)
+    except LubeError as error:
+        raise ValueError(f"{error}, or a number of grid points such as '10 points'") from None
+
+
+def _points_of(wavelength):
+    """``"10 points"`` -> 10.0, at least the two that make a wave."""
+    try:
+        number = parse_number(wavelength.removesuffix(" points"))
+        return bounded(number, "points", least=2.0, most=MOST_POINTS)
+    except LubeError as error:
+        raise ValueError(str(error)) from None
+
+
+class Roughness(StrictModel):
+    """How the roughness lines of both rollers are drawn."""
+
+    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)] = Field(
+        description="points N around the first roller"
+    )
+    hurst_exponent: pure_number(above=0.0, below=1.0) = Field(description="Hurst exponent H")
+    longest_wavelength: Annotated[
+        float | Literal[AUTOMATIC_WAVELENGTH],
+        BeforeValidator(_wavelength),
+        WithJsonSchema(
+            {"type": "string", "format": f"quantity in m, or the words `{AUTOMATIC_WAVELENGTH}`"}
+        ),
+    ] = Field(
+        description="2 pi / q_min; with the automatic choice a larger force level redraws all "
+        "lines and changes the probability at all points: adding 3200 N to the paper's study "
+        "multiplies it by 0.86 to 0.61"
+    )
+    shortest_wavelength: Annotated[
+        float | str,
+        BeforeValidator(_shortest_wavelength),
+        WithJsonSchema({"type": "string", "format": "quantity in m, or as in `10 points`"}),
+    ] = Field(description="2 pi / q_max; the break-up of the boundary layer depends on it")
+    height_step: Length = Field(
+        description="heights and films are whole multiples of this length, so sums are exact"
+    )
+
+
+class BoundaryLayer(StrictModel):
+    """The adsorbed layer that a contact must break through (the paper's Eqs. 4 and 6)."""
+
+    critical_thickness: Length = Field(description="critical thickness h_c")
+    shear_strength: Pressure = Field(description="limiting shear stress tau0")
+
+
+class LineSpec(StrictModel):
+    """Everything that determines the roughness lines but the seed and the realisation.
+
+    Attributes
+    ----------
+    points : tuple of int
+        Points around either roller.
+    spacing : float
+        Distance dx of neighbouring points, m.
+    rms_height : tuple of float
+        Rms height of either line, m.
+    hurst_exponent : float
+        Hurst exponent H of C1D ~ q^(-2H - 1).
+    q_min, q_max : float
+        Smallest and largest wave vector, rad/m.
+    height_step : float
+        Length of one integer height step, m.
+    """
+
+    points: tuple[int, int]
+    spacing: float
+    rms_height: tuple[float, float]
+    hurst_exponent: float
+    q_min: float
+    q_max: float
+    height_step: float
+
+
+def line_spec(rollers, roughness, largest_force):
+    """Work out the roughness lines of a pair of rollers.
+
+    Parameters
+    ----------
+    rollers : RollerPair
+        The rollers.
+    roughness : Roughness
+        How their lines are drawn.
+    largest_force : float
+        Largest force of the study, N; its contact width may set the longest wavelength.
+
+    Returns
+    -------
+    LineSpec
+        Everything that determines the lines but the seed and the realisation.
+
+    Raises
+    ------
+    StudyError
+        If the grid is too coarse for the shortest wavelength, a perimeter too short for the
+        longest, or the height step out of proportion to the roughness.
+    """
+    first, second = rollers.first, rollers.second
+    spacing = 2.0 * math.pi * first.radius / roughness.points
+    longest = roughness.longest_wavelength
+    if longest == AUTOMATIC_WAVELENGTH:
+        longest = 2.0 * float(rollers.contact_half_width(largest_force))
+    shortest = roughness.shortest_wavelength
+    if isinstance(shortest, str):
+        shortest = _points_of(shortest) * spacing
+    spec = LineSpec(
+        points=(roughness.points, round(roughness.points * second.radius / first.radius)),
+        spacing=spacing,
+        rms_height=(first.rms_roughness, second.rms_roughness),
+        hurst_exponent=roughness.hurst_exponent,
+        q_min=2.0 * math.pi / longest,
+        q_max=2.0 * math.pi / shortest,
+        height_step=roughness.height_step,
+    )
+    _check_waves(spec, roughness, longest, shortest)
+    _check_height_step(spec)
+    return spec
+
+
+def _check_waves(spec, roughness, longest, shortest):
+    if shortest < 2.0 * spec.spacing * (1.0 - 1e-9):
+        raise StudyError(
+            f"roughness.points: got {spec.points[0]}, too coarse a grid: its spacing is "
+            f"{spec.spacing:.3g} m, need at most half the shortest wavelength, {shortest:.3g} m"
+        )
+    if shortest >= longest and shortest == roughness.shortest_wavelength:
+        raise StudyError(
+            f"roughness.shortest_wavelength: got {shortest:.3g} m, need less than the longest "
+            f"wavelength, {longest:.3g} m"
+        )
+    if shortest >= longest:
+        least = math.ceil(spec.points[0] * shortest / longest) + 1
+        raise StudyError(
+            f"roughness.points: got {spec.points[0]}, too coarse a grid: the shortest wavelength, "
+            f"{shortest:.3g} m, is not below the longest, {longest:.3g} m; need {least} or more"
+        )
+    for roller, points in zip(("first", "second"), spec.points, strict=True):
+        perimeter = points * spec.spacing
+        if perimeter < longest:
+            raise StudyError(
+                f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short, "
+                f"need at least the longest wavelength, {longest:.3g} m"
+            )
+        if math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
+            raise StudyError(
+                f"rollers.{roller}.radius: no whole number of waves between {shortest:.3g} "
+                f"and {longest:.3g} m long goes round its perimeter, {perimeter:.3g} m"
+            )
+
+
+def _check_height_step(spec):
+    """Heights must be many steps high, and fit a 32-bit integer with room for their peaks."""
+    for rms in spec.rms_height:
+        if not 1e3 <= rms / spec.height_step <= 1e7:
+            raise StudyError(
+                f"roughness.height_step: got {spec.height_step:.3g} m, need {rms / 1e7:.3g} "
+                f"to {rms / 1e3:.3g} m for a roughness of {rms:.3g} m"
+            )

@@ -1,0 +1,418 @@
+"""A study: one YAML file, checked as a whole before anything is computed.
+
+The models below are the only description of the configuration. Their JSON schema makes the
+table in the README; their validators make the one-line errors; and `Study.stage_inputs`
+tells which values a stage depends on, so that a change re-runs that stage and no other.
+"""
+
+import math
+import os
+from collections import Counter
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import (
+    Field,
+    StrictInt,
+    model_validator,
+)
+
+from lube.errors import LubeError, StudyError, shown
+from lube.grid.levels import SAME, level_index
+from lube.physics.electrical import divider_voltage
+from lube.physics.film_formulas import formula
+from lube.study.field_types import (
+    Resistivity,
+    Slug,
+    StrictModel,
+    collected,
+    levels,
+    pure_number,
+    quantity,
+    read_yaml,
+    validate,
+)
+from lube.study.lubricant_record import LubricantRecord, check_temperatures, load_record
+from lube.study.metadata import About
+from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
+from lube.study.rollers import BoundaryLayer, RollerPair, Roughness, line_spec
+from lube.study.size_limits import check_sizes
+
+_FORERUNNERS = {
+    "lubricant": (),
+    "film": ("lubricant",),
+    "roughness": (),
+    "contact": ("lubricant", "film", "roughness"),
+    "master": ("lubricant", "film", "roughness"),
+    "trace": ("lubricant", "film", "roughness"),
+    "experiment": ("lubricant", "film", "roughness"),
+    "rig": ("lubricant", "film", "roughness", "experiment"),
+    "comparison": ("lubricant", "film", "roughness", "contact", "experiment"),
+    "gauge": (
+        *("lubricant", "film", "roughness", "contact", "master"),
+        *("experiment", "comparison"),
+    ),
+    "speed": ("lubricant", "film", "roughness", "contact"),
+    "reading": (),
+    "coverage": ("lubricant", "film", "roughness", "contact", "master", "experiment"),
+}
+
+
+MOST_LUBRICANTS = 100
+
+
+class OperatingGrid(StrictModel):
+    """Levels of the operating variables; every combination is an operating point."""
+
+    force: levels("N", above=0.0) = Field(description="normal forces")
+    speed: levels("rpm", above=0.0) = Field(
+        description="rotation speeds of the first roller when it rolls without slip"
+    )
+    temperature: levels("degC", above=-273.15) = Field(
+        description="temperatures of rollers and oil"
+    )
+    slide_to_roll_ratio: levels(None, least=-2.0, most=2.0) = Field(
+        description="(v1 - v2) / mean surface speed; 0 is pure rolling"
+    )
+
+
+class TracePoint(StrictModel):
+    """An operating point whose contact is recorded at every time step."""
+
+    force: quantity("N") = Field(description="a force of the grid")
+    speed: quantity("rpm") = Field(description="a speed of the grid, the same for all traces")
+    temperature: quantity("degC") = Field(description="a temperature of the grid")
+    lubricant: str | None = Field(None, description="a lubricant of the study; else its first")
+    film_formula: str | None = Field(None, description="a formula of the study; else its first")
+    slide_to_roll_ratio: pure_number() | None = Field(
+        None, description="a ratio of the grid; else its first"
+    )
+
+
+class Study(StrictModel):
+    """A whole study, checked and in SI units (but the rig's rpm and degC)."""
+
+    name: Slug = Field(description="results go to results/<name>")
+    about: About = Field(default_factory=About, description="whose results they are")
+    seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)] = Field(
+        description="seed of all randomness"
+    )
+    realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
+        description="how many pairs of roughness lines"
+    )
+    revolutions: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
+        description="of the roller with the faster surface; equal rollers without slip repeat "
+        "themselves after one"
+    )
+    batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
+        description="realisations per job; changes no result"
+    )
+    kept_realisations: tuple[Annotated[StrictInt, Field(ge=0, le=RIG_REALISATIONS - 1)], ...] = (
+        Field(description="realisations whose lines stay in roughness.nc, 0 among them")
+    )
+    rollers: RollerPair
+    lubricants: tuple[LubricantRecord, ...] = Field(
+        min_length=1,
+        max_length=MOST_LUBRICANTS,
+        description="names of shipped records, or paths of your own YAML records",
+    )
+    film_formulas: tuple[str, ...] = Field(
+        min_length=1, description="names from the registry of film formulas"
+    )
+    operating_grid: OperatingGrid
+    roughness: Roughness
+    boundary_layer: BoundaryLayer
+    resistivity: Resistivity = Field(description="resistivity of the rollers' material (Eq. 1)")
+    traces: tuple[TracePoint, ...] = Field(
+        min_length=1,
+        max_length=1000,
+        description="operating points recorded over one revolution",
+    )
+    rig: Rig = Field(default_factory=Rig, description="the rig, simulated or measured on")
+    experiment: Experiment = Field(
+        default_factory=Experiment, description="its records and their evaluation"
+    )
+
+    @property
+    def line_spec(self):
+        """The roughness lines that this study draws, a `LineSpec`."""
+        return line_spec(self.rollers, self.roughness, max(self.operating_grid.force))
+
+    @property
+    def batches(self):
+        """Index of the first realisation of each batch, as a range."""
+        return range(0, self.realisations, self.batch_size)
+
+    def batch(self, first):
+        """Return the realisations of the batch that begins with `first`, as a range."""
+        return range(first, min(first + self.batch_size, self.realisations))
+
+    @property
+    def slips(self):
+        """Levels of the slide-to-roll ratio."""
+        return self.operating_grid.slide_to_roll_ratio
+
+    @property
+    def rig_slip(self):
+        """Slide-to-roll ratio of the simulated rig: pure rolling if the study has it."""
+        return 0.0 if 0.0 in self.slips else self.slips[0]
+
+    @property
+    def rig_realisations(self):
+        """Realisations of the simulated rig's rollers, as a range.
+
+        One for each pair and, if the roughness drifts, one more for each further revolution.
+        """
+        drawn = math.ceil(self.rig.revolutions) if self.rig.drift > 0.0 else 1
+        return range(RIG_REALISATIONS, RIG_REALISATIONS + self.rig.pairs * drawn)
+
+    def check_window(self, force):
+        """Refuse a force whose contact is finer than the grid, or wider than a roller is round.
+
+        Parameters
+        ----------
+        force : float
+            Normal force, N.
+
+        Raises
+        ------
+        StudyError
+            With the contact width, and what is needed.
+        """
+        spec, width = self.line_spec, 2.0 * self.rollers.contact_half_width(force)
+        if width >= min(spec.points) * spec.spacing:
+            raise StudyError(
+                f"operating_grid.force: the contact at {force:g} N is {width:.3g} m wide, "
+                "need less than a roller's perimeter"
+            )
+        if width < 2.0 * spec.spacing:
+            raise StudyError(
+                f"roughness.points: the contact at {force:g} N is {width:.3g} m wide, "
+                f"need at least two grid spacings of {spec.spacing:.3g} m"
+            )
+
+    def stage_inputs(self, stage):
+        """Return the values of the study that a stage depends on, as plain data.
+
+        Parameters
+        ----------
+        stage : str
+            A kind of file of `lube.schema`, such as ``film``; batches go by their stage's name.
+
+        Returns
+        -------
+        dict
+            Plain values, fit for JSON. They are Snakemake's parameters of the stage: a
+            change re-runs the stages that name it.
+        """
+        content = self.model_dump(mode="json")
+        grid, rollers = content["operating_grid"], content["rollers"]
+        lines = {"seed": self.seed, "lines": self.line_spec.model_dump(mode="json")}
+        layer = {
+            "reduced_modulus": self.rollers.reduced_modulus,
+            "boundary_layer": content["boundary_layer"],
+        }
+        mechanics = layer | {"slide_to_roll_ratio": grid["slide_to_roll_ratio"]}
+        inputs = {
+            "lubricant": {
+                "lubricants": content["lubricants"],
+                "temperature": grid["temperature"],
+            },
+            "film": {
+                "rollers": rollers,
+                "reduced_radius": self.rollers.reduced_radius,
+                "reduced_modulus": self.rollers.reduced_modulus,
+                "composite_rms_roughness": self.rollers.composite_rms_roughness,
+                "film_formulas": content["film_formulas"],
+                "force": grid["force"],
+                "speed": grid["speed"],
+            },
+            "roughness": lines,
+            "contact": lines | mechanics | {"revolutions": self.revolutions},
+            "master": lines | layer,
+            "trace": lines
+            | mechanics
+            | {"traces": content["traces"], "resistivity": content["resistivity"]},
+            "experiment": lines
+            | mechanics
+            | {
+                "resistivity": content["resistivity"],
+                "length": self.rollers.length,
+                "rig": content["rig"],
+                # The manifest is told by its contents, wherever it lies.
+                "experiment": content["experiment"]
+                | {"manifest": self.experiment.manifest is not None},
+                "grid": {name: grid[name] for name in ("force", "speed", "temperature")},
+            },
+            "rig": {"traces": content["traces"]},
+            # They follow from their forerunners alone.
+            "comparison": {},
+            "gauge": {},
+            "speed": {},
+            "reading": {},
+            "coverage": {"realisations": self.realisations},
+        }
+        return inputs[stage]
+
+    def origin(self, stage):
+        """Return all values that a stage's result follows from, its forerunners' included.
+
+        Parameters
+        ----------
+        stage : str
+            As in `stage_inputs`.
+
+        Returns
+        -------
+        dict
+            From stage to its inputs: the record of origin in the stage's file.
+        """
+        return {name: self.stage_inputs(name) for name in (*_FORERUNNERS[stage], stage)}
+
+    @model_validator(mode="after")
+    def _check_names(self):
+        _refuse_repeats("lubricants", [record.name for record in self.lubricants])
+        _refuse_repeats("film_formulas", self.film_formulas)
+        for name in self.film_formulas:
+            with collected("film_formulas"):
+                formula(name)
+        for record in self.lubricants:
+            with collected("operating_grid.temperature"):
+                check_temperatures(record, self.operating_grid.temperature)
+        return self
+
+    @model_validator(mode="after")
+    def _check_realisations(self):
+        _refuse_repeats("kept_realisations", self.kept_realisations)
+        for kept in self.kept_realisations:
+            if not 0 <= kept < self.realisations:
+                raise ValueError(
+                    f"kept_realisations: got {kept}, need realisations from 0 to "
+                    f"{self.realisations - 1}"
+                )
+        if 0 not in self.kept_realisations:
+            raise ValueError("kept_realisations: need 0 among them, the traces use it")
+        return self
+
+    @model_validator(mode="after")
+    def _check_lines(self):
+        try:
+            for force in self.operating_grid.force:
+                self.check_window(force)
+            check_sizes(self)
+        except LubeError as error:
+            raise ValueError(str(error)) from None
+        return self
+
+    @model_validator(mode="after")
+    def _check_traces(self):
+        points = self.trace_points
+        # All traces share one time axis, whose step is set by the faster surface.
+        if len({(point["speed"], point["slide_to_roll_ratio"]) for point in points}) > 1:
+            raise ValueError(
+                "traces: need one speed and one slide-to-roll ratio for all, as they share a "
+                "time axis"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _check_rig(self):
+        if self.experiment.threshold not in self.experiment.thresholds:
+            told = ", ".join(f"{threshold:g}" for threshold in self.experiment.thresholds)
+            raise ValueError(
+                f"experiment.threshold: got {self.experiment.threshold:g} ohm, need one of "
+                f"experiment.thresholds: {told} ohm"
+            )
+        largest = max(self.experiment.thresholds) * self.experiment.release_ratio
+        voltage = divider_voltage(largest, self.rig)
+        if voltage >= self.rig.amplifier_range:
+            raise ValueError(
+                f"rig.amplifier_range: got {self.rig.amplifier_range:g} V, need more than the "
+                f"{voltage:.3g} V that {largest:g} ohm give in this circuit"
+            )
+        return self
+
+    @property
+    def trace_points(self):
+        """Operating points of the traces, a list of dicts from coordinate to level."""
+        return [self._trace_point(number, point) for number, point in enumerate(self.traces)]
+
+    def _trace_point(self, number, point):
+        """Find the levels of the study that a trace names, or by silence its first ones."""
+        levels_of = {
+            "slide_to_roll_ratio": self.operating_grid.slide_to_roll_ratio,
+            "lubricant": [record.name for record in self.lubricants],
+            "film_formula": self.film_formulas,
+            "temperature": self.operating_grid.temperature,
+            "speed": self.operating_grid.speed,
+            "force": self.operating_grid.force,
+        }
+        found = {}
+        for variable, available in levels_of.items():
+            wanted = getattr(point, variable)
+            index = 0 if wanted is None else level_index(available, wanted, SAME)
+            if index is None:
+                raise ValueError(
+                    f"traces.{number}.{variable}: got {wanted}, need one of the study's: "
+                    f"{', '.join(str(level) for level in available)}"
+                )
+            found[variable] = available[index]
+        return found
+
+
+def _refuse_repeats(key, values):
+    repeated = sorted(str(value) for value, times in Counter(values).items() if times > 1)
+    if repeated:
+        raise ValueError(f"{key}: {repeated[0]} is repeated, need each once")
+
+
+def load_study(path):
+    """Read and check a study.
+
+    Parameters
+    ----------
+    path : str or Path
+        YAML file of the study.
+
+    Returns
+    -------
+    Study
+        The whole study, with its lubricant records.
+
+    Raises
+    ------
+    StudyError
+        Which key, what came, what is needed.
+    RecordError
+        If a lubricant record that the study names cannot be used.
+    """
+    content = read_yaml(path, StudyError)
+    if isinstance(content.get("lubricants"), list):
+        content = content | {"lubricants": _records(content["lubricants"], path)}
+    return _with_manifest_found(validate(Study, content, path, StudyError), path)
+
+
+def _with_manifest_found(study, path):
+    """Take the manifest's path from the study's folder."""
+    if study.experiment.manifest is None:
+        return study
+    manifest = Path(path).parent / study.experiment.manifest
+    if not os.path.isfile(manifest):  # whatever its name holds
+        raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that is there")
+    experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
+    return study.model_copy(update={"experiment": experiment})
+
+
+def _records(names, path):
+    """Load the records that a study names, by a shipped name or a path from the study's folder."""
+    if len(names) > MOST_LUBRICANTS:
+        raise StudyError(f"{path}: lubricants: got {len(names)}, need {MOST_LUBRICANTS} at most")
+    for name in names:
+        if not isinstance(name, str):
+            raise StudyError(
+                f"{path}: lubricants: got {shown(name)}, need names or paths of records"
+            )
+    try:
+        return tuple(load_record(name, folder=Path(path).parent) for name in names)
+    except LubeError as error:
+        raise type(error)(f"{path}: lubricants: {error}") from None

@@ -1,0 +1,53 @@
+"""The configuration in the report: every key of the file and every value it was given."""
+
+import html
+import re
+
+import pytest
+from studies import SMOKE
+
+from lube.report.configuration import STAGES, configuration
+from lube.report.key_tables import study_keys
+from lube.schema import FILES, MEASURED
+
+
+@pytest.fixture(scope="module")
+def shown(study):
+    return configuration(study, SMOKE.read_text("utf-8"))
+
+
+def rows(shown):
+    cells = re.findall(r"<tr><td><code>(.*?)</code></td><td>(.*?)</td>", shown)
+    return {key: html.unescape(value) for key, value in cells}
+
+
+def test_the_file_is_shown_as_written(shown):
+    written = re.search(r'<pre class="file">(.*?)</pre>', shown, re.DOTALL)[1]
+    text = html.unescape(re.sub(r"</?span[^>]*>", "", written))
+    assert text == SMOKE.read_text("utf-8").rstrip("\n")
+    assert written.count('class="comment"') == SMOKE.read_text("utf-8").count("#")
+
+
+def test_every_value_that_is_set_is_shown_with_its_unit(shown):
+    values = rows(shown.split("What each stage")[0])
+    assert values["rollers.first.radius"] == "50 mm"
+    assert values["operating_grid.force"] == "800 N, 1600 N"
+    assert values["operating_grid.slide_to_roll_ratio"] == "0, 0.1"
+    assert values["traces[].temperature"] == "40 °C, 80 °C"
+    assert values["lubricants"] == "mobilgear-shc-xmp-320"
+    assert values["roughness.shortest_wavelength"] == "10 points"
+    assert values["pressure_viscosity.gold_base"] == "polyalphaolefin"
+    unset = {"experiment.manifest", "traces[].lubricant", "traces[].film_formula"}
+    unset |= {"traces[].slide_to_roll_ratio", "about.doi"}
+    unset |= {"about.creators[].affiliation", "about.creators[].orcid"}
+    assert {key.strip("`") for key, _, _ in study_keys()} - set(values) == unset
+
+
+def test_every_stage_shows_what_it_was_given(shown, study):
+    kinds = {kind.removesuffix("_batch") for kind in FILES} - set(MEASURED)
+    assert {kind for kind in kinds if study.stage_inputs(kind)} == set(STAGES)
+    for stage in STAGES:
+        assert f"<summary>{stage}</summary>" in shown
+    assert rows(shown)["seed"] == str(study.seed)
+    assert rows(shown)["lubricants[0].viscosity.points[1].temperature"] == "100"
+    assert float(rows(shown)["lines.q_max"]) == pytest.approx(study.line_spec.q_max)

@@ -1,0 +1,247 @@
+"""The model at each record's own conditions: what the grid has, and what a literal run finds."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from experiments import experiment_at, experiment_of, model_of_records
+from studies import OIL
+
+from lube import contact_statistics, film_table
+from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
+from lube.kernels.scan import scan_statistics
+from lube.rig.at_records import _mixed
+from lube.stages.lubricant import lubricant_table
+from lube.stages.roughness import roughness_batch
+from lube.statistics.one_pair import repeat_factor, sample_size
+from lube.study.lubricant_record import load_record
+
+PROBABILITY = "breakthrough_probability"
+CONDITIONS = [(250.0, 77.0, 66.6), (1234.5, 60.0, 79.3), (100.0, 100.0, 60.0), (90.0, 63.0, 80.4)]
+
+
+def experiment_off_the_grid(order=(0, 1, 2, 3), **values):
+    conditions = np.array(CONDITIONS)[list(order)].T
+    return experiment_of(np.full(conditions.shape[1], 0.1), *conditions, **values)
+
+
+@pytest.fixture(scope="module")
+def few(busy):
+    """The busy study with three realisations, for what has to be run."""
+    study = busy.study.model_copy(update={"realisations": 3})
+    return study, busy.film, busy.contact.isel(realisation=slice(3))
+
+
+@pytest.fixture(scope="module")
+def off_grid(few):
+    study, film, contact = few
+    return model_of_records(experiment_off_the_grid(), film, contact, study)
+
+
+def literal_run(study, force, speed, temperature, realisations=3, slips=(0.0,)):
+    """Film table and statistics of one operating point, by the stages themselves."""
+    oil = lubricant_table(study.lubricants, [temperature])
+    film = film_table(oil, study.rollers, [force], [speed], study.film_formulas)
+    lines = roughness_batch(study.line_spec, study.seed, range(realisations))
+    return film.squeeze(), contact_statistics(lines, film, study.boundary_layer, slips)
+
+
+# Films and probabilities
+
+
+def test_records_on_the_grid_have_the_values_of_the_grid_to_the_last_bit(busy):
+    experiment = experiment_at(busy.film, np.zeros(12)).isel(record=[5, 0, 11, 5, 7])
+    model = model_of_records(experiment, busy.film, busy.contact, busy.study)
+    for number in range(experiment.sizes["record"]):
+        record = experiment.isel(record=number)
+        levels = {name: record[name].item() for name in ("force", "speed", "temperature")}
+        here = model.isel(record=number)
+        table, found = busy.film.sel(levels).squeeze(), busy.contact.sel(levels).squeeze()
+        np.testing.assert_array_equal(here[PROBABILITY], found[PROBABILITY].values)
+        for name in ("film_thickness", "lambda_ratio", "contact_half_width"):
+            np.testing.assert_array_equal(here[name], table[name].values)
+
+
+def test_what_the_grid_has_is_taken_from_its_file_and_not_run_again(busy):
+    """A contact.nc with other values shows which records are taken from it."""
+    other = busy.contact.assign({PROBABILITY: busy.contact[PROBABILITY] / 2.0})
+    experiment = experiment_off_the_grid()
+    taken = model_of_records(experiment, busy.film, other, busy.study)[PROBABILITY]
+    right = model_of_records(experiment, busy.film, busy.contact, busy.study)[PROBABILITY]
+    ratio = (taken / right).isel(realisation=0, film_formula=0)
+    np.testing.assert_array_equal(ratio, [1.0, 1.0, 0.5, 1.0])
+
+
+@pytest.mark.parametrize("change", ["slip", "revolutions"])
+def test_without_rolling_over_one_turn_in_the_file_the_grid_is_run_to_the_same_bits(few, change):
+    study, film, contact = few
+    if change == "slip":
+        other = contact.assign_coords(slide_to_roll_ratio=[0.1])
+    else:
+        other = contact.assign_coords(revolutions=2)
+    other = other.assign({PROBABILITY: np.nan * contact[PROBABILITY]})
+    experiment = experiment_at(film, np.zeros(12))
+    run = model_of_records(experiment, film, other, study)
+    xr.testing.assert_equal(run, model_of_records(experiment, film, contact, study))
+
+
+def test_records_off_the_grid_are_those_of_a_literal_run(off_grid, few):
+    for number, conditions in enumerate(CONDITIONS):
+        table, found = literal_run(few[0], *conditions)
+        here = off_grid.isel(record=number)
+        np.testing.assert_array_equal(here[PROBABILITY], found[PROBABILITY].squeeze())
+        assert 0.0 < here[PROBABILITY].mean() < 1.0
+        for name in ("film_thickness", "lambda_ratio", "moes_load", "moes_material"):
+            np.testing.assert_array_equal(here[name], table[name].values)
+
+
+def test_neither_the_order_nor_the_number_of_records_changes_one(off_grid, few):
+    study, film, contact = few
+    for order in ([3, 1, 0, 2, 1, 1], [2], [0]):
+        model = model_of_records(experiment_off_the_grid(order), film, contact, study)
+        expected = off_grid.isel(record=order)
+        for name in off_grid.data_vars:
+            np.testing.assert_array_equal(model[name], expected[name])
+
+
+def test_slip_changes_no_expected_probability(off_grid, few):
+    study, film, contact = few
+    slipping = experiment_off_the_grid(slide_to_roll_ratio=0.1)
+    model = model_of_records(slipping, film, contact, study)
+    xr.testing.assert_equal(model[PROBABILITY], off_grid[PROBABILITY])
+
+
+def test_each_record_has_the_film_of_its_own_lubricant(few):
+    study, film, contact = few
+    study = study.model_copy(update={"lubricants": (*study.lubricants, load_record("n-dodecane"))})
+    experiment = experiment_off_the_grid([0, 0], lubricant=["n-dodecane", OIL])
+    model = model_of_records(experiment, film, contact, study)
+    oil = lubricant_table(study.lubricants, [66.6])
+    table = film_table(oil, study.rollers, [250.0], [77.0], study.film_formulas).squeeze()
+    for record, name in enumerate(("n-dodecane", OIL)):
+        expected = table["film_thickness"].sel(lubricant=name)
+        np.testing.assert_array_equal(model["film_thickness"][:, record], expected)
+
+
+# Scatter of one record
+
+
+def test_equal_rollers_in_rolling_repeat_themselves_and_learn_nothing_new(few):
+    turns = np.array([1.0, 1.3, 1.5, 1000.0])
+    model = model_of_records(experiment_off_the_grid(turns=turns), few[1], few[2], few[0])
+    for ratios in model["scatter_ratio"].values:
+        np.testing.assert_allclose(ratios, repeat_factor(turns), rtol=1e-12)
+
+
+def test_records_of_one_alignment_are_correlated_as_the_realisations_are(off_grid):
+    deviation = off_grid[PROBABILITY] - off_grid[PROBABILITY].mean("realisation")
+    np.testing.assert_allclose(off_grid["record_deviation"], deviation, atol=1e-12)
+
+
+def test_several_alignments_mix_what_lines_do_alone_and_together():
+    """Alone all points are alike, together all are their own."""
+    rng = np.random.default_rng(6)
+    lines, meeting = rng.normal(size=(20_000, 1)), rng.normal(size=(20_000, 3))
+    effects = np.repeat(lines, 3, axis=1)
+    turn = np.sqrt(0.1) * effects + np.sqrt(0.9) * meeting
+    alone, together = np.array([0.1, 0.1, 0.0]), np.array([0.3, 0.1, 0.2])
+    found = _mixed(alone, together, effects, turn)
+    expected = np.sqrt(alone[:, None] * alone) + np.diag(together)
+    np.testing.assert_allclose(np.cov(found.T), expected, atol=0.01)
+
+
+@pytest.mark.parametrize("slip", [0.0, 0.1])
+def test_a_part_of_a_turn_scatters_as_parts_of_the_realisations_do(busy, slip):
+    """Halves of each line, counted by hand; they differ by more than sqrt(2) times the whole."""
+    study, film, contact = busy.study, busy.film, busy.contact
+    experiment = experiment_off_the_grid([0], turns=0.5, slide_to_roll_ratio=slip)
+    model = model_of_records(experiment, film, contact, study).isel(record=0)
+    lines = roughness_batch(study.line_spec, study.seed, range(study.realisations))
+    factor = layer_factor_of(lines, study.rollers.reduced_modulus, study.boundary_layer)
+    thickness = model["film_thickness"].values
+    points = whole_numbers(thickness, np.full(thickness.size, model["contact_half_width"]), lines)
+    half, ratios = study.line_spec.points[0] // 2, speed_ratios(slip)
+    shares = []
+    for pair in (line_pair(lines, number) for number in range(study.realisations)):
+        for begin in (0, half):
+            begun = [
+                np.roll(line, -int(np.floor(begin * ratio + 0.5)))
+                for line, ratio in zip(pair, ratios, strict=True)
+            ]
+            counts = scan_statistics(*begun, ratios, half, *points, factor)
+            shares.append(counts[:, 1] / half)
+    expected = np.var(shares, axis=0, ddof=1) / model[PROBABILITY].var("realisation", ddof=1)
+    np.testing.assert_allclose(model["scatter_ratio"], expected, rtol=1e-9)
+
+
+def test_one_revolution_with_slip_scatters_as_the_realisations_do(busy):
+    experiment = experiment_off_the_grid([0], slide_to_roll_ratio=0.1)
+    study = busy.study
+    model = model_of_records(experiment, busy.film, busy.contact, study)
+    _, found = literal_run(study, *CONDITIONS[0], study.realisations, (0.0, 0.1))
+    rolling, slipping = found[PROBABILITY].var("realisation", ddof=1).squeeze()
+    np.testing.assert_allclose(model["scatter_ratio"][:, 0], slipping / rolling, rtol=1e-9)
+
+
+def unequal(study):
+    second = study.rollers.second.model_copy(update={"radius": 0.04})
+    rollers = study.rollers.model_copy(update={"second": second})
+    return study.model_copy(update={"rollers": rollers})
+
+
+@pytest.mark.parametrize("how", ["slip", "unequal rollers"])
+def test_new_alignments_make_a_long_record_scatter_less(busy, how):
+    study, slip = (busy.study, 0.1) if how == "slip" else (unequal(busy.study), 0.0)
+    turns = np.array([1.0, 4.0, 40.0])
+    experiment = experiment_off_the_grid([0, 0, 0], turns=turns, slide_to_roll_ratio=slip)
+    contact = busy.contact.isel(realisation=slice(16))
+    ratios = model_of_records(experiment, busy.film, contact, study)["scatter_ratio"]
+    assert (ratios.isel(record=1) < 0.7 * ratios.isel(record=0)).all()
+    assert (ratios.isel(record=2) <= ratios.isel(record=1)).all()
+    # What either line does alone stays.
+    assert (ratios.isel(record=2) > 0.02 * ratios.isel(record=0)).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "slip", "turns"),
+    [
+        (lambda study: study, 0.1, 40),  # 40 alignments: three quarters of the scatter persist
+        (unequal, 0.0, 4),  # four turns of the first are five of the second: all four alignments
+    ],
+    ids=["slip", "unequal rollers"],
+)
+def test_the_scatter_of_a_long_record_is_that_of_a_literal_run(busy, change, slip, turns):
+    study, pairs = change(busy.study), 48
+    force, speed, temperature = CONDITIONS[0]
+    experiment = experiment_off_the_grid([0], turns=float(turns), slide_to_roll_ratio=slip)
+    # Nothing of it is taken, but for how many realisations there are.
+    contact = busy.contact.isel(realisation=np.arange(pairs) % 32)
+    contact = contact.assign_coords(realisation=range(pairs))
+    model = model_of_records(experiment, busy.film, contact, study)
+    oil = lubricant_table(study.lubricants, [temperature])
+    film = film_table(oil, study.rollers, [force], [speed], study.film_formulas)
+    lines = roughness_batch(study.line_spec, study.seed, range(pairs))
+    one, long = (
+        contact_statistics(lines, film, study.boundary_layer, *run)[PROBABILITY]
+        .var("realisation", ddof=1)
+        .squeeze()
+        for run in (([0.0], 1), ([slip], turns))
+    )
+    # Two estimated variances of 48 pairs: known to some 20 % each.
+    np.testing.assert_allclose(model["scatter_ratio"][:, 0], long / one, rtol=0.4)
+
+
+def test_drift_makes_equal_rollers_scatter_less(few):
+    study, film, contact = few
+    drifting = study.model_copy(update={"rig": study.rig.model_copy(update={"drift": 0.5})})
+    experiment = experiment_off_the_grid(turns=50.0)
+    ratios = model_of_records(experiment, film, contact, drifting)["scatter_ratio"]
+    assert (ratios < 0.2).all() and (ratios >= 0.02).all()
+
+
+def test_one_realisation_tells_no_scatter_and_counts_whole(busy):
+    study = busy.study.model_copy(update={"realisations": 1})
+    experiment = experiment_off_the_grid(turns=40.0, slide_to_roll_ratio=0.1)
+    model = model_of_records(experiment, busy.film, busy.contact.isel(realisation=[0]), study)
+    # As if all persisted: to be wide is to be honest.
+    assert (model["scatter_ratio"] > 0.9).all()
+    assert sample_size(model[PROBABILITY].values, 7.0).tolist() == [[7.0] * 4] * 2

@@ -1,0 +1,217 @@
+"""The simulated rig: its contacts, and the right voltages, in whole steps, with their noise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lube.grid.operating_points import operating_points
+from lube.physics.electrical import divider_voltage, resistance_from_voltage
+from lube.rig import simulator as module
+from lube.rig.simulator import SimulatedRig, logged_voltage
+from lube.stages.contact import contact_statistics
+from lube.stages.roughness import roughness_batch
+from lube.study.rig_settings import Rig
+
+TIME_STEP, SPOT, CAPACITANCE = 6e-7, 0.64, 2.7e-10
+QUIET = {"noise": "0 V", "resolution": 32}
+
+
+def logged(contact, rig, seed=1, capacitance=CAPACITANCE):
+    rng = np.random.default_rng(seed)
+    return logged_voltage(np.array(contact, np.int32), TIME_STEP, SPOT, capacitance, rig, rng)
+
+
+@pytest.mark.parametrize("points", [1, 5, 200])
+def test_a_steady_contact_is_logged_with_its_resistance(points):
+    rig = Rig(**QUIET)
+    resistance = resistance_from_voltage(logged(np.full(20_000, points), rig), rig)
+    np.testing.assert_allclose(resistance, SPOT / points, rtol=1e-3, atol=1e-6)
+
+
+def test_no_contact_is_logged_as_the_leak():
+    rig = Rig(**QUIET)
+    resistance = resistance_from_voltage(logged(np.zeros(20_000), rig), rig)
+    np.testing.assert_allclose(resistance, rig.leak_resistance, rtol=1e-3)
+
+
+def test_a_revolution_has_as_many_samples_as_fit_into_it():
+    assert logged(np.zeros(100_000), Rig()).size == int(100_000 * TIME_STEP * 1e5) == 6_000
+    assert logged(np.zeros(3), Rig()).size == 1
+
+
+def test_voltages_are_whole_steps_of_the_converter_within_its_range():
+    rig = Rig(resolution=8, amplifier_range="60 mV", noise="1 mV")
+    voltage = logged(np.arange(30_000) // 900 % 2, rig)
+    steps = voltage / rig.resolved_voltage
+    np.testing.assert_allclose(steps, np.rint(steps), atol=1e-9)
+    assert voltage.min() >= -0.06 and voltage.max() <= 0.06 * (1 - 1 / 128) + 1e-12
+
+
+def test_the_noise_has_its_rms_and_its_seed():
+    rig = Rig(resolution=24, noise="0.1 mV")
+    one, same, other = (logged(np.zeros(300_000), rig, seed) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(one, same)
+    assert not np.array_equal(one, other)
+    assert np.std(one) == pytest.approx(1e-4, rel=0.02)
+    assert abs(np.corrcoef(one, other)[0, 1]) < 0.03
+
+
+def test_an_amplifier_of_too_small_a_range_saturates():
+    voltage = logged(np.zeros(20_000), Rig(amplifier_range="10 mV", **QUIET))
+    np.testing.assert_allclose(voltage, 0.01, rtol=1e-6)
+
+
+def below(voltage, rig, threshold=100.0):
+    return np.mean(voltage < divider_voltage(threshold, rig))
+
+
+def test_a_narrow_band_misses_short_contacts_and_a_wide_one_does_not():
+    contact = (np.arange(200_000) % 100 >= 90).astype(np.int32)  # 6 us of every 60 us
+    shares = [
+        below(logged(contact, rig), rig)
+        for rig in (
+            Rig(bandwidth=bandwidth, sampling_rate="1.6 MHz", **QUIET)
+            for bandwidth in ("1 kHz", "30 kHz", "10 MHz")
+        )
+    ]
+    assert shares[0] == 0.0
+    assert shares[0] <= shares[1] < shares[2]
+    assert shares[2] == pytest.approx(0.1, abs=0.01)
+
+
+def test_a_large_capacitance_hides_how_soon_a_contact_ends():
+    contact = (np.arange(200_000) % 1000 >= 990).astype(np.int32)
+    rig = Rig(bandwidth="10 MHz", sampling_rate="1.6 MHz", **QUIET)
+    small, large = (below(logged(contact, rig, 1, c), rig) for c in (1e-12, 1e-7))
+    assert small == pytest.approx(0.01, abs=0.001)
+    # The gap charges over 100 ohm: the same 100 ohm's half of the bias is reached after ln 2 R C.
+    assert large - small == pytest.approx(np.log(2.0) * 100.2 * 1e-7 / 6e-4, rel=0.1)
+
+
+# A rig with rollers of its own
+
+
+@pytest.fixture(scope="module")
+def lines_of(make_spec, study):
+    """The rollers that a study's rig draws, on a grid fine enough for some contact."""
+    spec = make_spec(60_000)
+    return lambda changed: roughness_batch(spec, study.seed, changed.rig_realisations)
+
+
+@pytest.fixture(scope="module")
+def points(rig_film):
+    return operating_points(rig_film.isel(film_formula=0, force=[1], temperature=[0, 1]), 0.0)
+
+
+@pytest.fixture(scope="module")
+def slipping(rig_film):
+    return operating_points(rig_film.isel(film_formula=0), 0.1)
+
+
+def run(lines, study, points):
+    return list(SimulatedRig(lines, study, points).revolutions())
+
+
+def test_every_pair_passes_all_points_for_all_its_revolutions(lines_of, study, with_rig, points):
+    several = with_rig(study, pairs=3, revolutions=2.5)
+    passed = run(lines_of(several), several, points)
+    assert [(pair, number) for pair, number, _ in passed] == [
+        (pair, number) for pair in range(3) for _turn in range(3) for number in range(len(points))
+    ]
+    assert all(revolution.point is points[number] for _, number, revolution in passed)
+    sizes = [
+        revolution.contact.size for pair, number, revolution in passed if (pair, number) == (0, 0)
+    ]
+    assert sizes == [60_000, 60_000, 30_000]
+
+
+@pytest.mark.parametrize(("slip", "within"), [(0.0, 1e-12), (0.1, 0.01)])
+def test_its_contacts_are_those_of_the_contact_stage(
+    lines_of, study, with_rig, rig_film, slip, within
+):
+    """With slip the second turn goes on where the first ended, to half a grid point."""
+    two = with_rig(study, pairs=2, revolutions=2)
+    lines = lines_of(two)
+    found = contact_statistics(lines, rig_film, study.boundary_layer, [slip], revolutions=2)
+    expected = found["breakthrough_probability"].isel(film_formula=0, slide_to_roll_ratio=0)
+    points = operating_points(rig_film.isel(film_formula=0), slip)
+    touched = np.zeros((2, len(points)))
+    for pair, number, revolution in run(lines, two, points):
+        touched[pair, number] += np.mean(revolution.contact > 0) / 2.0
+    np.testing.assert_allclose(touched.ravel(), expected.values.ravel(), rtol=within, atol=2e-5)
+    assert touched.max() > 0.01
+
+
+def test_rollers_repeat_themselves_in_rolling_but_not_with_slip(
+    lines_of, study, with_rig, points, slipping
+):
+    two = with_rig(study, revolutions=2)
+    lines = lines_of(two)
+    for among, alike in ((points, True), (slipping, False)):
+        contacts = [r.contact for _, number, r in run(lines, two, among) if number == 1]
+        assert np.array_equal(*contacts) == alike
+
+
+def test_pairs_are_not_alike_and_do_not_hang_on_their_number(lines_of, study, with_rig, points):
+    one, two = (with_rig(study, pairs=pairs, revolutions=1) for pairs in (1, 2))
+    alone, both = (run(lines_of(each), each, points) for each in (one, two))
+    for (_, _, here), (_, _, there) in zip(alone, both, strict=False):
+        np.testing.assert_array_equal(here.contact, there.contact)
+        np.testing.assert_array_equal(here.voltage(study.rig), there.voltage(study.rig))
+    assert not np.array_equal(both[0][2].contact, both[len(points)][2].contact)
+
+
+@pytest.mark.parametrize(("drift", "kept"), [(0.3, 0.7**0.5), (1.0, 0.0)])
+def test_drift_renews_its_share_of_the_variance_each_turn(
+    lines_of, study, with_rig, points, drift, kept
+):
+    drifting = with_rig(study, drift=drift, revolutions=3)
+    rig = SimulatedRig(lines_of(drifting), drifting, points)
+    first, second, third = (pair[0] for pair in rig._rollers(drifting.rig_realisations))
+    assert np.corrcoef(first, second)[0, 1] == pytest.approx(kept, abs=0.05)
+    assert np.corrcoef(first, third)[0, 1] == pytest.approx(kept**2, abs=0.05)
+    assert np.std(third) == pytest.approx(np.std(first), rel=0.05)
+
+
+def test_the_faster_surface_passes_one_grid_point_each_time_step(
+    lines_of, study, with_rig, slipping
+):
+    one = with_rig(study, revolutions=1)
+    lines = lines_of(one)
+    _, _, revolution = run(lines, one, slipping)[0]
+    faster = 1.05 * revolution.point.entrainment_speed
+    assert revolution.time_step == pytest.approx(lines.attrs["spacing"] / faster)
+    turn = 2.0 * np.pi * study.rollers.first.radius / faster
+    assert revolution.contact.size * revolution.time_step == pytest.approx(turn)
+
+
+def test_noise_is_of_its_pair_point_and_turn_and_no_other(lines_of, study, with_rig, points):
+    two = with_rig(study, pairs=2, revolutions=2)
+    passed = {}
+    for pair, number, revolution in run(lines_of(two), two, points):
+        passed.setdefault((pair, number), []).append(revolution)
+    silent = np.zeros(60_000, np.int32)
+
+    def noise(pair, number, turn):
+        return replace(passed[pair, number][turn], contact=silent).voltage(two.rig)
+
+    np.testing.assert_array_equal(noise(0, 0, 0), noise(0, 0, 0))
+    for other in ((1, 0, 0), (0, 0, 1)):
+        assert not np.array_equal(noise(0, 0, 0), noise(*other))
+    beside = noise(0, 1, 0)
+    assert not np.array_equal(noise(0, 0, 0), beside[: noise(0, 0, 0).size])
+
+
+def test_how_many_points_are_held_at_once_changes_nothing(
+    lines_of, study, with_rig, slipping, monkeypatch
+):
+    two = with_rig(study, revolutions=2)
+    lines = lines_of(two)
+    expected = {}
+    for pair, number, revolution in run(lines, two, slipping):
+        expected.setdefault((pair, number), []).append(revolution.contact)
+    monkeypatch.setattr(module, "TOGETHER", 3)
+    for pair, number, revolution in run(lines, two, slipping):
+        np.testing.assert_array_equal(revolution.contact, expected[pair, number].pop(0))
+    assert not any(expected.values())

@@ -1,0 +1,489 @@
+"""The contact stage: every label in its place, exact identities, then magnitudes on record."""
+
+import math
+from fractions import Fraction
+from itertools import groupby
+
+import numpy as np
+import pytest
+import scipy.stats
+import xarray as xr
+
+from lube import BoundaryLayer, contact_map, contact_statistics, gather_map, roughness_lines
+from lube.errors import DataError
+from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
+from lube.kernels.layer import layer_factor
+from lube.kernels.scan import scan_statistics
+from lube.kernels.strips import strip_statistics
+from lube.schema import OPERATING_DIMS
+from lube.stages.film import film_table
+from lube.stages.lubricant import lubricant_table
+from lube.surfaces.synthetic import draw_realisation
+
+MEANS = (
+    "geometric_contact_probability",
+    "breakthrough_probability",
+    "mean_contact_length",
+    "mean_contact_force",
+)
+
+
+@pytest.fixture(scope="module")
+def layer(study):
+    return study.boundary_layer
+
+
+@pytest.fixture(scope="module")
+def weak_layer():
+    """A layer so weak that even on a coarse grid some segments break and some do not."""
+    return BoundaryLayer.model_construct(critical_thickness=5e-9, shear_strength=1e4)
+
+
+@pytest.fixture(scope="module")
+def contact(lines, film, layer):
+    return contact_statistics(lines, film, layer)
+
+
+@pytest.fixture(scope="module")
+def slipping(coarse_lines, film, weak_layer):
+    """Rolling and slip either way, on a coarse grid and few operating points."""
+    few = film.isel(temperature=[0, 3], speed=[0, 1], force=[1, 4])
+    return few, contact_statistics(coarse_lines, few, weak_layer, [-0.3, 0.0, 0.3])
+
+
+def same(left, right):
+    """Whether two results hold the same numbers, whatever is behind them."""
+    return all(np.array_equal(left[name].values, right[name].values) for name in MEANS)
+
+
+def expected_at(counts, steps, lines, modulus):
+    """Labelled means, from sums over time of the kernels' whole numbers."""
+    touching, breaking, points, overlap = (int(count) / steps for count in counts)
+    spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
+    force = modulus * spacing * overlap * height_step
+    return dict(zip(MEANS, (touching, breaking, points * spacing, force), strict=True))
+
+
+def kernel_arguments(film, place, lines, layer):
+    """Film and half-window of one operating point, and the layer's factor."""
+    spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
+    film_steps = round(film["film_thickness"].sel(place).item() / height_step)
+    half_width = film["contact_half_width"].sel(force=place["force"]).item()
+    factor = layer_factor(
+        film["reduced_modulus"].item(),
+        layer.critical_thickness,
+        layer.shear_strength,
+        spacing,
+        height_step,
+    )
+    return np.array([film_steps]), np.array([math.floor(half_width / spacing)]), factor
+
+
+def places(film):
+    stacked = film["film_thickness"].stack(place=OPERATING_DIMS)
+    return [dict(zip(OPERATING_DIMS, place, strict=True)) for place in stacked["place"].values]
+
+
+def test_every_value_is_the_kernels_at_the_labelled_point(lines, film, layer, contact):
+    distinct = set()
+    for realisation in (0, 1):
+        pair = line_pair(lines, realisation)
+        for place in places(film):
+            films, half_windows, factor = kernel_arguments(film, place, lines, layer)
+            steps = pair[0].size
+            counts = strip_statistics(*pair, (1.0, 1.0), steps, films, half_windows, factor)[0]
+            expected = expected_at(counts, pair[0].size, lines, film["reduced_modulus"].item())
+            found = contact.sel(realisation=realisation, slide_to_roll_ratio=0.0, **place)
+            for name in MEANS:
+                assert found[name].item() == pytest.approx(expected[name], rel=1e-13)
+            distinct.add(tuple(expected.values()))
+    assert len(distinct) > 150  # of 240: mixed-up points would show
+
+
+def test_every_value_with_slip_is_the_scans_at_the_labelled_point(
+    coarse_lines, weak_layer, slipping
+):
+    film, contact = slipping
+    pair = line_pair(coarse_lines, 0)
+    steps = pair[0].size
+    for ratio, speeds in [(-0.3, (0.85 / 1.15, 1.0)), (0.3, (1.0, 0.85 / 1.15))]:
+        for place in places(film):
+            arguments = kernel_arguments(film, place, coarse_lines, weak_layer)
+            counts = scan_statistics(*pair, speeds, steps, *arguments)[0]
+            expected = expected_at(counts, steps, coarse_lines, film["reduced_modulus"].item())
+            found = contact.sel(realisation=0, slide_to_roll_ratio=ratio, **place)
+            for name in MEANS:
+                assert found[name].item() == pytest.approx(expected[name], rel=1e-13)
+
+
+def test_order_of_the_film_tables_dimensions_does_not_matter(lines, film, layer, contact):
+    turned = film.transpose("force", "speed", "film_formula", "temperature", "lubricant")
+    assert same(contact_statistics(lines, turned, layer), contact)
+
+
+def naive_means(pair, ratio, film, half_width, modulus, layer, spacing, height_step):
+    """The model as physics.md tells it (section 5), in metres, newtons and exact fractions."""
+    z1, z2 = ([Fraction(height_step) * int(z) for z in line] for line in pair)
+    dx, modulus = Fraction(spacing), Fraction(modulus)
+    v1, v2 = 1 + Fraction(ratio) / 2, 1 - Fraction(ratio) / 2
+    j = range(-math.floor(Fraction(half_width) / dx), math.floor(Fraction(half_width) / dx) + 1)
+    steps = len(z1) if v1 >= v2 else len(z2)
+    touching = breaking = length = force = 0
+    for t in range(steps):
+        s1, s2 = (math.floor(t * v / max(v1, v2) + Fraction(1, 2)) for v in (v1, v2))
+        gaps = [z1[(s1 + i) % len(z1)] + z2[(s2 + i) % len(z2)] - film for i in j]
+        segments = [list(run) for contact, run in groupby(gaps, lambda z: z > 0) if contact]
+        broken = Fraction(0)
+        for segment in segments:
+            d = len(segment) * dx
+            f = modulus * dx * sum(segment)  # Eq. 5
+            remaining = Fraction(math.pi) * Fraction(layer.shear_strength) / 12 * d**3 / f  # Eq. 6
+            broken += d if remaining < Fraction(layer.critical_thickness) else 0
+            force += f
+        touching += bool(segments)
+        breaking += broken > 0
+        length += broken
+    return [float(Fraction(total) / steps) for total in (touching, breaking, length, force)]
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.25, -0.25, 2.0])
+def test_contact_equals_a_naive_model_in_metres_and_newtons(make_spec, film, ratio):
+    spec = make_spec(150, second_radius=0.04, longest_wavelength=0.1)
+    lines = roughness_lines(spec, 3, [0])
+    place = film.isel(temperature=[3], speed=[0], force=[0, 4], film_formula=[0])
+    films = [0.1e-6, 0.35e-6]
+    widths = 2.7 * spec.spacing, 5.2 * spec.spacing
+    place["film_thickness"] = place["film_thickness"].copy(data=np.reshape(films, (1, 1, 1, 1, 2)))
+    place["contact_half_width"] = place["contact_half_width"].copy(data=list(widths))
+    modulus = film["reduced_modulus"].item()
+    weak = BoundaryLayer.model_construct(critical_thickness=5e-9, shear_strength=3.0)
+    found = contact_statistics(lines, place, weak, [ratio])
+    for force, (h0, half_width) in enumerate(zip(films, widths, strict=True)):
+        whole = Fraction(round(h0 / spec.height_step)) * Fraction(spec.height_step)
+        expected = naive_means(
+            line_pair(lines, 0),
+            ratio,
+            whole,
+            half_width,
+            modulus,
+            weak,
+            spec.spacing,
+            spec.height_step,
+        )
+        values = [found[name].isel(force=force).item() for name in MEANS]
+        assert values == pytest.approx(expected, rel=1e-12)
+        assert ratio == 2.0 or 0.0 < expected[1] < expected[0] < 1.0
+
+
+def test_only_film_and_half_width_matter(lines, film, layer):
+    """Equal (h0, 2a) give equal results, whatever force, speed and temperature are behind."""
+    few = film.isel(force=[0, 1, 4])
+    few["film_thickness"] = few["film_thickness"] * 0.0 + xr.DataArray(
+        [0.3e-6, 0.6e-6, 0.3e-6], dims="force"
+    )
+    few["contact_half_width"] = few["contact_half_width"].copy(data=[2e-4, 2e-4, 2e-4])
+    contact = contact_statistics(lines, few, layer)
+    for name in MEANS:
+        values = contact[name].transpose("force", "realisation", ...).values
+        assert (values[0] == values[2]).all()
+        assert (values[0] > values[1]).all()
+        assert (values == values[:, :, :1, :1, :1, :1, :1]).all()
+        assert (values[:, 0] != values[:, 1]).all()
+
+
+def table_of(film, films, half_widths):
+    """Film table of one oil with every combination of film and half-width, by speed and force."""
+    place = film.isel(
+        temperature=[0], film_formula=[0], speed=[0] * len(films), force=[0] * len(half_widths)
+    )
+    place = place.assign_coords(
+        speed=np.arange(1.0, 1.0 + len(films)), force=np.arange(1.0, 1.0 + len(half_widths))
+    )
+    thickness = np.broadcast_to(np.reshape(films, (1, 1, 1, -1, 1)), place["film_thickness"].shape)
+    place["film_thickness"] = place["film_thickness"].copy(data=thickness)
+    place["contact_half_width"] = place["contact_half_width"].copy(data=half_widths)
+    return place
+
+
+def test_contact_falls_with_the_film_and_rises_with_the_width(lines, film, layer):
+    films = np.linspace(0.0, 1.6e-6, 17)
+    half_widths = np.array([2e-6, 2e-5, 5e-5, 1e-4, 2.1e-4])
+    contact = contact_statistics(lines, table_of(film, films, half_widths), layer)
+    for name in ("geometric_contact_probability", "mean_contact_force"):  # sets within sets
+        assert (contact[name].diff("speed") <= 0.0).all()
+        assert (contact[name].diff("force") >= 0.0).all()
+        assert contact[name].isel(speed=0).min() > contact[name].isel(speed=-1).max()
+    # A thicker film can part a segment in two that break, so here only on the whole.
+    breaking = contact["breakthrough_probability"].mean("realisation").isel(speed=slice(2, None, 3))
+    assert (breaking.isel(force=slice(1, None)).diff("speed") < 0.0).all()
+    assert (breaking.isel(force=slice(1, None), speed=[0, 1, 2]).diff("force") > 0.0).all()
+
+
+def test_breakthrough_is_never_more_than_geometric_contact(contact, slipping):
+    for results in (contact, slipping[1]):
+        breaking, touching = (
+            results["breakthrough_probability"],
+            results["geometric_contact_probability"],
+        )
+        assert (breaking <= touching).all()
+        assert ((touching >= 0.0) & (touching <= 1.0)).all()
+        assert ((breaking > 0.0) & (breaking < touching)).any()
+
+
+def test_broken_length_is_at_most_the_window_while_broken(lines, film, contact):
+    half_points = np.floor(film["contact_half_width"] / lines.attrs["spacing"])
+    width = (2.0 * half_points + 1.0) * lines.attrs["spacing"]
+    breaking = contact["breakthrough_probability"]
+    assert (contact["mean_contact_length"] <= width * breaking * (1.0 + 1e-12)).all()
+    assert (contact["mean_contact_length"] >= lines.attrs["spacing"] * breaking).all()
+
+
+def test_mean_force_is_the_windows_share_of_the_whole_circumference(lines, film, contact):
+    """In pure rolling every point is in the window for as many steps as the window has points."""
+    spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
+    for realisation in (0, 1):
+        heights = lines["height"].sel(realisation=realisation).sum("roller").values
+        for place in places(film)[::7]:
+            h0 = height_step * round(film["film_thickness"].sel(place).item() / height_step)
+            half_width = film["contact_half_width"].sel(force=place["force"]).item()
+            width = 2 * math.floor(half_width / spacing) + 1
+            overlap = np.maximum(heights - h0, 0.0).mean()
+            force = film["reduced_modulus"].item() * spacing * width * overlap
+            found = contact["mean_contact_force"].sel(realisation=realisation, **place)
+            assert found.item() == pytest.approx(force, rel=1e-6, abs=1e-12)
+
+
+def test_load_share_is_the_force_over_the_load_of_a_patch_as_long_as_wide(contact, film, study):
+    """F_N 2a/L', with force, length and Eq. 2 themselves."""
+    width = 2.0 * study.rollers.contact_half_width(film["force"])
+    load = film["force"] * width / study.rollers.length
+    expected = contact["mean_contact_force"] / load
+    assert (contact["contact_load_share"] > 0.0).any()
+    np.testing.assert_allclose(contact["contact_load_share"], expected, rtol=1e-12)
+
+
+def test_load_share_of_rollers_side_by_side_is_that_of_one(lines, study, layer):
+    """Twice the length under twice the force: the same pressure, the same patch."""
+    oil = lubricant_table(study.lubricants, [80.0])
+    twice = study.rollers.model_copy(update={"length": 2.0 * study.rollers.length})
+    one, both = (
+        contact_statistics(lines, film_table(oil, rollers, [force], [100.0], ["paper"]), layer)
+        for rollers, force in ((study.rollers, 1600.0), (twice, 3200.0))
+    )
+    for name in (*MEANS, "contact_load_share"):
+        np.testing.assert_allclose(one[name], both[name], rtol=1e-12)
+
+
+def test_springs_pressed_flat_carry_what_their_stiffness_says(film, layer):
+    """A smooth line pressed in by d everywhere: E* 2a d, over the load of the patch."""
+    points, depth = 20_000, 1e-7
+    spacing = 2.0 * np.pi * 0.05 / points
+    heights = np.full((1, 2, points), 0.5 * depth)
+    few = film.isel(temperature=[0], speed=[0], film_formula=[0])
+    few = few.assign(film_thickness=0.0 * few["film_thickness"])
+    lines = xr.Dataset(
+        {"height": (("realisation", "roller", "position"), heights)},
+        {"realisation": [0]},
+        {"spacing": spacing, "height_step": 1e-12, "points": [points] * 2, "q_min": 1e4},
+    )
+    share = contact_statistics(lines, few, layer)["contact_load_share"].squeeze()
+    window = (2 * np.floor(few["contact_half_width"] / spacing) + 1) * spacing
+    force = few["reduced_modulus"] * window * depth
+    load = few["hertz_pressure"] * np.pi * few["contact_half_width"] ** 2
+    np.testing.assert_allclose(share, force / load, rtol=1e-9)
+
+
+def test_next_to_no_slip_is_pure_rolling(lines, film, layer):
+    """The scan and the fast method meet: 1e-9 of slip is less than a point in a revolution."""
+    few = film.isel(temperature=[2], speed=[0, 1], force=[2, 4])
+    contact = contact_statistics(lines, few, layer, [-1e-9, 0.0, 1e-9])
+    rolling = contact.isel(slide_to_roll_ratio=1)
+    assert same(contact.isel(slide_to_roll_ratio=0), rolling)
+    assert same(contact.isel(slide_to_roll_ratio=2), rolling)
+
+
+def test_slip_changes_which_asperities_meet(slipping):
+    _, contact = slipping
+    rolling = contact.sel(slide_to_roll_ratio=0.0)
+    assert not same(contact.sel(slide_to_roll_ratio=0.3), rolling)
+
+
+@pytest.mark.parametrize("second_radius", [0.05, 0.041])
+def test_swapping_rollers_and_the_sign_of_slip_changes_nothing(
+    make_spec, film, weak_layer, second_radius
+):
+    spec = make_spec(6000, second_radius, shortest_wavelength="4.0 points")
+    lines = roughness_lines(spec, 3, [0])
+    swapped = lines.isel(roller=[1, 0]).assign_attrs(points=lines.attrs["points"][::-1])
+    few = film.isel(temperature=[3], speed=[0], force=[2, 4])
+    results = contact_statistics(lines, few, weak_layer, [-0.4, 0.2])
+    mirrored = contact_statistics(swapped, few, weak_layer, [0.4, -0.2])
+    assert same(results, mirrored)
+    assert not same(results, contact_statistics(lines, few, weak_layer, [0.4, -0.2]))
+
+
+def test_independent_looks_are_counted_on_the_shorter_line(make_spec, film, layer):
+    """A revolution is never claimed to be longer than either roller's."""
+    few = film.isel(temperature=[0], speed=[0], force=[0])
+    for second_radius in (0.02, 0.05, 0.08):
+        spec = make_spec(6000, second_radius, shortest_wavelength="4.0 points")
+        contact = contact_statistics(roughness_lines(spec, 3, [0]), few, layer)
+        assert contact.attrs["travel"] == pytest.approx(2 * np.pi * min(0.05, second_radius))
+
+
+# Magnitudes at the paper's fineness, 1600 N window.
+
+
+@pytest.fixture(scope="module")
+def ensemble(make_spec, study, film):
+    """Shares of time and mean overlap of a dozen realisations at four films."""
+    spec = make_spec(1_000_000)
+    half_window = math.floor(film["contact_half_width"].sel(force=1600.0).item() / spec.spacing)
+    films = np.array([300_000, 600_000, 800_000, 1_000_000])
+    factor = layer_factor(film["reduced_modulus"].item(), 5e-9, 1e6, spec.spacing, spec.height_step)
+    statistics = []
+    for realisation in range(12):
+        pair = draw_realisation(spec, 77, realisation)
+        windows = np.full(4, half_window)
+        statistics.append(strip_statistics(*pair, (1.0, 1.0), 1_000_000, films, windows, factor))
+    return spec, half_window, films, np.array(statistics) / 1e6
+
+
+# physics.md, section 6: 40 seeds of another implementation, mean and seed SD.
+RECORD = [(0.832, 0.011), (0.290, 0.014), (0.0625, 0.0081), (0.0071, 0.0032)]
+
+
+@pytest.mark.parametrize("row", range(4))
+def test_breakthrough_probability_is_that_on_record(ensemble, row):
+    *_, statistics = ensemble
+    found = statistics[:, row, 1]
+    mean, scatter = RECORD[row]
+    error = math.hypot(found.std(ddof=1) / math.sqrt(found.size), scatter / math.sqrt(40))
+    assert found.mean() == pytest.approx(mean, abs=4.0 * error)
+
+
+@pytest.mark.parametrize("row", range(4))
+def test_mean_overlap_is_that_of_a_gaussian_line(ensemble, row):
+    """W sigma (phi(x) - x Q(x)) with x = h0 / sigma, the mean of a Gaussian's excess."""
+    spec, half_window, films, statistics = ensemble
+    overlap = statistics[:, row, 3]
+    sigma = math.hypot(*spec.rms_height) / spec.height_step
+    x = films[row] / sigma
+    excess = scipy.stats.norm.pdf(x) - x * scipy.stats.norm.sf(x)
+    error = overlap.std(ddof=1) / math.sqrt(overlap.size)
+    assert overlap.mean() == pytest.approx((2 * half_window + 1) * sigma * excess, abs=4 * error)
+
+
+def test_equal_rollers_without_slip_repeat_themselves(lines, film, layer):
+    once, thrice = (contact_statistics(lines, film, layer, (0.0,), n) for n in (1, 3))
+    assert same(once, thrice)
+
+
+def test_with_slip_further_revolutions_are_the_scans(coarse_lines, weak_layer, slipping):
+    film, _ = slipping
+    contact = contact_statistics(coarse_lines, film, weak_layer, (0.3,), revolutions=2)
+    place = next(iter(places(film)))
+    films, half_windows, factor = kernel_arguments(film, place, coarse_lines, weak_layer)
+    pair, ratios = line_pair(coarse_lines, 0), speed_ratios(0.3)
+    steps = 2 * pair[0].size
+    counts = scan_statistics(*pair, ratios, steps, films, half_windows, factor)[0]
+    found = contact.sel(realisation=0, slide_to_roll_ratio=0.3, **place)
+    assert found["geometric_contact_probability"].item() == counts[0] / steps
+    assert found["breakthrough_probability"].item() == counts[1] / steps
+
+
+# The master map
+
+
+@pytest.fixture(scope="module")
+def mapped(lines, film, layer):
+    return contact_map(lines, film, layer, lambda_levels=6, width_levels=4)
+
+
+def test_the_map_spans_all_films_and_windows_of_the_study(mapped, film):
+    for prefix in ("", "layer_"):
+        for name, values in (
+            ("lambda_ratio", film["lambda_ratio"]),
+            ("contact_width", 2.0 * film["contact_half_width"]),
+        ):
+            levels = mapped[prefix + name].values
+            least, greatest = values.min().item(), values.max().item()
+            assert (np.diff(levels) > 0).all()
+            assert levels[-1] == pytest.approx(greatest)
+            assert np.isclose(levels, least).any()
+    assert mapped.sizes["lambda_ratio"] == 4 + 6
+    assert mapped.sizes["contact_width"] == 4
+
+
+def test_the_map_reaches_films_thinner_than_the_studys(mapped, film):
+    least = film["lambda_ratio"].min().item()
+    thinner = mapped["lambda_ratio"].values[:5]
+    assert thinner[[0, -1]] == pytest.approx([0.3 * least, least])
+
+
+def test_every_layer_of_the_map_is_run_as_a_layer_of_its_own(mapped, lines, film, layer):
+    strengths = mapped["layer_strength"].values
+    study = layer.shear_strength / layer.critical_thickness
+    np.testing.assert_allclose(strengths / study, [1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8])
+    pair = line_pair(lines, 1)
+    for strength in strengths[[0, 3, 6]]:
+        # The thinner layer of the same shear strength, rather than the weaker one.
+        other = BoundaryLayer.model_construct(
+            shear_strength=layer.shear_strength,
+            critical_thickness=layer.shear_strength / strength,
+        )
+        factor = layer_factor_of(lines, film["reduced_modulus"].item(), other)
+        for place in (0, 4):
+            here = mapped.isel(layer_lambda_ratio=place, layer_contact_width=-1)
+            thickness = here["layer_lambda_ratio"] * film["composite_rms_roughness"]
+            half_width = here["layer_contact_width"] / 2.0
+            point = whole_numbers([thickness.item()], [half_width.item()], lines)
+            counts = strip_statistics(*pair, (1.0, 1.0), pair[0].size, *point, factor)[0]
+            found = here["layer_breakthrough_probability"].sel(
+                realisation=1, layer_strength=strength
+            )
+            assert found == pytest.approx(counts[1] / pair[0].size, abs=2e-5)
+
+
+def test_the_stronger_layer_breaks_less(mapped):
+    breaking = mapped["layer_breakthrough_probability"]
+    assert (breaking.diff("layer_strength") <= 0.0).all()
+    assert breaking.isel(layer_strength=0).max() > 2.0 * breaking.isel(layer_strength=-1).max()
+
+
+def test_every_value_of_the_map_is_the_kernels(mapped, lines, film, layer):
+    factor = layer_factor_of(lines, film["reduced_modulus"].item(), layer)
+    pair = line_pair(lines, 1)
+    for ratio in mapped["lambda_ratio"].values:
+        for width in mapped["contact_width"].values:
+            thickness = ratio * film["composite_rms_roughness"].item()
+            point = whole_numbers([thickness], [width / 2.0], lines)
+            counts = strip_statistics(*pair, (1.0, 1.0), pair[0].size, *point, factor)[0]
+            found = mapped.sel(realisation=1, lambda_ratio=ratio, contact_width=width)
+            assert found["geometric_contact_probability"] == counts[0] / pair[0].size
+            assert found["breakthrough_probability"] == counts[1] / pair[0].size
+
+
+def test_the_map_falls_with_the_film_and_rises_with_the_window(mapped):
+    geometric = mapped["geometric_contact_probability"].transpose(..., "lambda_ratio").values
+    assert (np.diff(geometric, axis=-1) <= 0).all()
+    wider = mapped["geometric_contact_probability"].transpose(..., "contact_width").values
+    assert (np.diff(wider, axis=-1) >= 0).all()
+    assert geometric.max() > 0.9 and geometric.min() < 0.1
+
+
+def test_one_film_and_one_window_make_a_map_of_one_width(lines, film, layer):
+    place = {name: [0] for name in ("lubricant", "film_formula", "temperature", "speed", "force")}
+    mapped = contact_map(lines, film.isel(place), layer)
+    assert mapped.sizes["lambda_ratio"] == 4 + 1  # thinner films than the study's are added
+    assert mapped.sizes["layer_lambda_ratio"] == mapped.sizes["contact_width"] == 1
+
+
+def test_the_map_gets_its_intervals(mapped):
+    gathered = gather_map([mapped.isel(realisation=[1]), mapped.isel(realisation=[0])])
+    for name in ("breakthrough_probability", "geometric_contact_probability"):
+        np.testing.assert_allclose(gathered[f"{name}_mean"], mapped[name].mean("realisation"))
+        assert (gathered[f"{name}_lower"] <= gathered[f"{name}_mean"]).all()
+        assert (gathered[f"{name}_upper"] > 0).all()
+    with pytest.raises(DataError, match="each once"):
+        gather_map([mapped.isel(realisation=[1])])

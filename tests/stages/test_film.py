@@ -1,0 +1,205 @@
+"""The film stage: labels and alignment, then the figures of the paper's grid."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from lube import schema
+from lube.errors import DataError, LubeError
+from lube.physics import film_formulas
+from lube.stages.film import film_at, film_table
+
+FORCE = [100.0, 200.0, 400.0, 800.0, 1600.0]
+SPEED = [600 / 7, 100.0, 120.0, 150.0, 200.0]
+TEMPERATURE = np.array([40.0, 50.0, 60.0, 70.0, 80.0])
+KINEMATIC = np.array([335.0, 210.665, 139.1001950405, 95.806, 68.451])  # mm2/s
+ROLLERS = SimpleNamespace(
+    length=0.01,
+    first=SimpleNamespace(radius=0.05),
+    second=SimpleNamespace(radius=0.05),
+    reduced_radius=0.025,
+    reduced_modulus=210e9 / 0.91 / 2,
+    composite_rms_roughness=0.2e-6 * np.sqrt(2.0),
+)
+
+
+def oils(names=("oil",), viscosity_factors=(1.0,)):
+    """Lubricants like Mobilgear SHC XMP 320 but for a factor on the viscosity."""
+    viscosity = KINEMATIC * 1e-6 * 860.0 * (1.0 - 6.4e-4 * (TEMPERATURE - 15.0))
+    fall = -np.gradient(np.log(viscosity), TEMPERATURE)
+    grid = ("lubricant", "temperature")
+    count = len(names)
+    dataset = xr.Dataset(
+        {
+            "dynamic_viscosity": (grid, np.outer(viscosity_factors, viscosity)),
+            "pressure_viscosity_coefficient": (
+                grid,
+                np.tile(7.382e-9 * KINEMATIC**0.1335, (count, 1)),
+            ),
+            "temperature_viscosity_coefficient": (grid, np.tile(fall, (count, 1))),
+            "thermal_conductivity": ("lubricant", np.full(count, 0.14)),
+        },
+        coords={"lubricant": list(names), "temperature": TEMPERATURE},
+    )
+    dataset["dynamic_viscosity"].attrs["units"] = "Pa s"
+    return dataset
+
+
+def paper_table(names=tuple(film_formulas.FORMULAS)):
+    return film_table(oils(), ROLLERS, FORCE, SPEED, list(names))
+
+
+@pytest.fixture(scope="module")
+def table():
+    return paper_table()
+
+
+def test_table_fits_the_schema(table):
+    schema.check(table, "film")
+    assert table["film_thickness"].dims == schema.OPERATING_DIMS
+    assert table["film_thickness"].shape == (1, len(film_formulas.FORMULAS), 5, 5, 5)
+    assert table["film_thickness"].attrs["units"] == "m"
+    floats = [v for v in table.variables.values() if v.dtype.kind == "f"]
+    assert all(v.dtype == np.float64 for v in floats)
+    assert not any(v.isnull().any() for v in floats)
+
+
+def test_regime_has_the_type_of_its_flags(table):
+    assert table["regime"].dtype == table["regime"].attrs["flag_values"].dtype
+
+
+@pytest.mark.parametrize("names", [["moes"], ["grubin", "paper"], ["paper", "moes", "grubin"]])
+def test_any_subset_of_formulas_is_the_dimension_in_the_order_asked_for(table, names):
+    subset = paper_table(names)
+    assert subset["film_formula"].values.tolist() == names
+    xr.testing.assert_identical(subset, table.sel(film_formula=names))
+
+
+def test_unknown_formula_is_refused():
+    with pytest.raises(LubeError, match="unknown film formula 'hamrock'"):
+        film_table(oils(), ROLLERS, FORCE, SPEED, ["paper", "hamrock"])
+
+
+def test_lubricant_without_temperatures_is_refused():
+    with pytest.raises(DataError, match="temperature"):
+        film_table(oils().drop_vars("temperature"), ROLLERS, FORCE, SPEED, ["paper"])
+
+
+def test_every_point_agrees_with_the_plain_formula(table):
+    """One point at a time, plain floats: nothing is transposed on the way."""
+    modulus, radius = 2.0 * ROLLERS.reduced_modulus, ROLLERS.reduced_radius
+    oil = oils().isel(lubricant=0)
+    for name, row in film_formulas.FORMULAS.items():
+        for force, speed, temperature in [(100, 200, 40), (800, 100, 60), (1600, 600 / 7, 80)]:
+            at = {"force": force, "speed": speed, "temperature": temperature}
+            viscosity, alpha = (
+                float(oil[variable].sel(temperature=temperature))
+                for variable in ("dynamic_viscosity", "pressure_viscosity_coefficient")
+            )
+            load = force / 0.01 / (modulus * radius)
+            speed_number = viscosity * (2.0 * np.pi * 0.05 * speed / 60.0) / (modulus * radius)
+            expected = radius * row.evaluate(load, speed_number, alpha * modulus)
+            found = table["film_thickness"].isel(lubricant=0).sel(film_formula=name, **at)
+            assert float(found) == pytest.approx(expected, rel=1e-12)
+
+
+def test_records_at_their_own_conditions_have_the_film_of_the_grid_there(table):
+    """Force, speed and oil along one dimension, in place of three: to the last bit."""
+    rows = [(800.0, 100.0, 40.0), (100.0, 200.0, 80.0), (800.0, 100.0, 60.0)]
+    force, speed, temperature = (xr.DataArray(each, dims="record") for each in np.transpose(rows))
+    oil = oils().isel(lubricant=0).sel(temperature=temperature).reset_coords(drop=True)
+    found = film_at(oil, ROLLERS, force, speed, ["paper", "moes"])
+    for number, (here, turning, warm) in enumerate(rows):
+        at = table.isel(lubricant=0).sel(force=here, speed=turning, temperature=warm)
+        at = at.sel(film_formula=["paper", "moes"])
+        for name in ("film_thickness", "lambda_ratio", "moes_load", "contact_half_width"):
+            record = found[name].isel(record=number)
+            np.testing.assert_array_equal(record.values, at[name].values)
+
+
+def test_grids_may_have_one_value_and_any_order():
+    table = film_table(oils(), ROLLERS, [800.0], [200.0, 100.0], ["paper"])
+    assert table["film_thickness"].shape == (1, 1, 5, 2, 1)
+    assert table["speed"].values.tolist() == [200.0, 100.0]
+    reversed_ = film_table(oils(), ROLLERS, FORCE[::-1], SPEED, ["paper"])
+    xr.testing.assert_allclose(reversed_.sortby("force"), paper_table(["paper"]))
+
+
+def test_each_lubricant_has_its_own_film():
+    both = film_table(oils(["thin", "thick"], [0.5, 1.0]), ROLLERS, FORCE, SPEED, ["paper"])
+    ratio = both["film_thickness"].sel(lubricant="thin", drop=True) / both["film_thickness"].sel(
+        lubricant="thick", drop=True
+    )
+    np.testing.assert_allclose(ratio, 0.5**0.692)
+
+
+def test_film_rises_with_speed_and_falls_with_load_and_temperature(table):
+    film = table["film_thickness"]
+    assert (film.diff("speed") > 0).all()
+    assert (film.diff("force") < 0).all()
+    assert (film.diff("temperature") < 0).all()
+
+
+def test_entrainment_speed_is_the_surface_speed_of_the_first_roller(table):
+    assert float(table["entrainment_speed"].sel(speed=100.0)) == pytest.approx(np.pi / 6.0)
+
+
+def test_unequal_rollers_take_the_entrainment_speed_from_the_first():
+    rollers = SimpleNamespace(**{**vars(ROLLERS), "first": SimpleNamespace(radius=0.025)})
+    table = film_table(oils(), rollers, FORCE, [100.0], ["paper"])
+    assert float(table["entrainment_speed"][0]) == pytest.approx(np.pi / 12.0)
+
+
+def test_lambda_is_the_film_over_the_composite_roughness(table):
+    expected = table["film_thickness"] / (0.2e-6 * np.sqrt(2.0))
+    np.testing.assert_allclose(table["lambda_ratio"], expected)
+
+
+def test_places_and_sources_stand_beside_the_films(table):
+    for name, row in film_formulas.FORMULAS.items():
+        assert table["formula_place"].sel(film_formula=name) == row.place
+        assert table["formula_source"].sel(film_formula=name) == row.source
+
+
+def test_hertz_contact_over_the_grid(table):
+    """121..485 MPa, 2a 0.105..0.420 mm: physics.md, section 1."""
+    np.testing.assert_allclose(table["hertz_pressure"][[0, -1]], [121e6, 485e6], rtol=3e-3)
+    np.testing.assert_allclose(
+        2 * table["contact_half_width"][[0, -1]], [0.105e-3, 0.420e-3], rtol=2e-3
+    )
+
+
+def test_lambda_over_the_grid(table):
+    """0.9..8.4: physics.md, section 1."""
+    ratio = table["lambda_ratio"].sel(film_formula="pan-hamrock")
+    assert float(ratio.min()) == pytest.approx(0.9, abs=0.05)
+    assert float(ratio.max()) == pytest.approx(8.4, abs=0.05)
+
+
+def test_inlet_shear_heating_over_the_grid(table):
+    """Up to 6 %: physics.md, section 3. The film thickness does not contain it."""
+    factor = table["inlet_shear_heating_factor"]
+    assert float(factor.min()) == pytest.approx(0.94, abs=0.005)
+    assert float(factor.max()) < 1.0
+
+
+def test_points_outside_the_validity_range_are_flagged(table):
+    """Every formula has a range of its own, and none holds over the whole grid."""
+    outside = ~table["in_validity_range"].isel(lubricant=0)
+    counts = outside.sum(["temperature", "speed", "force"]).to_series().to_dict()
+    assert counts == {
+        "paper": 66,
+        "pan-hamrock": 62,
+        "pan-hamrock-minimum": 54,
+        "dowson-toyoda": 110,
+        "dowson-higginson-minimum": 44,
+        "grubin": 80,
+        "moes": 111,
+    }
+    paper = outside.sel(film_formula="paper")
+    assert paper.sum(["temperature", "speed"]).values.tolist() == [25, 25, 15, 1, 0]
+    assert bool(paper.sel(force=100, speed=200, temperature=40))
+    assert bool(paper.sel(force=400, speed=150, temperature=60))
+    assert not bool(paper.sel(force=800, speed=100, temperature=40))

@@ -1,0 +1,311 @@
+"""From contact shares back to what explains them: exact inverses first, then coverage."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from experiments import experiment_at, experiment_of, model_of_records
+
+from lube import contact_statistics, film_table
+from lube.rig.fits import ALPHA_FACTORS, fit_alpha, fit_layer_strength
+from lube.schema import LIMITS, check
+from lube.stages.comparison import compare
+from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
+from lube.stages.lubricant import lubricant_table
+from lube.statistics.map_curves import curve_at
+from lube.statistics.one_pair import prediction_limits
+
+FORMULA = {"film_formula": "paper"}
+POINT = {"force": 400.0, "speed": 100.0, "temperature": 60.0}
+
+
+@pytest.fixture(scope="module")
+def compared(busy):
+    """Compare an experiment with the busy study."""
+
+    def run(experiment):
+        model = model_of_records(experiment, busy.film, busy.contact, busy.study)
+        return compare(model, experiment, busy.contact)
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def at_grid(compared, busy):
+    """Compare shares at the 12 points of the grid, the force changing fastest."""
+    grid = busy.study.operating_grid.model_dump()
+    return lambda shares, **values: compared(experiment_at(grid, shares, **values))
+
+
+@pytest.fixture(scope="module")
+def at_point(compared):
+    """Compare several records of one point."""
+    return lambda shares, **values: compared(experiment_of(shares, **(POINT | values)))
+
+
+@pytest.fixture(scope="module")
+def mean(busy):
+    """Mean probability at the 12 points of the grid by one formula."""
+    found = busy.contact["breakthrough_probability_mean"].sel(FORMULA).squeeze()
+    return found.transpose("temperature", "speed", "force").values.ravel()
+
+
+@pytest.fixture(scope="module")
+def own(at_grid, mean):
+    """Records that are the ensemble's own mean."""
+    return at_grid(mean)
+
+
+# A film from a share
+
+
+def test_a_share_of_the_maps_own_curve_is_gauged_back_to_its_film(busy, compared):
+    """At a force off the grid's, whose contact width the map has between two of its own."""
+    ratios = np.array([0.8, 1.1, 1.5, 2.0])
+    for force in (100.0, 700.0):
+        width = 2.0 * busy.study.rollers.contact_half_width(force)
+        logits = curve_at(busy.master, width).logit_at(np.log(ratios))
+        shares = 1.0 / (1.0 + np.exp(-logits))
+        gauged = gauge_film(busy.master, compared(experiment_of(shares, force, 100.0, 60.0)))
+        np.testing.assert_allclose(gauged["gauged_lambda_ratio"], ratios, rtol=1e-9)
+        thickness = ratios * busy.film["composite_rms_roughness"].item()
+        np.testing.assert_allclose(gauged["gauged_film_thickness"], thickness, rtol=1e-9)
+        for limit in LIMITS:
+            assert (gauged[f"gauged_lambda_ratio{limit}"].diff("record") > 0.0).all()
+        assert (gauged["gauged_lambda_ratio_lower"] < ratios).all()
+        assert (gauged["gauged_lambda_ratio_upper"] > ratios).all()
+
+
+def test_the_ensembles_own_mean_is_gauged_to_the_film_of_the_formula(busy, own):
+    """The map is read between its levels: a good interpolation."""
+    gauged = gauge_film(busy.master, own)
+    ratio = gauged["gauged_lambda_ratio"] / own["lambda_ratio"].sel(FORMULA)
+    np.testing.assert_allclose(ratio, 1.0, atol=0.02)
+
+
+def test_the_limits_are_films_whose_single_pairs_just_reach_the_share(busy, at_point):
+    share = 0.1
+    gauged = gauge_film(busy.master, at_point([share])).squeeze()
+    curve = curve_at(busy.master, 2.0 * busy.study.rollers.contact_half_width(POINT["force"]))
+    for limit, side in (("_lower", 0), ("_upper", 1)):
+        film = np.log(gauged[f"gauged_lambda_ratio{limit}"].item())
+        probability = 1.0 / (1.0 + np.exp(-curve.logit_at(film)))
+        looks = np.interp(film, curve.films, curve.looks)
+        touched = prediction_limits(probability, looks, 1.0, 32)[side]
+        assert touched == pytest.approx(share, abs=2e-3)
+
+
+def test_no_longer_record_of_one_pair_tells_the_film_better_but_a_shorter_or_noisy_one_worse(
+    busy, at_point
+):
+    comparison = at_point(
+        [0.1] * 4, turns=[1.0, 100.0, 0.25, 1.0], share_error=[0.0, 0.0, 0.0, 0.05]
+    )
+    gauged = gauge_film(busy.master, comparison)
+    width = (gauged["gauged_lambda_ratio_upper"] - gauged["gauged_lambda_ratio_lower"]).values
+    assert width[1] == pytest.approx(width[0])
+    assert (width[2:] > 1.2 * width[0]).all()
+
+
+@pytest.fixture(scope="module")
+def extremes(busy, at_grid):
+    """Contact never at 100 N, always at 1600 N, no record at 400 N."""
+    shares = np.tile([0.0, np.nan, 1.0], 4)
+    return gauge_records(busy.master, busy.contact, at_grid(shares))
+
+
+def of_force(gauged, force):
+    return gauged.isel(record=gauged["force"].values == force)
+
+
+def test_no_contact_leaves_the_film_open_above(extremes):
+    never = of_force(extremes, 100.0)
+    assert never["gauged_lambda_ratio"].isnull().all()
+    assert (never["gauged_film_thickness_upper"] == np.inf).all()
+    assert (never["gauged_lambda_ratio_lower"] > 1.0).all()
+
+
+def test_nothing_but_contact_leaves_the_film_open_below(extremes, busy):
+    always = of_force(extremes, 1600.0)
+    assert always["gauged_lambda_ratio"].isnull().all()
+    assert (always["gauged_film_thickness_lower"] == 0.0).all()
+    # The map goes below the films of the study, so even this says something.
+    upper = always["gauged_lambda_ratio_upper"]
+    assert (upper > 0.0).all() and (upper < busy.film["lambda_ratio"].min()).all()
+
+
+def test_records_without_a_share_stay_empty_and_are_not_fitted(extremes):
+    missing = of_force(extremes, 400.0)
+    for limit in LIMITS:
+        assert missing[f"gauged_film_thickness{limit}"].isnull().all()
+    assert extremes["fitted_records"].item() == 8
+
+
+def test_the_gauge_fits_its_schema_and_stands_beside_the_film_of_the_formula(extremes, own):
+    assert check(extremes, "gauge") is extremes
+    assert extremes["gauged_film_thickness"].isel(record=0)["origin"] == "simulated"
+    for name in ("film_thickness", "lambda_ratio", "contact_half_width"):
+        np.testing.assert_array_equal(extremes[name], own[name])
+    assert extremes["record"].values.tolist() == own["record"].values.tolist()
+
+
+def test_records_with_slip_are_gauged_too_and_better(busy, at_point):
+    """In expectation slip does not change the probability, but it makes one record scatter less."""
+    comparison = at_point([0.1, 0.1], slide_to_roll_ratio=[0.0, 0.1], turns=50.0)
+    gauged = gauge_film(busy.master, comparison)
+    rolling, slipping = (
+        gauged["gauged_lambda_ratio_upper"] / gauged["gauged_lambda_ratio_lower"]
+    ).values
+    ratio = gauged["gauged_lambda_ratio"]
+    assert ratio[0] == ratio[1]
+    assert slipping < rolling
+
+
+# One unknown for all records
+
+
+def test_what_the_study_assumes_is_found_in_its_own_results(busy, own):
+    gauged = gauge_records(busy.master, busy.contact, own).sel(FORMULA)
+    strength = gauged["fitted_layer_strength"] / gauged["study_layer_strength"]
+    assert gauged["alpha_factor"].item() == pytest.approx(1.0, abs=0.02)
+    assert strength.item() == pytest.approx(1.0, abs=0.03)
+    for name in ("alpha_factor", "fitted_layer_strength"):
+        assert gauged[f"{name}_lower"] < gauged[name] < gauged[f"{name}_upper"]
+    assert gauged["fitted_records"].item() == 12
+
+
+def shares_of(busy, film, layer):
+    """Mean shares at the grid of the busy study's own lines, by the formula `paper`."""
+    found = contact_statistics(busy.lines, film.sel(film_formula=["paper"]), layer)
+    found = found["breakthrough_probability"].mean("realisation").squeeze()
+    return found.transpose("temperature", "speed", "force").values.ravel()
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.4])
+def test_a_changed_alpha_is_found(busy, at_grid, factor):
+    """The oil of the rig is another one than the study's; its films are run by themselves."""
+    study, grid = busy.study, busy.study.operating_grid
+    oil = lubricant_table(study.lubricants, grid.temperature)
+    oil["pressure_viscosity_coefficient"] = factor * oil["pressure_viscosity_coefficient"]
+    other = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+    comparison = at_grid(shares_of(busy, other, study.boundary_layer))
+    found = fit_alpha(busy.master, busy.contact, comparison).sel(FORMULA)
+    assert found["alpha_factor"].item() == pytest.approx(factor, rel=0.02)
+
+
+@pytest.mark.parametrize("factor", [0.3, 1.0, 4.0])
+def test_a_changed_layer_is_found(busy, at_grid, factor):
+    layer = busy.study.boundary_layer
+    changed = layer.model_copy(update={"shear_strength": factor * layer.shear_strength})
+    comparison = at_grid(shares_of(busy, busy.film, changed))
+    found = fit_layer_strength(busy.master, busy.contact, comparison).sel(FORMULA)
+    strength = factor * layer.shear_strength / layer.critical_thickness
+    assert found["fitted_layer_strength"].item() == pytest.approx(strength, rel=0.06)
+
+
+def test_shares_read_off_the_map_at_a_factor_give_the_factor_back(busy, own):
+    """An exact inverse: the map itself is the rig, at the films of a factor among those tried."""
+    factor = ALPHA_FACTORS[120]
+    films = own["lambda_ratio"].sel(FORMULA).values
+    shares = np.empty(12)
+    for record, width in enumerate(2.0 * own["contact_half_width"].values):
+        # The formula's exponent of the material parameter G.
+        film = np.log(films[record]) + 0.47 * np.log(factor)
+        shares[record] = 1.0 / (1.0 + np.exp(-curve_at(busy.master, width).logit_at(film)))
+    comparison = own.assign(measured_share=own["measured_share"].copy(data=shares))
+    found = fit_alpha(busy.master, busy.contact, comparison).sel(FORMULA)
+    assert found["alpha_factor"].item() == pytest.approx(factor, rel=1e-6)
+
+
+def repeated(experiment, pairs):
+    """The same records so many times, of the given pairs of rollers."""
+    count = experiment.sizes["record"]
+    labels = np.repeat(pairs, count)
+    every = experiment.isel(record=np.arange(labels.size) % count)
+    names = [f"record {number}" for number in range(labels.size)]
+    every = every.assign_coords(record=names, pair=("record", labels))
+    every["pair"].attrs = experiment["pair"].attrs
+    return every
+
+
+def test_more_pairs_of_rollers_tell_a_factor_better_but_more_records_of_one_do_not(
+    busy, compared, mean
+):
+    """The error of the map itself, of 32 realisations, stays however many pairs there are."""
+    once = experiment_at(busy.study.operating_grid.model_dump(), mean)
+
+    def width(experiment):
+        found = fit_alpha(busy.master, busy.contact, compared(experiment)).sel(FORMULA)
+        return np.log(found["alpha_factor_upper"] / found["alpha_factor_lower"]).item()
+
+    alone = width(once)
+    assert width(repeated(once, ["1"] * 16)) == pytest.approx(alone, rel=1e-6)
+    many = width(repeated(once, [str(pair) for pair in range(16)]))
+    assert many / alone == pytest.approx(np.sqrt((1 / 16 + 1 / 32) / (1 + 1 / 32)), rel=0.05)
+
+
+def test_electrical_noise_of_the_records_widens_the_interval_of_a_factor(busy, own):
+    widths = []
+    for noise in (0.0, 0.05):
+        noisy = own.assign(share_error=own["share_error"].copy(data=np.full(12, noise)))
+        found = fit_alpha(busy.master, busy.contact, noisy).sel(FORMULA)
+        widths.append(np.log(found["alpha_factor_upper"] / found["alpha_factor_lower"]).item())
+    assert widths[1] > 1.2 * widths[0]
+
+
+def test_each_lubricant_has_its_own_fit(busy, own):
+    contact = xr.concat([busy.contact] * 2, "lubricant", data_vars="minimal")
+    oil = busy.contact["lubricant"].values.tolist()
+    contact = contact.assign_coords(lubricant=[*oil, "unused"])
+    found = fit_alpha(busy.master, contact, own)
+    assert np.isfinite(found["alpha_factor"].isel(fitted_lubricant=0)).all()
+    assert found["alpha_factor"].isel(fitted_lubricant=1).isnull().all()
+
+
+def test_without_any_share_nothing_is_fitted(busy, at_grid):
+    gauged = gauge_records(busy.master, busy.contact, at_grid(np.full(12, np.nan)))
+    for name in ("alpha_factor", "fitted_layer_strength"):
+        assert gauged[name].isnull().all() and gauged[f"{name}_coverage"].isnull().all()
+        assert (gauged[f"{name}_lower"] == 0.0).all()
+        assert (gauged[f"{name}_upper"] == np.inf).all()
+    assert gauged["fitted_records"].item() == 0
+
+
+# Coverage, each realisation left out in turn and taken as the rig
+
+
+def test_intervals_of_films_hold_the_truth_about_95_times_of_100(busy, own):
+    found = gauge_coverage(busy.master, own)
+    assert 0.91 <= found["interval_coverage"].mean() <= 0.99
+    both = found["closed_share"] * found["closed_coverage"].fillna(0.0)
+    one = (1.0 - found["closed_share"]) * found["one_sided_coverage"].fillna(0.0)
+    np.testing.assert_allclose(both + one, found["interval_coverage"])
+
+
+def test_the_coverage_is_that_of_gauging_every_realisation(busy, own, compared):
+    """Literally: gauge each member's share, by the map with it among the realisations."""
+    members = own["breakthrough_probability"].sel(FORMULA).values
+    held, closed = [], []
+    for member in members:
+        comparison = own.assign(measured_share=own["measured_share"].copy(data=member))
+        gauged = gauge_film(busy.master, comparison)
+        truth = own["lambda_ratio"].sel(FORMULA)
+        lower, upper = (gauged[f"gauged_lambda_ratio{limit}"] for limit in LIMITS[1:])
+        held.append(((lower <= truth) & (truth <= upper)).values)
+        closed.append(((lower > 0.0) & (upper < np.inf)).values)
+    found = gauge_coverage(busy.master, own)
+    # With the member among them the others' limits are a little wider.
+    for name, literal in (("interval_coverage", held), ("closed_share", closed)):
+        np.testing.assert_allclose(found[name], np.mean(literal, axis=0), atol=2.5 / 32)
+    assert found["closed_share"].min() < 1.0 == found["closed_share"].max()
+
+
+def test_fits_hold_the_truth_about_95_times_of_100(busy, own):
+    gauged = gauge_records(busy.master, busy.contact, own)
+    for name in ("alpha_factor", "fitted_layer_strength"):
+        assert (gauged[f"{name}_coverage"] >= 0.84).all()  # 27 of 32 at least
+
+
+def test_two_realisations_tell_no_coverage(busy, own):
+    few = own.isel(realisation=slice(2))
+    master = busy.master.isel(realisation=slice(2))
+    assert gauge_coverage(master, few)["interval_coverage"].isnull().all()

@@ -1,0 +1,323 @@
+"""The lubricant stage, and CoolProp's liquids behind their guards."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lube.errors import RangeError, RecordError
+from lube.physics.coolprop_fluids import (
+    initial_pressure_viscosity,
+    liquid_property,
+    liquid_range,
+    secant_pressure_viscosity,
+)
+from lube.physics.viscosity import VISCOSITY_LAWS
+from lube.schema import check
+from lube.stages.lubricant import lubricant_table
+from lube.study.lubricant_record import load_record
+
+STUDY = [40.0, 50.0, 60.0, 70.0, 80.0]
+AT_40 = np.array([313.15])
+
+RANGE = "temperature_range: {source: x, lowest: 0 degC, highest: 100 degC}"
+
+CSV_OIL = """\
+name: measured
+title: Measured oil
+viscosity:
+  source: rheometer
+  csv: data.csv
+viscosity_law: {law}
+density: {{source: x, at_15_degC: 900 kg/m^3, thermal_coefficient: 7e-4 1/K}}
+pressure_viscosity:
+  source: high-pressure viscometer
+  value: 21 1/GPa
+  definition: reciprocal-asymptotic
+thermal_conductivity: {{source: "assumed: typical", value: 0.14 W/m/K}}
+"""
+
+
+@pytest.fixture
+def xmp():
+    return load_record("mobilgear-shc-xmp-320")
+
+
+@pytest.fixture
+def dodecane():
+    return load_record("n-dodecane")
+
+
+@pytest.fixture
+def fluid(tmp_path):
+    """Record of a CoolProp fluid, with further lines as given."""
+
+    def load(name, more="", definition="slope-at-atmospheric"):
+        path = tmp_path / "fluid.yaml"
+        path.write_text(
+            "name: a-fluid\ntitle: A fluid\n"
+            f"viscosity: {{source: CoolProp, coolprop_fluid: '{name}'}}\n"
+            f"pressure_viscosity: {{source: CoolProp, definition: {definition}}}\n{more}"
+        )
+        return load_record(path)
+
+    return load
+
+
+@pytest.fixture
+def measured(tmp_path):
+    """Record of an oil with a CSV file of exact Andrade viscosities, 0.1 exp(2500 K/T)."""
+
+    def load(law="andrade", kind="kinematic_viscosity [mm^2/s]", factor=lambda celsius: 1.0):
+        lines = [f"temperature [degC],{kind}"]
+        for celsius in (20.0, 35.0, 50.0, 70.0, 90.0):
+            value = 0.1 * math.exp(2500.0 / (celsius + 273.15)) * factor(celsius)
+            lines.append(f"{celsius},{value!r}")
+        (tmp_path / "data.csv").write_text("\n".join(lines))
+        path = tmp_path / "measured.yaml"
+        path.write_text(CSV_OIL.format(law=law))
+        return load_record(path)
+
+    return load
+
+
+def test_xmp_320_gives_the_figures_of_physics_section_2(xmp):
+    table = lubricant_table([xmp], STUDY).sel(lubricant="mobilgear-shc-xmp-320")
+    np.testing.assert_allclose(
+        table.kinematic_viscosity * 1e6, [335, 210.665, 139.1001950405, 95.806, 68.451], rtol=1e-5
+    )
+    np.testing.assert_allclose(
+        table.pressure_viscosity_coefficient * 1e9, [16.0, 15.1, 14.3, 13.6, 13.0], atol=0.05
+    )
+    assert float(table.viscosity_index) == pytest.approx(164.4, abs=0.05)
+    assert table.density.sel(temperature=40.0) == pytest.approx(860.0 * (1 - 6.4e-4 * 25.0))
+    assert str(table.viscosity_law_used.values) == "astm-d341"
+    assert "Gold" in str(table.pressure_viscosity_definition.values)
+
+
+def test_dynamic_viscosity_is_kinematic_viscosity_times_density(xmp, dodecane):
+    table = lubricant_table([xmp, dodecane], STUDY)
+    np.testing.assert_allclose(
+        table.dynamic_viscosity, table.kinematic_viscosity * table.density, rtol=1e-14
+    )
+
+
+def test_two_point_fits_leave_no_residual_and_curves_pass_through_the_data(xmp):
+    table = lubricant_table([xmp], STUDY).isel(lubricant=0)
+    np.testing.assert_allclose(table.fit_residual, 0.0, atol=1e-10)
+    for law in VISCOSITY_LAWS:
+        curve = table.fitted_kinematic_viscosity.sel(viscosity_law=law)
+        assert float(curve.sel(fit_temperature=100.0)) == pytest.approx(38.3e-6, rel=1e-9)
+
+
+def test_table_is_labelled_and_keeps_the_order_of_lubricants_and_temperatures(xmp, dodecane):
+    table = lubricant_table([dodecane, xmp], [60.0, 40.0])
+    assert check(table, "lubricant") is table
+    assert list(table.lubricant.values) == ["n-dodecane", "mobilgear-shc-xmp-320"]
+    assert list(table.temperature.values) == [60.0, 40.0]
+    assert table.kinematic_viscosity.attrs["units"] == "m2 s-1"
+    alone = lubricant_table([xmp], [40.0])
+    np.testing.assert_array_equal(
+        table.dynamic_viscosity.sel(lubricant="mobilgear-shc-xmp-320", temperature=40.0),
+        alone.dynamic_viscosity.isel(lubricant=0, temperature=0),
+    )
+
+
+def test_short_data_are_padded_and_curves_end_with_each_records_range(xmp, dodecane):
+    table = lubricant_table([xmp, dodecane], STUDY)
+    oil = table.sel(lubricant="mobilgear-shc-xmp-320")
+    assert int(oil.data_temperature.notnull().sum()) == 2
+    assert int(oil.fit_residual.notnull().sum()) == 2 * len(VISCOSITY_LAWS)
+    drawn = oil.fitted_kinematic_viscosity.sel(viscosity_law="vogel").dropna("fit_temperature")
+    assert list(drawn.fit_temperature.values) == list(range(40, 101))
+    assert table.fit_temperature.values[[0, -1]].tolist() == [0.0, 200.0]
+    other = table.sel(lubricant="n-dodecane")
+    assert int(other.data_temperature.isnull().sum()) == 0
+
+
+def test_parameters_carry_names_and_units_and_are_nan_where_a_law_has_none(xmp):
+    parameters = lubricant_table([xmp], STUDY).isel(lubricant=0).set_coords("parameter_units")
+    vogel = parameters.fit_parameter.sel(viscosity_law="vogel").dropna("parameter")
+    assert list(vogel.parameter.values) == ["a", "b", "c"]
+    assert list(vogel.parameter_units.values) == ["mm2 s-1", "K", "K"]
+    assert float(vogel.sel(parameter="c")) == pytest.approx(178.15)
+
+
+def test_andrade_oil_has_the_exact_relative_fall_of_its_viscosity(measured):
+    table = lubricant_table([measured()], [20.0, 55.0, 90.0]).isel(lubricant=0)
+    kelvin = table.temperature.values + 273.15
+    density_fall = 7e-4 / (1.0 - 7e-4 * (kelvin - 288.15))
+    np.testing.assert_allclose(
+        table.temperature_viscosity_coefficient, 2500.0 / kelvin**2 + density_fall, rtol=1e-6
+    )
+
+
+def test_the_law_of_the_record_is_the_one_that_is_used(measured):
+    exact = 0.1e-6 * np.exp(2500.0 / 333.15)
+    by_law = {
+        law: float(lubricant_table([measured(law)], [60.0]).kinematic_viscosity.item())
+        for law in VISCOSITY_LAWS
+    }
+    assert by_law["andrade"] == pytest.approx(exact, rel=1e-9)
+    assert by_law["astm-d341"] != pytest.approx(exact, rel=1e-5)
+    table = lubricant_table([measured("astm-d341")], [60.0]).isel(lubricant=0)
+    residual = table.fit_residual.sel(viscosity_law="astm-d341")
+    assert 1e-5 < float(abs(residual).max()) < 0.05
+
+
+def test_dynamic_viscosities_are_divided_by_the_records_density(measured):
+    def density(celsius):
+        return 900.0 * (1.0 - 7e-4 * (celsius - 15.0))
+
+    kinematic = lubricant_table([measured()], STUDY)
+    dynamic = lubricant_table(
+        [measured(kind="dynamic_viscosity [mPa*s]", factor=lambda c: density(c) * 1e-3)], STUDY
+    )
+    np.testing.assert_allclose(dynamic.kinematic_viscosity, kinematic.kinematic_viscosity)
+
+
+def test_measured_coefficient_is_kept_with_its_definition(measured):
+    table = lubricant_table([measured()], STUDY).isel(lubricant=0)
+    np.testing.assert_allclose(table.pressure_viscosity_coefficient, 21e-9, rtol=1e-12)
+    assert "reciprocal asymptotic" in str(table.pressure_viscosity_definition.values)
+    # The data end at 90 degC: no viscosity at 100 degC, no viscosity index.
+    assert np.isnan(table.viscosity_index)
+
+
+def test_n_dodecane_at_40_degc_has_the_figures_of_physics_section_2():
+    assert liquid_property("n-Dodecane", "viscosity", AT_40) == pytest.approx(1.061e-3, abs=5e-7)
+    assert initial_pressure_viscosity("n-Dodecane", AT_40) == pytest.approx(12.6e-9, rel=0.01)
+    secant = secant_pressure_viscosity("n-Dodecane", AT_40, 200e6)
+    assert secant == pytest.approx(8.7e-9, abs=0.05e-9)
+
+
+def test_secants_shrink_towards_the_initial_slope():
+    initial = initial_pressure_viscosity("n-Dodecane", AT_40)
+    gaps = [
+        abs(secant_pressure_viscosity("n-Dodecane", AT_40, pressure) - initial).item()
+        for pressure in (10e6, 1e6, 0.2e6)
+    ]
+    assert gaps[0] > 5.0 * gaps[1] > 20.0 * gaps[2] > 0.0
+
+
+def test_n_dodecane_table_comes_from_coolprop_and_the_laws_only_fit_it(dodecane):
+    table = lubricant_table([dodecane], STUDY).isel(lubricant=0)
+    assert str(table.viscosity_law_used.values) == "coolprop"
+    direct = liquid_property("n-Dodecane", "viscosity", np.array(STUDY) + 273.15)
+    np.testing.assert_allclose(table.dynamic_viscosity, direct, rtol=1e-14)
+    worst = abs(table.fit_residual).max("data_point")
+    assert (worst < 0.1).all()
+    assert float(worst.sel(viscosity_law="vogel")) < float(worst.sel(viscosity_law="andrade"))
+    # Below 2 mm2/s at 100 degC the viscosity index is not defined.
+    assert np.isnan(table.viscosity_index)
+    # CRC Handbook of Chemistry and Physics, n-dodecane at 20 degC: 0.7495 g/cm3.
+    at_20 = lubricant_table([dodecane], [20.0])
+    assert at_20.density.item() == pytest.approx(749.5, abs=1.0)
+
+
+def test_relative_fall_of_n_dodecane_agrees_with_a_wide_difference(dodecane):
+    table = lubricant_table([dodecane], [58.0, 60.0, 62.0]).isel(lubricant=0)
+    log_viscosity = np.log(table.dynamic_viscosity.values)
+    wide = (log_viscosity[0] - log_viscosity[2]) / 4.0
+    assert float(table.temperature_viscosity_coefficient[1]) == pytest.approx(wide, rel=1e-3)
+
+
+def test_relative_fall_holds_at_the_ends_of_the_liquids_range(fluid):
+    record = fluid("n-Dodecane")
+    lowest, highest = record.valid_temperatures
+    table = lubricant_table([record], [lowest, lowest + 1.0, highest - 1.0, highest])
+    fall = table.temperature_viscosity_coefficient.values[0]
+    assert fall[0] == pytest.approx(fall[1], rel=0.02)
+    assert fall[3] == pytest.approx(fall[2], rel=0.02)
+
+
+def test_secant_definition_is_computed_and_told(fluid):
+    table = lubricant_table([fluid("n-Dodecane", definition="secant, pressure: 200 MPa")], [40.0])
+    assert table.pressure_viscosity_coefficient.item() == pytest.approx(8.7e-9, abs=0.05e-9)
+    assert "to 200 MPa" in table.pressure_viscosity_definition.item()
+
+
+@pytest.mark.parametrize(
+    ("temperature", "pressure", "message"),
+    [
+        (313.15, 500e6, r"n-Dodecane: got a pressure of 500 MPa, .* 0\.101325 to 200 MPa"),
+        (313.15, 1e4, r"got a pressure of 0\.01 MPa"),
+        (260.0, 101325.0, r"got -13\.15 degC, CoolProp's liquid range .* -9\.45 to 216\.\d+ degC"),
+        (500.0, 101325.0, r"got 226\.85 degC"),  # boiled off
+        (720.0, 101325.0, r"got 446\.85 degC"),  # beyond Tmax
+    ],
+)
+def test_states_outside_coolprops_range_are_refused(temperature, pressure, message):
+    with pytest.raises(RangeError, match=message):
+        liquid_property("n-Dodecane", "viscosity", np.array([313.15, temperature]), pressure)
+
+
+@pytest.mark.parametrize("answer", [-0.036, 0.0, np.inf, np.nan])
+def test_impossible_answers_of_coolprop_are_refused(monkeypatch, answer):
+    liquid_range("n-Dodecane")
+    from CoolProp import CoolProp
+
+    genuine = CoolProp.PropsSI
+
+    def broken(*arguments):
+        return np.array([answer]) if len(arguments) == 6 else genuine(*arguments)
+
+    monkeypatch.setattr(CoolProp, "PropsSI", broken)
+    with pytest.raises(RangeError, match=r"CoolProp gives a viscosity of .* at 40 degC"):
+        liquid_property("n-Dodecane", "viscosity", AT_40)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("Unobtainium", "got 'Unobtainium', need a pure fluid by CoolProp's spelling"),
+        ("INCOMP::S800", "got 'INCOMP::S800', need a pure fluid"),
+        ("n-Decane&n-Dodecane", "need a pure fluid"),
+        ("CarbonDioxide", "need a fluid that is liquid at atmospheric pressure"),
+        ("n-Undecane", "got 'n-Undecane', need a fluid whose viscosity CoolProp knows"),
+    ],
+)
+def test_fluids_that_coolprop_cannot_serve_are_refused(fluid, name, message):
+    with pytest.raises(RecordError) as caught:
+        lubricant_table([fluid(name, RANGE)], [40.0])
+    assert str(caught.value).startswith("a-fluid: coolprop_fluid: ")
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_range_written_beyond_the_liquids_is_refused_by_the_stage(fluid):
+    record = fluid("n-Dodecane", RANGE.replace("100 degC", "300 degC"))
+    with pytest.raises(RangeError, match="a-fluid: n-Dodecane: got 300 degC"):
+        lubricant_table([record], [40.0])
+
+
+def test_a_temperature_outside_a_record_is_refused_with_its_name_and_range(xmp, dodecane):
+    with pytest.raises(RangeError, match="mobilgear-shc-xmp-320: got 30 degC, need 40 to 100"):
+        lubricant_table([dodecane, xmp], [30.0, 40.0])
+
+
+def test_a_repeated_lubricant_is_refused(xmp):
+    with pytest.raises(RecordError, match=r"names mobilgear.*need each once"):
+        lubricant_table([xmp, xmp], STUDY)
+
+
+def test_a_law_led_beyond_where_it_has_a_viscosity_is_refused(tmp_path):
+    text = CSV_OIL.format(law="vogel").replace(
+        "  csv: data.csv",
+        "  points:\n    - {temperature: 40 degC, kinematic_viscosity: 100 mm^2/s}\n"
+        "    - {temperature: 100 degC, kinematic_viscosity: 11 mm^2/s}",
+    )
+    path = tmp_path / "frozen.yaml"
+    path.write_text(text + "temperature_range: {source: x, lowest: -120 degC, highest: 100 degC}\n")
+    with pytest.raises(RangeError, match="measured: the viscosity law gives inf m2/s at -100 degC"):
+        lubricant_table([load_record(path)], [-100.0])
+
+
+def test_a_law_that_refuses_the_data_leaves_nan_and_the_others_stand(fluid):
+    # Liquid nitrogen is too thin for ASTM D341: below 0.21 mm2/s near boiling.
+    table = lubricant_table([fluid("Nitrogen")], [-200.0]).isel(lubricant=0)
+    refused = table.sel(viscosity_law="astm-d341")
+    assert refused.fit_residual.isnull().all()
+    assert refused.fit_parameter.isnull().all()
+    assert refused.fitted_kinematic_viscosity.isnull().all()
+    assert abs(table.sel(viscosity_law="vogel").fit_residual).max() < 0.05
