@@ -16,10 +16,11 @@ from lube.schema.coordinates import (
     OPERATING_DIMS,
     POINT_DIMS,
 )
-from lube.schema.kinds import ATTRIBUTES, DATASETS, FILES, MEASURED, SUMMARIES
+from lube.schema.kinds import ATTRIBUTES, FILES, SUMMARIES
 from lube.schema.labels import check, label
 from lube.schema.oil import REGIMES
 from lube.schema.rig import ORIGINS
+from lube.schema.stages import DATASETS, MEASURED, STAGES, Stage, forerunners
 from lube.schema.variables import LIMITS, Variable
 
 __all__ = [
@@ -39,8 +40,11 @@ __all__ = [
     "ORIGINS",
     "POINT_DIMS",
     "REGIMES",
+    "STAGES",
     "SUMMARIES",
+    "Stage",
     "Variable",
     "check",
+    "forerunners",
     "label",
 ]
