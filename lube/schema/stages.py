@@ -26,8 +26,6 @@ class Stage:
         ``config`` to the dotted attribute of `lube.study.study.Study` that holds it.
     same_values : tuple of str
         Stages whose values it uses too, without reading their files.
-    in_batches : bool
-        True if it has one job for each batch of realisations.
     measured : bool
         True for files that `snakemake benchmark` makes. They are not results of the study.
     """
@@ -36,7 +34,6 @@ class Stage:
     inputs: tuple[str, ...] = ()
     values: dict = field(default_factory=dict)
     same_values: tuple[str, ...] = ()
-    in_batches: bool = False
     measured: bool = False
 
 
@@ -62,14 +59,13 @@ _ROWS = (
             "speed": "operating_grid.speed",
         },
     ),
-    Stage("roughness", values=_LINES, in_batches=True),
+    Stage("roughness", values=_LINES),
     Stage(
         "contact",
         inputs=("film", "roughness"),
         values=_LINES | _CONTACT | {"revolutions": "revolutions"},
-        in_batches=True,
     ),
-    Stage("master", inputs=("film", "roughness"), values=_LINES | _LAYER, in_batches=True),
+    Stage("master", inputs=("film", "roughness"), values=_LINES | _LAYER),
     Stage(
         "trace",
         inputs=("film", "roughness"),

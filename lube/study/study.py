@@ -319,7 +319,7 @@ def _refuse_repeats(key, values):
         raise ValueError(f"{key}: {repeated[0]} is repeated, need each once")
 
 
-def load_study(path):
+def load_study(path, changes=None):
     """Read and check a study.
 
     Parameters
@@ -339,7 +339,7 @@ def load_study(path):
     RecordError
         If a lubricant record that the study names cannot be used.
     """
-    content = read_yaml(path, StudyError)
+    content = read_yaml(path, StudyError) | (changes or {})
     if isinstance(content.get("lubricants"), list):
         content = content | {"lubricants": _records(content["lubricants"], path)}
     return _with_manifest_found(validate(Study, content, path, StudyError), path)

@@ -1,6 +1,6 @@
 rule archive:
     input:
-        written=lambda wildcards: archived_texts(),
+        written=lambda wildcards: FILES.archived_texts(),
         datasets=[result(f"{kind}.nc") for kind in DATASETS],
         products=products(ARCHIVED),
     output:

@@ -2,7 +2,7 @@ rule coverage:
     input:
         script="tests/benchmarks/bench_coverage.py",
         records=record_files(),
-        sources=sources(Path("tests/benchmarks/bench_coverage.py").read_text(encoding="utf-8")),
+        sources=script_sources("tests/benchmarks/bench_coverage.py"),
     output:
         result("coverage.nc"),
     log:
@@ -12,8 +12,8 @@ rule coverage:
     # It shares its pairs of rollers out among them.
     threads: workflow.cores
     params:
-        study=digest(STUDY.origin("coverage")),
-        file=config["study_file"],
+        study=stage_inputs("coverage"),
+        changed=config["study"],
         python=sys.executable,
     message:
         "Coverage: how often intervals hold the truth for rollers never seen, some 30 minutes"

@@ -2,7 +2,7 @@ rule reading:
     input:
         script="tests/benchmarks/bench_records.py",
         records=record_files(),
-        sources=sources(Path("tests/benchmarks/bench_records.py").read_text(encoding="utf-8")),
+        sources=script_sources("tests/benchmarks/bench_records.py"),
     output:
         result("reading.nc"),
     log:
@@ -12,8 +12,8 @@ rule reading:
     # With nothing beside it.
     threads: workflow.cores
     params:
-        study=digest(STUDY.origin("reading")),
-        file=config["study_file"],
+        study=stage_inputs("reading"),
+        changed=config["study"],
         python=sys.executable,
     message:
         "Reading: records of the rig beside other readers of the same files, a few minutes"

@@ -64,7 +64,7 @@ rule times:
     benchmark:
         result("benchmarks/times.tsv")
     params:
-        jobs=benchmarks_of_steps(),
+        jobs=FILES.benchmarks(ARCHIVED),
     message:
         "Report: run times and memory of all jobs"
     script:

@@ -2,7 +2,7 @@ rule speed:
     input:
         script="tests/benchmarks/bench_speed.py",
         records=record_files(),
-        sources=sources(Path("tests/benchmarks/bench_speed.py").read_text(encoding="utf-8")),
+        sources=script_sources("tests/benchmarks/bench_speed.py"),
     output:
         result("speed.nc"),
     log:
@@ -12,8 +12,8 @@ rule speed:
     # With nothing beside it.
     threads: workflow.cores
     params:
-        study=digest(STUDY.origin("speed")),
-        file=config["study_file"],
+        study=stage_inputs("speed"),
+        changed=config["study"],
         python=sys.executable,
     message:
         "Speed: the study's kernels beside plain versions of the same work, a few minutes"

@@ -6,7 +6,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 film = load(snakemake.input.film, "film", study)
 with opened(snakemake.input.lines, "roughness_batch", study) as lines:
     run = contact_map(lines, film, study.boundary_layer)

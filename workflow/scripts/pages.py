@@ -12,7 +12,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 kinds = ("film", "contact", "experiment", "comparison")
 film, contact, experiment, comparison = (load(snakemake.input[kind], kind, study) for kind in kinds)
 written, readme, style = (
