@@ -173,16 +173,6 @@ def batch_limits(wildcards):
     return batch[0], batch[-1]
 
 
-def remove_used_lines():
-    """Remove lines that a failed run left: Snakemake forgets those whose readers all finished."""
-    for first in STUDY.batches:
-        lines = Path(result(f"batches/roughness_{first}.nc"))
-        readers = [lines.with_name(f"{kind}_{first}.nc") for kind in ("contact", "master")]
-        kept = workflow.storage_settings.notemp or str(lines) in sys.argv
-        if all(path.exists() for path in readers) and not kept:
-            lines.unlink(missing_ok=True)
-
-
 def tell_refused_records():
     """Name the records that were refused, and why, in the very last line of the run."""
     experiment = Path(result("experiment.nc"))
@@ -209,5 +199,4 @@ onstart:
 
 
 onsuccess:
-    remove_used_lines()
     tell_refused_records()

@@ -103,10 +103,7 @@ def products(figures):
 
 def benchmarks_of_steps():
     """Files with time and memory of all jobs, by the steps of the study."""
-    steps = {}
-    for kind in DATASETS:
-        if kind in ("roughness", "contact", "master"):
-            steps[f"{kind}, in batches"] = [f"{kind}_{first}" for first in STUDY.batches]
-        steps[kind] = [kind]
+    steps = {"batches of realisations": [f"batch_{first}" for first in STUDY.batches]}
+    steps |= {kind: [kind] for kind in DATASETS}
     steps["figures"] = [figure for figure in FIGURES if figure not in TIMINGS]
     return {step: [result(f"benchmarks/{job}.tsv") for job in jobs] for step, jobs in steps.items()}
