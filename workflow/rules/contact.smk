@@ -1,25 +1,3 @@
-rule contact_batch:
-    input:
-        film=result("film.nc"),
-        lines=result("batches/roughness_{first}.nc"),
-        sources=script_sources("contact_batch"),
-    output:
-        result("batches/contact_{first}.nc"),
-    log:
-        result("logs/contact_{first}.log"),
-    benchmark:
-        result("benchmarks/contact_{first}.tsv")
-    # Before further lines are drawn: so the batches on disk stay few.
-    priority: 1
-    params:
-        study=stage_inputs("contact"),
-        realisations=batch_limits,
-    message:
-        "Contact: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points"
-    script:
-        "../scripts/contact_batch.py"
-
-
 rule contact:
     input:
         film=result("film.nc"),
