@@ -1,8 +1,8 @@
-"""What every file of a study contains: names, dimensions, units and meaning.
+"""The contents of every file of a study: names, dimensions, units and meaning.
 
-Stages return unlabelled arithmetic wrapped in xarray; `label` writes the attributes last,
-because arithmetic on labelled arrays keeps the wrong ones, and `check` refuses a dataset
-that is not what its name promises, before it is saved and after it is read.
+Arithmetic on labelled arrays keeps the attributes of one operand, which are wrong for the result.
+So each stage writes the attributes last, with `label`; `check` refuses a dataset that does not
+fit its kind, before it is saved and after it is read.
 """
 
 from lube.schema.coordinates import (
