@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lube.errors import LubeError
 from lube.schema import DATASETS, STAGES
+from lube.study.resolve import study_files
 from lube.study.study import Study
 
 
@@ -59,13 +60,25 @@ class StudyFiles:
     ----------
     study : Study
         The study.
-    study_file : str or Path
+    path : str or Path
         Its YAML file.
+    changes : dict
+        Values that ``--config`` changes.
     """
 
-    def __init__(self, study: Study, study_file: str | Path):
-        self.study, self.study_file = study, Path(study_file)
+    def __init__(self, study: Study, path: str | Path, changes: dict):
+        self.study, self.path, self.changes = study, path, changes
         self.folder = f"results/{study.name}"
+
+    @property
+    def study_file(self) -> str:
+        """The study as a file: as written or, with changes by ``--config``, as resolved."""
+        return self.result("study.yaml") if self.changes else str(self.path)
+
+    @one_line_errors()
+    def study_files(self) -> list[str]:
+        """List the file of the study and those it is based on."""
+        return input_paths(study_files(self.path))
 
     def result(self, name: str) -> str:
         """Return the path of a result, such as ``film.nc``."""
@@ -117,15 +130,26 @@ class StudyFiles:
         entries = read_manifest(manifest).entries
         return input_paths([manifest, *(entry.file for entry in entries if entry.file)])
 
+    def code_state(self, wildcards: object) -> tuple:
+        """Return what an archive says about its code: commit, its date, files changed since."""
+        from lube.storage.git import changed_code, commit, commit_date
+
+        return commit(), commit_date(), changed_code()
+
     @one_line_errors()
-    def archived_texts(self) -> list[str]:
+    def archived_texts(self, wildcards: object) -> list[str]:
         """List what people wrote and an archive holds: study file, records, code."""
         from lube.archive.build import written_files
         from lube.archive.citation import check_about
         from lube.storage.git import code_files
 
+        if self.changes:
+            raise LubeError(
+                "--config: an archive needs the study as a file: write the changes into one that "
+                f"begins with `based_on: {self.path}`"
+            )
         check_about(self.study)
-        written = written_files(self.study, self.study_file).values()
+        written = written_files(self.study, self.path).values()
         return [*input_paths(written), *self.record_files(), *code_files()]
 
     def products(self, figures: Iterable[str]) -> list[str]:

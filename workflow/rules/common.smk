@@ -1,6 +1,8 @@
 # The study, checked before any job, and the helpers that all rules share.
 import atexit
+import os
 import sys
+from pathlib import Path
 
 # The lube of this folder, even if another clone is installed: the files watched for changes are
 # the files that run.
@@ -16,9 +18,7 @@ from lube.workflow.study_files import StudyFiles, digest, one_line_errors
 prepare_environment(workflow.basedir)
 
 with one_line_errors():
-    STUDY, config["study"] = study_of_command(
-        workflow.configfiles, workflow.config_settings.config
-    )
+    STUDY, config["study"] = study_of_command(workflow.configfiles, workflow.config_settings.config)
 
 FILES = StudyFiles(STUDY, **config["study"])
 RESULTS = FILES.folder
@@ -27,6 +27,7 @@ stage_files = FILES.stage_files
 stage_inputs = FILES.stage_inputs
 record_files = FILES.record_files
 measured_files = FILES.measured_files
+batches_of = FILES.batches_of
 batch_limits = FILES.batch_limits
 
 

@@ -1,6 +1,7 @@
 rule coverage:
     input:
         script="tests/benchmarks/bench_coverage.py",
+        study=ancient(result("study.yaml")),
         records=record_files(),
         sources=script_sources("tests/benchmarks/bench_coverage.py"),
     output:
@@ -13,9 +14,8 @@ rule coverage:
     threads: workflow.cores
     params:
         study=stage_inputs("coverage"),
-        changed=config["study"],
         python=sys.executable,
     message:
         "Coverage: how often intervals hold the truth for rollers never seen, some 30 minutes"
     shell:
-        "{params.python:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"

@@ -2,7 +2,9 @@ rule figure:
     input:
         # Saving a notebook with its outputs must not make the figure again; its cells must.
         notebook=ancient("notebooks/{figure}.ipynb"),
-        datasets=lambda wildcards: datasets_of(wildcards.figure),
+        datasets=lambda wildcards: [
+            result(f"{kind}.nc") for kind in FIGURES[wildcards.figure].datasets
+        ],
         sources=lambda wildcards: FIGURES[wildcards.figure].sources,
     output:
         # The old figure stays until the new one is whole.

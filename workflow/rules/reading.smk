@@ -1,6 +1,7 @@
 rule reading:
     input:
         script="tests/benchmarks/bench_records.py",
+        study=ancient(result("study.yaml")),
         records=record_files(),
         sources=script_sources("tests/benchmarks/bench_records.py"),
     output:
@@ -13,9 +14,8 @@ rule reading:
     threads: workflow.cores
     params:
         study=stage_inputs("reading"),
-        changed=config["study"],
         python=sys.executable,
     message:
         "Reading: records of the rig beside other readers of the same files, a few minutes"
     shell:
-        "{params.python:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"

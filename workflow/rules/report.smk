@@ -1,13 +1,17 @@
+# Where the report has its pages, apart from the figures.
+ABOUT_THE_STUDY = "About the study"
+TEMPLATES = sorted(map(str, Path("lube/report/templates").iterdir()))
+
+
 rule pages:
     input:
         film=result("film.nc"),
         contact=result("contact.nc"),
         experiment=result("experiment.nc"),
         comparison=result("comparison.nc"),
-        # Told from here, so that the tree can be moved.
-        study=os.path.relpath(config["study_file"]),
+        study=FILES.study_file,
         docs=[f"docs/{page}.md" for page in ("limits", "assumptions", "architecture")],
-        templates=[str(path) for path in sorted(Path("lube/report/templates").iterdir())],
+        templates=TEMPLATES,
         sources=script_sources("pages"),
     output:
         facts=result("report/facts.html"),
@@ -50,7 +54,7 @@ rule times:
         # When all else is done.
         [result(f"{kind}.nc") for kind in DATASETS],
         products(ARCHIVED),
-        templates=[str(path) for path in sorted(Path("lube/report/templates").iterdir())],
+        templates=TEMPLATES,
         sources=script_sources("times"),
     output:
         report(

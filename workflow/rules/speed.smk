@@ -1,6 +1,7 @@
 rule speed:
     input:
         script="tests/benchmarks/bench_speed.py",
+        study=ancient(result("study.yaml")),
         records=record_files(),
         sources=script_sources("tests/benchmarks/bench_speed.py"),
     output:
@@ -13,9 +14,8 @@ rule speed:
     threads: workflow.cores
     params:
         study=stage_inputs("speed"),
-        changed=config["study"],
         python=sys.executable,
     message:
         "Speed: the study's kernels beside plain versions of the same work, a few minutes"
     shell:
-        "{params.python:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"
