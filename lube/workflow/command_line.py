@@ -93,13 +93,7 @@ def study_of_command(
     _check_files([str(file) for file in files])
     path = os.path.relpath(files[0]) if files else PAPER
     changes = {key: _typed(value) for key, value in config.items()}
-    study = load_study(path, changes)
-    if changes and study.name == load_study(path).name:
-        raise StudyError(
-            f"--config changes the study {study.name}, but not its name: add a new one, such as "
-            f"name={study.name}-2, because its results go to another folder"
-        )
-    return study, {"path": path, "changes": changes}
+    return load_study(path, changes), {"path": path, "changes": changes}
 
 
 def _typed(value):

@@ -123,7 +123,7 @@ def study_figures(study: Study, folder: str | Path = "notebooks") -> dict[str, F
 
 
 def chapters(figures: dict[str, Figure]) -> dict[str, str]:
-    """Number the chapters of the report.
+    """Return each figure's chapter of the report, with the chapter's number.
 
     Parameters
     ----------
