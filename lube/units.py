@@ -242,7 +242,7 @@ def parse_electrical(value: object) -> tuple[float, str]:
 
 
 def _parts(value, needed):
-    """Number and unit of a text."""
+    """Split a text into its number and its unit."""
     match = _QUANTITY.fullmatch(value.strip()) if isinstance(value, str) else None
     if match is None or match[2] is None:
         raise LubeError(f"got {shown(value)}, need {needed}")

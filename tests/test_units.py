@@ -63,7 +63,13 @@ def test_a_fraction_may_precede_another_unit():
 def test_temperatures_are_points_on_a_scale_in_degrees_and_differences_in_kelvin():
     for text, celsius in [("40 degC", 40), ("313.15 K", 40), ("104 degF", 40), ("-40 degF", -40)]:
         assert parse_quantity(text, "degC") == pytest.approx(celsius, abs=1e-9)
-    for text, kelvin in [("1 degC", 1), ("1 K", 1), ("1 delta_degC", 1), ("1 °C", 1), ("9 degF", 5)]:
+    for text, kelvin in [
+        ("1 degC", 1),
+        ("1 K", 1),
+        ("1 delta_degC", 1),
+        ("1 °C", 1),
+        ("9 degF", 5),
+    ]:
         assert parse_quantity(text, "K") == pytest.approx(kelvin, rel=1e-12)
     assert "'delta_degC', need a unit" in refusal(parse_quantity, "1 delta_degC", "degC")
 
