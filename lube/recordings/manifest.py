@@ -19,10 +19,10 @@ from lube.study.field_types import (
     checked_text,
     pure_number,
     quantity,
-    read_yaml,
     validate,
 )
 from lube.study.small_csv import HEADER_CELL, delimiter_of, numbered_lines, split_cells
+from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
 
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
