@@ -1,6 +1,7 @@
-"""The figures of an archive, drawn again from what is in it and compared with those that are."""
+"""Draw the figures of an archive again from its own content and compare them."""
 
 import os
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from lube.archive.build import check_is_archive
@@ -9,7 +10,9 @@ from lube.workflow.figures import paths_for, read_origin
 from lube.workflow.notebooks import environment, execute_notebook
 
 
-def redraw(folder, target, figures=()):
+def redraw(
+    folder: str | Path, target: str | Path, figures: Iterable[str] = ()
+) -> Iterator[tuple[str, bool]]:
     """Draw figures of an archive again, from its datasets and notebooks alone.
 
     Parameters
@@ -17,7 +20,7 @@ def redraw(folder, target, figures=()):
     folder : str or Path
         The unpacked archive.
     target : str or Path
-        Where the new figures go, outside the archive.
+        Folder for the new figures, outside the archive.
     figures : iterable of str, optional
         Which figures, such as ``fig02_film``; all if none is named.
 
@@ -30,7 +33,7 @@ def redraw(folder, target, figures=()):
     Raises
     ------
     LubeError
-        If it is no archive, there is no such figure, or its notebook cannot be executed.
+        If it is not an archive, there is no such figure, or its notebook cannot be executed.
     """
     folder, target = Path(folder).resolve(), Path(target).resolve()
     check_is_archive(folder)
@@ -39,25 +42,18 @@ def redraw(folder, target, figures=()):
     if target.exists() and not target.is_dir():
         raise DataError(f"got {target} for the new figures, need a folder, not a file")
     archived = sorted(path.stem for path in (folder / "figures").glob("*.png"))
-    if not archived:
-        raise DataError(f"{folder}: holds no figures")
     for figure in figures:
         if figure not in archived:
             raise DataError(f"got {figure}, need a figure of the archive: {', '.join(archived)}")
     datasets = list((folder / "data").glob("*.nc"))
-    with environment({"PYTHONPATH": _with_code_first(folder / "code")}):
+    # Notebooks use the archived code, whatever else is installed.
+    path = [str(folder / "code"), os.environ.get("PYTHONPATH")]
+    with environment({"PYTHONPATH": os.pathsep.join(filter(None, path))}):
         for figure in figures or archived:
             notebook = folder / "code/notebooks" / f"{figure}.ipynb"
-            # What else stands in its parameters cell keeps its value, as in the workflow.
             parameters = {**paths_for(notebook, datasets), "figure": str(target / figure)}
-            told = read_origin(figure, folder)["drawn_by"]
-            execute_notebook(notebook, target / notebook.name, parameters, told)
+            changes = read_origin(figure, folder)["drawn_by"]
+            execute_notebook(notebook, target / notebook.name, parameters, changes)
             for name in (f"{figure}.png", f"{figure}.pdf"):
                 kept = folder / "figures" / name
-                same = kept.is_file() and kept.read_bytes() == (target / name).read_bytes()
-                yield name, same
-
-
-def _with_code_first(code):
-    """Search path by which notebooks use the archived code, whatever else is installed."""
-    return os.pathsep.join(filter(None, [str(code), os.environ.get("PYTHONPATH")]))
+                yield name, kept.is_file() and kept.read_bytes() == (target / name).read_bytes()

@@ -324,7 +324,8 @@ def load_study(path: str | Path, changes: dict | None = None) -> Study:
     RecordError
         If a lubricant record that the study names cannot be used.
     """
-XXX    if isinstance(content.get("lubricants"), list):
+    content = resolved_content(path, changes)
+    if isinstance(content.get("lubricants"), list):
         content = content | {"lubricants": _records(content["lubricants"], path)}
     return _with_manifest_found(validate(Study, content, path, StudyError), path)
 
