@@ -7,15 +7,18 @@ and no other.
 """
 
 import math
+from operator import attrgetter
 from pathlib import Path
 from typing import Annotated
 
 from pydantic import AfterValidator, Field, StrictInt, model_validator
+from pydantic_core import to_jsonable_python
 
 from lube.errors import LubeError, StudyError, shown
 from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.film_formulas import formula
+from lube.schema.stages import STAGES, forerunners
 from lube.study.field_types import (
     Resistivity,
     Slug,
@@ -33,26 +36,6 @@ from lube.study.resolve import resolved_content
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.rollers import BoundaryLayer, LineSpec, RollerPair, Roughness, line_spec
 from lube.study.size_limits import check_sizes
-
-_FORERUNNERS = {
-    "lubricant": (),
-    "film": ("lubricant",),
-    "roughness": (),
-    "contact": ("lubricant", "film", "roughness"),
-    "master": ("lubricant", "film", "roughness"),
-    "trace": ("lubricant", "film", "roughness"),
-    "experiment": ("lubricant", "film", "roughness"),
-    "rig": ("lubricant", "film", "roughness", "experiment"),
-    "comparison": ("lubricant", "film", "roughness", "contact", "experiment"),
-    "gauge": (
-        *("lubricant", "film", "roughness", "contact", "master"),
-        *("experiment", "comparison"),
-    ),
-    "speed": ("lubricant", "film", "roughness", "contact"),
-    "reading": (),
-    "coverage": ("lubricant", "film", "roughness", "contact", "master", "experiment"),
-}
-
 
 @collected()
 def _known_formula(name):
@@ -186,70 +169,33 @@ class Study(StrictModel):
                 f"need at least two grid spacings of {spec.spacing:.3g} m"
             )
 
-    def stage_inputs(self, stage):
+    @property
+    def evaluation(self) -> dict:
+        """Settings of the experiment; of the manifest only whether there is one.
+
+        A measured file is identified by its contents, wherever it lies.
+        """
+        return self.experiment.model_dump(mode="json") | {
+            "manifest": self.experiment.manifest is not None
+        }
+
+    def stage_inputs(self, stage: str) -> dict:
         """Return the values of the study that a stage depends on, as plain data.
 
         Parameters
         ----------
         stage : str
-            A kind of file of `lube.schema`, such as ``film``; batches go by their stage's name.
+            Its name in `lube.schema.STAGES`, such as ``film``.
 
         Returns
         -------
         dict
-            Plain values, fit for JSON. They are Snakemake's parameters of the stage: a
-            change re-runs the stages that name it.
+            Plain values, fit for JSON. They are parameters of the stage's Snakemake rules: a
+            change reruns the stages that use it.
         """
-        content = self.model_dump(mode="json")
-        grid, rollers = content["operating_grid"], content["rollers"]
-        lines = {"seed": self.seed, "lines": self.line_spec.model_dump(mode="json")}
-        layer = {
-            "reduced_modulus": self.rollers.reduced_modulus,
-            "boundary_layer": content["boundary_layer"],
-        }
-        mechanics = layer | {"slide_to_roll_ratio": grid["slide_to_roll_ratio"]}
-        inputs = {
-            "lubricant": {
-                "lubricants": content["lubricants"],
-                "temperature": grid["temperature"],
-            },
-            "film": {
-                "rollers": rollers,
-                "reduced_radius": self.rollers.reduced_radius,
-                "reduced_modulus": self.rollers.reduced_modulus,
-                "composite_rms_roughness": self.rollers.composite_rms_roughness,
-                "film_formulas": content["film_formulas"],
-                "force": grid["force"],
-                "speed": grid["speed"],
-            },
-            "roughness": lines,
-            "contact": lines | mechanics | {"revolutions": self.revolutions},
-            "master": lines | layer,
-            "trace": lines
-            | mechanics
-            | {"traces": content["traces"], "resistivity": content["resistivity"]},
-            "experiment": lines
-            | mechanics
-            | {
-                "resistivity": content["resistivity"],
-                "length": self.rollers.length,
-                "rig": content["rig"],
-                # The manifest is told by its contents, wherever it lies.
-                "experiment": content["experiment"]
-                | {"manifest": self.experiment.manifest is not None},
-                "grid": {name: grid[name] for name in ("force", "speed", "temperature")},
-            },
-            "rig": {"traces": content["traces"]},
-            # They follow from their forerunners alone.
-            "comparison": {},
-            "gauge": {},
-            "speed": {},
-            "reading": {},
-            "coverage": {"realisations": self.realisations},
-        }
-        return inputs[stage]
+        return _plain(self, STAGES[stage].values)
 
-    def origin(self, stage):
+    def origin(self, stage: str) -> dict:
         """Return all values that a stage's result follows from, its forerunners' included.
 
         Parameters
@@ -260,9 +206,9 @@ class Study(StrictModel):
         Returns
         -------
         dict
-            From stage to its inputs: the record of origin in the stage's file.
+            From stage to its values: the attribute ``config`` of the stage's file.
         """
-        return {name: self.stage_inputs(name) for name in (*_FORERUNNERS[stage], stage)}
+        return {name: self.stage_inputs(name) for name in (*forerunners(stage), stage)}
 
     @model_validator(mode="after")
     def _check_lubricants(self):
@@ -346,6 +292,13 @@ class Study(StrictModel):
                 )
             found[variable] = available[index]
         return found
+
+
+def _plain(study, values):
+    """Values at some dotted attributes of a study, as plain data."""
+    if isinstance(values, dict):
+        return {name: _plain(study, value) for name, value in values.items()}
+    return to_jsonable_python(attrgetter(values)(study))
 
 
 def load_study(path: str | Path, changes: dict | None = None) -> Study:

@@ -6,7 +6,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
+
 import lube
+from lube.kernels.compiler import kernel
+from lube.kernels.layer import layer_breaks
 
 SCAN = """
 import numpy as np
@@ -26,7 +30,7 @@ def scan_in(folder):
     return done.stdout.split()
 
 
-def test_change_of_the_layers_criterion_reaches_the_kernels_that_use_it(tmp_path):
+def test_a_changed_layer_criterion_reaches_the_kernels_that_inline_it(tmp_path):
     kernels = tmp_path / "lube" / "kernels"
     shutil.copytree(
         Path(lube.__file__).parent / "kernels",
@@ -43,3 +47,17 @@ def test_change_of_the_layers_criterion_reaches_the_kernels_that_use_it(tmp_path
     assert scan_in(tmp_path) == ["2", "0", "12"]
     layer.write_text(text)
     assert scan_in(tmp_path) == ["2", "2", "12"]
+
+
+def users_function(x):
+    return x + 1.0
+
+
+def test_other_functions_are_cached_where_numba_keeps_them():
+    configured = numba.config.CACHE_DIR
+    ours = Path(layer_breaks.stats.cache_path)
+    assert kernel(users_function)(1.0) == 2.0
+    assert configured == numba.config.CACHE_DIR
+    assert Path(numba.njit(cache=True)(users_function).stats.cache_path) != ours
+    if not configured:
+        assert Path(lube.__file__).parent / "kernels/__pycache__" in ours.parents

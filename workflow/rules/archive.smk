@@ -1,6 +1,6 @@
 rule archive:
     input:
-        written=lambda wildcards: archived_texts(),
+        written=FILES.archived_texts,
         datasets=[result(f"{kind}.nc") for kind in DATASETS],
         products=products(ARCHIVED),
     output:
@@ -15,7 +15,7 @@ rule archive:
         result("benchmarks/archive.tsv")
     params:
         about=digest(STUDY.about.model_dump(mode="json")),
-        code=lambda wildcards: state_of_code(),
+        code=FILES.code_state,
         kinds=DATASETS,
         figures=ARCHIVED,
     message:

@@ -1,29 +1,7 @@
-rule contact_batch:
-    input:
-        film=result("film.nc"),
-        lines=result("batches/roughness_{first}.nc"),
-        sources=script_sources("contact_batch"),
-    output:
-        result("batches/contact_{first}.nc"),
-    log:
-        result("logs/contact_{first}.log"),
-    benchmark:
-        result("benchmarks/contact_{first}.tsv")
-    # Before further lines are drawn: so the batches on disk stay few.
-    priority: 1
-    params:
-        study=stage_inputs("contact"),
-        realisations=batch_limits,
-    message:
-        "Contact: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points"
-    script:
-        "../scripts/contact_batch.py"
-
-
 rule contact:
     input:
         film=result("film.nc"),
-        batches=[result(f"batches/contact_{first}.nc") for first in STUDY.batches],
+        batches=batches_of("contact"),
         sources=script_sources("contact"),
     output:
         result("contact.nc"),
@@ -39,8 +17,7 @@ rule contact:
 
 rule trace:
     input:
-        film=result("film.nc"),
-        lines=result("roughness.nc"),
+        **stage_files("trace"),
         sources=script_sources("trace"),
     output:
         result("trace.nc"),

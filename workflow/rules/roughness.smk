@@ -14,21 +14,3 @@ rule roughness:
         "Roughness: the kept realisations, with their moments"
     script:
         "../scripts/roughness.py"
-
-
-rule roughness_batch:
-    input:
-        sources=script_sources("roughness_batch"),
-    output:
-        temp(result("batches/roughness_{first}.nc")),
-    log:
-        result("logs/roughness_{first}.log"),
-    benchmark:
-        result("benchmarks/roughness_{first}.tsv")
-    params:
-        study=stage_inputs("roughness"),
-        realisations=batch_limits,
-    message:
-        "Roughness: realisations {params.realisations[0]} to {params.realisations[1]}"
-    script:
-        "../scripts/roughness_batch.py"

@@ -1,8 +1,9 @@
 rule speed:
     input:
         script="tests/benchmarks/bench_speed.py",
+        study=ancient(result("study.yaml")),
         records=record_files(),
-        sources=sources(Path("tests/benchmarks/bench_speed.py").read_text(encoding="utf-8")),
+        sources=script_sources("tests/benchmarks/bench_speed.py"),
     output:
         result("speed.nc"),
     log:
@@ -12,10 +13,9 @@ rule speed:
     # With nothing beside it.
     threads: workflow.cores
     params:
-        study=digest(STUDY.origin("speed")),
-        file=config["study_file"],
+        study=stage_inputs("speed"),
         python=sys.executable,
     message:
         "Speed: the study's kernels beside plain versions of the same work, a few minutes"
     shell:
-        "{params.python:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"

@@ -1,0 +1,105 @@
+"""Which files of the lube package a script or notebook depends on, found by its imports.
+
+Snakemake does not notice a change of an imported package. So every rule has these files among
+its inputs, and an edited module reruns the jobs that use it.
+"""
+
+import ast
+import functools
+from pathlib import Path
+
+import lube
+
+ROOT = Path(lube.__file__).parents[1]
+"""Folder of the Snakefile that this package belongs to."""
+
+_BY_VALUE = {"lube.study.study", "lube.schema.stages"}
+"""Modules that reach a stage by the values they give it, which are parameters of its rule."""
+
+
+@functools.cache
+def imported_modules(code: str) -> tuple[str, ...]:
+    """List the modules that some Python code imports, wherever in the code.
+
+    Parameters
+    ----------
+    code : str
+        Python.
+
+    Returns
+    -------
+    tuple of str
+        Full names of whatever may be a module: for ``from lube.stages import film`` both
+        ``lube.stages`` and ``lube.stages.film``. For a public name of the package, such as
+        ``from lube import load``, the module that defines it.
+
+    Examples
+    --------
+    >>> imported_modules("import numpy as np")
+    ('numpy',)
+    """
+    found = []
+    for node in ast.walk(ast.parse(code)):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names = [alias.name for alias in node.names]
+            found += [node.module, *(f"{node.module}.{name}" for name in names)]
+            if node.module == "lube":
+                found += [lube._HOME_OF[name] for name in names if name in lube._HOME_OF]
+        elif isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names]
+            if "lube" in found:  # any public name may follow
+                found += lube._HOMES
+    return tuple(found)
+
+
+def sources(code: str, root: Path = ROOT) -> list[str]:
+    """List the files of the lube package that some Python code depends on.
+
+    Parameters
+    ----------
+    code : str
+        Python.
+    root : Path, optional
+        Folder that the package lies in.
+
+    Returns
+    -------
+    list of str
+        Paths relative to `root`, sorted. Two modules are left out, with what only they import:
+        the study, whose values are parameters of the rules, and the package's ``__init__``,
+        which computes nothing.
+
+    Examples
+    --------
+    >>> sources("from lube.errors import LubeError")
+    ['lube/errors.py']
+    """
+    found, waiting = set(), list(imported_modules(code))
+    while waiting:
+        module = waiting.pop()
+        path = root / Path(*module.split("."))
+        path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+        known = module == "lube" or module in _BY_VALUE or path in found
+        if module.split(".")[0] == "lube" and not known and path.is_file():
+            found.add(path)
+            waiting += imported_modules(path.read_text(encoding="utf-8"))
+    return sorted(path.relative_to(root).as_posix() for path in found)
+
+
+def script_sources(name: str, root: Path = ROOT) -> list[str]:
+    """List the files of the lube package that a script of the workflow depends on.
+
+    Parameters
+    ----------
+    name : str
+        Name of the script in ``workflow/scripts``, or its path below `root`.
+    root : Path, optional
+        As for `sources`.
+
+    Returns
+    -------
+    list of str
+        As from `sources`.
+    """
+    path = root / (name if name.endswith(".py") else f"workflow/scripts/{name}.py")
+    return sources(path.read_text(encoding="utf-8"), root)

@@ -1,0 +1,20 @@
+rule batch:
+    input:
+        film=result("film.nc"),
+        sources=script_sources("batch"),
+    output:
+        contact=result("batches/contact_{first}.nc"),
+        master=result("batches/master_{first}.nc"),
+    log:
+        result("logs/batch_{first}.log"),
+    benchmark:
+        result("benchmarks/batch_{first}.tsv")
+    # The summary and most figures wait for them.
+    priority: 1
+    params:
+        study=stage_inputs("contact", "master"),
+        realisations=batch_limits,
+    message:
+        "Batch: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points and over the master map"
+    script:
+        "../scripts/batch.py"
