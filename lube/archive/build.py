@@ -24,9 +24,10 @@ from lube.storage.files import why_not, written_whole
 from lube.storage.git import ROOT, code_files, commit
 from lube.storage.netcdf import load
 from lube.storage.provenance import config_text, digest, fingerprint
-from lube.study.field_types import read_yaml
-from lube.study.lubricant_record import SHIPPED_FOLDER, shipped_records
+from lube.study.lubricant_record import SHIPPED_FOLDER, is_record_path
+from lube.study.resolve import study_files
 from lube.study.study import Study
+from lube.study.text_files import read_yaml
 from lube.workflow.figures import origin, products, wrong_figures
 
 SUMS = "SHA256SUMS"
@@ -166,20 +167,16 @@ def written_files(study: Study, study_file: str | Path) -> dict[str, Path]:
     return {path.relative_to(folder).as_posix(): path for path in paths}
 
 
-def study_files(study_file: str | Path) -> list[str | Path]:
-    """List a study's file and the files that it is based on."""
-    return [study_file]
-
-
 def _check_paths(study_file):
-    """Refuse paths that would not resolve in an archive.
+    """Refuse paths in a study's file that would not resolve in an archive.
 
     These are absolute ones, and those that pass through a folder only to leave it again: that
     folder would not exist in the archive.
     """
     content, folder = read_yaml(study_file, StudyError), os.path.abspath(Path(study_file).parent)
-    named = [*content.get("lubricants", ()), content.get("experiment", {}).get("manifest")]
-    for name in set(named) - {None, *shipped_records()}:
+    records = [name for name in content.get("lubricants", ()) if is_record_path(name)]
+    manifest = content.get("experiment", {}).get("manifest")
+    for name in filter(None, [content.get("based_on"), *records, manifest]):
         direct = os.path.relpath(os.path.join(folder, name), folder)
         if Path(name) != Path(direct):
             raise StudyError(
