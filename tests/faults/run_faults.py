@@ -2,8 +2,8 @@
 
 `python tests/faults/run_faults.py` runs the smoke study undisturbed, then kills it 50 times with
 `kill -9`: Snakemake alone, so that its jobs are orphans, or its whole process group, or one job.
-The moments are spread over the whole run. After each kill it does what the README says, and
-compares every dataset, figure and executed notebook byte for byte; nothing else may be left.
+The moments are spread over the whole run. After each kill it does what the documentation says,
+and compares every dataset, figure and executed notebook byte for byte; nothing else may be left.
 
 To save time only every tenth run begins with nothing. Half of the others begin with a part of the
 datasets, as an undisturbed run has made them some moment before, and half with all datasets and
@@ -41,7 +41,7 @@ def main():
 
 
 def try_all(folder, options):
-    """Run all trials, print a line of each, and return how many ended well."""
+    """Run all trials, print a line for each, and return how many ended well."""
     repository = copy_of_the_repository(folder / "repository")
     repository.run()  # compiles the kernels
     with repository.clean_slate():
