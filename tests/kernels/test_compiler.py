@@ -57,7 +57,7 @@ def test_other_functions_are_cached_where_numba_keeps_them():
     configured = numba.config.CACHE_DIR
     ours = Path(layer_breaks.stats.cache_path)
     assert kernel(users_function)(1.0) == 2.0
-    assert numba.config.CACHE_DIR == configured
+    assert configured == numba.config.CACHE_DIR
     assert Path(numba.njit(cache=True)(users_function).stats.cache_path) != ours
     if not configured:
         assert Path(lube.__file__).parent / "kernels/__pycache__" in ours.parents
