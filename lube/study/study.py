@@ -37,6 +37,7 @@ from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.rollers import BoundaryLayer, LineSpec, RollerPair, Roughness, line_spec
 from lube.study.size_limits import check_sizes
 
+
 @collected()
 def _known_formula(name):
     return formula(name).name
