@@ -11,7 +11,7 @@ from pathlib import Path
 
 from lube.physics.film_formulas import FORMULAS, TOLERANCE
 from lube.recordings.manifest import manifest_schema
-from lube.schema import DATASETS, FILES, MEASURED, SUMMARIES
+from lube.schema import COORDINATES, DATASETS, FILES, MEASURED, SUMMARIES
 from lube.study.lubricant_record import LubricantRecord
 from lube.study.study import Study
 
@@ -28,6 +28,17 @@ def file_table() -> str:
     return _table(("file", "content"), rows)
 
 
+def coordinate_table() -> str:
+    """Table of the coordinates that several files share.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    return _variables(COORDINATES)
+
+
 def variable_tables() -> str:
     """Tables of the variables of all datasets and benchmarks, each under a heading.
 
@@ -36,15 +47,10 @@ def variable_tables() -> str:
     str
         Markdown.
     """
-    parts = []
-    for kind in (*DATASETS, *MEASURED):
-        rows = [
-            (f"`{name}`", ", ".join(variable.dims), variable.units or "text", variable.long_name)
-            for name, variable in FILES[kind].items()
-        ]
-        head = ("variable", "dimensions", "unit", "meaning")
-        parts.append(f"### `{kind}.nc`\n\n{SUMMARIES[kind]}\n\n{_table(head, rows)}")
-    return "\n\n".join(parts)
+    return "\n\n".join(
+        f"### `{kind}.nc`\n\n{SUMMARIES[kind]}\n\n{_variables(FILES[kind])}"
+        for kind in (*DATASETS, *MEASURED)
+    )
 
 
 def formula_table() -> str:
@@ -117,6 +123,7 @@ def record_keys() -> list[tuple[str, str, str]]:
 
 TABLES = {
     "files": file_table,
+    "coordinates": coordinate_table,
     "variables": variable_tables,
     "study": study_table,
     "record": record_table,
@@ -150,6 +157,14 @@ def with_tables(text: str) -> str:
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _variables(variables):
+    rows = [
+        (f"`{name}`", ", ".join(one.dims), one.units or "text", one.long_name)
+        for name, one in variables.items()
+    ]
+    return _table(("name", "dimensions", "unit", "meaning"), rows)
 
 
 def _keys(schema, path="", definitions=None, section=""):

@@ -130,28 +130,6 @@ class StudyFiles:
         entries = read_manifest(manifest).entries
         return input_paths([manifest, *(entry.file for entry in entries if entry.file)])
 
-    def code_state(self, wildcards: object) -> tuple:
-        """Return what an archive says about its code: commit, its date, files changed since."""
-        from lube.storage.git import changed_code, commit, commit_date
-
-        return commit(), commit_date(), changed_code()
-
-    @one_line_errors()
-    def archived_texts(self, wildcards: object) -> list[str]:
-        """List what people wrote and an archive holds: study file, records, code."""
-        from lube.archive.build import written_files
-        from lube.archive.citation import check_about
-        from lube.storage.git import code_files
-
-        if self.changes:
-            raise LubeError(
-                "--config: an archive needs the study as a file: write the changes into one that "
-                f"begins with `based_on: {self.path}`"
-            )
-        check_about(self.study)
-        written = written_files(self.study, self.path).values()
-        return [*input_paths(written), *self.record_files(), *code_files()]
-
     def products(self, figures: Iterable[str]) -> list[str]:
         """List the files that the jobs of some figures make: pictures, origin, notebook."""
         return [

@@ -1,13 +1,16 @@
-"""Nothing is lost: killed runs, full and read-only disks, two runs at once, damaged inputs."""
+"""Nothing is lost: killed runs, full and read-only disks, two runs at once, damaged inputs.
 
-import os
-import re
+`pytest -m slow` runs these tests.
+"""
+
 import shutil
 import subprocess
 
 import pytest
 from kills import Kill, finished, jobs_of, recovery_commands, survive
 from repository import environment
+
+pytestmark = pytest.mark.slow
 
 FILM, COMPARISON = "results/smoke/film.nc", "results/smoke/comparison.nc"
 
@@ -37,7 +40,7 @@ def test_a_killed_run_is_taken_up_again_and_nothing_is_lost(smoke, whole, kill):
 
 
 def recover(repository, *targets):
-    """Do what the README says after a crash."""
+    """Do what the documentation says after a crash."""
     for arguments in recovery_commands():
         repository.run(*arguments, *([] if arguments else targets))
 
@@ -108,20 +111,6 @@ def test_a_folder_that_cannot_be_written_is_told_before_any_job(spare, smoke, on
     assert spare.products() == smoke.products()
 
 
-def test_lines_that_a_failed_run_left_are_taken_away_by_the_next_good_one(spare):
-    lines, others = (spare.results / f"batches/roughness_{first}.nc" for first in (0, 2))
-    lines.write_text("left by Snakemake, when contact_0 was done and another job failed")
-    os.utime(lines, (0, 0))
-    (spare / COMPARISON).unlink()
-    spare.run(COMPARISON, "--notemp")
-    assert lines.exists()
-    (spare / COMPARISON).unlink()
-    spare.run(COMPARISON)
-    assert not lines.exists()
-    spare.run(f"results/smoke/batches/{others.name}")
-    assert others.exists()  # as it was asked for
-
-
 # Two at once
 
 
@@ -163,16 +152,3 @@ def test_a_flipped_bit_is_told_and_deleting_the_file_mends_it(spare, smoke):
     contact.unlink()
     spare.run(COMPARISON)
     assert spare.products() == smoke.products()
-
-
-def test_a_record_that_ends_within_a_line_is_warned_of(spare):
-    record = "time [s],voltage [mV]\n0,50\n1e-4,50\n2e-4,50"
-    (spare / "run.csv").write_text(record, encoding="utf-8")
-    manifest = "file,force [N],speed [rpm],temperature [degC]\nrun.csv,800,100,40\n"
-    (spare / "records.csv").write_text(manifest, encoding="utf-8")
-    study = spare.with_values(experiment__manifest="records.csv")
-    said = spare.run("results/smoke/experiment.nc", study=study)
-    assert re.findall("^Warning: .*", said, re.M) == [
-        "Warning: run.csv: its last line has no end; if the file was cut short, its last value "
-        "is wrong"
-    ]

@@ -3,10 +3,8 @@
 import base64
 import json
 import re
-import shutil
 
 import pytest
-from repository import products_of
 
 from lube.report.markdown import plain, title_and_text, to_html
 
@@ -120,19 +118,3 @@ def test_the_documentation_makes_the_pages_and_nothing_else(spare):
                      "assumptions")
     }  # fmt: skip
     assert spare.planned() == set()
-
-
-def test_a_notebook_without_words_or_chapter_is_shown_all_the_same(spare):
-    path = spare / "notebooks/fig99_mine.ipynb"
-    notebook = json.loads((spare / f"notebooks/{spare.notebooks[0]}.ipynb").read_text("utf-8"))
-    notebook["cells"] = notebook["cells"][1:]
-    path.write_text(json.dumps(notebook), encoding="utf-8")
-    target = "results/smoke/figures/fig99_mine.png"
-    for name in products_of(spare.notebooks[0]):
-        mine = name.replace(spare.notebooks[0], "fig99_mine")
-        shutil.copy(spare.results / name, spare.results / mine)
-    spare.run("--touch", target)  # instead of a run of the notebook, which takes long
-    spare.run(target, "--report", "mine.html")
-    report = (spare / "mine.html").read_text("utf-8")
-    assert data(report, "results")[target]["labels"]["Shows"] == "fig99_mine"
-    assert list(data(report, "categories")) == ["5 Further figures"]

@@ -90,12 +90,3 @@ def test_steps_name_the_benchmarks_of_all_jobs(files):
         f"results/smoke/benchmarks/batch_{first}.tsv" for first in (0, 2)
     ]
     assert steps["figures"] == ["results/smoke/benchmarks/fig02_film.tsv"]
-
-
-def test_an_archive_is_of_a_study_in_a_file_and_has_makers(files, study):
-    texts = files.archived_texts(None)
-    assert {"workflow/config/smoke.yaml", "Snakefile"} <= set(texts)
-    nobody = study.model_copy(update={"about": About(title="mine")})
-    assert "about.creators: missing" in line_of(StudyFiles(nobody, SMOKE, {}).archived_texts, None)
-    changed = StudyFiles(study, SMOKE, {"seed": 1})
-    assert f"begins with `based_on: {SMOKE}`" in line_of(changed.archived_texts, None)
