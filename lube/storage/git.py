@@ -16,7 +16,7 @@ _CODE = (
     *("notebooks/*.ipynb", "tests/benchmarks/*.py", "profiles/*/config.yaml"),
     *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
     *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
-    *("workflow/report/*", "workflow/docs/*.png"),
+    "workflow/report/*",
 )
 
 _COMMIT = re.compile("HEAD|[0-9a-f]{7,64}")
