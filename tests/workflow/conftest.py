@@ -58,7 +58,7 @@ def spoilt(archive, tmp_path):
 
 @pytest.fixture(scope="session")
 def spare_folder(tmp_path_factory):
-    """Folder of all spare repositories, one after the other: compiled kernels depend on the path."""
+    """Folder of all spare repositories in turn: compiled kernels depend on the path."""
     return tmp_path_factory.mktemp("spare") / "repository"
 
 
