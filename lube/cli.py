@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from lube.errors import LubeError, shown
-from lube.workflow.processors import compute_alike
+from lube.workflow.environment import compute_alike
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
