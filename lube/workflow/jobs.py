@@ -29,6 +29,13 @@ class _Occasionally(logging.Filter):
         return True
 
 
+class _Log(logging.FileHandler):
+    """A job's log. On a full disk it stays silent: the job's own error reports that."""
+
+    def handleError(self, record):
+        pass
+
+
 def begin_job(log_file: str | Path) -> None:
     """Set up the process of a job: messages go to its log and, occasionally, to the terminal.
 
@@ -58,7 +65,7 @@ def begin_job(log_file: str | Path) -> None:
 def _log_handler(path):
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        return logging.FileHandler(path, mode="w")
+        return _Log(path, mode="w")
     except OSError as error:
         raise DataError(f"{path}: cannot be written: {why_not(error, path)}") from error
 

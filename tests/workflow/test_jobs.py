@@ -93,6 +93,12 @@ def test_a_log_that_cannot_be_written_is_reported_in_one_line(tmp_path):
     assert finished.stderr.count("\n") == 1
 
 
+def test_a_log_on_a_full_disk_adds_nothing_to_the_jobs_error():
+    command = [sys.executable, "-c", BEGIN + "raise DataError('film.nc: no space')", "/dev/full"]
+    finished = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert finished.stderr == "Error: film.nc: no space\n"
+
+
 WRITE_SLOWLY = """\
 import time
 from lube.storage.files import written_whole
