@@ -34,7 +34,7 @@ from lube.study.lubricant_record import (
 from lube.study.resolve import resolved_content, resolved_text
 from lube.study.study import load_study
 
-FEW, MANY = 40, 2000
+FEW, MANY = 40, 1000
 
 cases = pytest.mark.parametrize(
     "examples", [FEW, pytest.param(MANY, marks=pytest.mark.slow)], ids=["few", "many"]
