@@ -68,13 +68,8 @@ def contact_statistics(
     The film formulas ignore the asperities and let the film carry all of :math:`F_N`. Where the
     share is not small, film and asperities together carry more than the applied load.
     """
-    thickness, half_width = (
-        array.transpose(*OPERATING_DIMS)
-        for array in xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    )
-    results = _run(
-        lines, film, boundary_layer, thickness, half_width, slide_to_roll_ratio, revolutions
-    )
+    film = film.transpose(*OPERATING_DIMS)
+    results = _run(lines, film, boundary_layer, slide_to_roll_ratio, revolutions)
     # F_N 2a/L' by Hertz: the maximum pressure is 4/pi times the mean one, F_N / (2a L').
     width = 2.0 * film["contact_half_width"]
     patch_load = np.pi / 4.0 * film["hertz_pressure"] * width * width
@@ -117,65 +112,59 @@ def contact_map(
         lambda_ratio, contact_width), and of breakthrough over (realisation, layer_strength,
         layer_lambda_ratio, layer_contact_width).
     """
-    ratio, width = film["lambda_ratio"], 2.0 * film["contact_half_width"]
-
-    def levels(ratios, widths):
-        return _levels(np.geomspace, ratio, ratios), _levels(np.linspace, width, widths)
-
-    ratios, widths = levels(lambda_levels, width_levels)
+    ratios, widths = _levels(film, lambda_levels, width_levels)
     ratios = np.concatenate([ratios[0] * THINNER_FILMS, ratios])
-    mapped = _map(lines, film, boundary_layer, ratios, widths, MASTER_DIMS)
-    mapped["layer_breakthrough_probability"] = _layer_map(
-        lines, film, boundary_layer, *levels(*LAYER_LEVELS)
-    )
+    mapped = _map(lines, film, boundary_layer, (ratios, widths), MASTER_DIMS)
+    mapped["layer_breakthrough_probability"] = _layer_map(lines, film, boundary_layer)
     return label(mapped.assign_coords(revolutions=1), "master_batch")
 
 
-def _levels(spaced, values, count):
-    """Levels over the range of some values; a single one where they are all equal."""
-    return np.unique(spaced(values.min().item(), values.max().item(), count))
+def _levels(film, lambda_levels, width_levels):
+    """Lambda ratios and contact widths over the range of a film table."""
+    ratio, width = film["lambda_ratio"].values, 2.0 * film["contact_half_width"].values
+    # Unique, because all values of a film table may be the same.
+    return (
+        np.unique(np.geomspace(ratio.min(), ratio.max(), lambda_levels)),
+        np.unique(np.linspace(width.min(), width.max(), width_levels)),
+    )
 
 
-def _map(lines, film, boundary_layer, ratios, widths, dims):
+def _map(lines, film, boundary_layer, levels, dims):
     """Probabilities in pure rolling over (realisation, lambda ratio, contact width)."""
     ratios, widths = (
-        xr.DataArray(levels, dims=name, coords={name: levels})
-        for name, levels in zip(dims, (ratios, widths), strict=True)
+        xr.DataArray(values, dims=name, coords={name: values})
+        for name, values in zip(dims, levels, strict=True)
     )
-    thickness = ratios * film["composite_rms_roughness"].item()
-    thickness, half_width = xr.broadcast(thickness, widths / 2.0)
-    results = _run(lines, film, boundary_layer, thickness, half_width)
+    table = film[["reduced_modulus"]].assign(
+        film_thickness=ratios * film["composite_rms_roughness"].item(),
+        contact_half_width=widths / 2.0,
+    )
+    results = _run(lines, table, boundary_layer)
     probabilities = results[["breakthrough_probability", "geometric_contact_probability"]]
     return probabilities.isel(slide_to_roll_ratio=0)
 
 
-def _layer_map(lines, film, boundary_layer, ratios, widths):
+def _layer_map(lines, film, boundary_layer):
     """Breakthrough probability over (realisation, layer strength, lambda ratio, width)."""
-    maps = []
+    levels, maps = _levels(film, *LAYER_LEVELS), []
     for factor in LAYER_FACTORS:
         # The model depends on tau0 / h_c only, so changing the shear strength is enough.
         strength = factor * boundary_layer.shear_strength
         layer = boundary_layer.model_copy(update={"shear_strength": strength})
-        mapped = _map(lines, film, layer, ratios, widths, LAYER_DIMS[1:])
+        mapped = _map(lines, film, layer, levels, LAYER_DIMS[1:])
         maps.append(mapped["breakthrough_probability"])
     study = boundary_layer.shear_strength / boundary_layer.critical_thickness
     strengths = xr.DataArray(LAYER_FACTORS * study, dims="layer_strength", name="layer_strength")
     return xr.concat(maps, strengths, join="exact").transpose("realisation", *LAYER_DIMS)
 
 
-def _run(
-    lines,
-    film,
-    boundary_layer,
-    thickness,
-    half_width,
-    slide_to_roll_ratio=(0.0,),
-    revolutions=1,
-):
-    """Statistics over (realisation, slide_to_roll_ratio, dimensions of the film thickness)."""
+def _run(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), revolutions=1):
+    """Statistics over (realisation, slide_to_roll_ratio, dimensions of the film table)."""
+    thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
+    points = whole_numbers(thickness.values.ravel(), half_width.values.ravel(), lines)
+    (films, half_windows), inverse = np.unique(np.stack(points), axis=1, return_inverse=True)
     reduced_modulus = film["reduced_modulus"].item()
     factor = layer_factor_of(lines, reduced_modulus, boundary_layer)
-    films, half_windows, inverse = _distinct_points(thickness, half_width, lines)
     counts = np.empty((lines.sizes["realisation"], len(slide_to_roll_ratio), films.size, 4))
     for r, realisation in enumerate(lines["realisation"].values):
         pair = line_pair(lines, realisation)
@@ -185,7 +174,7 @@ def _run(
             counts[r, s] = strip_statistics(*pair, ratios, steps, films, half_windows, factor)
             counts[r, s] /= steps
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
-    touching, breaking, points, overlap = np.moveaxis(counts[:, :, inverse], -1, 0)
+    touching, breaking, points, overlap = np.moveaxis(counts[:, :, inverse.ravel()], -1, 0)
     spacing = lines.attrs["spacing"]
     stiffness = reduced_modulus * spacing  # of one spring, Eq. 5
     results = {
@@ -208,10 +197,3 @@ def _run(
         critical_thickness=boundary_layer.critical_thickness,
         shear_strength=boundary_layer.shear_strength,
     )
-
-
-def _distinct_points(thickness, half_width, lines):
-    """Distinct films and half-windows, and the index of each operating point among them."""
-    points = whole_numbers(thickness.values.ravel(), half_width.values.ravel(), lines)
-    (films, half_windows), inverse = np.unique(np.stack(points), axis=1, return_inverse=True)
-    return films, half_windows, inverse.ravel()

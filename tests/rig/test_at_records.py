@@ -9,7 +9,7 @@ from studies import OIL
 from lube import contact_statistics, film_table
 from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
 from lube.kernels.scan import scan_statistics
-from lube.rig.at_records import _mixed
+from lube.rig.record_scatter import combined_deviations
 from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch
 from lube.statistics.one_pair import repeat_factor, sample_size
@@ -144,7 +144,7 @@ def test_several_alignments_mix_what_lines_do_alone_and_together():
     effects = np.repeat(lines, 3, axis=1)
     turn = np.sqrt(0.1) * effects + np.sqrt(0.9) * meeting
     alone, together = np.array([0.1, 0.1, 0.0]), np.array([0.3, 0.1, 0.2])
-    found = _mixed(alone, together, effects, turn)
+    found = combined_deviations(alone, together, effects, turn)
     expected = np.sqrt(alone[:, None] * alone) + np.diag(together)
     np.testing.assert_allclose(np.cov(found.T), expected, atol=0.01)
 
