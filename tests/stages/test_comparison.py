@@ -9,9 +9,7 @@ from experiments import experiment_at, experiment_of, model_of_records
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lube.errors import DataError
-from lube.rig.study_shares import over_grid
-from lube.schema import EXPERIMENT_DIMS, check
+from lube.schema import check
 from lube.stages.comparison import FIGURES, GROUPS, agreement, compare
 from lube.statistics.one_pair import quantile
 
@@ -71,12 +69,6 @@ def test_the_order_of_the_records_changes_nothing(compared, members, busy):
         np.testing.assert_array_equal(there[name], back[name].isel(record=order))
     for name in FIGURES:
         np.testing.assert_allclose(there[name], back[name], rtol=1e-12)
-
-
-def test_a_threshold_that_was_not_evaluated_is_refused(compared):
-    experiment = experiment_of([0.2], **POINT).assign(comparison_threshold=55.0)
-    with pytest.raises(DataError, match="threshold 55 ohm"):
-        compared(experiment)
 
 
 # The prediction of one pair's record
@@ -217,13 +209,6 @@ def test_records_that_may_differ_do_not_contradict_each_other(at_point, members,
     found = compared(experiment_of([0.0, 1e-6], force=100.0, speed=2000.0, temperature=60.0))
     assert (found["simulated_probability"] == 0.0).all()
     assert found["within_prediction"].all() and found.remarks == ""
-
-
-def test_records_are_seen_over_the_grid_with_all_repeats(at_point):
-    table = over_grid(at_point([0.1, 0.2, 0.15], pair=["1", "2", "3"]))
-    here = table["measured_share"].sel({name: POINT[name] for name in POINT}).squeeze()
-    np.testing.assert_array_equal(here, [0.1, 0.2, 0.15])
-    assert set(table["predicted_share_lower"].dims) == {*EXPERIMENT_DIMS, "film_formula", "repeat"}
 
 
 # Figures of agreement

@@ -11,7 +11,6 @@ from lube.schema import LIMITS, check, label
 from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
 from lube.stages.lubricant import lubricant_table
 from lube.statistics.map_curves import curve_at
-from lube.statistics.one_pair import prediction_limits
 
 FORMULA = {"film_formula": "paper"}
 
@@ -47,18 +46,6 @@ def test_the_ensembles_own_mean_is_gauged_to_the_film_of_the_formula(busy, own):
     gauged = gauge_film(busy.master, own)
     ratio = gauged["gauged_lambda_ratio"] / own["lambda_ratio"].sel(FORMULA)
     np.testing.assert_allclose(ratio, 1.0, atol=0.02)
-
-
-def test_the_limits_are_films_whose_single_pairs_just_reach_the_share(busy, at_point):
-    share = 0.1
-    gauged = gauge_film(busy.master, at_point([share])).squeeze()
-    curve = curve_at(busy.master, 2.0 * busy.study.rollers.contact_half_width(400.0))
-    for limit, side in (("_lower", 0), ("_upper", 1)):
-        film = np.log(gauged[f"gauged_lambda_ratio{limit}"].item())
-        probability = 1.0 / (1.0 + np.exp(-curve.logit_at(film)))
-        size = np.interp(film, curve.films, curve.looks)
-        touched = prediction_limits(probability, size, 1.0, 32)[side]
-        assert touched == pytest.approx(share, abs=2e-3)
 
 
 def test_a_film_is_known_worse_from_short_and_noisy_records_but_not_better_from_long(
