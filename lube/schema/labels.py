@@ -1,11 +1,16 @@
 """Writing labels on a dataset, and checking a dataset against the schema."""
 
-import xarray as xr
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from lube.errors import DataError
 from lube.schema.coordinates import COORDINATES
 from lube.schema.kinds import ATTRIBUTES, FILES
 from lube.schema.variables import Variable
+
+if TYPE_CHECKING:  # the workflow imports the schema at every start, without xarray
+    import xarray as xr
 
 
 def _expected(kind: str, name: str) -> Variable | None:
