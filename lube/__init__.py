@@ -6,7 +6,7 @@ package itself takes no time. `__init__.pyi` repeats them for editors and type c
 
 import importlib
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOMES = {
     "lube.archive.explain": ("explain",),

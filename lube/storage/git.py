@@ -10,11 +10,12 @@ ROOT = Path(__file__).parents[2]
 
 # What lies among it besides is its user's: other studies, records, notes.
 _CODE = (
-    *("Snakefile", "pyproject.toml", "README.md", "LICENSE", "CITATION.cff"),
-    *("lube/**/*.py", "lube/study/lubricants/*", "notebooks/*.ipynb", "tests/benchmarks/*.py"),
+    *("Snakefile", "pyproject.toml", "README.md", "CHANGELOG.md", "CONTRIBUTING.md"),
+    *("LICENSE", "CITATION.cff", "lube/py.typed", "lube/**/*.py"),
+    *("lube/study/lubricants/*", "notebooks/*.ipynb", "tests/benchmarks/*.py"),
     *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
     *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
-    *("workflow/report/*", "workflow/docs/probability.png", "profiles/*/config.yaml"),
+    *("workflow/report/*", "lube/report/templates/*", "docs/*", "profiles/*/config.yaml"),
 )
 
 _COMMIT = re.compile("[0-9a-f]{7,64}")

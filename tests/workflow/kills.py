@@ -1,4 +1,4 @@
-"""Killing the smoke study at some moment, and taking it up again as the README says."""
+"""Killing the smoke study at some moment, and taking it up again as the documentation says."""
 
 import os
 import random
@@ -82,8 +82,8 @@ def finished(repository, folder):
 
 
 def recovery_commands():
-    """Arguments of each `snakemake` that the README tells after a crash."""
-    section = (ROOT / "README.md").read_text("utf-8").split("## When something goes wrong")[1]
+    """Arguments of each `snakemake` that the documentation names after a crash."""
+    section = (ROOT / "docs/troubleshooting.md").read_text("utf-8").split("## After a crash")[1]
     block = re.search(r"```bash\n(.*?)```", section, re.DOTALL)[1]
     return [line.split("#")[0].split()[1:] for line in block.replace("&&", "\n").splitlines()]
 

@@ -19,6 +19,7 @@ COPIED = (
     "README.md",
     "pyproject.toml",
     "workflow",
+    "docs",
     "lube",
     "notebooks",
     "profiles",

@@ -101,9 +101,8 @@ def test_the_pages_tell_configuration_assumptions_and_run_times(smoke, held):
     configuration = page(held, "configuration")
     assert "# A toy with the keys of paper.yaml" in configuration
     assert "<code>rollers.first.young_modulus</code></td><td>210 GPa</td>" in configuration
-    readme = (smoke / "README.md").read_text("utf-8")
-    table = readme.split("## What the paper leaves open")[1].split("\n\n")[1]
-    cells = [row.split("|")[1].strip() for row in table.splitlines()[2:]]
+    text = (smoke / "docs/assumptions.md").read_text("utf-8")
+    cells = [row.split("|")[1].strip() for row in text.splitlines() if row.startswith("|")][2:]
     assert len(cells) > 15
     for cell in cells:
         assert f"<td>{to_html(cell)[3:-4]}</td>" in page(held, "assumptions")
@@ -113,8 +112,8 @@ def test_the_pages_tell_configuration_assumptions_and_run_times(smoke, held):
         assert f"<code>{job}</code>" in times
 
 
-def test_the_readme_makes_the_pages_and_nothing_else(spare):
-    spare.append("README.md", "changed")
+def test_the_documentation_makes_the_pages_and_nothing_else(spare):
+    spare.append("docs/limits.md", "changed")
     assert spare.planned_pages() == {
         f"report/{name}.html"
         for name in ("facts", "findings", "limits", "files", "pipeline", "configuration",

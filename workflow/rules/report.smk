@@ -6,8 +6,8 @@ rule pages:
         comparison=result("comparison.nc"),
         # Told from here, so that the tree can be moved.
         study=os.path.relpath(config["study_file"]),
-        readme="README.md",
-        style="workflow/report/page.css",
+        docs=[f"docs/{page}.md" for page in ("limits", "assumptions", "architecture")],
+        templates=[str(path) for path in sorted(Path("lube/report/templates").iterdir())],
         sources=script_sources("pages"),
     output:
         facts=result("report/facts.html"),
@@ -50,7 +50,7 @@ rule times:
         # When all else is done.
         [result(f"{kind}.nc") for kind in DATASETS],
         products(ARCHIVED),
-        style="workflow/report/page.css",
+        templates=[str(path) for path in sorted(Path("lube/report/templates").iterdir())],
         sources=script_sources("times"),
     output:
         report(

@@ -1,8 +1,9 @@
-"""Pages of the report: whole by themselves; and the run times told on one of them."""
+"""Run times in the report, and the page that holds them."""
 
 import pytest
 
-from lube.report.pages import html_page, html_table, run_times
+from lube.report.pages import html_page
+from lube.report.run_times import run_times
 
 HEAD = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time\n"
 
@@ -19,18 +20,6 @@ def measured(tmp_path):
     return write
 
 
-def test_a_page_holds_its_style_and_escapes_its_title():
-    page = html_page("a < b", "<p>text</p>", "p { color: red }")
-    assert page.startswith("<!doctype html>")
-    assert page.count("a &lt; b") == 2 and "<p>text</p>" in page
-    assert "<style>\np { color: red }</style>" in page
-
-
-def test_a_table_has_its_kind():
-    assert html_table(["a"], [["1"], ["2"]], kind="numbers").startswith('<table class="numbers">')
-    assert html_table(["a"], [["1"], ["2"]]).count("<tr>") == 3
-
-
 def test_times_are_added_up_by_steps_and_the_longest_job_is_named(measured):
     jobs = {
         "film": [measured("film", 1.5, 150.2)],
@@ -39,18 +28,21 @@ def test_times_are_added_up_by_steps_and_the_longest_job_is_named(measured):
     html = run_times(jobs)
     assert "<strong>3 jobs</strong> took <strong>2 min 32 s</strong>" in html
     assert "<strong>contact_0</strong> with 1 min 40 s" in html
-    assert "900 MB, was <strong>contact_8</strong>" in html
+    assert "900 MB, was used by <strong>contact_8</strong>" in html
     step = next(line for line in html.splitlines() if "in batches" in line)
     assert "<td>2</td><td>2 min 30 s</td>" in step and "width: 99.0%" in step
     names = [line for line in html.splitlines() if line.startswith("<tr><td><code>")]
     assert [name.split("code>")[1][:-2] for name in names] == ["contact_0", "contact_8", "film"]
+    assert "2 h 5 min" in run_times({"contact": [measured("contact", 7530.0, 1)]})
 
 
-def test_a_job_that_was_too_short_or_left_nothing_is_no_obstacle(measured):
+def test_short_and_missing_jobs(measured):
     html = run_times({"film": [measured("film", 0.05, "NA")], "trace": ["nowhere.tsv"]})
-    assert "too short to tell" in html and "trace" not in html
+    assert "too short to measure" in html and "trace" not in html
     assert "No job" in run_times({"trace": ["nowhere.tsv"]})
 
 
-def test_hours_are_told_as_hours(measured):
-    assert "2 h 5 min" in run_times({"contact": [measured("contact", 7530.0, 1)]})
+def test_a_page_holds_its_style_and_escapes_its_title():
+    page = html_page("a < b", "<p>text</p>")
+    assert page.startswith("<!doctype html>") and "<p>text</p>" in page
+    assert page.count("a &lt; b") == 2 and page.count("font-size") > 3
