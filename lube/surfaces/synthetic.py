@@ -11,7 +11,7 @@ import functools
 import numpy as np
 import scipy.fft
 
-from lube.kernels.synthesis import random_directions, whole_steps
+from lube.kernels.synthesis import random_phasors, whole_steps
 
 ROLLERS = (1, 2)
 
@@ -76,7 +76,7 @@ def draw_line(spec, roller, seed):
     first_wave, amplitudes = _spectrum(spec, roller)
     points = spec.points[roller]
     waves = np.zeros(points // 2 + 1, np.complex64)
-    directions = random_directions(np.random.default_rng(seed), amplitudes.size)
+    directions = random_phasors(np.random.default_rng(seed), amplitudes.size)
     np.multiply(amplitudes, directions, out=waves[first_wave : first_wave + amplitudes.size])
     return whole_steps(scipy.fft.irfft(waves, points, overwrite_x=True))
 

@@ -179,7 +179,7 @@ def test_row_says_what_it_is(row):
     assert film_formulas.formula(row.name) is row
     assert row.source and row.remark and row.evaluate.__doc__
     assert row.remark in row.validity
-    assert row.place in ("central", "minimum", "mean")
+    assert row.thickness in ("central", "minimum", "mean")
 
 
 @every_row
@@ -265,7 +265,7 @@ def test_formulas_hold_where_the_grid_is_in_their_range(point):
     held = [row for row in ROWS if row.holds(*dimensionless.moes_numbers(*groups_at(*point)))]
     assert held
     for row in held:
-        computed = minimum if row.place == "minimum" else central
+        computed = minimum if row.thickness == "minimum" else central
         assert film(row.name, *point) == pytest.approx(computed, rel=TOLERANCE + 0.005)
 
 
@@ -323,7 +323,7 @@ def test_film_over_the_grid():
 def test_formulas_for_the_inner_film_spread_by_28_per_cent_within_their_range():
     """physics.md, section 3; the minimum formulas mean another place."""
     valid = film_formulas.formula("paper").holds(*dimensionless.moes_numbers(*groups_of_the_grid()))
-    films = [row.evaluate(*groups_of_the_grid())[valid] for row in ROWS if row.place != "minimum"]
+    films = [row.evaluate(*groups_of_the_grid())[valid] for row in ROWS if row.thickness != "minimum"]
     spread = np.max(films, axis=0) / np.min(films, axis=0)
     assert spread.max() == pytest.approx(1.28, abs=0.01)
     assert spread.min() > 1.09
