@@ -323,7 +323,9 @@ def test_film_over_the_grid():
 def test_formulas_for_the_inner_film_spread_by_28_per_cent_within_their_range():
     """physics.md, section 3; the minimum formulas mean another place."""
     valid = film_formulas.formula("paper").holds(*dimensionless.moes_numbers(*groups_of_the_grid()))
-    films = [row.evaluate(*groups_of_the_grid())[valid] for row in ROWS if row.thickness != "minimum"]
+    films = [
+        row.evaluate(*groups_of_the_grid())[valid] for row in ROWS if row.thickness != "minimum"
+    ]
     spread = np.max(films, axis=0) / np.min(films, axis=0)
     assert spread.max() == pytest.approx(1.28, abs=0.01)
     assert spread.min() > 1.09
