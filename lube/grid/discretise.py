@@ -168,7 +168,7 @@ def whole_numbers(
     >>> whole_numbers([1e-9], [3.9e-6], lines)
     (array([1000]), array([3]))
     """
-    # Heights stay far below so many steps, and more than 2**63 would overflow.
+    # No line reaches 2**40 steps, and 2**63 would overflow.
     steps = np.minimum(np.asarray(film_thickness) / lines.attrs["height_step"], 2.0**40)
     films = np.rint(steps)
     half_windows = np.floor(np.asarray(half_width) / lines.attrs["spacing"])

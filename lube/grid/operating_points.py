@@ -40,7 +40,7 @@ def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tupl
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """An operating point of a rig, with its film thickness and contact width.
+    """An operating point, with its film thickness and contact width.
 
     Attributes
     ----------

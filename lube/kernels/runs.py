@@ -122,11 +122,11 @@ def block_maxima(line: np.ndarray, reach: int) -> np.ndarray:
         for i in range(stretch):
             highest[done + i] = line[i]
         done += stretch
-    known = 1  # points in each maximum so far
-    while known < BLOCK:
-        for i in range(highest.size - known):
-            highest[i] = max(highest[i], highest[i + known])
-        known *= 2
+    covered = 1  # points in each maximum so far
+    while covered < BLOCK:
+        for i in range(highest.size - covered):
+            highest[i] = max(highest[i], highest[i + covered])
+        covered *= 2
     maxima = np.empty((BLOCK, size // BLOCK), np.int32)
     for column in range(maxima.shape[1]):
         for row in range(BLOCK):

@@ -62,8 +62,10 @@ def scan_window(
     contact_points = broken_points = total_overlap = 0
     segment_points = segment_overlap = 0
     i, k = first_1, first_2
-    for _ in range(width):
+    for point in range(width + 1):
         overlap = np.int64(line_1[i]) + line_2[k] - film
+        if point == width:
+            overlap = 0  # beyond the right edge, which cuts the last segment
         if overlap > 0:
             segment_points += 1
             segment_overlap += overlap
@@ -79,11 +81,6 @@ def scan_window(
         k += 1
         if k == line_2.size:
             k = 0
-    if segment_points > 0:  # cut by the right edge
-        contact_points += segment_points
-        total_overlap += segment_overlap
-        if layer_breaks(segment_points, segment_overlap, factor):
-            broken_points += segment_points
     return contact_points, broken_points, total_overlap
 
 

@@ -73,7 +73,7 @@ def overlap_sum(line: np.ndarray, start: int, stop: int, film: int) -> int:
 
 @kernel
 def _mark_step(step, points, broken, lengths):
-    """Mark a time step at which the layer on a segment of so many points is broken."""
+    """Mark a time step at which the layer on a segment of n points is broken; return n."""
     broken[step] = 1
     if lengths is not None:
         lengths[step] += points
@@ -82,7 +82,7 @@ def _mark_step(step, points, broken, lengths):
 
 @kernel
 def _mark_steps(first, last, points, broken, lengths):
-    """Mark the time steps first .. last in the same way."""
+    """Mark the time steps first .. last in the same way; return n for each of them."""
     broken[first : last + 1] = 1
     if lengths is not None:
         lengths[first : last + 1] += points

@@ -11,7 +11,7 @@ VACUUM_PERMITTIVITY = 8.8541878188e-12
 
 
 class Circuit(Protocol):
-    """Voltage divider of a rig: a source in series with a resistor, the leads and the contact.
+    """Voltage divider: a source in series with a resistor, the leads and the contact.
 
     Attributes
     ----------
@@ -52,8 +52,8 @@ def contact_resistance(contact_length: Values, resistivity: float) -> Values:
         return resistivity / np.asarray(contact_length, float)
 
 
-def divider_voltage(resistance: Values, rig: Circuit) -> Values:
-    r"""Voltage over leads and contact, which the rig logs, at a steady contact resistance.
+def divider_voltage(resistance: Values, circuit: Circuit) -> Values:
+    r"""Voltage over leads and contact, as logged, at a steady contact resistance.
 
     .. math:: V = U \frac{R_l + R}{R_s + R_l + R}
 
@@ -61,8 +61,8 @@ def divider_voltage(resistance: Values, rig: Circuit) -> Values:
     ----------
     resistance : float or numpy.ndarray
         Contact resistance :math:`R`, ohm; may be infinite.
-    rig : Circuit
-        The circuit.
+    circuit : Circuit
+        The voltage divider.
 
     Returns
     -------
@@ -72,15 +72,15 @@ def divider_voltage(resistance: Values, rig: Circuit) -> Values:
     Examples
     --------
     >>> from types import SimpleNamespace
-    >>> rig = SimpleNamespace(bias_voltage=1.0, series_resistance=100.0, lead_resistance=0.0)
-    >>> divider_voltage(np.array([100.0, np.inf]), rig).tolist()
+    >>> circuit = SimpleNamespace(bias_voltage=1.0, series_resistance=100.0, lead_resistance=0.0)
+    >>> divider_voltage(np.array([100.0, np.inf]), circuit).tolist()
     [0.5, 1.0]
     """
-    past = rig.series_resistance / (np.asarray(resistance, float) + rig.lead_resistance)
-    return rig.bias_voltage / (1.0 + past)
+    past = circuit.series_resistance / (np.asarray(resistance, float) + circuit.lead_resistance)
+    return circuit.bias_voltage / (1.0 + past)
 
 
-def resistance_from_voltage(voltage: Values, rig: Circuit) -> Values:
+def resistance_from_voltage(voltage: Values, circuit: Circuit) -> Values:
     r"""Contact resistance that follows from a logged voltage; inverse of `divider_voltage`.
 
     .. math:: R = R_s \frac{V}{U - V} - R_l
@@ -89,8 +89,8 @@ def resistance_from_voltage(voltage: Values, rig: Circuit) -> Values:
     ----------
     voltage : float or numpy.ndarray
         Logged voltage :math:`V`, V.
-    rig : Circuit
-        The circuit.
+    circuit : Circuit
+        The voltage divider.
 
     Returns
     -------
@@ -101,14 +101,14 @@ def resistance_from_voltage(voltage: Values, rig: Circuit) -> Values:
     Examples
     --------
     >>> from types import SimpleNamespace
-    >>> rig = SimpleNamespace(bias_voltage=1.0, series_resistance=100.0, lead_resistance=0.0)
-    >>> resistance_from_voltage(np.array([0.0, 0.5, 1.0]), rig).tolist()
+    >>> circuit = SimpleNamespace(bias_voltage=1.0, series_resistance=100.0, lead_resistance=0.0)
+    >>> resistance_from_voltage(np.array([0.0, 0.5, 1.0]), circuit).tolist()
     [0.0, 100.0, inf]
     """
     voltage = np.asarray(voltage, float)
-    rest = np.maximum(rig.bias_voltage - voltage, 0.0)
+    rest = np.maximum(circuit.bias_voltage - voltage, 0.0)
     with np.errstate(divide="ignore"):
-        return rig.series_resistance * voltage / rest - rig.lead_resistance
+        return circuit.series_resistance * voltage / rest - circuit.lead_resistance
 
 
 def film_capacitance(

@@ -1,8 +1,8 @@
 """Hertzian line contact of two cylinders.
 
 The pair is replaced by an elastic cylinder of the reduced radius on a rigid plane, with the
-reduced modulus E* of the paper (section 2). Film formulas are written with E' = 2 E*; wherever a
-modulus is passed on, its name says which of the two it is.
+reduced modulus E* of the paper (section 2). Film formulas are written with E' = 2 E*; the name of
+a modulus says which of the two it is.
 """
 
 import numpy as np

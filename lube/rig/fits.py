@@ -11,10 +11,10 @@ import scipy.special
 import xarray as xr
 
 from lube.physics.film_formulas import formula
+from lube.rig.map_curves import curve_at, layer_curve_at, logits_on
 from lube.rig.study_shares import limited
 from lube.schema import LIMITS
 from lube.statistics.curves import fit_factor, realisation_correlation
-from lube.statistics.map_curves import curve_at, layer_curve_at, logits_on
 from lube.statistics.one_pair import quantile
 from lube.statistics.sample_size import effective_sample_size, independent_windows
 

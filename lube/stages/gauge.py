@@ -17,9 +17,9 @@ import scipy.special
 import xarray as xr
 
 from lube.rig.fits import fit_alpha, fit_layer_strength, study_strength
+from lube.rig.map_curves import curve_at
 from lube.schema import AT_RECORDS, LIMITS, label
 from lube.statistics.curves import film_interval
-from lube.statistics.map_curves import curve_at
 from lube.statistics.one_pair import quantile, standard_error
 
 log = logging.getLogger(__name__)

@@ -109,7 +109,7 @@ def probability_limits(
     degrees : int or numpy.ndarray
         Degrees of freedom of that scatter, broadcastable to shape (...).
     windows : float or numpy.ndarray
-        Number :math:`n_w` of independent windows behind the estimate, broadcastable to shape (...).
+        Number :math:`n_w` of independent windows in all, broadcastable to shape (...).
 
     Returns
     -------

@@ -139,7 +139,7 @@ def film_interval(
     ratio : float
         From `lube.statistics.one_pair.scatter_ratio`.
     realisations : int
-        Number of realisations behind the curve.
+        Number of realisations from which the curve is estimated.
     noise : float, optional
         Standard error of the share from causes other than the roughness.
 
@@ -243,7 +243,7 @@ def fit_factor(
     covariance : numpy.ndarray
         Of the errors m - p, each over (p (1 - p) / n)^(1/2), shape (P, P).
     realisations : int
-        Number R of realisations behind the covariance; Student's quantile is used.
+        Number R of realisations from which the covariance is estimated.
     noise : numpy.ndarray
         Standard errors of the shares from causes other than the roughness, shape (P,).
 

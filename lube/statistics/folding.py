@@ -120,7 +120,7 @@ def refined_period(shares: np.ndarray, interval: float, nominal_period: float) -
     multiple = 1
     while multiple * (lag + reach) + 2 < shares.size:
         lag = _peak(correlation, multiple * lag, max(multiple * reach, 2.0)) / multiple
-        reach = 1.5 / multiple  # the peak is known to about one block
+        reach = 1.5 / multiple  # the position is accurate to about one block
         multiple *= 2
     return lag * interval
 

@@ -1,4 +1,4 @@
-"""How much one realisation of the roughness tells about a probability."""
+"""Independent windows and effective sample size of one realisation of the roughness."""
 
 import numpy as np
 import numpy.typing as npt

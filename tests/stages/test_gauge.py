@@ -7,11 +7,11 @@ from experiments import experiment_at, experiment_of, model_of_records
 
 from lube import contact_statistics, film_table
 from lube.rig.fits import ALPHA_FACTORS, fit_alpha, fit_layer_strength
+from lube.rig.map_curves import curve_at
 from lube.schema import LIMITS, check
 from lube.stages.comparison import compare
 from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
 from lube.stages.lubricant import lubricant_table
-from lube.statistics.map_curves import curve_at
 from lube.statistics.one_pair import prediction_limits
 
 FORMULA = {"film_formula": "paper"}

@@ -48,7 +48,7 @@ def layer_curve_at(probability: xr.DataArray, master: xr.Dataset, width: float) 
     Returns
     -------
     Curve
-        Against the logarithm of the lambda ratio; its sample size, which is not known, is NaN.
+        Against the logarithm of the lambda ratio; its sample size is unknown, NaN.
     """
     return _curve(probability, master, width, np.full(probability.shape[0], np.nan))
 
