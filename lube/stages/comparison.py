@@ -21,7 +21,8 @@ import xarray as xr
 from lube.rig.study_shares import at_comparison_threshold, levels_named, limited, log_lines
 from lube.schema import AT_RECORDS, LIMITS, label
 from lube.statistics.confidence import probability_interval
-from lube.statistics.one_pair import independent_windows, prediction_limits, quantile, sample_size
+from lube.statistics.one_pair import prediction_limits, quantile
+from lube.statistics.sample_size import effective_sample_size, independent_windows
 
 log = logging.getLogger(__name__)
 
@@ -79,7 +80,7 @@ def _side_by_side(model, experiment):
     mean, *limits = probability_interval(probabilities, windows)
     lower, upper = prediction_limits(
         mean,
-        sample_size(probabilities, windows),
+        effective_sample_size(probabilities, windows),
         model["scatter_ratio"].values,
         probabilities.shape[0],
         table["share_error"].values,
@@ -100,7 +101,8 @@ def _side_by_side(model, experiment):
 
 def _windows(table):
     """Count the independent contact windows in one realisation, shape (record,)."""
-    return independent_windows(table, 2.0 * table["contact_half_width"].values)
+    width = 2.0 * table["contact_half_width"].values
+    return independent_windows(table.attrs["travel"], width, table.attrs["longest_wavelength"])
 
 
 def _agreement(table, experiment):
@@ -222,7 +224,7 @@ def _leave_one_out(members, windows):
     rows = []
     for number, member in enumerate(members):
         others = np.delete(members, number, axis=0)
-        mean, size = others.mean(axis=0), sample_size(others, windows)
+        mean, size = others.mean(axis=0), effective_sample_size(others, windows)
         limits = prediction_limits(mean, size, np.ones(mean.size), len(others))
         figures = agreement(mean, *limits, member)
         rows.append([figures[name] for name in FIGURES])

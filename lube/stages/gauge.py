@@ -17,10 +17,10 @@ import scipy.special
 import xarray as xr
 
 from lube.rig.fits import fit_alpha, fit_layer_strength, study_strength
+from lube.rig.map_curves import curve_at
 from lube.rig.study_shares import limited
 from lube.schema import AT_RECORDS, label
 from lube.statistics.curves import film_interval
-from lube.statistics.map_curves import curve_at
 from lube.statistics.one_pair import quantile, standard_error
 
 _KEPT = ("film_thickness", "lambda_ratio", "contact_half_width", "comparison_threshold")
@@ -149,7 +149,7 @@ def _distance(curve, film, shares):
     count = shares.size
     mean = scipy.special.expit(curve.logit_at(film))
     others = np.clip((count * mean - shares) / (count - 1), 0.0, 1.0)
-    size = np.interp(film, curve.films, curve.looks)
+    size = np.interp(film, curve.films, curve.sample_size)
     with np.errstate(divide="ignore", invalid="ignore"):
         distance = (shares - others) / standard_error(others, size, 1.0, count - 1)
     return np.where(shares == others, 0.0, distance)

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
+from lube.grid.operating_points import surface_speeds
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_trace
@@ -55,7 +56,7 @@ def contact_trace(
     steps = revolution(pair, ratios)
     spacing = lines.attrs["spacing"]
     length = strip_trace(*pair, ratios, steps, films, half_windows, factor) * spacing
-    faster_surface = table["entrainment_speed"].values[0] * (1.0 + abs(ratio) / 2.0)
+    faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
     trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
         contact_length=(dims, length),

@@ -64,7 +64,7 @@ def test_table_fits_the_schema(table):
     floats = [v for v in table.variables.values() if v.dtype.kind == "f"]
     assert all(v.dtype == np.float64 and v.notnull().all() for v in floats)
     for name, row in film_formulas.FORMULAS.items():
-        assert table["formula_place"].sel(film_formula=name) == row.place
+        assert table["formula_place"].sel(film_formula=name) == row.thickness
         assert table["formula_source"].sel(film_formula=name) == row.source
 
 

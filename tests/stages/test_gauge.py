@@ -7,10 +7,10 @@ from experiments import experiment_at, experiment_of
 
 from lube import contact_statistics, film_table
 from lube.rig.fits import ALPHA_FACTORS, fit_alpha, fit_layer_strength
+from lube.rig.map_curves import curve_at
 from lube.schema import LIMITS, check, label
 from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
 from lube.stages.lubricant import lubricant_table
-from lube.statistics.map_curves import curve_at
 
 FORMULA = {"film_formula": "paper"}
 
