@@ -21,13 +21,13 @@ KINDS = list(FILES)
 
 
 def load_as_jobs_do(path, kind, study=None):
-    """Batches of lines stay whole steps, everything else is in its unit."""
+    """Load batches of lines in height steps, all other files in their units."""
     with opened(path, kind, study, raw=kind == "roughness_batch") as dataset:
         return dataset.load()
 
 
-def measured_times(kind):
-    """Times as `snakemake benchmark` saves them, none like another."""
+def measured_values(kind):
+    """Values as `snakemake benchmark` saves them, all different."""
     rng = np.random.default_rng(1)
     variables = {
         name: (row.dims, rng.uniform(1.0, 1e6, (2,) * len(row.dims)).astype(row.kind + "8"))
@@ -75,7 +75,7 @@ def datasets_of_every_kind(study):
         "rig": rig_records(rig_lines, film, own),
         "comparison": comparison,
         "gauge": gauge_records(master, contact, comparison),
-        "speed": measured_times("speed"),
-        "reading": measured_times("reading"),
-        "coverage": measured_times("coverage"),
+        "speed": measured_values("speed"),
+        "reading": measured_values("reading"),
+        "coverage": measured_values("coverage"),
     }
