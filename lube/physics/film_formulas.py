@@ -270,7 +270,7 @@ def grubin(load: Values, speed: Values, material: Values) -> Values:
     moes_load=(1.8, 3.5),
     moes_material=(5.0, 8.0),
     remark="+6 to +15 %; above the computed film everywhere, by 6 to 37 %: it gives the film of a "
-    "Barus oil at the maximum of pressure",
+    "Barus oil where the pressure is greatest",
 )
 def moes(load: Values, speed: Values, material: Values) -> Values:
     r"""Central film of Moes, which joins the asymptotes of all four regimes.
