@@ -4,11 +4,12 @@ See ``lube --help``.
 """
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 
 from lube.errors import LubeError, shown
-from lube.workflow.processors import compute_alike
+from lube.workflow.environment import AVX512
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -25,7 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 if all is well, 1 if something is wrong, 2 if the command could not be carried out.
     """
     options = _parser().parse_args(arguments)
-    compute_alike()
+    os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", AVX512)  # as in the workflow
     try:
         code = options.run(options)
         sys.stdout.flush()
