@@ -101,7 +101,7 @@ class About(StrictModel):
         "Dimensionality Reduction, and the break-up of a boundary layer.",
         description="what the results are, in a sentence or two",
     )
-    creators: Annotated[tuple[Creator, ...], AfterValidator(each_once)] = Field(
+    creators: tuple[Creator, ...] = Field(
         (), description="who made them; an archive needs one at least"
     )
     licence: Literal[tuple(LICENCES)] = Field("CC-BY-4.0", description="licence of the results")
@@ -120,8 +120,8 @@ class About(StrictModel):
 
     @field_validator("creators")
     @classmethod
-    def _check_orcids(cls, creators):
-        each_once(tuple(one.orcid for one in creators if one.orcid is not None))
+    def _check_creators(cls, creators):
+        each_once(tuple(one.orcid or f"{one.name}, {one.affiliation}" for one in creators))
         return creators
 
     @property

@@ -34,22 +34,22 @@ def check_command_line(arguments: Sequence[str]) -> None:
     parser.add_argument("--config", "-C", nargs="*", default=[])
     options, _ = parser.parse_known_args(arguments)
     try:
-        _check_files(options.configfile)
+        _check_number(options.configfile)
+        for file in options.configfile:
+            study_files(file)  # refuses what it cannot read
         for entry in options.config:
             _check_entry(entry)
     except LubeError as error:
         sys.exit(f"The study cannot start. {error}")
 
 
-def _check_files(files):
+def _check_number(files):
     if len(files) > 1:
-        study, *targets = files
-        raise StudyError(
-            f"--configfile takes one study, got {' '.join(files)}: put targets before it, as in "
-            f"`snakemake {' '.join(targets)} --configfile {study}`"
-        )
-    for file in files:
-        study_files(file)
+        study, *others = files
+        advice = f"put targets before it, as in `snakemake {' '.join(others)} --configfile {study}`"
+        if others[0].endswith((".yaml", ".yml")):
+            advice = f"a study that changes another begins with `based_on: {study}`"
+        raise StudyError(f"--configfile takes one study, got {' '.join(files)}: {advice}")
 
 
 def _check_entry(entry):
@@ -90,7 +90,7 @@ def study_of_command(
     LubeError
         If the study cannot be loaded, or ``--config`` changes it without a new name.
     """
-    _check_files([str(file) for file in files])
+    _check_number([str(file) for file in files])
     path = os.path.relpath(files[0]) if files else PAPER
     changes = {key: _typed(value) for key, value in config.items()}
     return load_study(path, changes), {"path": path, "changes": changes}

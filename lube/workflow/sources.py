@@ -17,7 +17,6 @@ _BY_VALUE = {"lube.study.study", "lube.schema.stages"}
 """Modules that reach a stage by the values they give it, which are parameters of its rule."""
 
 
-@functools.cache
 def imported_modules(code: str) -> tuple[str, ...]:
     """List the modules that some Python code imports, wherever in the code.
 
@@ -76,14 +75,26 @@ def sources(code: str, root: Path = ROOT) -> list[str]:
     """
     found, waiting = set(), list(imported_modules(code))
     while waiting:
-        module = waiting.pop()
-        path = root / Path(*module.split("."))
-        path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-        known = module == "lube" or module in _BY_VALUE or path in found
-        if module.split(".")[0] == "lube" and not known and path.is_file():
-            found.add(path)
-            waiting += imported_modules(path.read_text(encoding="utf-8"))
-    return sorted(path.relative_to(root).as_posix() for path in found)
+        file = _file_of(waiting.pop(), root)
+        if file is not None and file not in found:
+            found.add(file)
+            waiting += _imports_of(file)
+    return sorted(file.relative_to(root).as_posix() for file in found)
+
+
+@functools.cache
+def _file_of(module, root):
+    """File of a module of the package, if it is one and counts."""
+    if not module.startswith("lube.") or module in _BY_VALUE:
+        return None
+    path = root / Path(*module.split("."))
+    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    return path if path.is_file() else None
+
+
+@functools.cache
+def _imports_of(file):
+    return imported_modules(file.read_text(encoding="utf-8"))
 
 
 def script_sources(name: str, root: Path = ROOT) -> list[str]:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from lube.errors import LubeError
-from lube.schema import DATASETS, STAGES
+from lube.schema import DATASETS, STAGES, forerunners
 from lube.study.resolve import study_files
 from lube.study.study import Study
 
@@ -101,8 +101,11 @@ class StudyFiles:
         str
             Of the values that the stages use, and of what a file says about its makers.
         """
-        names = [name for stage in stages for name in (*STAGES[stage].same_values, stage)]
-        values = [self.study.stage_inputs(name) for name in names]
+        names = set(stages)
+        for name in (name for stage in stages for name in STAGES[stage].same_values):
+            # Their files are not read, so that their forerunners' values do not come with them.
+            names |= {*forerunners(name), name}
+        values = [self.study.stage_inputs(name) for name in STAGES if name in names]
         return digest([*values, self.study.about.in_files])
 
     def batches_of(self, stage: str) -> list[str]:

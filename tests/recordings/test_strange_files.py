@@ -13,6 +13,7 @@ from lube.recordings.manifest import read_manifest
 from lube.recordings.reader import open_recording
 from lube.study.field_types import Slug
 from lube.study.lubricant_record import SHIPPED_FOLDER, load_record, read_viscosity_csv
+from lube.study.resolve import resolved_content
 from lube.study.study import load_study
 
 OIL = SHIPPED_FOLDER / "mobilgear-shc-xmp-320.yaml"
@@ -79,7 +80,7 @@ def written(path, content):
 
 def named_by(folder, way, name):
     """A study, record or list that names another file, and what reads it."""
-    study = yaml.safe_load(SMOKE.read_text("utf-8"))
+    study = resolved_content(SMOKE)
     record = yaml.safe_load(OIL.read_text("utf-8"))
     row = {"file": name, "force": "1 N", "speed": "1 rpm", "temperature": "40 degC"}
     record["viscosity"] = {"source": "assumed: strange", "csv": name}
@@ -161,14 +162,14 @@ SLUGS += ["a b", "~", "$HOME", "CON", "a" * 64, "a\u2215b", "a:b", "{a}", "*", "
 def test_a_study_or_lubricant_has_a_name_fit_for_a_folder(tmp_path, name):
     with pytest.raises(ValidationError):
         TypeAdapter(Slug).validate_python(name)
-    for read, model in ((load_study, SMOKE), (load_record, OIL)):
-        content = yaml.safe_load(model.read_text("utf-8"))
+    oil = yaml.safe_load(OIL.read_text("utf-8"))
+    for read, content in ((load_study, resolved_content(SMOKE)), (load_record, oil)):
         assert attempt(read, written(tmp_path / "named.yaml", content | {"name": name})) is None
 
 
 @pytest.mark.parametrize("name", ["a", "0", "a-b_c", "a" * 63])
 def test_results_of_a_study_lie_in_a_folder_of_their_own(tmp_path, name):
-    content = yaml.safe_load(SMOKE.read_text("utf-8"))
+    content = resolved_content(SMOKE)
     study = load_study(written(tmp_path / "named.yaml", content | {"name": name}))
     results = tmp_path / "results"
     assert (results / study.name).resolve().parent == results.resolve()

@@ -115,7 +115,7 @@ class Repository:
 
     @contextlib.contextmanager
     def clean_slate(self):
-        """Take away all results for a while; compiled kernels stay, which hang on the path."""
+        """Remove all results for a while; compiled kernels, which depend on the path, stay."""
         kept = self.folder.with_name("kept")
         kept.mkdir()
         for name in ("results", ".snakemake"):

@@ -42,6 +42,7 @@ def test_a_target_after_an_option_is_to_be_put_first():
     assert "put targets before it, as in `snakemake archive --configfile mine.yaml`" in refusal(
         "--configfile", "mine.yaml", "archive"
     )
+    assert "begins with `based_on: a.yaml`" in refusal("--configfile", "a.yaml", "b.yaml")
     assert "`snakemake archive --config key=value`" in refusal("--config", "seed=3", "archive")
 
 

@@ -34,13 +34,10 @@ def test_a_changed_module_reruns_the_jobs_that_import_it_and_what_follows(spare)
     spare.append("lube/stages/trace.py", "# changed")
     spare.append("lube/study/study.py", "# changed")  # which works by its values alone
     assert spare.planned() == after(spare, "trace")
-    spare.append("lube/stages/film.py", "# changed")
-    assert spare.planned() == after(spare, "film", "trace") | BATCHES
 
 
 def test_a_changed_script_or_lubricant_record_reruns_what_follows(spare):
     spare.append("workflow/scripts/gauge.py", "# changed")
-    assert spare.planned() == after(spare, "gauge")
     spare.append("lube/study/lubricants/n-dodecane.yaml", "# not of this study")
     assert spare.planned() == after(spare, "gauge")
     spare.append("lube/study/lubricants/mobilgear-shc-xmp-320.yaml", "# changed")
@@ -51,15 +48,11 @@ def test_a_changed_script_or_lubricant_record_reruns_what_follows(spare):
     ("changes", "stages", "batches"),
     [
         ({"rig__noise": "30 uV"}, ("experiment", "rig"), set()),
-        ({"traces": [{"force": "800 N", "speed": "100 rpm", "temperature": "40 degC"}]},
-         ("trace", "rig"), set()),
-        ({"revolutions": 2}, ("contact", "master"), BATCHES),
         ({"realisations": 6}, ("contact", "master"),
          {"batches/contact_4.nc", "batches/master_4.nc"}),
-        ({"realisations": 2}, ("contact", "master"), set()),
         ({"seed": 1}, ("roughness", "contact", "master", "trace", "experiment"), BATCHES),
     ],
-    ids=["rig", "traces", "revolutions", "more realisations", "fewer realisations", "seed"],
+    ids=["rig", "realisations", "seed"],
 )  # fmt: skip
 def test_a_changed_value_reruns_the_stages_that_use_it_and_what_follows(
     spare, changes, stages, batches

@@ -121,11 +121,11 @@ def test_a_second_run_does_nothing(smoke):
 
 
 def test_a_clone_runs_its_own_lube_and_not_the_installed_one(spare):
-    spare.append("lube/stages/trace.py", "raise RuntimeError('the lube beside this workflow')")
-    finished = spare.snakemake("results/smoke/trace.nc")
-    assert "RuntimeError: the lube beside this workflow" in finished.stdout
-    spare.append("lube/workflow/figure_list.py", "raise RuntimeError('beside the Snakefile')")
-    assert "RuntimeError: beside the Snakefile" in spare.snakemake("--dry-run").stdout
+    spare.append("lube/stages/lubricant.py", "raise RuntimeError('in a job of this folder')")
+    finished = spare.snakemake("results/smoke/lubricant.nc")
+    assert "RuntimeError: in a job of this folder" in finished.stdout
+    spare.append("lube/workflow/figure_list.py", "raise RuntimeError('in this Snakefile')")
+    assert "in this Snakefile" in spare.snakemake("--dry-run").stdout
 
 
 @pytest.mark.slow

@@ -57,6 +57,9 @@ def test_fingerprints_follow_values_and_makers(files, study):
         assert of(about=About(title="mine"))(stage) != files.stage_inputs(stage)
     assert of(seed=1)("film") == files.stage_inputs("film")
     assert of(seed=1)("rig") != files.stage_inputs("rig")  # by the experiment's values
+    formulas = of(film_formulas=("moes",))
+    assert formulas("contact") == files.stage_inputs("contact")  # which reads film.nc
+    assert formulas("speed") != files.stage_inputs("speed")  # which reads no file
     assert files.stage_inputs("contact", "master") != files.stage_inputs("contact")
 
 

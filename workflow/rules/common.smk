@@ -32,11 +32,12 @@ batch_limits = FILES.batch_limits
 
 
 onstart:
-    # Snakemake would end in a traceback.
+    # Without this check Snakemake ends in a traceback.
     with one_line_errors():
         check_writable(RESULTS)
 
 
 onsuccess:
-    # The very last line of the run, after all that Snakemake says.
-    atexit.register(print, FILES.refused_records() or "", end="", file=sys.stderr)
+    # At exit, so that it is the last line of the run.
+    if refused := FILES.refused_records():
+        atexit.register(print, refused, file=sys.stderr)

@@ -10,7 +10,7 @@ rule coverage:
         result("logs/coverage.log"),
     benchmark:
         result("benchmarks/coverage.tsv")
-    # It shares its pairs of rollers out among them.
+    # It uses all cores itself.
     threads: workflow.cores
     params:
         study=stage_inputs("coverage"),

@@ -27,7 +27,7 @@ rule experiment:
         result("logs/experiment.log"),
     benchmark:
         result("benchmarks/experiment.tsv")
-    # The longest job of all: begun early, it runs beside the others.
+    # The longest job: started early, it runs beside the others.
     priority: 2
     params:
         study=stage_inputs("experiment"),

@@ -5,7 +5,7 @@ from lube.workflow.figure_list import chapters, study_figures
 with one_line_errors():
     FIGURES = study_figures(STUDY)
 
-# Figures of measured times are made when asked for.
+# Figures of measured times are made by `snakemake benchmark` only.
 TIMINGS = [name for name, figure in FIGURES.items() if figure.measured]
 ARCHIVED = [name for name in FIGURES if name not in TIMINGS]
 CHAPTERS = chapters(FIGURES)
@@ -22,7 +22,7 @@ def in_report(path):
         labels=lambda wildcards: {
             "Figure": wildcards.figure.split("_")[0],
             "Shows": plain(FIGURES[wildcards.figure].title),
-            # The report shows the first by the alphabet, and lets switch to the other.
+            # The report shows the alphabetically first one and offers the other.
             "Format": "PNG" if path.endswith("png") else "pdf",
         },
     )

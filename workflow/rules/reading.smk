@@ -10,7 +10,7 @@ rule reading:
         result("logs/reading.log"),
     benchmark:
         result("benchmarks/reading.tsv")
-    # With nothing beside it.
+    # All cores, so that no other job disturbs the measurement.
     threads: workflow.cores
     params:
         study=stage_inputs("reading"),

@@ -10,7 +10,7 @@ rule speed:
         result("logs/speed.log"),
     benchmark:
         result("benchmarks/speed.tsv")
-    # With nothing beside it.
+    # All cores, so that no other job disturbs the measurement.
     threads: workflow.cores
     params:
         study=stage_inputs("speed"),
