@@ -4,12 +4,11 @@ See ``lube --help``.
 """
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
 
 from lube.errors import LubeError, shown
-from lube.workflow.environment import AVX512
+from lube.workflow.environment import compute_alike
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -26,7 +25,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 if all is well, 1 if something is wrong, 2 if the command could not be carried out.
     """
     options = _parser().parse_args(arguments)
-    os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", AVX512)  # as in the workflow
+    compute_alike()
     try:
         code = options.run(options)
         sys.stdout.flush()

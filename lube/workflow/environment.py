@@ -7,12 +7,17 @@ AVX512 = "X86_V4 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AV
 """NumPy's names for its AVX-512 functions, in version 2.4 and before."""
 
 
-def prepare_environment(root: str | Path) -> None:
-    """Set environment variables for all processes started from this one.
+def compute_alike() -> None:
+    """Make NumPy do without its functions for AVX-512, here and in processes started from here.
 
-    Jobs and notebooks import the package from `root`, even if another clone is installed. NumPy
-    does without its functions for AVX-512, because they round the last digits differently from
-    those for other processors; a value set by the user is kept.
+    They round the last digits differently from those for other processors. It takes effect where
+    NumPy has not been imported yet; a value set by the user is kept.
+    """
+    os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", AVX512)
+
+
+def use_package(root: str | Path) -> None:
+    """Make processes started from here import the package of one folder, not an installed one.
 
     Parameters
     ----------
@@ -21,4 +26,3 @@ def prepare_environment(root: str | Path) -> None:
     """
     paths = [str(root), os.environ.get("PYTHONPATH")]
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, paths))
-    os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", AVX512)

@@ -18,7 +18,7 @@ _BY_VALUE = {"lube.study.study", "lube.schema.stages"}
 
 
 def imported_modules(code: str) -> tuple[str, ...]:
-    """List the modules that some Python code imports, wherever in the code.
+    """List the modules that some Python code imports, at its top or inside functions.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def imported_modules(code: str) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        Full names of whatever may be a module: for ``from lube.stages import film`` both
+        Full names of all that may be modules: for ``from lube.stages import film`` both
         ``lube.stages`` and ``lube.stages.film``. For a public name of the package, such as
         ``from lube import load``, the module that defines it.
 

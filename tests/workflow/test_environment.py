@@ -7,29 +7,31 @@ import sys
 from pathlib import Path
 
 import lube
-from lube.workflow.environment import prepare_environment
+from lube.workflow.environment import compute_alike, use_package
 
 NAME = "NPY_DISABLE_CPU_FEATURES"
 BLAS = {"linalg", "matmul", "dot", "inner", "tensordot", "lstsq", "polyfit"}
 BLAS |= {"corrcoef", "cov", "spearmanr", "pearsonr"}
 
 
-def test_later_processes_import_this_package_and_do_without_avx_512(monkeypatch, tmp_path):
-    monkeypatch.delenv(NAME, raising=False)
+def test_later_processes_import_the_package_of_a_folder(monkeypatch, tmp_path):
     monkeypatch.setenv("PYTHONPATH", "theirs")
-    prepare_environment(tmp_path)
+    use_package(tmp_path)
     assert os.environ["PYTHONPATH"] == f"{tmp_path}{os.pathsep}theirs"
-    code = "import numpy; numpy.show_runtime()"
-    command = [sys.executable, "-c", code]
+
+
+def test_later_processes_do_without_avx_512(monkeypatch):
+    monkeypatch.delenv(NAME, raising=False)
+    compute_alike()
+    command = [sys.executable, "-c", "import numpy; numpy.show_runtime()"]
     said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     found = said.split("'found': ")[1].split("'not_found'")[0]
     assert "V4" not in found and "AVX512" not in found
 
 
-def test_a_value_set_by_the_user_is_kept(monkeypatch, tmp_path):
-    monkeypatch.setenv("PYTHONPATH", "theirs")
+def test_a_value_set_by_the_user_is_kept(monkeypatch):
     monkeypatch.setenv(NAME, "")
-    prepare_environment(tmp_path)
+    compute_alike()
     assert os.environ[NAME] == ""
 
 

@@ -64,7 +64,7 @@ def on_a_disk(spare, disk, tmp_path):
     return with_options
 
 
-def test_a_full_disk_is_told_and_the_next_run_makes_what_is_missing(spare, smoke, on_a_disk):
+def test_a_full_disk_is_reported_and_the_next_run_makes_what_is_missing(spare, smoke, on_a_disk):
     oil, film = ((smoke.results / f"{kind}.nc").stat().st_size for kind in ("lubricant", "film"))
     on_a_disk(f"size={(oil + film // 2) // 1024}k")
     refused = spare.snakemake(FILM)
@@ -96,15 +96,15 @@ def test_an_archive_stays_until_a_new_one_is_whole(spare, on_a_disk):
     assert not list(spare.results.rglob("*.part"))
 
 
-def test_a_folder_that_cannot_be_written_is_told_before_any_job(spare, smoke, on_a_disk):
+def test_a_folder_that_cannot_be_written_is_reported_before_any_job(spare, smoke, on_a_disk):
     on_a_disk("size=100m", copied=True)
     (spare / COMPARISON).unlink()
     before = spare.snapshot()
     on_a_disk("remount,ro")
     refused = spare.snakemake(COMPARISON)
     assert refused.returncode != 0
-    told = "results/smoke: cannot be written: the folder results/smoke is not writable"
-    assert refused.stdout.splitlines()[-1] == f"The study cannot start. {told}"
+    line = "results/smoke: cannot be written: the folder results/smoke is not writable"
+    assert refused.stdout.splitlines()[-1] == f"The study cannot start. {line}"
     assert "Traceback" not in refused.stdout
     assert spare.snapshot() == before
     on_a_disk("remount,rw")
@@ -140,7 +140,7 @@ def test_a_second_snakemake_says_that_the_folder_is_locked_and_does_no_harm(spar
 # Damaged inputs
 
 
-def test_a_flipped_bit_is_told_and_deleting_the_file_mends_it(spare, smoke):
+def test_a_flipped_bit_is_reported_and_deleting_the_file_repairs_it(spare, smoke):
     contact = spare.results / "contact.nc"
     whole = bytearray(contact.read_bytes())
     whole[whole.index(b"pan-hamrock")] ^= 1  # no checksum of HDF5's covers texts

@@ -33,15 +33,15 @@ def test_what_snakemake_cannot_read_is_refused_in_one_line_too(smoke):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "words"),
     [
         (("--configfile", SMOKE, "archive"), "`snakemake archive --configfile"),
         (("--config", "seed=3"), "name: got None, need one other than 'paper'"),
     ],
     ids=["target last", "no new name"],
 )
-def test_a_mistaken_command_is_refused_before_any_job(smoke, arguments, told):
-    assert told in refusal(smoke, *arguments, study=None)
+def test_a_mistaken_command_is_refused_before_any_job(smoke, arguments, words):
+    assert words in refusal(smoke, *arguments, study=None)
 
 
 def test_a_notebook_that_is_no_figure_is_refused_before_any_job(spare):

@@ -11,11 +11,13 @@ sys.path.insert(0, str(workflow.basedir))
 from lube.schema import DATASETS
 from lube.storage.files import check_writable
 from lube.workflow.command_line import study_of_command
-from lube.workflow.environment import prepare_environment
+from lube.workflow.environment import compute_alike, use_package
 from lube.workflow.sources import script_sources
 from lube.workflow.study_files import StudyFiles, digest, one_line_errors
 
-prepare_environment(workflow.basedir)
+# For all jobs.
+use_package(workflow.basedir)
+compute_alike()
 
 with one_line_errors():
     STUDY, config["study"] = study_of_command(workflow.configfiles, workflow.config_settings.config)
