@@ -197,16 +197,12 @@ def held_out_shares(study, table, motion, pairs, pool):
 
 def experiment_of(study, table, motion, turns):
     """Records of one pair at all operating points, each of so many turns; their shares follow."""
-    unset = dict.fromkeys(Entry.__dataclass_fields__)
     entries = [
-        Entry(
-            **unset
-            | {
-                "where": f"{turns:g} turns, point {number}",
-                "probability": 0.5,
-                "slide_to_roll_ratio": MOTIONS[motion],
-                **{name: float(row[name]) for name in ("force", "speed", "temperature")},
-            }
+        Entry.model_construct(
+            where=f"{turns:g} turns, point {number}",
+            probability=0.5,
+            slide_to_roll_ratio=MOTIONS[motion],
+            **{name: float(row[name]) for name in ("force", "speed", "temperature")},
         )
         for number, row in enumerate(table.to_dict("records"))
     ]
