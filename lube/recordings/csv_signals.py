@@ -16,7 +16,7 @@ from lube.recordings.signals import Channel, Signal, find_signals, header_cell
 from lube.study.small_csv import delimiter_of, split_cells
 
 HEAD_BYTES = 2**20
-"""The column names, and a row that shows the decimal sign, are within so many bytes."""
+"""The first rows, which show decimal sign and sampling interval, are within so many bytes."""
 
 PIECE_BYTES = 2**23
 """Text read at a time; PyArrow parses it in blocks of a megabyte, on all cores."""
@@ -69,10 +69,11 @@ class TextSignal:
         DataError
             At the first line that is not a row of numbers.
         """
-        rows = 0
+        rows, size = 0, min(HEAD_BYTES, PIECE_BYTES)  # a small first piece makes opening quick
         with open(self.path, "rb") as file:
             file.seek(self.begin)
-            while text := file.read(PIECE_BYTES):
+            while text := file.read(size):
+                size = PIECE_BYTES
                 whole_lines = text.rfind(b"\n") + 1 or len(text)
                 file.seek(whole_lines - len(text), os.SEEK_CUR)
                 table = self._parsed(memoryview(text)[:whole_lines], rows)

@@ -81,21 +81,21 @@ class Recording:
 
 def _value_fault(values, quantity):
     """Index of the first value that is not allowed, and the reason; None if there is none."""
-    # An infinite resistance is an open circuit.
-    allowed = values > -np.inf if quantity == "resistance" else np.isfinite(values)
-    if allowed.all():
+    # An infinite resistance is an open circuit. Comparisons with NaN are false.
+    most = np.inf if quantity == "resistance" else np.finfo(float).max
+    if values.min() > -np.inf and values.max() <= most:
         return None
-    index = int(np.argmin(allowed))
+    index = int(np.argmin((values > -np.inf) & (values <= most)))
     return index, f"got {values[index]} as {quantity}, need a number"
 
 
 def _time_fault(times, before, interval):
     """Index of the first time that does not follow the one before, and the reason; or None."""
     steps = np.diff(times, prepend=before)
-    uniform = (steps > 0.5 * interval) & (steps < 1.5 * interval)
-    if uniform.all():
+    least, most = 0.5 * interval, 1.5 * interval
+    if steps.min() > least and steps.max() < most:
         return None
-    index = int(np.argmin(uniform))
+    index = int(np.argmin((steps > least) & (steps < most)))
     before, now = times[index - 1] if index else before, times[index]
     if not np.isfinite(now):
         return index, f"got {now} as time, need a number"
