@@ -56,6 +56,10 @@ class BinarySignal:
     measured: Signal
     sampling_interval: float | None
 
+    def head(self) -> tuple[np.ndarray, np.ndarray | None] | None:
+        """Read the first samples and times, as of `parts`; None if there are none."""
+        return next(self.parts(), None)
+
     def parts(self) -> Iterator[tuple[np.ndarray, np.ndarray | None]]:
         """Read the recording.
 

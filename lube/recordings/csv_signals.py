@@ -1,8 +1,10 @@
-"""Recordings as CSV files of any length, read in pieces of whole lines by PyArrow."""
+"""Recordings as CSV files of any length, parsed by PyArrow in pieces of whole lines."""
 
 import os
 import re
+from collections import deque
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -18,8 +20,8 @@ from lube.study.small_csv import delimiter_of, split_cells
 HEAD_BYTES = 2**20
 """The first rows, which show decimal sign and sampling interval, are within so many bytes."""
 
-PIECE_BYTES = 2**23
-"""Text read at a time; PyArrow parses it in blocks of a megabyte, on all cores."""
+PIECE_BYTES = 2**22
+"""Text parsed at a time on each core."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,12 @@ class TextSignal:
     # A CSV file can state its sampling interval by a column of times only.
     sampling_interval = None
 
+    def head(self) -> tuple[np.ndarray, np.ndarray | None] | None:
+        """Read the first samples and times, as of `parts`; None if there are none."""
+        return next(self._converted(map(self._parsed, self._pieces())), None)
+
     def parts(self) -> Iterator[tuple[np.ndarray, np.ndarray | None]]:
-        """Read the recording.
+        """Read the recording, on all cores.
 
         Yields
         ------
@@ -69,43 +75,51 @@ class TextSignal:
         DataError
             At the first line that is not a row of numbers.
         """
-        rows, size = 0, min(HEAD_BYTES, PIECE_BYTES)  # a small first piece makes opening quick
-        with open(self.path, "rb") as file:
-            file.seek(self.begin)
-            while text := file.read(size):
-                size = PIECE_BYTES
-                whole_lines = text.rfind(b"\n") + 1 or len(text)
-                file.seek(whole_lines - len(text), os.SEEK_CUR)
-                table = self._parsed(memoryview(text)[:whole_lines], rows)
-                rows += table.num_rows
-                if table.num_rows:
-                    times = None if self.time is None else _column(table, self.time)
-                    yield _column(table, self.measured), times
+        return self._converted(_on_all_cores(self._parsed, self._pieces()))
 
     def where(self, sample: int) -> str:
         """Line of a sample, counted from 0, in the file."""
         number, _ = self._row(sample)
         return f"line {number}"
 
-    def _parsed(self, text, rows_before, on_all_cores=True):
+    def _pieces(self):
+        """Text of the rows, in pieces of whole lines; the first is small, and is soon read."""
+        size = min(HEAD_BYTES, PIECE_BYTES)
+        with open(self.path, "rb") as file:
+            file.seek(self.begin)
+            while text := file.read(size):
+                size = PIECE_BYTES
+                whole_lines = text.rfind(b"\n") + 1 or len(text)
+                file.seek(whole_lines - len(text), os.SEEK_CUR)
+                yield memoryview(text)[:whole_lines]
+
+    def _parsed(self, text):
         names = [str(index) for index in range(self.width)]
         used = [str(signal.index) for signal in (self.time, self.measured) if signal is not None]
+        return pyarrow.csv.read_csv(
+            pyarrow.py_buffer(text),
+            # Only on a single core does PyArrow say which row is wrong.
+            pyarrow.csv.ReadOptions(use_threads=False, block_size=len(text), column_names=names),
+            pyarrow.csv.ParseOptions(delimiter=self.delimiter),
+            pyarrow.csv.ConvertOptions(
+                include_columns=used,
+                column_types=dict.fromkeys(used, pyarrow.float64()),
+                null_values=[],
+                decimal_point=self.decimal_sign,
+            ),
+        )
+
+    def _converted(self, tables):
+        """Values and times of tables that are parsed one after the other."""
+        rows = 0
         try:
-            return pyarrow.csv.read_csv(
-                pyarrow.py_buffer(text),
-                pyarrow.csv.ReadOptions(use_threads=on_all_cores, column_names=names),
-                pyarrow.csv.ParseOptions(delimiter=self.delimiter),
-                pyarrow.csv.ConvertOptions(
-                    include_columns=used,
-                    column_types=dict.fromkeys(used, pyarrow.float64()),
-                    null_values=[],
-                    decimal_point=self.decimal_sign,
-                ),
-            )
+            for table in tables:
+                rows += table.num_rows
+                if table.num_rows:
+                    times = None if self.time is None else _column(table, self.time)
+                    yield _column(table, self.measured), times
         except pyarrow.ArrowInvalid as error:
-            if on_all_cores:  # PyArrow says which row is wrong on a single core only
-                return self._parsed(text, rows_before, on_all_cores=False)
-            raise DataError(f"{self.path}: {self._refusal(str(error), rows_before)}") from None
+            raise DataError(f"{self.path}: {self._refusal(str(error), rows)}") from None
 
     def _refusal(self, reason, rows_before):
         """Say which line is not a row of numbers, given PyArrow's reason."""
@@ -127,6 +141,16 @@ class TextSignal:
             lines = ((number, line.rstrip("\n")) for number, line in enumerate(file, start=1))
             rows = (line for line in islice(lines, self.header_line, None) if line[1])
             return next(islice(rows, row, None))
+
+
+def _on_all_cores(function, items):
+    """Yield the results of a function in order, computing some of them ahead."""
+    cores, items = pyarrow.cpu_count(), iter(items)
+    with ThreadPoolExecutor(cores) as pool:
+        ahead = deque(pool.submit(function, item) for item in islice(items, cores + 1))
+        while ahead:
+            yield ahead.popleft().result()
+            ahead.extend(pool.submit(function, item) for item in islice(items, 1))
 
 
 def _column(table, signal):

@@ -155,9 +155,10 @@ def open_recording(
     path = Path(path)
     signal = _OPENERS[_kind(path)](path, channel, unit)
     signal = replace(signal, measured=_before_amplifier(path, signal.measured, gain, offset))
-    values, times = next(signal.parts(), (None, None))
-    if values is None:
+    head = signal.head()
+    if head is None:
         raise DataError(f"{path}: empty recording, need samples")
+    _, times = head
     stated = signal.sampling_interval if times is None else _interval_of(path, signal, times)
     interval = _agreed_interval(path, stated, sampling_interval)
     return Recording(path, signal.measured.quantity, interval, signal)
