@@ -28,7 +28,8 @@ def relative_errors(moes_load, moes_material, viscosity, alpha):
     """Relative error of each formula against the computed film at its place."""
     numbers, (central, minimum) = solve_at(moes_load, moes_material, viscosity, alpha)
     return {
-        name: row.evaluate(*numbers) * RADIUS / (minimum if row.place == "minimum" else central) - 1
+        name: row.evaluate(*numbers) * RADIUS / (minimum if row.thickness == "minimum" else central)
+        - 1
         for name, row in FORMULAS.items()
     }
 

@@ -56,7 +56,7 @@ def formula_table():
     str
         Markdown.
     """
-    rows = [(f"`{row.name}`", row.place, row.source, row.validity) for row in FORMULAS.values()]
+    rows = [(f"`{row.name}`", row.thickness, row.source, row.validity) for row in FORMULAS.values()]
     held = f"within {100.0 * TOLERANCE:g} % of the computed film for"
     return _table(("name", "film", "source", held), rows)
 

@@ -15,7 +15,8 @@ from lube.rig.study_shares import limited
 from lube.schema import LIMITS
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.map_curves import curve_at, layer_curve_at, logits_on
-from lube.statistics.one_pair import independent_windows, quantile, sample_size
+from lube.statistics.one_pair import quantile
+from lube.statistics.sample_size import effective_sample_size, independent_windows
 
 ALPHA_FACTORS = np.geomspace(1.0 / 8.0, 8.0, 193)
 """Factors of the pressure-viscosity coefficient that are tried."""
@@ -227,7 +228,9 @@ def _members(comparison):
     """Probabilities of the realisations at the records, and their effective sample size."""
     probabilities = comparison["breakthrough_probability"].values
     widths = 2.0 * comparison["contact_half_width"].values
-    return probabilities, sample_size(probabilities, independent_windows(comparison, widths))
+    attributes = comparison.attrs
+    windows = independent_windows(attributes["travel"], widths, attributes["longest_wavelength"])
+    return probabilities, effective_sample_size(probabilities, windows)
 
 
 def _of_records(comparison):

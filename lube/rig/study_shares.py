@@ -4,7 +4,7 @@ import pandas as pd
 import xarray as xr
 
 from lube.errors import DataError
-from lube.grid.levels import SAME, level_index, levels_told
+from lube.grid.levels import SAME, format_levels, level_index
 from lube.schema import COORDINATES, LIMITS
 
 MOST_LINES = 10
@@ -53,7 +53,7 @@ def at_comparison_threshold(experiment):
     if index is None:
         raise DataError(
             f"experiment: threshold {wanted:g} ohm is not among those evaluated, "
-            f"{levels_told(levels)}"
+            f"{format_levels(levels)}"
         )
     shares = experiment[[f"contact_share{limit}" for limit in LIMITS]]
     return shares.isel(threshold=index, drop=True)

@@ -20,7 +20,8 @@ import xarray as xr
 from lube.rig.study_shares import at_comparison_threshold, levels_named, log_lines
 from lube.schema import AT_RECORDS, LIMITS, label
 from lube.statistics.confidence import probability_interval
-from lube.statistics.one_pair import independent_windows, prediction_limits, quantile, sample_size
+from lube.statistics.one_pair import prediction_limits, quantile
+from lube.statistics.sample_size import effective_sample_size, independent_windows
 
 log = logging.getLogger(__name__)
 
@@ -97,7 +98,8 @@ def _shares(shares):
 
 def _windows(table):
     """Windows of one realisation that share no roughness, shape (record,)."""
-    return independent_windows(table, 2.0 * table["contact_half_width"].values)
+    widths = 2.0 * table["contact_half_width"].values
+    return independent_windows(table.attrs["travel"], widths, table.attrs["longest_wavelength"])
 
 
 def _mean_and_limits(table):
@@ -110,7 +112,7 @@ def _prediction(table):
     probabilities = table[PROBABILITY].values
     return prediction_limits(
         table["simulated_probability"].values,
-        sample_size(probabilities, _windows(table)),
+        effective_sample_size(probabilities, _windows(table)),
         table["scatter_ratio"].values,
         probabilities.shape[0],
         table["share_error"].values,
@@ -223,8 +225,8 @@ def _left_out(members, windows):
     rows = []
     for number in range(count):
         others = np.delete(members, number, axis=0)
-        mean, looks = others.mean(axis=0), sample_size(others, windows)
-        limits = prediction_limits(mean, looks, np.ones(mean.size), count - 1)
+        mean, sample_size = others.mean(axis=0), effective_sample_size(others, windows)
+        limits = prediction_limits(mean, sample_size, np.ones(mean.size), count - 1)
         figures = agreement(mean, *limits, members[number])
         rows.append([figures[name] for name in FIGURES])
     return np.array(rows)

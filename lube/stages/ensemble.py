@@ -13,6 +13,7 @@ import xarray as xr
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
 from lube.schema import label
+from lube.statistics import sample_size
 from lube.statistics.confidence import probability_interval
 
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
@@ -49,11 +50,12 @@ def independent_windows(contact, film):
             f"the contact results are at forces {contact['force'].values.tolist()} N, the film "
             f"table has {film['force'].values.tolist()} N"
         ) from None
-    reach = 2.0 * half_width + contact.attrs["longest_wavelength"]
     slower = xr.apply_ufunc(
         lambda ratio: min(speed_ratios(ratio)), contact["slide_to_roll_ratio"], vectorize=True
     )
-    return np.maximum(contact.attrs["travel"] * slower / reach, 1.0)
+    return sample_size.independent_windows(
+        contact.attrs["travel"] * slower, 2.0 * half_width, contact.attrs["longest_wavelength"]
+    )
 
 
 def gather(batches, film):
@@ -98,8 +100,10 @@ def gather_map(batches):
         As `gather`.
     """
     joined = _join(batches)
-    reach = joined["contact_width"] + joined.attrs["longest_wavelength"]
-    return _add_intervals(joined, np.maximum(joined.attrs["travel"] / reach, 1.0), "master")
+    windows = sample_size.independent_windows(
+        joined.attrs["travel"], joined["contact_width"], joined.attrs["longest_wavelength"]
+    )
+    return _add_intervals(joined, windows, "master")
 
 
 def _join(batches):

@@ -14,7 +14,7 @@ import xarray as xr
 from lube.errors import DataError, LubeError
 from lube.grid.discretise import speed_ratios
 from lube.grid.levels import level_near
-from lube.grid.operating_points import operating_points
+from lube.grid.operating_points import operating_points, surface_speeds
 from lube.physics.electrical import resistance_from_voltage
 from lube.recordings.reader import open_recording
 from lube.rig.contact_share import folded_counts, record_counter, share_interval
@@ -252,7 +252,7 @@ class _Record:
     def _period(self):
         """Time of a revolution of the timed roller, by the speed."""
         conditions, points = self.conditions, self._study.line_spec.points
-        faster = conditions.speed * (1.0 + abs(conditions.slide_to_roll_ratio) / 2.0)
+        faster = max(surface_speeds(conditions.speed, conditions.slide_to_roll_ratio))
         return 60.0 / faster * (self._lasting()[0] / points[0])
 
     @property

@@ -165,7 +165,7 @@ def _film(rows, rollers, numbers, table):
             "film_thickness": film,
             "lambda_ratio": film / rollers.composite_rms_roughness,
             "in_validity_range": xr.concat(valid, dim=names, join="exact"),
-            "formula_place": ("film_formula", [row.place for row in rows]),
+            "formula_place": ("film_formula", [row.thickness for row in rows]),
             "formula_source": ("film_formula", [row.source for row in rows]),
         }
     )

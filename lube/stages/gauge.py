@@ -154,7 +154,7 @@ def _distance(curve, film, shares):
     mean = scipy.special.expit(curve.logit_at(film))
     others = (count * mean - shares) / (count - 1)
     others = np.clip(others, 0.0, 1.0)
-    looks = np.interp(film, curve.films, curve.looks)
+    sample_size = np.interp(film, curve.films, curve.sample_size)
     with np.errstate(divide="ignore", invalid="ignore"):
-        distance = (shares - others) / standard_error(others, looks, 1.0, count - 1)
+        distance = (shares - others) / standard_error(others, sample_size, 1.0, count - 1)
     return np.where(shares == others, 0.0, distance)

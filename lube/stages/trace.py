@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
+from lube.grid.operating_points import surface_speeds
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_trace
@@ -49,7 +50,7 @@ def contact_trace(lines, film, points, boundary_layer, resistivity):
     broken = strip_trace(*pair, ratios, steps, films, half_windows, factor)
     spacing = lines.attrs["spacing"]
     length = (("operating_point", "time"), broken * spacing)
-    faster_surface = places["entrainment_speed"].values[0] * (1.0 + abs(ratio) / 2.0)
+    faster_surface = max(surface_speeds(places["entrainment_speed"].values[0], ratio))
     trace = places[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
         contact_length=length,
         contact_resistance=(length[0], contact_resistance(length[1], resistivity)),

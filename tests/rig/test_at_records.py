@@ -12,7 +12,8 @@ from lube.kernels.scan import scan_statistics
 from lube.rig.at_records import _mixed
 from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch
-from lube.statistics.one_pair import repeat_factor, sample_size
+from lube.statistics.one_pair import repeat_factor
+from lube.statistics.sample_size import effective_sample_size
 from lube.study.lubricant_record import load_record
 
 PROBABILITY = "breakthrough_probability"
@@ -244,4 +245,4 @@ def test_one_realisation_tells_no_scatter_and_counts_whole(busy):
     model = model_of_records(experiment, busy.film, busy.contact.isel(realisation=[0]), study)
     # As if all persisted: to be wide is to be honest.
     assert (model["scatter_ratio"] > 0.9).all()
-    assert sample_size(model[PROBABILITY].values, 7.0).tolist() == [[7.0] * 4] * 2
+    assert effective_sample_size(model[PROBABILITY].values, 7.0).tolist() == [[7.0] * 4] * 2

@@ -13,7 +13,8 @@ from lube.errors import DataError
 from lube.rig.study_shares import over_grid
 from lube.schema import EXPERIMENT_DIMS, check
 from lube.stages.comparison import FIGURES, GROUPS, agreement, compare
-from lube.statistics.one_pair import prediction_limits, quantile, sample_size
+from lube.statistics.one_pair import prediction_limits, quantile
+from lube.statistics.sample_size import effective_sample_size
 
 FORMULA = {"film_formula": "paper"}
 POINT = {"force": 400.0, "speed": 100.0, "temperature": 60.0}
@@ -132,7 +133,7 @@ def test_a_threshold_that_was_not_evaluated_is_refused(compared):
 
 
 def test_the_prediction_is_that_of_one_pair_of_rollers(perfect, members, mean):
-    looks = sample_size(members, 1.0)
+    looks = effective_sample_size(members, 1.0)
     limits = prediction_limits(mean, looks, np.ones(12), 32)
     for side, expected in zip(("lower", "upper"), limits, strict=True):
         np.testing.assert_allclose(perfect[f"predicted_share_{side}"].sel(FORMULA), expected)

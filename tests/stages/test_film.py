@@ -159,7 +159,7 @@ def test_lambda_is_the_film_over_the_composite_roughness(table):
 
 def test_places_and_sources_stand_beside_the_films(table):
     for name, row in film_formulas.FORMULAS.items():
-        assert table["formula_place"].sel(film_formula=name) == row.place
+        assert table["formula_place"].sel(film_formula=name) == row.thickness
         assert table["formula_source"].sel(film_formula=name) == row.source
 
 

@@ -89,7 +89,7 @@ def test_the_limits_are_films_whose_single_pairs_just_reach_the_share(busy, at_p
     for limit, side in (("_lower", 0), ("_upper", 1)):
         film = np.log(gauged[f"gauged_lambda_ratio{limit}"].item())
         probability = 1.0 / (1.0 + np.exp(-curve.logit_at(film)))
-        looks = np.interp(film, curve.films, curve.looks)
+        looks = np.interp(film, curve.films, curve.sample_size)
         touched = prediction_limits(probability, looks, 1.0, 32)[side]
         assert touched == pytest.approx(share, abs=2e-3)
 
