@@ -11,7 +11,7 @@ import scipy.special
 import xarray as xr
 
 from lube.physics.film_formulas import formula
-from lube.rig.study_shares import limited
+from lube.rig.study_shares import values_with_limits
 from lube.schema import LIMITS
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.map_curves import curve_at, layer_curve_at, logits_on
@@ -183,7 +183,7 @@ def _fits(name, tried, truth, logits, contact, comparison):
         coverage = _coverage(np.log(tried), np.log(truth), model, here)
         fits[o, f] = *fit_records(np.log(tried), model, here), coverage
     *found, coverage = np.moveaxis(fits, -1, 0)
-    variables = limited(name, found) | {f"{name}_coverage": coverage}
+    variables = values_with_limits(name, found) | {f"{name}_coverage": coverage}
     dims = ("fitted_lubricant", "film_formula")
     return xr.Dataset(
         {each: (dims, values) for each, values in variables.items()},
