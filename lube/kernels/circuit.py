@@ -6,7 +6,17 @@ from lube.kernels.compiler import kernel
 
 
 @kernel
-def sampled_voltage(contact, targets, memories, gain, offset, limit, passed, ratio, samples):
+def sampled_voltage(
+    contact: np.ndarray,
+    targets: np.ndarray,
+    memories: np.ndarray,
+    gain: float,
+    offset: float,
+    limit: float,
+    passed: float,
+    ratio: float,
+    samples: int,
+) -> np.ndarray:
     r"""Compute the sampled voltage of a contact that is known at every time step.
 
     In a time step the contact resistance is constant, so that the voltage over the gap, which

@@ -13,7 +13,9 @@ CHUNK = 4096
 
 
 @kernel
-def count_below(values, seen, doublings, limits, counts):
+def count_below(
+    values: np.ndarray, seen: int, doublings: int, limits: np.ndarray, counts: np.ndarray
+) -> None:
     """Count the samples of a piece of a record below each limit.
 
     Parameters
@@ -52,7 +54,16 @@ def count_below(values, seen, doublings, limits, counts):
 
 
 @kernel
-def follow_contact(values, seen, doublings, limits, releases, hold, states, counts):
+def follow_contact(
+    values: np.ndarray,
+    seen: int,
+    doublings: int,
+    limits: np.ndarray,
+    releases: np.ndarray,
+    hold: int,
+    states: np.ndarray,
+    counts: np.ndarray,
+) -> None:
     """Count the samples of a piece of a record in contact, with hysteresis and hold time.
 
     A trigger closes where a value is below the limit, and opens where a value is not below the
