@@ -18,14 +18,11 @@ from lube.recordings.csv_signals import TextSignal, open_text
 from lube.study.field_types import bounded
 from lube.units import parse_electrical, parse_number
 
-_KIND_OF_SUFFIX = {
-    ".csv": "text",
-    ".tsv": "text",
-    ".txt": "text",
-    ".nc": "NetCDF",
-    ".nc4": "NetCDF",
-    ".tdms": "TDMS",
-}
+_KIND_OF_SUFFIX = (
+    dict.fromkeys((".csv", ".tsv", ".txt"), "text")
+    | dict.fromkeys((".nc", ".nc4"), "NetCDF")
+    | {".tdms": "TDMS"}
+)
 _KIND_OF_MARK = {b"\x89HDF": "NetCDF", b"CDF": "NetCDF", b"TDSm": "TDMS"}
 _OPENERS = {"text": open_text, "NetCDF": open_netcdf, "TDMS": open_tdms}
 
@@ -97,15 +94,9 @@ def _time_fault(times, before, interval):
         return None
     index = int(np.argmin((steps > least) & (steps < most)))
     before, now = times[index - 1] if index else before, times[index]
-    if not np.isfinite(now):
-        return index, f"got {now} as time, need a number"
-    if now == before:
-        return index, f"time {now:.9g} s is repeated, need rising times"
-    if now < before:
-        return index, f"time falls from {before:.9g} s to {now:.9g} s, need rising times"
     return index, (
-        f"time steps by {now - before:.6g} s, need uniform steps of about {interval:.6g} s "
-        "(gaps are not filled)"
+        f"time goes from {before:.9g} s to {now:.9g} s, need uniform steps of about "
+        f"{interval:.6g} s (gaps are not filled)"
     )
 
 
@@ -189,14 +180,13 @@ def _kind(path):
 
 def _before_amplifier(path, measured, gain, offset):
     """Undo the gain and offset of an amplifier."""
+    key = "gain"
     try:
         gain = bounded(parse_number(gain), None, other_than=0.0)
-    except LubeError as error:
-        raise DataError(f"{path}: gain: {error}") from None
-    try:
+        key = "offset"
         offset = _offset(offset, measured.quantity)
     except LubeError as error:
-        raise DataError(f"{path}: offset: {error}") from None
+        raise DataError(f"{path}: {key}: {error}") from None
     return measured.before_amplifier(gain, offset)
 
 

@@ -51,7 +51,7 @@ class ContactShare:
     Raises
     ------
     RangeError
-        If the limits do not rise, a release is below its limit, or `hold` is negative.
+        If the limits do not rise, or a release is below its limit.
 
     Examples
     --------
@@ -68,22 +68,14 @@ class ContactShare:
         self._limits = np.array(limits, float)
         self._releases = self._limits if releases is None else np.array(releases, float)
         self._hold = hold
-        self._check()
+        if self._limits.size == 0 or not np.all(np.diff(self._limits) > 0.0):
+            raise RangeError(f"limits: got {limits}, need one or more, rising")
+        if self._releases.size != self._limits.size or np.any(self._releases < self._limits):
+            raise RangeError(f"releases: got {releases}, need one for each limit, not below it")
         self._remembers = releases is not None or hold > 0
         self._states = np.zeros((self._limits.size, 3), np.int64)
         self._counts = np.zeros((self._limits.size, BLOCKS), np.int64)
         self._doublings = self._samples = 0
-
-    def _check(self):
-        limits, releases = self._limits.tolist(), self._releases.tolist()
-        if not limits or not np.all(np.diff(limits) > 0.0) or not np.all(np.isfinite(limits)):
-            raise RangeError(f"limits: got {limits}, need one or more, finite and rising")
-        if len(releases) != len(limits) or not np.all(self._releases >= self._limits):
-            raise RangeError(
-                f"releases: got {releases}, need one for each limit, not below it: {limits}"
-            )
-        if self._hold < 0:
-            raise RangeError(f"hold: got {self._hold}, need a number of samples, or 0")
 
     def add(self, values: np.ndarray) -> None:
         """Count the next piece of the record.
