@@ -24,8 +24,8 @@ from lube.storage.files import scratch_beside, why_not, written_whole
 from lube.storage.git import ROOT, code_files, commit
 from lube.storage.netcdf import load
 from lube.storage.provenance import config_text, digest, fingerprint
-from lube.study.field_types import read_yaml
 from lube.study.lubricant_record import shipped_records
+from lube.study.resolve import resolved_content
 from lube.workflow.figures import origin, products, wrong_figures
 
 SUMS = "SHA256SUMS"
@@ -146,7 +146,7 @@ def written_files(study, study_file):
     StudyError
         If it names one of them by a path that would lead nowhere in an archive.
     """
-    content = read_yaml(study_file, StudyError)
+    content = resolved_content(study_file)
     records = zip(content["lubricants"], study.lubricants, strict=True)
     named = {name: record.files for name, record in records if name not in shipped_records()}
     if study.experiment.manifest is not None:

@@ -21,25 +21,21 @@ from lube.study.field_types import (
     checked_text,
     pure_number,
     quantity,
-    read_yaml,
     validate,
 )
 from lube.study.small_csv import delimiter_of, numbered_lines, split_cells
+from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
 
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 Share = pure_number(least=0.0, most=1.0)
 
-_UNITS = {
-    "force": "N",
-    "speed": "rpm",
-    "temperature": "degC",
-    "force_tolerance": "N",
-    "speed_tolerance": "rpm",
-    "temperature_tolerance": "K",
-    "sampling_interval": "s",
-    "offset": "mV",
-}
+_UNITS = (
+    dict.fromkeys(("force", "force_tolerance"), "N")
+    | dict.fromkeys(("speed", "speed_tolerance"), "rpm")
+    | {"temperature": "degC", "temperature_tolerance": "K"}
+    | {"sampling_interval": "s", "offset": "mV"}
+)
 """Columns whose header needs a unit, with an example; that of the offset may be ohm too."""
 
 _TEXTS = ("file", "channel", "unit", "lubricant", "pair", "origin")

@@ -11,6 +11,7 @@ from studies import ROOT
 from lube.archive.build import VALUES, archive_contents, exact_versions, make_archive, written_files
 from lube.errors import DataError, StudyError
 from lube.storage.provenance import config_text, digest
+from lube.study.resolve import resolved_content
 from lube.study.study import load_study
 
 
@@ -19,7 +20,7 @@ def own(tmp_path):
     """A study with a lubricant record and a list of measured records of its own."""
     shipped = ROOT / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"
     record = yaml.safe_load(shipped.read_text("utf-8")) | {"name": "mine"}
-    study = yaml.safe_load((ROOT / "workflow/config/smoke.yaml").read_text("utf-8"))
+    study = resolved_content(ROOT / "workflow/config/smoke.yaml")
     study["lubricants"] = ["mobilgear-shc-xmp-320", "../oils/mine.yaml"]
     study["experiment"]["manifest"] = "records/list.csv"
     for name in ("oils", "studies/records"):

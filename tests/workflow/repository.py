@@ -11,6 +11,7 @@ from pathlib import Path
 
 import yaml
 
+from lube.study.resolve import resolved_content
 from lube.workflow.cells import datasets_of
 
 ROOT = Path(__file__).parents[2]
@@ -85,7 +86,7 @@ class Repository:
 
     def with_values(self, **changes):
         """Write a copy of the smoke study with some values changed, and return its name."""
-        content = yaml.safe_load((self / SMOKE).read_text(encoding="utf-8"))
+        content = resolved_content(self / SMOKE)
         for key, value in changes.items():
             *path, last = key.split("__")
             place = content
