@@ -61,7 +61,7 @@ class _Row(StrictModel):
     )
     gain: pure_number(other_than=0.0) = Field(
         1.0,
-        description="gain of an amplifier between rig and recorder, below 0 if it inverts: "
+        description="factor of an amplifier between rig and recorder, below 0 if it inverts: "
         "recorded = gain × true + offset",
     )
     offset: checked_text(parse_electrical, "quantity in V or ohm, as the record is") = Field(

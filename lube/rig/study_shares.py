@@ -7,6 +7,8 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
+from lube.errors import DataError
+from lube.grid.levels import format_levels
 from lube.schema import COORDINATES, LIMITS
 
 MOST_LINES = 10
@@ -48,9 +50,20 @@ def at_comparison_threshold(experiment: xr.Dataset) -> xr.Dataset:
     -------
     xarray.Dataset
         ``contact_share`` and its limits over ``record``, at ``comparison_threshold``.
+
+    Raises
+    ------
+    DataError
+        If the records were not evaluated at that threshold.
     """
+    wanted, levels = experiment["comparison_threshold"].item(), experiment["threshold"].values
+    if wanted not in levels:
+        raise DataError(
+            f"experiment: threshold {wanted:g} ohm is not among those evaluated, "
+            f"{format_levels(levels)}"
+        )
     shares = experiment[[f"contact_share{limit}" for limit in LIMITS]]
-    return shares.sel(threshold=experiment["comparison_threshold"].item(), drop=True)
+    return shares.sel(threshold=wanted, drop=True)
 
 
 def over_grid(dataset: xr.Dataset) -> xr.Dataset:

@@ -178,7 +178,7 @@ ENTRIES = [
     (SHARE | {"force": 800}, "force: got 800, need a number with its unit"),
     (SHARE | {"force": "8 m"}, "force: wrong dimension"),
     (SHARE | {"force": "8 mew"}, "force: unknown unit"),
-    (SHARE | {"forse": "8 N"}, "forse: unknown key"),
+    (SHARE | {"forse": "8 N"}, "forse: unknown key, did you mean 'force'?"),
     (OPERATING_POINT | {"file": 7}, "file: got 7, need text"),
     (RECORDING | {"gain": "0/3"}, "gain: got 0, need a value other than 0"),
     (RECORDING | {"gain": "10 V"}, "gain: got '10 V', need a number"),
@@ -223,7 +223,7 @@ HEADERS = {
 }
 FILES = [
     ("m.yaml", b"a: 1", "need a list of mappings, got dict"),
-    ("m.yaml", b"- {a: 1, a: 2}", "repeated"),
+    ("m.yaml", b"- {a: 1, a: 2}", "duplicate key"),
     ("m.yaml", b"- {a: 1", "not valid YAML"),
     ("m.csv", "probability,Öl".encode("latin-1"), "it is not UTF-8 text"),
     ("m.xls", b"", "got the suffix '.xls', need .csv, .yaml or .yml"),
