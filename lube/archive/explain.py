@@ -12,7 +12,7 @@ from typing import Any
 import xarray as xr
 
 from lube.errors import DataError
-from lube.grid.levels import level_index, levels_told
+from lube.grid.levels import format_levels, level_index
 from lube.schema import CONTACT_DIMS
 from lube.stages.contact import contact_statistics
 from lube.stages.ensemble import with_intervals
@@ -134,7 +134,7 @@ def _level(coordinate, path, wanted):
     index = level_index(levels, wanted)
     if index is None:
         came = "missing" if wanted is None else f"got {wanted}"
-        raise DataError(f"{path}: {name}: {came}, need one of {levels_told(levels)}")
+        raise DataError(f"{path}: {name}: {came}, need one of {format_levels(levels)}")
     return index
 
 

@@ -61,7 +61,7 @@ def formula_table() -> str:
     str
         Markdown.
     """
-    rows = [(f"`{row.name}`", row.place, row.source, row.validity) for row in FORMULAS.values()]
+    rows = [(f"`{row.name}`", row.thickness, row.source, row.validity) for row in FORMULAS.values()]
     range_ = f"within {100.0 * TOLERANCE:g} % of the computed film for"
     return _table(("name", "film", "source", range_), rows)
 

@@ -46,8 +46,8 @@ _COUNTS = {
     "realisations": "number of realisations",
 }
 _TEXTS = {
-    "lubricant": "lubricant record",
-    "fitted_lubricant": "lubricant record",
+    "lubricant": "name of the lubricant record",
+    "fitted_lubricant": "name of the lubricant record",
     "film_formula": "film thickness formula",
     "viscosity_law": "viscosity-temperature law",
     "record": "record",

@@ -64,7 +64,7 @@ _EXPERIMENT = {
         "period of revolution of the first rotating roller, from the periodicity of the record "
         "where it is clear",
     ),
-    "repeatability": recorded(_RECORD, "1", "correlation between successive revolutions"),
+    "repeatability": recorded(_RECORD, "1", "correlation between two revolutions"),
     "speed_ratio": recorded(
         _RECORD, "1", "speed from the periodicity of the record over the stated speed"
     ),

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy.special import expit, logit
 
-from lube.statistics.map_curves import curve_at, layer_curve_at, logits_on
+from lube.rig.map_curves import curve_at, layer_curve_at, logits_on
 
 WIDTHS = np.array([0.5e-3, 1e-3, 2e-3])
 RATIOS = np.geomspace(0.5, 2.0, 9)
@@ -30,16 +30,11 @@ def master():
     return xr.Dataset(variables, coords, {"travel": 1e6, "longest_wavelength": 1e-3})
 
 
-@pytest.mark.parametrize("width", [*WIDTHS, 0.7e-3, 1.9e-3, 0.3e-3, 3e-3])
-def test_a_curve_is_right_at_any_width_between_and_beyond_the_maps(master, width):
-    curve = curve_at(master, width)
-    np.testing.assert_allclose(
-        expit(curve.logit_at(np.log(RATIOS))), chance(RATIOS, width), rtol=1e-9
-    )
-
-
-def test_a_map_of_one_width_serves_all(master):
-    curve = curve_at(master.isel(contact_width=[1]), 0.6e-3)
+def test_a_curve_is_right_at_any_width_between_and_beyond_the_maps(master):
+    for width in (*WIDTHS, 0.7e-3, 1.9e-3, 0.3e-3, 3e-3):
+        found = expit(curve_at(master, width).logit_at(np.log(RATIOS)))
+        np.testing.assert_allclose(found, chance(RATIOS, width), rtol=1e-9)
+    curve = curve_at(master.isel(contact_width=[1]), 0.6e-3)  # a map of one width
     np.testing.assert_allclose(curve.logit_at(np.log(RATIOS)), logit(chance(RATIOS, 0.6e-3)))
 
 
@@ -47,12 +42,10 @@ def test_the_sample_size_is_that_of_the_scatter_between_realisations(master):
     curve = curve_at(master, WIDTHS[1])
     mean = chance(RATIOS, WIDTHS[1])
     variance = 2.0 * (0.05 * mean) ** 2  # of two values, on either side of their mean
-    np.testing.assert_allclose(curve.looks, mean * (1.0 - mean) / variance)
-
-
-def test_beyond_the_maps_widths_the_sample_size_is_that_of_the_nearest(master):
+    np.testing.assert_allclose(curve.sample_size, mean * (1.0 - mean) / variance)
+    # Beyond the map's widths it is that of the nearest.
     wide, widest = curve_at(master, WIDTHS[-1]), curve_at(master, 2.0 * WIDTHS[-1])
-    np.testing.assert_allclose(widest.looks, wide.looks[: widest.looks.size])
+    np.testing.assert_allclose(widest.sample_size, wide.sample_size[: widest.sample_size.size])
 
 
 def test_another_layers_curve_has_no_known_scatter(master):
@@ -61,7 +54,7 @@ def test_another_layers_curve_has_no_known_scatter(master):
     )
     curve = layer_curve_at(layer, master, 0.7e-3)
     np.testing.assert_array_equal(curve.logits, curve_at(master, 0.7e-3).logits)
-    assert np.isnan(curve.looks).all()
+    assert np.isnan(curve.sample_size).all()
 
 
 def test_what_was_not_seen_in_all_windows_is_not_known(master):
