@@ -1,12 +1,11 @@
 """The figures of an archive, drawn again from what is in it and compared with those that are."""
 
-import os
 from pathlib import Path
 
 from lube.archive.build import check_is_archive
 from lube.errors import DataError
 from lube.workflow.figures import paths_for, read_origin
-from lube.workflow.notebooks import environment, execute_notebook
+from lube.workflow.notebooks import execute_notebook
 
 
 def redraw(folder, target, figures=()):
@@ -45,19 +44,14 @@ def redraw(folder, target, figures=()):
         if figure not in archived:
             raise DataError(f"got {figure}, need a figure of the archive: {', '.join(archived)}")
     datasets = list((folder / "data").glob("*.nc"))
-    with environment({"PYTHONPATH": _with_code_first(folder / "code")}):
-        for figure in figures or archived:
-            notebook = folder / "code/notebooks" / f"{figure}.ipynb"
-            # What else stands in its parameters cell keeps its value, as in the workflow.
-            parameters = {**paths_for(notebook, datasets), "figure": str(target / figure)}
-            told = read_origin(figure, folder)["drawn_by"]
-            execute_notebook(notebook, target / notebook.name, parameters, told)
-            for name in (f"{figure}.png", f"{figure}.pdf"):
-                kept = folder / "figures" / name
-                same = kept.is_file() and kept.read_bytes() == (target / name).read_bytes()
-                yield name, same
-
-
-def _with_code_first(code):
-    """Search path by which notebooks use the archived code, whatever else is installed."""
-    return os.pathsep.join(filter(None, [str(code), os.environ.get("PYTHONPATH")]))
+    for figure in figures or archived:
+        notebook = folder / "code/notebooks" / f"{figure}.ipynb"
+        # What else stands in its parameters cell keeps its value, as in the workflow.
+        parameters = {**paths_for(notebook, datasets), "figure": str(target / figure)}
+        told = read_origin(figure, folder)["drawn_by"]
+        # The archived code is used, whatever else is installed.
+        execute_notebook(notebook, target / notebook.name, parameters, told, folder / "code")
+        for name in (f"{figure}.png", f"{figure}.pdf"):
+            kept = folder / "figures" / name
+            same = kept.is_file() and kept.read_bytes() == (target / name).read_bytes()
+            yield name, same
