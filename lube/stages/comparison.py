@@ -14,7 +14,6 @@ import math
 import numpy as np
 import pandas as pd
 import scipy.special
-import scipy.stats
 import xarray as xr
 
 from lube.rig.study_shares import at_comparison_threshold, levels_named, log_lines
@@ -188,7 +187,9 @@ def _rank_correlation(first, second):
     if first.size < 2 or np.ptp(first) == 0.0 or np.ptp(second) == 0.0:
         return np.nan
     # Ranks are halves of whole numbers, so that these sums are exact in whatever order.
-    first, second = (scipy.stats.rankdata(each) - (each.size + 1) / 2 for each in (first, second))
+    first, second = (
+        pd.Series(each).rank().values - (each.size + 1) / 2 for each in (first, second)
+    )
     return np.sum(first * second) / np.sqrt(np.sum(first**2) * np.sum(second**2))
 
 

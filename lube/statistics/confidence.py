@@ -6,7 +6,7 @@ treated alike, so that the intervals of simulation and experiment mean the same.
 """
 
 import numpy as np
-import scipy.stats
+import scipy.special
 
 CONFIDENCE = 0.95
 
@@ -93,8 +93,8 @@ def probability_limits(mean, looks, degrees, windows):
     """
     windows = np.broadcast_to(windows, np.shape(mean)).astype(float)
     scattered = ~np.isnan(looks)
-    student = scipy.stats.t.ppf(0.5 + CONFIDENCE / 2.0, degrees)
-    normal = scipy.stats.norm.ppf(0.5 + CONFIDENCE / 2.0)
+    student = scipy.special.stdtrit(degrees, 0.5 + CONFIDENCE / 2.0)
+    normal = scipy.special.ndtri(0.5 + CONFIDENCE / 2.0)
     lower, upper = score_interval(
         mean, np.where(scattered, looks, windows), np.where(scattered, student, normal)
     )

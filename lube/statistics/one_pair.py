@@ -9,7 +9,7 @@ two lines, by slip or unequal circumferences, and a roughness that changes make 
 import math
 
 import numpy as np
-import scipy.stats
+import scipy.special
 
 CONFIDENCE = 0.95
 
@@ -34,8 +34,8 @@ def quantile(realisations, among=1):
     """
     level = 1.0 - (1.0 - CONFIDENCE) / 2.0 / among
     if realisations < 2:
-        return scipy.stats.norm.ppf(level)
-    return scipy.stats.t.ppf(level, realisations - 1)
+        return scipy.special.ndtri(level)
+    return scipy.special.stdtrit(realisations - 1, level)
 
 
 def repeat_factor(turns):
