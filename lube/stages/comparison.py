@@ -15,7 +15,6 @@ import math
 import numpy as np
 import pandas as pd
 import scipy.special
-import scipy.stats
 import xarray as xr
 
 from lube.rig.study_shares import (
@@ -193,7 +192,9 @@ def _rank_correlation(first, second):
     if first.size < 2 or np.ptp(first) == 0.0 or np.ptp(second) == 0.0:
         return np.nan
     # Ranks are multiples of 1/2, so these sums are exact in any order.
-    first, second = (scipy.stats.rankdata(each) - (each.size + 1) / 2 for each in (first, second))
+    first, second = (
+        pd.Series(each).rank().values - (each.size + 1) / 2 for each in (first, second)
+    )
     return np.sum(first * second) / np.sqrt(np.sum(first**2) * np.sum(second**2))
 
 
