@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from lube.errors import StudyError
-from lube.physics import Values
 from lube.physics.dimensionless import moes_numbers
 from lube.physics.regimes import moes_asymptotes
+from lube.types import Values
 
 TOLERANCE = 0.15
 """Relative error against a numerical solution up to which a formula counts as valid.

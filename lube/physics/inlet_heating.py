@@ -1,6 +1,6 @@
 """Shear heating of the oil at the inlet, where the film forms."""
 
-from lube.physics import Values
+from lube.types import Values
 
 
 def inlet_shear_heating_factor(

@@ -6,7 +6,7 @@ Moes' M and L (`lube.physics.dimensionless`) alone decide which of the four comb
 
 import numpy as np
 
-from lube.physics import Values
+from lube.types import Values
 
 
 def moes_asymptotes(

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lube.errors import RangeError
-from lube.physics import Values
+from lube.types import Values
 
 ZERO_CELSIUS = 273.15
 DENSITY_REFERENCE = ZERO_CELSIUS + 15.0

@@ -70,10 +70,8 @@ class EnsembleRuns:
         """Count the time steps from `begin` to `end` with breakthrough, shape (P,)."""
         ratios = speed_ratios(slip)
         if begin:
-            pair = [
-                np.roll(line, -surface_position(begin, ratio))
-                for line, ratio in zip(pair, ratios, strict=True)
-            ]
+            positions = (surface_position(begin, ratio) for ratio in ratios)
+            pair = tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))
         films, half_windows = np.ascontiguousarray(points)
-        counts = strip_statistics(*pair, ratios, end - begin, films, half_windows, self._factor)
+        counts = strip_statistics(pair, ratios, end - begin, films, half_windows, self._factor)
         return counts[:, 1]

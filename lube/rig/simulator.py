@@ -117,7 +117,7 @@ class SimulatedRig:
             [point.contact_half_width for point in points],
             self._lines,
         )
-        return strip_trace(*pair, self._ratios, steps, films, half_windows, factor)
+        return strip_trace(pair, self._ratios, steps, films, half_windows, factor)
 
     def _revolution(self, contact, number, seed):
         point, spacing = self._points[number], self._lines.attrs["spacing"]
@@ -235,11 +235,8 @@ def logged_voltage(
     gain = rig.series_resistance / feed
     voltage = sampled_voltage(
         contact,
-        targets,
-        memories,
-        gain,
-        rig.bias_voltage * (1.0 - gain),
-        rig.amplifier_range,
+        (targets, memories),
+        (gain, rig.bias_voltage * (1.0 - gain), rig.amplifier_range),
         np.exp(-2.0 * np.pi * rig.bandwidth * time_step),
         1.0 / (rig.sampling_rate * time_step),
         int(contact.size * time_step * rig.sampling_rate) or 1,

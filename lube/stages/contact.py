@@ -171,7 +171,7 @@ def _run(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), revolutions=1)
         for s, ratio in enumerate(slide_to_roll_ratio):
             ratios = speed_ratios(ratio)
             steps = revolutions * revolution(pair, ratios)
-            counts[r, s] = strip_statistics(*pair, ratios, steps, films, half_windows, factor)
+            counts[r, s] = strip_statistics(pair, ratios, steps, films, half_windows, factor)
             counts[r, s] /= steps
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
     touching, breaking, points, overlap = np.moveaxis(counts[:, :, inverse.ravel()], -1, 0)

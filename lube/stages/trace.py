@@ -55,7 +55,7 @@ def contact_trace(
     ratios = speed_ratios(ratio)
     steps = revolution(pair, ratios)
     spacing = lines.attrs["spacing"]
-    length = strip_trace(*pair, ratios, steps, films, half_windows, factor) * spacing
+    length = strip_trace(pair, ratios, steps, films, half_windows, factor) * spacing
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
     trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(

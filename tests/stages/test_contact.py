@@ -74,7 +74,7 @@ def kernel_means(kernel, lines, realisation, point, layer, modulus, ratio=0.0, r
     )
     films = np.array([round(film / height_step)])
     half_windows = np.array([math.floor(half_width / spacing)])
-    counts = kernel(*pair, ratios, steps, films, half_windows, factor)[0]
+    counts = kernel(pair, ratios, steps, films, half_windows, factor)[0]
     touching, breaking, points, overlap = (int(count) / steps for count in counts)
     return [touching, breaking, points * spacing, modulus * spacing * overlap * height_step]
 
@@ -280,7 +280,7 @@ def ensemble(make_spec, study, film):
     for realisation in range(12):
         pair = draw_realisation(spec, 77, realisation)
         windows = np.full(4, half_window)
-        statistics.append(strip_statistics(*pair, (1.0, 1.0), 1_000_000, films, windows, factor))
+        statistics.append(strip_statistics(pair, (1.0, 1.0), 1_000_000, films, windows, factor))
     return spec, half_window, films, np.array(statistics) / 1e6
 
 
