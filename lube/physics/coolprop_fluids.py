@@ -13,6 +13,7 @@ import numpy as np
 
 from lube.errors import RangeError, RecordError
 from lube.physics.viscosity import ZERO_CELSIUS
+from lube.types import Array
 
 ATMOSPHERIC_PRESSURE = 101325.0
 """Standard atmosphere, Pa."""
@@ -113,8 +114,8 @@ def _within_range(fluid, temperature, pressure):
 
 
 def liquid_property(
-    fluid: str, name: str, temperature: np.ndarray, pressure: float = ATMOSPHERIC_PRESSURE
-) -> np.ndarray:
+    fluid: str, name: str, temperature: Array, pressure: float = ATMOSPHERIC_PRESSURE
+) -> Array:
     """Viscosity, density or thermal conductivity of a pure liquid.
 
     Parameters
@@ -164,7 +165,7 @@ def liquid_property(
     return values
 
 
-def secant_pressure_viscosity(fluid: str, temperature: np.ndarray, pressure: float) -> np.ndarray:
+def secant_pressure_viscosity(fluid: str, temperature: Array, pressure: float) -> Array:
     r"""Secant pressure-viscosity coefficient, from atmospheric pressure to a given one.
 
     .. math:: \alpha = \frac{\ln(\eta(p) / \eta(p_0))}{p - p_0}
@@ -199,7 +200,7 @@ def secant_pressure_viscosity(fluid: str, temperature: np.ndarray, pressure: flo
     return np.log(ratio) / (pressure - ATMOSPHERIC_PRESSURE)
 
 
-def initial_pressure_viscosity(fluid: str, temperature: np.ndarray) -> np.ndarray:
+def initial_pressure_viscosity(fluid: str, temperature: Array) -> Array:
     r"""Pressure-viscosity coefficient as the slope of ln(viscosity) at atmospheric pressure.
 
     .. math:: \alpha = \left. \frac{d \ln \eta}{d p} \right|_{p_0}

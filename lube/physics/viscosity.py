@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lube.errors import RangeError
-from lube.types import Values
+from lube.types import Array, Values
 
 ZERO_CELSIUS = 273.15
 DENSITY_REFERENCE = ZERO_CELSIUS + 15.0
@@ -51,7 +51,7 @@ def _low_viscosity_term(kinematic_viscosity):
     return np.exp(-1.47 - 1.84 * kinematic_viscosity - 0.51 * kinematic_viscosity**2)
 
 
-def fit_astm_d341(temperature: np.ndarray, kinematic_viscosity: np.ndarray) -> tuple[float, float]:
+def fit_astm_d341(temperature: Array, kinematic_viscosity: Array) -> tuple[float, float]:
     r"""Fit the law of ASTM D341 (Ubbelohde-Walther).
 
     .. math::
@@ -124,9 +124,7 @@ def evaluate_astm_d341(temperature: Values, a: float, b: float) -> Values:
     return viscosity
 
 
-def fit_vogel(
-    temperature: np.ndarray, kinematic_viscosity: np.ndarray
-) -> tuple[float, float, float]:
+def fit_vogel(temperature: Array, kinematic_viscosity: Array) -> tuple[float, float, float]:
     r"""Fit Vogel's law.
 
     .. math:: \nu = a\, e^{b / (T - c)}
@@ -228,7 +226,7 @@ def evaluate_vogel(temperature: Values, a: float, b: float, c: float) -> Values:
         return a * np.exp(b / above_pole)
 
 
-def fit_andrade(temperature: np.ndarray, kinematic_viscosity: np.ndarray) -> tuple[float, float]:
+def fit_andrade(temperature: Array, kinematic_viscosity: Array) -> tuple[float, float]:
     r"""Fit Andrade's law, which has Arrhenius' form.
 
     .. math:: \nu = a\, e^{b / T}
@@ -302,7 +300,7 @@ class ViscosityLaw:
         The equation and its publication.
     """
 
-    fit: Callable[[np.ndarray, np.ndarray], tuple[float, ...]]
+    fit: Callable[[Array, Array], tuple[float, ...]]
     evaluate: Callable[..., Values]
     parameters: tuple[str, ...]
     source: str

@@ -16,6 +16,7 @@ from lube.schema import LIMITS
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
 from lube.statistics.sample_size import effective_sample_size, independent_windows
+from lube.types import Array
 
 ALPHA_FACTORS = np.geomspace(1.0 / 8.0, 8.0, 193)
 """Factors of the pressure-viscosity coefficient that are tried."""
@@ -95,7 +96,7 @@ def fit_layer_strength(
 
 def strength_logits(
     master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset
-) -> tuple[np.ndarray, xr.DataArray]:
+) -> tuple[Array, xr.DataArray]:
     """Logits of the map's mean probability at the records, for many layer strengths.
 
     Parameters
@@ -193,7 +194,7 @@ def _fits(name, tried, truth, logits, contact, comparison):
 
 
 def fit_records(
-    log_factors: np.ndarray, logits: np.ndarray, comparison: xr.Dataset
+    log_factors: Array, logits: Array, comparison: xr.Dataset
 ) -> tuple[float, float, float]:
     """Fit a factor to the records of one lubricant, with one film formula.
 

@@ -21,6 +21,7 @@ from lube.grid.discretise import revolution, speed_ratios
 from lube.rig.ensemble_runs import EnsembleRuns
 from lube.statistics.one_pair import persistent_share, scatter_ratio
 from lube.study.study import Study
+from lube.types import Array, Pair
 
 log = logging.getLogger(__name__)
 
@@ -35,8 +36,8 @@ ALIGNMENT_RATIOS = np.linspace(1.0, 3.5, 6)
 
 
 def record_scatter(
-    model: xr.Dataset, experiment: xr.Dataset, probability: np.ndarray, study: Study
-) -> tuple[np.ndarray, np.ndarray]:
+    model: xr.Dataset, experiment: xr.Dataset, probability: Array, study: Study
+) -> Pair:
     """Scatter of the contact share of each record between pairs of rollers.
 
     Parameters
@@ -134,9 +135,7 @@ def _components(study, slip, turns, persistent):
     return alone, together
 
 
-def combined_deviations(
-    alone: np.ndarray, together: np.ndarray, line_effects: np.ndarray, shares: np.ndarray
-) -> np.ndarray:
+def combined_deviations(alone: Array, together: Array, line_effects: Array, shares: Array) -> Array:
     """Deviations of each realisation in records of several alignments, shape (R, P).
 
     The effect of each line alone is more alike at neighbouring films than the effect of both

@@ -27,6 +27,7 @@ from lube.schema import AT_RECORDS, LIMITS, label
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size, independent_windows
+from lube.types import Array
 
 log = logging.getLogger(__name__)
 
@@ -135,7 +136,7 @@ def _figures(table, shares):
 
 
 def agreement(
-    simulated: np.ndarray, lower: np.ndarray, upper: np.ndarray, measured: np.ndarray
+    simulated: Array, lower: Array, upper: Array, measured: Array
 ) -> dict[str, float | int]:
     r"""Figures of agreement between simulated probabilities and measured shares.
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 import scipy.special
 
 from lube.statistics.confidence import CONFIDENCE
+from lube.types import Array, Pair, Values
 
 MOST_TURNS = 100_000
 """Turns over which alignments and drift are evaluated; longer records are taken as this long."""
@@ -218,12 +219,8 @@ def scatter_ratio(
 
 
 def prediction_limits(
-    mean: np.ndarray,
-    sample_size: npt.ArrayLike,
-    ratio: npt.ArrayLike,
-    realisations: int,
-    noise: npt.ArrayLike = 0.0,
-) -> tuple[np.ndarray, np.ndarray]:
+    mean: Array, sample_size: Values, ratio: Values, realisations: int, noise: Values = 0.0
+) -> Pair:
     r"""95 % prediction limits of the contact share of one pair's record.
 
     .. math:: p \pm t_{R-1} \sigma
@@ -267,12 +264,8 @@ def prediction_limits(
 
 
 def standard_error(
-    mean: npt.ArrayLike,
-    sample_size: npt.ArrayLike,
-    ratio: npt.ArrayLike,
-    realisations: int,
-    noise: npt.ArrayLike = 0.0,
-) -> np.ndarray:
+    mean: Values, sample_size: Values, ratio: Values, realisations: int, noise: Values = 0.0
+) -> Array:
     r"""Calculate the standard error of one pair's share about the mean of the ensemble.
 
     .. math:: \sigma^2 = p (1 - p) \left( \frac{v}{n} + \frac{1}{n R} \right) + \epsilon^2
@@ -301,7 +294,7 @@ def standard_error(
     return np.sqrt(variance + np.square(noise))
 
 
-def persistent_share(probabilities: np.ndarray) -> np.ndarray:
+def persistent_share(probabilities: Array) -> Array:
     """Part of one alignment's scatter that new alignments do not average out.
 
     It is the effect of either line alone, whatever it is paired with. Each first line is paired
