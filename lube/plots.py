@@ -5,6 +5,7 @@ quantities get steps of a map that also rises in lightness.
 """
 
 import io
+import re
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -100,19 +101,9 @@ def in_units(array, units):
     xarray.DataArray
         The converted array, its attributes telling so.
     """
-    factor = convert(1.0, _for_pint(array.attrs["units"]), _for_pint(units))
-    converted = array * factor
-    converted.attrs = {**array.attrs, "units": units}
-    return converted
-
-
-def _for_pint(units):
-    """``m2 s-1`` -> ``m^2 s^-1``."""
-    return " ".join(
-        part.rstrip("-0123456789") + ("^" + power if power else "")
-        for part in units.split()
-        for power in [part[len(part.rstrip("-0123456789")) :]]
-    )
+    # As pint writes them: ``m2 s-1`` -> ``m^2 s^-1``.
+    before, after = (re.sub(r"(-?\d+)", r"^\1", each) for each in (array.attrs["units"], units))
+    return (array * convert(1.0, before, after)).assign_attrs(array.attrs | {"units": units})
 
 
 def axis_label(array, symbol=None):
@@ -132,13 +123,8 @@ def axis_label(array, symbol=None):
     """
     name = array.attrs["long_name"]
     units = array.attrs.get("units", "1")
-    words = [name[0].upper() + name[1:], symbol, None if units == "1" else f"({nice_units(units)})"]
-    return " ".join(word for word in words if word)
-
-
-def nice_units(units):
-    """Units as a reader expects them: ``degC`` -> ``°C``."""
-    return _AXIS_UNITS.get(units, units)
+    unit = None if units == "1" else f"({_AXIS_UNITS.get(units, units)})"
+    return " ".join(word for word in (name[0].upper() + name[1:], symbol, unit) if word)
 
 
 def level_colours(levels):
@@ -167,8 +153,8 @@ def level_markers(levels):
 
 def level_name(value, units):
     """Level of an operating variable as text: ``86 r/min``, ``800 N``, ``40.5 °C``."""
-    near = abs(value - round(value)) <= 0.004 * abs(value)
-    return f"{f'{value:.0f}' if near else f'{value:.3g}'} {nice_units(units)}"
+    digits = ".0f" if abs(value - round(value)) <= 0.004 * abs(value) else ".3g"
+    return f"{value:{digits}} {_AXIS_UNITS.get(units, units)}"
 
 
 def point_name(place, *variables):
@@ -250,14 +236,10 @@ def level_groups(records, name):
     near = records[f"{name}_level"].values
     levels = np.unique(near[np.isfinite(near)])
     colours, markers = level_colours(levels), level_markers(levels)
+    names = [level_name(level, COORDINATES[name].units) for level in levels.tolist()]
     groups = [
-        (
-            level_name(level, COORDINATES[name].units),
-            colours[level],
-            markers[level],
-            records.isel(record=near == level),
-        )
-        for level in levels.tolist()
+        (text, colours[level], markers[level], records.isel(record=near == level))
+        for text, level in zip(names, levels.tolist(), strict=True)
     ]
     if np.isnan(near).any():
         other = records.isel(record=np.isnan(near))
@@ -275,14 +257,14 @@ def footnote(figure, dataset):
     dataset : xarray.Dataset or xarray.DataArray
         What it shows; a coordinate of several values is told with all of them.
     """
-    words = {
-        "lubricant": "",
-        "film_formula": "film formula ",
-        "slide_to_roll_ratio": "slide-to-roll ratio ",
-    }
+    names = (
+        ("lubricant", ""),
+        ("film_formula", "film formula "),
+        ("slide_to_roll_ratio", "slide-to-roll ratio "),
+    )
     told = [
         word + ", ".join(str(value) for value in np.unique(dataset[name]))
-        for name, word in words.items()
+        for name, word in names
         if name in dataset.coords
     ]
     figure.supxlabel(" · ".join(told), x=0.99, ha="right", fontsize=6.5, color="#5F5F5F")
@@ -339,17 +321,9 @@ def interval_bars(axes, x, mean, lower, upper, **style):
     bars = np.where(seen, [mean - lower, upper - mean], 0.0)
     points = np.where(seen, mean, np.nan)
     axes.errorbar(x, points, yerr=bars, capsize=2, elinewidth=1.0, **style)
-    limits = np.asarray(upper)[~seen]
-    axes.errorbar(
-        np.asarray(x)[~seen],
-        limits,
-        yerr=0.5 * limits,
-        uplims=True,
-        linestyle="none",
-        capsize=2.5,
-        elinewidth=1.0,
-        color=style.get("color"),
-    )
+    at, limits = np.asarray(x)[~seen], np.asarray(upper)[~seen]
+    arrows = {"uplims": True, "linestyle": "none", "capsize": 2.5, "elinewidth": 1.0}
+    axes.errorbar(at, limits, yerr=0.5 * limits, color=style.get("color"), **arrows)
 
 
 def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> None:
@@ -382,7 +356,7 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     # The PDF gets the same layout, which takes as long to find as the picture to draw.
     figure.set_layout_engine("none")
     pdf = _picture(figure, "pdf", {"CreationDate": None, "Producer": None, "Subject": line})
-    for suffix, picture in (("png", png), ("pdf", pdf)):
+    for suffix, picture in {"png": png, "pdf": pdf}.items():
         with written_whole(f"{stem}.{suffix}") as part:
             part.write_bytes(picture)
     if get_ipython() is not None:

@@ -9,15 +9,12 @@ import numpy as np
 from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
-from lube.types import Array, Pair
-
-Integers = tuple[int, int]
-Ratios = tuple[float, float]
+from lube.types import Array, Pair, Points, Ratios
 
 
 @kernel
 def scan_window(
-    lines: Pair, firsts: Integers, width: int, film: int, factor: float
+    lines: Pair, firsts: Points, width: int, film: int, factor: float
 ) -> tuple[int, int, int]:
     r"""Find the segments in one contact window, and those whose boundary layer breaks.
 

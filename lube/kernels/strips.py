@@ -16,9 +16,7 @@ from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.kernels.runs import block_maxima, fill_high_stretches, find_runs
-from lube.types import Array, Pair
-
-Ratios = tuple[float, float]
+from lube.types import Array, Pair, Ratios
 
 LONGEST_STRIP = 2**14
 """Longer strips are cut, so that the data of one strip stay in the processor's cache."""

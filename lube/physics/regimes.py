@@ -9,9 +9,7 @@ import numpy as np
 from lube.types import Values
 
 
-def moes_asymptotes(
-    moes_load: Values, moes_material: Values
-) -> tuple[Values, Values, Values, Values]:
+def moes_asymptotes(moes_load: Values, moes_material: Values) -> tuple[Values, ...]:
     r"""Moes' asymptotic films in the four corners of the (M, L) plane.
 
     .. math::

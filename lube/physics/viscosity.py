@@ -193,10 +193,7 @@ def _best_pole(temperature, log_viscosity):
     grid = np.linspace(0.0, temperature.min() - 1.0, _POLE_GRID)
     best = int(np.argmin([squared_residuals(pole) for pole in grid]))
     bounds = grid[max(best - 1, 0)], grid[min(best + 1, _POLE_GRID - 1)]
-    refined = minimize_scalar(
-        squared_residuals, bounds=bounds, method="bounded", options={"xatol": 1e-9}
-    )
-    return refined.x
+    return minimize_scalar(squared_residuals, bounds=bounds, options={"xatol": 1e-9}).x
 
 
 def evaluate_vogel(temperature: Values, a: float, b: float, c: float) -> Values:
@@ -383,11 +380,8 @@ def reference_oils(viscosity_100: float) -> tuple[float, float]:
             f"got {viscosity_100:g} mm2/s at 100 degC, the viscosity index needs 2 mm2/s or more"
         )
     row = np.searchsorted(_REFERENCE_OILS[:, 0], viscosity_100, side="right") - 1
-    low_coefficients, high_coefficients = _REFERENCE_OILS[row, 1:4], _REFERENCE_OILS[row, 4:7]
-    return (
-        float(np.polyval(low_coefficients, viscosity_100)),
-        float(np.polyval(high_coefficients, viscosity_100)),
-    )
+    of_low, of_high = _REFERENCE_OILS[row, 1:].reshape(2, 3)
+    return float(np.polyval(of_low, viscosity_100)), float(np.polyval(of_high, viscosity_100))
 
 
 def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:
