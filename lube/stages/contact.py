@@ -131,17 +131,13 @@ def _levels(film, lambda_levels, width_levels):
 
 def _map(lines, film, boundary_layer, levels, dims):
     """Probabilities in pure rolling over (realisation, lambda ratio, contact width)."""
-    ratios, widths = (
-        xr.DataArray(values, dims=name, coords={name: values})
-        for name, values in zip(dims, levels, strict=True)
-    )
+    points = xr.Dataset(coords=dict(zip(dims, levels, strict=True)))
     table = film[["reduced_modulus"]].assign(
-        film_thickness=ratios * film["composite_rms_roughness"].item(),
-        contact_half_width=widths / 2.0,
+        film_thickness=points[dims[0]] * film["composite_rms_roughness"].item(),
+        contact_half_width=points[dims[1]] / 2.0,
     )
-    results = _run(lines, table, boundary_layer)
-    probabilities = results[["breakthrough_probability", "geometric_contact_probability"]]
-    return probabilities.isel(slide_to_roll_ratio=0)
+    results = _run(lines, table, boundary_layer).isel(slide_to_roll_ratio=0)
+    return results[["breakthrough_probability", "geometric_contact_probability"]]
 
 
 def _layer_map(lines, film, boundary_layer):

@@ -17,6 +17,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
+from lube.rig.map_curves import windows_in
 from lube.schema import label
 from lube.statistics import sample_size
 from lube.statistics.confidence import probability_interval
@@ -106,10 +107,7 @@ def gather_map(batches: Sequence[xr.Dataset]) -> xr.Dataset:
         As `gather`.
     """
     joined = _join(batches)
-    windows = sample_size.independent_windows(
-        joined.attrs["travel"], joined["contact_width"], joined.attrs["longest_wavelength"]
-    )
-    return _add_intervals(joined, windows, "master")
+    return _add_intervals(joined, windows_in(joined, joined["contact_width"]), "master")
 
 
 def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
