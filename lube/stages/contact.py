@@ -74,12 +74,9 @@ def contact_statistics(
     width = 2.0 * film["contact_half_width"]
     patch_load = np.pi / 4.0 * film["hertz_pressure"] * width * width
     results["contact_load_share"] = results["mean_contact_force"] / patch_load
-    dataset = results.assign_coords(
-        slide_to_roll_ratio=np.asarray(slide_to_roll_ratio, float),
-        revolutions=revolutions,
-        **{name: film[name] for name in OPERATING_DIMS},
-    )
-    return label(dataset, "contact_batch")
+    levels = {name: film[name] for name in OPERATING_DIMS} | {"revolutions": revolutions}
+    levels["slide_to_roll_ratio"] = np.asarray(slide_to_roll_ratio, float)
+    return label(results.assign_coords(levels), "contact_batch")
 
 
 def contact_map(
@@ -181,15 +178,9 @@ def _run(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), revolutions=1)
     }
     dims = ("realisation", "slide_to_roll_ratio", *thickness.dims)
     shape = counts.shape[:2] + thickness.shape
-    dataset = xr.Dataset(
-        {name: (dims, values.reshape(shape)) for name, values in results.items()},
-        coords={"realisation": lines["realisation"].values, **thickness.coords},
-        attrs={
-            "travel": spacing * min(lines.attrs["points"]),
-            "longest_wavelength": 2.0 * np.pi / lines.attrs["q_min"],
-        },
-    )
-    return dataset.assign(
-        critical_thickness=boundary_layer.critical_thickness,
-        shear_strength=boundary_layer.shear_strength,
-    )
+    variables = {name: (dims, values.reshape(shape)) for name, values in results.items()}
+    for name in ("critical_thickness", "shear_strength"):
+        variables[name] = ((), getattr(boundary_layer, name))
+    coords = {"realisation": lines["realisation"].values, **thickness.coords}
+    travel, longest = spacing * min(lines.attrs["points"]), 2.0 * np.pi / lines.attrs["q_min"]
+    return xr.Dataset(variables, coords, {"travel": travel, "longest_wavelength": longest})

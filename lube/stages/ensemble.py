@@ -135,16 +135,10 @@ def _join(batches):
         batch.drop_attrs(deep=False).assign_attrs({name: batch.attrs[name] for name in ATTRIBUTES})
         for batch in batches
     ]
+    minimal = {"data_vars": "minimal", "coords": "minimal", "compat": "equals"}
+    strict = {"join": "exact", "combine_attrs": "identical"}
     try:
-        joined = xr.concat(
-            batches,
-            "realisation",
-            data_vars="minimal",
-            coords="minimal",
-            compat="equals",
-            join="exact",
-            combine_attrs="identical",
-        )
+        joined = xr.concat(batches, "realisation", **minimal, **strict)
     except ValueError as error:
         raise DataError(f"the batches belong to different studies: {error}") from None
     joined = joined.sortby("realisation")
