@@ -105,11 +105,11 @@ def _figures(options):
 
 def _explain(options):
     from lube.archive.explain import explain, in_words
+    from lube.schema import CONTACT_DIMS
 
-    names = ("force", "speed", "temperature", "slide_to_roll_ratio", "lubricant", "film_formula")
-    levels = {name: getattr(options, name) for name in names}
-    given = {name: level for name, level in levels.items() if level is not None}
-    explanation = explain(options.path, options.realisation, **given)
+    given = {name: getattr(options, name) for name in CONTACT_DIMS}
+    levels = {name: level for name, level in given.items() if level is not None}
+    explanation = explain(options.path, options.realisation, **levels)
     print(in_words(explanation))
     return 1 if explanation.differing else 0
 

@@ -5,9 +5,14 @@ quantities get steps of a map that also rises in lightness.
 """
 
 import io
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import xarray as xr
+from IPython import get_ipython
+from IPython.display import Image, display
+from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
@@ -71,9 +76,12 @@ _STAMP_STRIP = 0.12  # inches
 _LONGEST_NAME = 32  # of a record; of a longer one the end is told
 
 
-def use_style():
-    """Set the style of all figures that are drawn afterwards."""
-    plt.rcdefaults()
+def use_style() -> None:
+    """Set the style of the figures drawn from now on.
+
+    Parameters of Matplotlib that the style does not name keep the user's values; the workflow
+    executes notebooks with Matplotlib's defaults for these.
+    """
     plt.rcParams.update(_STYLE)
 
 
@@ -344,8 +352,10 @@ def interval_bars(axes, x, mean, lower, upper, **style):
     )
 
 
-def save_figure(figure, stem, *shown):
+def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> None:
     """Stamp a figure with its origin; save it as PNG and PDF, the same bytes each time.
+
+    In Jupyter the saved picture then appears below the cell.
 
     Parameters
     ----------
@@ -353,8 +363,8 @@ def save_figure(figure, stem, *shown):
         Figure to save; in constrained layout, as `use_style` sets it, the stamp gets a strip of
         its own.
     stem : str or Path or None
-        Path without suffix; None, as where a notebook is run by hand, writes nothing: Jupyter
-        shows the figure below the cell.
+        Path without suffix. With None, as where a notebook is run by hand, nothing is written:
+        Jupyter shows the figure itself below the cell.
     *shown : xarray.Dataset
         What the figure shows, as loaded, or selections of it.
 
@@ -363,21 +373,28 @@ def save_figure(figure, stem, *shown):
     DataError
         If the datasets are not of one study, or a file cannot be written.
     """
-    told = stamp(shown)
-    _write_below(figure, told)
+    line = stamp(shown)
+    _write_below(figure, line)
     if stem is None:
         return
-    # No clock time, no version in the files.
-    unmarked = {
-        "png": {"Software": None, "Description": told},
-        "pdf": {"CreationDate": None, "Producer": None, "Subject": told},
-    }
-    for suffix, metadata in unmarked.items():
-        # Through memory: a full disk in the midst of it ends in Matplotlib's own confusion.
-        picture = io.BytesIO()
-        figure.savefig(picture, format=suffix, metadata=metadata)
+    # Without clock time or software version, so that the bytes are the same each time.
+    png = _picture(figure, "png", {"Software": None, "Description": line})
+    # The PDF gets the same layout, which takes as long to find as the picture to draw.
+    figure.set_layout_engine("none")
+    pdf = _picture(figure, "pdf", {"CreationDate": None, "Producer": None, "Subject": line})
+    for suffix, picture in (("png", png), ("pdf", pdf)):
         with written_whole(f"{stem}.{suffix}") as part:
-            part.write_bytes(picture.getbuffer())
+            part.write_bytes(picture)
+    if get_ipython() is not None:
+        plt.close(figure)  # or Jupyter would draw it once more
+        display(Image(png, retina=True))
+
+
+def _picture(figure, suffix, metadata):
+    """Bytes of a figure's file, drawn in memory: on a full disk Matplotlib's error says little."""
+    picture = io.BytesIO()
+    figure.savefig(picture, format=suffix, metadata=metadata)
+    return picture.getvalue()
 
 
 def _write_below(figure, line):

@@ -15,15 +15,8 @@ from lube.stages.lubricant import lubricant_table
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
 from lube.stages.trace import contact_trace
-from lube.storage.netcdf import opened
 
-KINDS = list(FILES)
-
-
-def load_as_jobs_do(path, kind, study=None):
-    """Load batches of lines in height steps, all other files in their units."""
-    with opened(path, kind, study, raw=kind == "roughness_batch") as dataset:
-        return dataset.load()
+KINDS = [kind for kind in FILES if kind != "roughness_batch"]  # which stays in memory
 
 
 def measured_values(kind):
@@ -65,7 +58,6 @@ def datasets_of_every_kind(study):
         "lubricant": oil,
         "film": film,
         "roughness": lines,
-        "roughness_batch": batch,
         "contact_batch": run,
         "contact": contact,
         "master_batch": mapped,

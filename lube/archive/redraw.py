@@ -1,13 +1,12 @@
 """Draw the figures of an archive again from its own content and compare them."""
 
-import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from lube.archive.build import check_is_archive
 from lube.errors import DataError
 from lube.workflow.figures import paths_for, read_origin
-from lube.workflow.notebooks import environment, execute_notebook
+from lube.workflow.notebooks import execute_notebook
 
 
 def redraw(
@@ -46,14 +45,12 @@ def redraw(
         if figure not in archived:
             raise DataError(f"got {figure}, need a figure of the archive: {', '.join(archived)}")
     datasets = list((folder / "data").glob("*.nc"))
-    # Notebooks use the archived code, whatever else is installed.
-    path = [str(folder / "code"), os.environ.get("PYTHONPATH")]
-    with environment({"PYTHONPATH": os.pathsep.join(filter(None, path))}):
-        for figure in figures or archived:
-            notebook = folder / "code/notebooks" / f"{figure}.ipynb"
-            parameters = {**paths_for(notebook, datasets), "figure": str(target / figure)}
-            changes = read_origin(figure, folder)["drawn_by"]
-            execute_notebook(notebook, target / notebook.name, parameters, changes)
-            for name in (f"{figure}.png", f"{figure}.pdf"):
-                kept = folder / "figures" / name
-                yield name, kept.is_file() and kept.read_bytes() == (target / name).read_bytes()
+    for figure in figures or archived:
+        notebook = folder / "code/notebooks" / f"{figure}.ipynb"
+        parameters = {**paths_for(notebook, datasets), "figure": str(target / figure)}
+        changes = read_origin(figure, folder)["drawn_by"]
+        # Notebooks use the archived code, whatever else is installed.
+        execute_notebook(notebook, target / notebook.name, parameters, changes, folder / "code")
+        for name in (f"{figure}.png", f"{figure}.pdf"):
+            kept = folder / "figures" / name
+            yield name, kept.is_file() and kept.read_bytes() == (target / name).read_bytes()

@@ -11,7 +11,7 @@ import xarray as xr
 
 from lube.physics.film_formulas import formula
 from lube.rig.map_curves import curve_at, layer_curve_at, logits_on
-from lube.rig.study_shares import limited
+from lube.rig.study_shares import values_with_limits
 from lube.schema import LIMITS
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
@@ -184,7 +184,7 @@ def _fits(name, tried, truth, logits, contact, comparison):
         model, records = logits.isel(here).values, comparison.isel(here)
         fits[:-1, oil, number] = fit_records(np.log(tried), model, records)
         fits[-1, oil, number] = _coverage(np.log(tried), np.log(truth), model, records)
-    variables = limited(name, fits[:-1]) | {f"{name}_coverage": fits[-1]}
+    variables = values_with_limits(name, fits[:-1]) | {f"{name}_coverage": fits[-1]}
     dims = ("fitted_lubricant", "film_formula")
     return xr.Dataset(
         {each: (dims, values) for each, values in variables.items()},

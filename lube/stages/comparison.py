@@ -15,10 +15,14 @@ import math
 import numpy as np
 import pandas as pd
 import scipy.special
-import scipy.stats
 import xarray as xr
 
-from lube.rig.study_shares import at_comparison_threshold, levels_named, limited, log_lines
+from lube.rig.study_shares import (
+    at_comparison_threshold,
+    levels_named,
+    log_lines,
+    values_with_limits,
+)
 from lube.schema import AT_RECORDS, LIMITS, label
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
@@ -88,13 +92,16 @@ def _side_by_side(model, experiment):
     shares = at_comparison_threshold(experiment)
     shares = [shares[f"contact_share{limit}"].values for limit in LIMITS]
     by_formula = {
-        **limited("simulated_probability", (mean, *limits)),
+        **values_with_limits("simulated_probability", (mean, *limits)),
         "predicted_share_lower": lower,
         "predicted_share_upper": upper,
         "within_prediction": (shares[0] >= lower) & (shares[0] <= upper),
     }
     return table.assign(
-        {name: ("record", values) for name, values in limited("measured_share", shares).items()}
+        {
+            name: ("record", values)
+            for name, values in values_with_limits("measured_share", shares).items()
+        }
         | {name: (("film_formula", "record"), values) for name, values in by_formula.items()}
     )
 
@@ -185,7 +192,9 @@ def _rank_correlation(first, second):
     if first.size < 2 or np.ptp(first) == 0.0 or np.ptp(second) == 0.0:
         return np.nan
     # Ranks are multiples of 1/2, so these sums are exact in any order.
-    first, second = (scipy.stats.rankdata(each) - (each.size + 1) / 2 for each in (first, second))
+    first, second = (
+        pd.Series(each).rank().values - (each.size + 1) / 2 for each in (first, second)
+    )
     return np.sum(first * second) / np.sqrt(np.sum(first**2) * np.sum(second**2))
 
 

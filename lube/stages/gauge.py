@@ -18,7 +18,7 @@ import xarray as xr
 
 from lube.rig.fits import fit_alpha, fit_layer_strength, study_strength
 from lube.rig.map_curves import curve_at
-from lube.rig.study_shares import limited
+from lube.rig.study_shares import values_with_limits
 from lube.schema import AT_RECORDS, label
 from lube.statistics.curves import film_interval
 from lube.statistics.one_pair import quantile, standard_error
@@ -91,7 +91,9 @@ def gauge_film(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
     ratios = np.exp(films)
     ratios[:, 0] = np.where(np.isfinite(films)[:, 0], ratios[:, 0], np.nan)
     thickness = ratios * comparison["composite_rms_roughness"].item()
-    found = limited("gauged_lambda_ratio", ratios.T) | limited("gauged_film_thickness", thickness.T)
+    found = values_with_limits("gauged_lambda_ratio", ratios.T) | values_with_limits(
+        "gauged_film_thickness", thickness.T
+    )
     return xr.Dataset({name: ("record", values) for name, values in found.items()})
 
 

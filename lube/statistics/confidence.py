@@ -8,7 +8,7 @@ Without scatter, the number of independent windows takes its place.
 
 import numpy as np
 import numpy.typing as npt
-import scipy.stats
+import scipy.special
 
 CONFIDENCE = 0.95
 """Confidence level of all intervals."""
@@ -124,8 +124,8 @@ def probability_limits(
     """
     windows = np.broadcast_to(windows, np.shape(mean)).astype(float)
     scattered = ~np.isnan(sample_size)
-    student = scipy.stats.t.ppf(0.5 + CONFIDENCE / 2.0, degrees)
-    normal = scipy.stats.norm.ppf(0.5 + CONFIDENCE / 2.0)
+    student = scipy.special.stdtrit(degrees, 0.5 + CONFIDENCE / 2.0)
+    normal = scipy.special.ndtri(0.5 + CONFIDENCE / 2.0)
     lower, upper = score_interval(
         mean, np.where(scattered, sample_size, windows), np.where(scattered, student, normal)
     )

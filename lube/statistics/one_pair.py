@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-import scipy.stats
+import scipy.special
 
 from lube.statistics.confidence import CONFIDENCE
 
@@ -43,8 +43,8 @@ def quantile(realisations: int, among: int = 1) -> float:
     """
     level = 1.0 - (1.0 - CONFIDENCE) / 2.0 / among
     if realisations < 2:
-        return scipy.stats.norm.ppf(level)
-    return scipy.stats.t.ppf(level, realisations - 1)
+        return scipy.special.ndtri(level)
+    return scipy.special.stdtrit(realisations - 1, level)
 
 
 def repeat_factor(turns: npt.ArrayLike) -> npt.ArrayLike:

@@ -4,9 +4,8 @@ Files carry the values they were computed from, and no clock time: the same stud
 bytes.
 """
 
-import contextlib
 import logging
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,7 +30,6 @@ def save(
     kind: str,
     study: "Study",
     inputs: Iterable[str | Path] = (),
-    compress: bool = True,
 ) -> None:
     """Save a dataset after checking it against the schema of its kind.
 
@@ -47,8 +45,6 @@ def save(
         The study; the values that determine the result are stored in the file's attributes.
     inputs : iterable of str or Path, optional
         Files that the result was made from; their SHA-256 sums are stored, too.
-    compress : bool, optional
-        False for temporary files.
 
     Raises
     ------
@@ -58,9 +54,8 @@ def save(
     """
     path = Path(path)
     dataset = check(dataset, kind, path).assign_attrs(global_attributes(study, kind, inputs))
-    encoding = _encoding(dataset, compress)
     with written_whole(path) as part:
-        dataset.to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        dataset.to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=_encoding(dataset))
     log.info("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
 
 
@@ -87,56 +82,23 @@ def load(path: str | Path, kind: str, study: "Study | None" = None) -> xr.Datase
         If the file is missing, truncated, damaged, not of this kind, or follows from other
         values than the study's.
     """
-    with opened(path, kind, study, raw=False) as dataset:
-        return dataset.load()
-
-
-@contextlib.contextmanager
-def opened(
-    path: str | Path, kind: str, study: "Study | None" = None, raw: bool = True
-) -> Iterator[xr.Dataset]:
-    """Open a dataset whose values are read when they are used.
-
-    Parameters
-    ----------
-    path, kind, study
-        As in `load`.
-    raw : bool, optional
-        Leave packed heights as whole steps.
-
-    Yields
-    ------
-    xarray.Dataset
-        The data, readable until the file is closed.
-
-    Raises
-    ------
-    DataError
-        As `load`; damaged values are found when they are read.
-    """
     path = Path(path)
     if not path.is_file():
         raise DataError(f"{path}: no such file, need a {kind} dataset")
     try:
-        dataset = xr.open_dataset(path, engine="netcdf4", mask_and_scale=not raw)
-    except (OSError, RuntimeError, ValueError, AttributeError) as error:
-        raise _damaged(path, error) from error
-    with dataset:
-        try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
             check(dataset, kind, path)
             if study is not None:
                 check_config(dataset, study, kind, path)
-            yield dataset
-        except RuntimeError as error:  # the NetCDF library found a wrong checksum
-            raise _damaged(path, error) from error
+            return dataset.load()
+    except (OSError, RuntimeError, ValueError, AttributeError) as error:
+        reason = (str(error) or type(error).__name__).splitlines()[0]
+        raise DataError(
+            f"{path}: not a whole NetCDF file, truncated, damaged or foreign ({reason})"
+        ) from error
 
 
-def _damaged(path, error):
-    reason = (str(error) or type(error).__name__).splitlines()[0]
-    return DataError(f"{path}: not a whole NetCDF file, truncated, damaged or foreign ({reason})")
-
-
-def _encoding(dataset, compress):
+def _encoding(dataset):
     """Storage of every variable: checksummed, in explicit chunks, without fill values."""
     encoding = {}
     for name, variable in dataset.variables.items():
@@ -147,13 +109,13 @@ def _encoding(dataset, compress):
             encoding[name] |= {"dtype": "S1", "fletcher32": True}
         if variable.dtype.kind in "fib" and variable.ndim > 0:
             encoding[name] |= {
-                "zlib": compress,
+                "zlib": True,
                 "complevel": 4,
-                "shuffle": compress,
+                "shuffle": True,
                 "fletcher32": True,
                 "chunksizes": _chunks(variable),
             }
-    if dataset.get("height") is not None and dataset["height"].dtype.kind == "f":
+    if "height" in dataset:  # whole height steps
         encoding["height"] |= {
             "dtype": "int32",
             "scale_factor": dataset.attrs["height_step"],

@@ -1,21 +1,26 @@
 """Executing a figure's notebook, strictly and reproducibly.
 
-Papermill by itself passes over a missing parameters cell and only warns of a parameter that
-the notebook does not know; and it writes clock times into its output. Here the first two are
-errors and the last is taken out, so that an executed notebook is the same whenever it is made.
+Papermill by itself ignores a missing parameters cell and only warns of a parameter that the
+notebook does not know, and it writes clock times into its output. Here the first two are errors
+and the times are removed, so that an executed notebook is the same whenever it is made.
 """
 
 import contextlib
 import logging
+import multiprocessing
 import os
 import re
+import sys
 import tempfile
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import nbformat
 import papermill
-from nbclient.exceptions import DeadKernelError
+from ipykernel.inprocess import InProcessKernelManager
+from papermill.engines import Engine, papermill_engines
 from papermill.exceptions import PapermillExecutionError
+from traitlets.config import Config
 
 from lube.errors import LubeError
 from lube.storage.files import written_whole
@@ -24,37 +29,55 @@ from lube.workflow.stamps import DRAWN_BY
 
 log = logging.getLogger(__name__)
 
-# A kernel that is stopped after its last cell reports a KeyboardInterrupt; it alarms for nothing.
-_QUIET_KERNEL = ["--log-level=CRITICAL"]
+_CELL_FAILED = 3
+"""Exit code of the process that executes a notebook; 1 is Python's own, of any other error."""
 
 _ADDED = {"injected-parameters", "papermill-error-cell-tag"}
 """Tags of the cells that papermill adds."""
 
-# What IPython writes into a traceback.
+_ENVIRONMENT = {
+    # Pictures below the cells, as in Jupyter.
+    "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+    # The figures are the same whatever style the user has set up for their own.
+    "MATPLOTLIBRC": os.devnull,
+    # Jupyter's debugger, not used here, would print a warning.
+    "PYDEVD_DISABLE_FILE_VALIDATION": "1",
+}
+
+# Parts of IPython's tracebacks.
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
-_LED_TO = re.compile(r"The above exception was the direct cause|During handling of the above")
+_CAUSE = re.compile(r"The above exception was the direct cause|During handling of the above")
 
 
-def execute_notebook(notebook, output, parameters, drawn_by):
+def execute_notebook(
+    notebook: str | Path,
+    output: str | Path,
+    parameters: Mapping[str, object],
+    drawn_by: str,
+    code: str | Path | None = None,
+) -> None:
     """Execute a notebook with the given parameters and save the executed copy.
 
     Parameters
     ----------
     notebook : str or Path
-        Notebook to execute; it stays as it is.
+        Notebook to execute; it is not changed.
     output : str or Path
-        Where the executed copy goes, such as ``fig02_film.ipynb``, written only if all cells
-        succeed. Else what was executed goes beside it, to ``fig02_film.failed.ipynb``, which
-        the next success removes; and the traceback goes to the log.
+        Path of the executed copy, such as ``fig02_film.ipynb``, written only if all cells
+        succeed. If one fails, the cells executed so far are saved beside it as
+        ``fig02_film.failed.ipynb``, which the next success removes, and the traceback goes to
+        the log.
     parameters : dict
         Values for the names in the cell tagged ``parameters``.
     drawn_by : str
-        What its stamps say of notebook and code, as from `lube.storage.provenance.drawn_by`.
+        What the figures' stamps say of notebook and code, as from `lube.workflow.stamps.drawn_by`.
+    code : str or Path, optional
+        Folder that holds the package ``lube`` for the notebook; if not given, this one is used.
 
     Raises
     ------
     LubeError
-        If the file is no notebook, has no cell tagged ``parameters``, does not know a
+        If the file is not a notebook, has no cell tagged ``parameters``, does not know a
         parameter, a cell fails, the kernel is killed, or the copy cannot be written.
     """
     _check_parameters(notebook, parameters)
@@ -62,51 +85,124 @@ def execute_notebook(notebook, output, parameters, drawn_by):
     failed = output.with_name(f"{output.stem}.failed.ipynb")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
         executed = Path(scratch) / output.name
-        try:
-            with environment({DRAWN_BY: drawn_by}):
-                _execute(notebook, executed, parameters)
-        except (PapermillExecutionError, DeadKernelError) as error:
-            cells = nbformat.read(executed, as_version=4)
-            told = _failure(error, cells)
-            _save(cells, failed)
-            log.debug("What was executed of it: %s", failed)
-            raise LubeError(f"{notebook}: {told}") from error
-        _save(nbformat.read(executed, as_version=4), output)
+        with environment({**_ENVIRONMENT, DRAWN_BY: drawn_by}):
+            exit_code = _execute_apart(str(notebook), str(executed), dict(parameters), code)
+        if exit_code == 1:
+            raise LubeError(f"{notebook}: could not be executed, for the reason printed above")
+        cells = nbformat.read(executed, as_version=4)
+    if exit_code != 0:
+        message = _failure(cells, exit_code)
+        _save(cells, failed)
+        log.debug("The cells executed so far: %s", failed)
+        raise LubeError(f"{notebook}: {message}")
+    _save(cells, output)
     failed.unlink(missing_ok=True)
 
 
-def _execute(notebook, output, parameters):
-    """Let papermill execute a notebook; its output is there even if a cell fails."""
-    with _kernel_kept_quiet():
+def _execute_apart(*arguments):
+    """Execute a notebook in a process forked from this one; return its exit code.
+
+    The notebook cannot change this process or the next notebook, and if its memory runs out, this
+    process is still there to report it. All that is imported here need not be imported again.
+    """
+    process = multiprocessing.get_context("fork").Process(
+        target=_execute, args=arguments, daemon=True
+    )
+    process.start()
+    process.join()
+    return process.exitcode
+
+
+def _execute(notebook, output, parameters, code):
+    """Execute a notebook with papermill; its output is written even if a cell fails."""
+    if code is not None:
+        _use_package_in(code)
+    try:
         papermill.execute_notebook(
-            str(notebook),
-            str(output),
+            notebook,
+            output,
             parameters,
+            engine_name=_ENGINE,
             kernel_name="python3",
             language="python",
             progress_bar=False,
-            # Else what a cell prints is in one piece or several, as the clock will.
-            coalesce_streams=True,
-            extra_arguments=_QUIET_KERNEL,
         )
+    except PapermillExecutionError:
+        raise SystemExit(_CELL_FAILED) from None
 
 
-def _failure(error, executed):
-    """Tell in one line which cell fails, where and why; the log gets the whole traceback."""
+def _use_package_in(folder):
+    """Let this process import `lube` anew, from another folder."""
+    for name in [name for name in sys.modules if name.split(".")[0] == "lube"]:
+        del sys.modules[name]
+    sys.path.insert(0, str(folder))
+
+
+class _InProcess(Engine):
+    """Engine of papermill that executes the cells in this process.
+
+    Papermill's own starts a second process, which takes longer than many a figure.
+    """
+
+    @classmethod
+    def execute_managed_notebook(cls, nb_man, kernel_name, **options):
+        # The user's own history of IPython is left alone.
+        config = Config({"HistoryManager": {"enabled": False}})
+        manager = InProcessKernelManager(config=config)
+        manager.start_kernel()
+        client = manager.client()
+        client.start_channels()
+        nb_man.nb.metadata.language_info = manager.kernel.language_info
+        for cell in nb_man.nb.cells:
+            nb_man.cell_start(cell)
+            failed = cell.cell_type == "code" and _run(cell, client) == "error"
+            if failed:
+                nb_man.cell_exception(cell)
+            nb_man.cell_complete(cell)
+            if failed:
+                break
+
+
+papermill_engines.register(_ENGINE := "in-process", _InProcess)
+
+
+def _run(cell, client):
+    """Run a code cell and put its outputs below it; return `ok` or `error`."""
+    client.execute(cell.source)
+    reply = client.get_shell_msg()["content"]
+    cell.execution_count = reply["execution_count"]
+    while client.iopub_channel.msg_ready():
+        message = client.get_iopub_msg()
+        if message["msg_type"] in ("stream", "display_data", "execute_result", "error"):
+            _add_output(cell, nbformat.v4.output_from_msg(message))
+    return reply["status"]
+
+
+def _add_output(cell, output):
+    """Add an output below a cell; what is printed in several pieces becomes one."""
+    last = cell.outputs[-1] if cell.outputs else None
+    if last and output.output_type == "stream" and last.get("name") == output.name:
+        last.text += output.text
+    else:
+        cell.outputs.append(output)
+
+
+def _failure(executed, exit_code):
+    """Say in one line which cell fails, where and why; log the whole traceback."""
     cells = [cell for cell in executed.cells if not _ADDED & set(cell.metadata.get("tags", []))]
     # Counted from 1, text included, as a reader of the notebook counts.
     number = max(n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time)
-    if isinstance(error, DeadKernelError):
-        return f"its kernel was killed in cell {number}, perhaps for want of memory"
-    named = {f"Cell In[{cell.get('execution_count')}]": n for n, cell in enumerate(cells, 1)}
+    if exit_code != _CELL_FAILED:
+        return f"its kernel was killed in cell {number}, perhaps because memory ran out"
+    error = cells[number - 1].outputs[-1]
     traceback = _COLOUR.sub("", "\n".join(error.traceback))
-    for count, cell_number in named.items():
-        traceback = traceback.replace(count, f"Cell {cell_number}")
+    for n, cell in enumerate(cells, 1):
+        traceback = traceback.replace(f"Cell In[{cell.get('execution_count')}]", f"Cell {n}")
     log.debug("%s", traceback)
-    # The first frame of the error itself, behind those of errors that led to it.
-    lines = re.findall(rf"Cell {number}, line (\d+)", _LED_TO.split(traceback)[-1])
-    place = f" at line {lines[0]}" if lines else ""
-    return f"cell {number} fails{place}: {' '.join(f'{error.ename}: {error.evalue}'.split())}"
+    # The first frame of the error itself, after those of the errors that caused it.
+    lines = re.findall(rf"Cell {number}, line (\d+)", _CAUSE.split(traceback)[-1])
+    where = f" at line {lines[0]}" if lines else ""
+    return f"cell {number} fails{where}: {' '.join(f'{error.ename}: {error.evalue}'.split())}"
 
 
 def _save(executed, path):
@@ -116,8 +212,8 @@ def _save(executed, path):
 
 
 @contextlib.contextmanager
-def environment(variables):
-    """Set variables of the environment for a while, for the processes begun in it.
+def environment(variables: Mapping[str, str]) -> Iterator[None]:
+    """Set environment variables within a block, for the processes started in it.
 
     Parameters
     ----------
@@ -135,22 +231,6 @@ def environment(variables):
                 os.environ[name] = value
 
 
-@contextlib.contextmanager
-def _kernel_kept_quiet():
-    """Keep what a kernel says while it closes off the terminal: it alarms and means nothing.
-
-    What goes wrong in a cell reaches us as an exception, and not by way of standard error.
-    """
-    terminal = os.dup(2)
-    try:
-        with open(os.devnull, "wb") as nowhere:
-            os.dup2(nowhere.fileno(), 2)
-        yield
-    finally:
-        os.dup2(terminal, 2)
-        os.close(terminal)
-
-
 def _check_parameters(notebook, parameters):
     known = parameters_of(notebook)
     for name in parameters:
@@ -162,7 +242,7 @@ def _check_parameters(notebook, parameters):
 
 
 def _without_times(executed):
-    """Drop clock times and random cell names that papermill leaves in a notebook."""
+    """Remove the clock times and random cell names that papermill leaves in a notebook."""
     executed.metadata.pop("papermill", None)
     for number, cell in enumerate(executed.cells):
         cell.metadata.pop("papermill", None)

@@ -93,13 +93,6 @@ def test_paths_that_would_not_resolve_in_an_archive_are_refused(own, tmp_path):
         own.write_text(before, encoding="utf-8")
 
 
-def test_a_study_may_have_the_name_of_any_file_of_the_archive(own, tmp_path):
-    own = own.rename(own.with_name(VALUES))
-    contents = contents_of(own, tmp_path / "results")
-    assert contents[f"study/studies/{VALUES}"].samefile(own)
-    assert json.loads(contents[VALUES])["study_file"] == f"studies/{VALUES}"
-
-
 def test_records_with_the_same_file_name_are_both_archived(own, tmp_path):
     same = own.parent / "mobilgear-shc-xmp-320.yaml"
     shutil.copy(tmp_path / "oils/mine.yaml", same)

@@ -168,14 +168,6 @@ def test_a_zip_is_read_however_it_was_packed(archive, tmp_path, root):
     assert wrong == ([] if root else ["__MACOSX/smoke/._README.md" + FOREIGN])
 
 
-def test_what_is_wrong_in_a_zip_is_named_by_its_path_in_it(changed, tmp_path):
-    edit(changed / "study/paper.yaml", "shear_strength: 1 MPa", "shear_strength: 2 MPa")
-    (changed / SUMS).write_text(sums_of(changed))
-    path = shutil.make_archive(tmp_path / "changed", "zip", changed)
-    with unpacked(path) as folder:
-        assert all(line.startswith(("data/", "values.json")) for line in verify_archive(folder))
-
-
 def test_a_damaged_zip_is_found(archive, tmp_path):
     packed = archive.with_suffix(".zip").read_bytes()
     path = tmp_path / "damaged.zip"

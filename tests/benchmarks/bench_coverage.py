@@ -180,14 +180,13 @@ def held_out_shares(study, table, motion, pairs, pool):
 
 def experiment_of(study, table, motion, turns):
     """Records of one pair at all operating points, for each number of turns in turn."""
-    unset = dict.fromkeys(Entry.__dataclass_fields__)
     entries = []
     for length, row in itertools.product(turns, table.to_dict("records")):
         levels = {name: float(row[name]) for name in ("force", "speed", "temperature")}
         where = f"record {len(entries)}, {length:g} turns"
         # The shares of the pairs replace this probability later.
         given = {"where": where, "probability": 0.5, "slide_to_roll_ratio": MOTIONS[motion]}
-        entries.append(Entry(**unset | given | levels))
+        entries.append(Entry.model_construct(**given | levels))
     experiment = measured_experiment(Manifest("simulated", tuple(entries), ()), study)
     lengths = np.repeat(np.array(turns, float), len(table))
     return experiment.assign(turns=experiment["turns"].copy(data=lengths))

@@ -11,7 +11,6 @@ from compliance_checker.runner import CheckSuite, ComplianceChecker
 from every_kind import KINDS
 
 from lube.schema import check
-from lube.storage.netcdf import save
 from lube.storage.provenance import global_attributes
 
 
@@ -87,10 +86,3 @@ def test_variables_are_named_and_stored_as_the_conventions_ask(files, study):
                 if array.ndim and not is_text:
                     assert filters["zlib"] and filters["shuffle"] and filters["complevel"] == 4
                     assert array.chunking() != "contiguous"
-
-
-def test_a_temporary_file_has_checksums_but_is_not_compressed(datasets, study, tmp_path):
-    save(datasets["roughness_batch"], tmp_path / "b.nc", "roughness_batch", study, compress=False)
-    with netCDF4.Dataset(tmp_path / "b.nc") as raw:
-        filters = raw["height"].filters()
-    assert filters["fletcher32"] and not filters["zlib"]

@@ -6,16 +6,16 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
-from every_kind import KINDS, load_as_jobs_do
+from every_kind import KINDS
 
 from lube.errors import DataError
-from lube.storage.netcdf import load, opened, save
+from lube.storage.netcdf import load, save
 
 
 def test_what_is_saved_is_loaded_with_its_labels(datasets, files):
     assert set(datasets) == set(KINDS)
     for kind, dataset in datasets.items():
-        loaded = load_as_jobs_do(files / f"{kind}.nc", kind)
+        loaded = load(files / f"{kind}.nc", kind)
         for name in {"in_validity_range", "within_prediction"} & set(loaded):
             loaded[name] = loaded[name].astype(bool)  # NetCDF has no Boolean type
         xr.testing.assert_equal(loaded, dataset)
@@ -34,10 +34,6 @@ def test_heights_are_exact_after_packing_and_padding_stays_missing(datasets, fil
     np.testing.assert_array_equal(loaded, heights)
     with netCDF4.Dataset(files / "roughness.nc") as raw:
         assert raw["height"].dtype == np.int32
-    steps = load_as_jobs_do(files / "roughness_batch.nc", "roughness_batch")["height"]
-    assert steps.dtype == np.int32
-    present, step = ~np.isnan(loaded), datasets["roughness"].attrs["height_step"]
-    np.testing.assert_array_equal(np.rint(loaded[present] / step), steps.values[present])
 
 
 def test_a_loaded_dataset_does_not_need_its_file(files, tmp_path):
@@ -54,19 +50,19 @@ def test_a_dataset_saved_twice_or_loaded_and_saved_again_is_the_same(
     for kind, dataset in datasets.items():
         save(dataset, again, kind, study)
         assert again.read_bytes() == (files / f"{kind}.nc").read_bytes()
-        first = load_as_jobs_do(again, kind)
+        first = load(again, kind)
         save(first, again, kind, study)
-        xr.testing.assert_identical(load_as_jobs_do(again, kind), first)
+        xr.testing.assert_identical(load(again, kind), first)
 
 
 def test_files_of_other_values_than_the_studys_are_refused(files, study):
     other = study.model_copy(update={"seed": 1})
     expected = r"belongs to other values than this study's: .*seed is 20181109, need 1; delete it"
     for kind in KINDS:
-        load_as_jobs_do(files / f"{kind}.nc", kind, study)
+        load(files / f"{kind}.nc", kind, study)
         if "seed" in study.stage_inputs(kind.removesuffix("_batch")):
             with pytest.raises(DataError, match=f"{kind}.nc: {expected}"):
-                load_as_jobs_do(files / f"{kind}.nc", kind, other)
+                load(files / f"{kind}.nc", kind, other)
 
 
 def test_a_save_that_fails_leaves_the_old_file_alone(datasets, files, study, tmp_path, monkeypatch):
@@ -84,27 +80,19 @@ def test_a_save_that_fails_leaves_the_old_file_alone(datasets, files, study, tmp
     assert list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.parametrize("kind", ["film", "roughness_batch"])
-def test_on_a_disk_of_any_size_a_file_is_whole_or_not_there(datasets, study, tmp_path, disk, kind):
+def test_on_a_disk_of_any_size_a_file_is_whole_or_not_there(datasets, study, tmp_path, disk):
     """The library may run out of space anywhere in the file, even while it closes it."""
-    path = tmp_path / "small" / f"{kind}.nc"
+    path = tmp_path / "small" / "film.nc"
     path.parent.mkdir()
     saved = {}
     for size in range(4, 400, 18):
         disk(path.parent, f"size={size}k")
         try:
-            save(datasets[kind], path, kind, study, compress=kind == "film")
+            save(datasets["film"], path, "film", study)
         except DataError as error:
             assert str(error).startswith(f"{path}: cannot be written: ")
             assert "MiB are free on its disk" in str(error)
             assert not list(path.parent.iterdir())
-        saved[size] = path.exists() and bool(load_as_jobs_do(path, kind))
+        saved[size] = path.exists() and bool(load(path, "film"))
     assert list(saved.values()) == sorted(saved.values())
     assert not saved[4] and saved[382]
-
-
-def test_errors_of_the_code_that_uses_an_open_file_are_not_its_fault(files):
-    for error in (OSError(28, "No space left"), ValueError()):
-        with pytest.raises(type(error)) as caught, opened(files / "film.nc", "film"):
-            raise error
-        assert caught.value is error

@@ -50,12 +50,6 @@ def archive(archived):
     return archived.results / "archive/smoke"
 
 
-@pytest.fixture
-def spoilt(archive, tmp_path):
-    """A copy of the archive, free to be changed."""
-    return shutil.copytree(archive, tmp_path / "archive")
-
-
 @pytest.fixture(scope="session")
 def spare_folder(tmp_path_factory):
     """Folder of all spare repositories in turn: compiled kernels depend on the path."""

@@ -80,13 +80,3 @@ def test_snakemake_makes_the_same_archive_again_and_verifies_it_each_time(archiv
     picture.write_bytes(whole)
     assert verified.returncode != 0
     assert "Wrong: figures/fig02_film.png: changed" in verified.stdout
-
-
-def test_a_study_without_creators_is_refused_before_any_job(smoke):
-    before = smoke.snapshot()
-    about = {"title": "mine", "creators": [], "date": "2026-11-21"}
-    finished = smoke.snakemake("archive", study=smoke.with_values(about=about))
-    assert finished.returncode != 0
-    assert "The study cannot start. about.creators: missing" in finished.stdout
-    assert "Traceback" not in finished.stdout
-    assert smoke.snapshot() == before

@@ -1,6 +1,7 @@
-"""Notebooks: executed strictly, and the same whenever they are."""
+"""Notebooks: executed strictly, apart from this process, and the same whenever they are."""
 
 import os
+import sys
 
 import nbformat
 import pytest
@@ -28,6 +29,16 @@ def write(tmp_path):
     return write_notebook
 
 
+@pytest.fixture
+def output(tmp_path):
+    return tmp_path / "made" / "executed.ipynb"
+
+
+def outputs_of(path):
+    cells = nbformat.read(path, as_version=4).cells
+    return [shown for cell in cells for shown in cell.get("outputs", [])]
+
+
 def refusal(notebook, output, parameters):
     with pytest.raises(LubeError) as caught:
         execute_notebook(notebook, output, parameters, "")
@@ -38,40 +49,73 @@ def refusal(notebook, output, parameters):
     return message
 
 
-def test_a_notebook_is_executed_with_its_parameters_twice_the_same(write, tmp_path):
+def test_a_notebook_is_executed_with_its_parameters_twice_the_same(write, output, tmp_path):
     notebook = write("print(film, figure)", "from pathlib import Path; Path(figure).touch()")
-    before = notebook.read_bytes()
-    copies = [tmp_path / "made" / "first.ipynb", tmp_path / "made" / "second.ipynb"]
-    for copy in copies:
-        drawn = tmp_path / "drawn"
-        execute_notebook(notebook, copy, {"film": "film.nc", "figure": str(drawn)}, "")
+    before, copies = notebook.read_bytes(), []
+    drawn = tmp_path / "drawn"
+    for _ in range(2):
+        execute_notebook(notebook, output, {"film": "film.nc", "figure": str(drawn)}, "")
+        copies.append(output.read_bytes())
         assert drawn.exists()
-    assert copies[0].read_bytes() == copies[1].read_bytes()
+    assert copies[0] == copies[1]
     assert notebook.read_bytes() == before
-    outputs = [cell.get("outputs") for cell in nbformat.read(copies[0], as_version=4).cells]
-    assert f"film.nc {drawn}\n" in str(outputs).replace("\\n", "\n")
-
-
-def test_what_a_cell_prints_is_one_piece_however_slowly_it_comes(write, tmp_path):
-    output = tmp_path / "executed.ipynb"
-    execute_notebook(write("import time; print(1); time.sleep(0.7); print(2)"), output, {}, "")
-    cell = nbformat.read(output, as_version=4).cells[-1]
-    assert [printed.text for printed in cell.outputs] == ["1\n2\n"]
-
-
-def test_an_executed_notebook_holds_no_clock_time_and_is_valid(write, tmp_path):
-    output = tmp_path / "executed.ipynb"
-    execute_notebook(write("1 + 1"), output, {}, "")
-    text = output.read_text(encoding="utf-8")
-    assert "start_time" not in text and "iopub" not in text and "duration" not in text
+    assert outputs_of(output)[0].text == f"film.nc {drawn}\n"
+    for time in (b"start_time", b"iopub", b"duration"):
+        assert time not in copies[0]
     nbformat.validate(nbformat.read(output, as_version=4))
 
 
-def test_what_stamps_say_reaches_the_notebook_and_goes_with_it(write, tmp_path):
-    notebook = write(f"import os; print(os.environ['{DRAWN_BY}'])")
-    execute_notebook(notebook, tmp_path / "executed.ipynb", {}, "changed notebook")
-    assert "changed notebook" in (tmp_path / "executed.ipynb").read_text("utf-8")
+def test_all_kinds_of_output_are_kept_in_order(write, output):
+    code = """
+import sys, time
+import matplotlib.pyplot as plt
+from IPython.display import display, Markdown
+print(1)
+time.sleep(0.7)  # what is printed slowly is one piece all the same
+print(2)
+print("careful", file=sys.stderr)
+display(Markdown("shown"))
+plt.plot([1, 2])
+1 + 1
+"""
+    execute_notebook(write(code), output, {}, "")
+    printed, warned, shown, result, picture = outputs_of(output)
+    assert (printed.name, printed.text) == ("stdout", "1\n2\n")
+    assert (warned.name, warned.text) == ("stderr", "careful\n")
+    assert shown.data["text/markdown"] == "shown"
+    assert result.data["text/plain"] == "2"
+    assert "image/png" in picture.data
+    cell = nbformat.read(output, as_version=4).cells[-1]
+    assert cell.execution_count == result.execution_count == 2
+
+
+def test_a_notebook_changes_nothing_in_this_process(write, output):
+    folder, modules = os.getcwd(), set(sys.modules)
+    code = "import os, sys, this\nos.environ['LEFT'] = 'x'\nos.chdir('/')\nsys.exit = None"
+    execute_notebook(write(code), output, {}, "")
+    assert (os.getcwd(), os.environ.get("LEFT"), sys.exit is None) == (folder, None, False)
+    assert "this" not in set(sys.modules) - modules
+
+
+def test_the_stamps_text_and_no_style_of_the_users_reach_the_notebook(
+    write, output, tmp_path, monkeypatch
+):
+    (tmp_path / "matplotlibrc").write_text("lines.linewidth: 7")
+    monkeypatch.setenv("MATPLOTLIBRC", str(tmp_path))
+    codes = f"import os; os.environ['{DRAWN_BY}']", "from matplotlib import rcParams"
+    notebook = write(*codes, "rcParams['lines.linewidth']")
+    execute_notebook(notebook, output, {}, "changed notebook")
+    shown = [shown.data["text/plain"] for shown in outputs_of(output)]
+    assert shown == ["'changed notebook'", "1.5"]
     assert DRAWN_BY not in os.environ
+    assert os.environ["MATPLOTLIBRC"] == str(tmp_path)
+
+
+def test_a_notebook_takes_the_package_from_the_folder_that_is_named(write, output, tmp_path):
+    (tmp_path / "lube").mkdir()
+    (tmp_path / "lube/__init__.py").write_text("film = 'archived'")
+    execute_notebook(write("from lube import film; print(film)"), output, {}, "", tmp_path)
+    assert outputs_of(output)[0].text == "archived\n"
 
 
 # A cell that fails
@@ -86,75 +130,62 @@ except ZeroDivisionError as error:
 """
 
 
-@pytest.mark.parametrize("parameters", [{}, {"film": "film.nc"}])
-@pytest.mark.parametrize(
-    ("code", "told"),
-    [
-        ("x = 1\n\nraise ValueError('no\\nsuch film')", "at line 3: ValueError: no such film"),
-        ("x = 1\nreciprocal(0)", "at line 2: ZeroDivisionError: division by zero"),
-        (CAUSED, "at line 5: ValueError: no such film"),
-        ("x = 1\ny = = 2", "at line 2: SyntaxError: invalid syntax"),
-    ],
-    ids=["raised", "in-a-function", "caused", "syntax"],
-)
-def test_a_failing_cell_is_told_in_one_line_and_leaves_no_copy(
-    write, tmp_path, code, told, parameters
-):
-    notebook = write("def reciprocal(x):\n    return 1 / x", code)
-    message = refusal(notebook, tmp_path / "executed.ipynb", parameters)
-    assert message.startswith(f"{notebook}: cell 4 fails {told}")
+def test_a_failing_cell_is_named_in_one_line(write, output):
+    cases = {
+        "x = 1\n\nraise ValueError('no\\nsuch film')": "at line 3: ValueError: no such film",
+        "x = 1\nreciprocal(0)": "at line 2: ZeroDivisionError: division by zero",
+        CAUSED: "at line 5: ValueError: no such film",
+        "x = 1\ny = = 2": "at line 2: SyntaxError: invalid syntax",
+    }
+    for code, reason in cases.items():
+        notebook = write("def reciprocal(x):\n    return 1 / x", code)
+        for parameters in ({}, {"film": "film.nc"}):
+            message = refusal(notebook, output, parameters)
+            assert message.startswith(f"{notebook}: cell 4 fails {reason}")
 
 
-def test_the_log_gets_the_traceback_with_cells_and_lines(write, tmp_path, caplog):
+def test_the_log_gets_the_traceback_with_cells_and_lines(write, output, caplog):
     caplog.set_level("DEBUG", "lube")
     notebook = write("def reciprocal(x):\n    return 1 / x", "x = 1\nreciprocal(0)")
-    refusal(notebook, tmp_path / "executed.ipynb", {"film": "film.nc"})
+    refusal(notebook, output, {"film": "film.nc"})
     assert "Cell 4, line 2\n" in caplog.text
     assert "Cell 3, line 2, in reciprocal(x)\n" in caplog.text
     assert "----> 2     return 1 / x" in caplog.text
     assert "\x1b" not in caplog.text
-    assert f"What was executed of it: {tmp_path / 'executed.failed.ipynb'}" in caplog.text
+    assert f"The cells executed so far: {output.with_suffix('.failed.ipynb')}" in caplog.text
 
 
-def test_what_was_executed_stays_beside_until_the_next_success(write, tmp_path):
-    output, failed = tmp_path / "executed.ipynb", tmp_path / "executed.failed.ipynb"
+def test_the_cells_executed_so_far_are_kept_until_the_next_success(write, output):
+    failed = output.with_suffix(".failed.ipynb")
     execute_notebook(write("print('good')"), output, {}, "")
     good = output.read_bytes()
-    for _ in range(2):
-        with pytest.raises(LubeError):
-            execute_notebook(write("print('so far')", "1 / 0", "never"), output, {}, "")
-        assert output.read_bytes() == good
-        cells = nbformat.read(failed, as_version=4).cells
-        kinds = [output.output_type for cell in cells for output in cell.get("outputs", [])]
-        assert kinds == ["stream", "error"]
+    with pytest.raises(LubeError):
+        execute_notebook(write("print('so far')", "1 / 0", "print('never')"), output, {}, "")
+    assert output.read_bytes() == good
+    assert [shown.output_type for shown in outputs_of(failed)] == ["stream", "error"]
     execute_notebook(write("print('good')"), output, {}, "")
     assert output.read_bytes() == good
     assert not failed.exists()
 
 
-def test_a_notebook_without_a_parameters_cell_is_refused(write, tmp_path):
-    message = refusal(write("x = 1", tags=()), tmp_path / "executed.ipynb", {"film": "film.nc"})
-    assert "no cell is tagged 'parameters'" in message
-
-
-def test_a_parameters_cell_that_is_no_python_is_refused(write, tmp_path):
-    message = refusal(write(parameters="film ="), tmp_path / "executed.ipynb", {})
-    assert "got 'film =', which is not Python" in message
-
-
-def test_a_parameter_that_the_notebook_does_not_know_is_refused(write, tmp_path):
-    message = refusal(write("x = 1"), tmp_path / "executed.ipynb", {"trace": "trace.nc"})
-    assert "parameter 'trace' is not in its parameters cell, which has film, figure" in message
-
-
-def test_a_file_that_is_no_notebook_is_refused(tmp_path):
-    path = tmp_path / "figure.ipynb"
-    path.write_text("no notebook", encoding="utf-8")
-    assert "not a Jupyter notebook" in refusal(path, tmp_path / "executed.ipynb", {})
-
-
-def test_a_killed_kernel_is_told(write, tmp_path):
+def test_a_killed_kernel_is_reported(write, output):
     notebook = write("x = 1", "import os, signal; os.kill(os.getpid(), signal.SIGKILL)")
-    told = "its kernel was killed in cell 4, perhaps for want of memory"
-    assert told in refusal(notebook, tmp_path / "executed.ipynb", {})
-    assert (tmp_path / "executed.failed.ipynb").exists()
+    reason = "its kernel was killed in cell 4, perhaps because memory ran out"
+    assert reason in refusal(notebook, output, {})
+    assert output.with_suffix(".failed.ipynb").exists()
+
+
+# A notebook that cannot be executed
+
+
+def test_what_is_not_a_notebook_with_the_wanted_parameters_is_refused(write, output):
+    cases = [
+        ({"tags": ()}, {"film": "film.nc"}, "no cell is tagged 'parameters'"),
+        ({"parameters": "film ="}, {}, "got 'film =', which is not Python"),
+        ({}, {"trace": "trace.nc"}, "parameter 'trace' is not in its parameters cell, which has"),
+    ]
+    for written, parameters, reason in cases:
+        assert reason in refusal(write("x = 1", **written), output, parameters)
+    path = write()
+    path.write_text("no notebook", encoding="utf-8")
+    assert "not a Jupyter notebook" in refusal(path, output, {})
