@@ -6,6 +6,7 @@ report: "workflow/report/study.rst"
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/notebooks.smk"
+include: "workflow/rules/study.smk"
 include: "workflow/rules/lubricant.smk"
 include: "workflow/rules/film.smk"
 include: "workflow/rules/roughness.smk"

@@ -1,32 +1,29 @@
 """The command ``lube``: check an archive, draw its figures again, trace a number.
 
-``lube --help`` tells the rest.
+See ``lube --help``.
 """
 
 import argparse
-import os
 import sys
+from collections.abc import Sequence
 
 from lube.errors import LubeError, shown
-from lube.workflow.processors import compute_alike
+from lube.workflow.environment import compute_alike
 
 
-def main(arguments=None):
+def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command.
 
     Parameters
     ----------
     arguments : sequence of str, optional
-        Its arguments; those of the process if not given.
+        Its arguments; by default those of the process.
 
     Returns
     -------
     int
-        0 if all is well, 1 if something was found wrong, 2 if the command could not be carried
-        out.
+        0 if all is well, 1 if something is wrong, 2 if the command could not be carried out.
     """
-    for stream in (sys.stdout, sys.stderr):
-        stream.reconfigure(errors="backslashreplace")  # whatever letters the terminal knows
     options = _parser().parse_args(arguments)
     compute_alike()
     try:
@@ -35,13 +32,11 @@ def main(arguments=None):
         return code
     except LubeError as error:
         print(f"Error: {error}", file=sys.stderr)
-        return 2
     except KeyboardInterrupt:
         print("Interrupted", file=sys.stderr)
-        return 2
-    except BrokenPipeError:  # nobody reads on, as behind `| head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 2
+    except BrokenPipeError:  # the reader has stopped, as in `lube ... | head`
+        sys.stdout = None  # Python would flush it again on exit
+    return 2
 
 
 def _parser():
@@ -52,17 +47,19 @@ def _parser():
     verify.set_defaults(run=_verify)
     figures = commands.add_parser("figures", help="draw an archive's figures again and compare")
     figures.add_argument("path", help="its folder or zip")
-    figures.add_argument("figure", nargs="*", help="such as fig02_film; else all of them")
+    figures.add_argument("figure", nargs="*", help="such as fig02_film; by default all")
     figures.add_argument("--to", required=True, help="folder for the new figures")
     figures.set_defaults(run=_figures)
-    explain = commands.add_parser("explain", help="trace a number of contact.nc and make it again")
-    explain.add_argument("path", help="a contact.nc, its film.nc and lubricant.nc beside it")
+    explain = commands.add_parser(
+        "explain", help="trace a number of contact.nc and compute it again"
+    )
+    explain.add_argument("path", help="a contact.nc, with its film.nc and lubricant.nc beside it")
     units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
     for name in (*units, "slide-to-roll-ratio"):
-        told = f"a level of the file{units.get(name, '')}, to within half a per cent"
-        explain.add_argument(f"--{name}", type=float, help=told)
+        help_text = f"a level of the file{units.get(name, '')}, to within half a per cent"
+        explain.add_argument(f"--{name}", type=float, help=help_text)
     for name in ("lubricant", "film-formula"):
-        explain.add_argument(f"--{name}", help="by name; else the first")
+        explain.add_argument(f"--{name}", help="by name; by default the first")
     explain.add_argument(
         "--realisation",
         type=_realisation,
@@ -74,12 +71,12 @@ def _parser():
 
 
 def _realisation(text):
-    """Read the number of a realisation; None stands for all."""
+    """Parse the number of a realisation; None stands for all."""
     try:
         return None if text == "all" else int(text)
     except ValueError:
-        told = f"got {shown(text)}, need a whole number or `all`"
-        raise argparse.ArgumentTypeError(told) from None
+        message = f"got {shown(text)}, need a whole number or `all`"
+        raise argparse.ArgumentTypeError(message) from None
 
 
 def _verify(options):
@@ -108,11 +105,11 @@ def _figures(options):
 
 def _explain(options):
     from lube.archive.explain import explain, in_words
+    from lube.schema import CONTACT_DIMS
 
-    names = ("force", "speed", "temperature", "slide_to_roll_ratio", "lubricant", "film_formula")
-    levels = {name: getattr(options, name) for name in names}
-    given = {name: level for name, level in levels.items() if level is not None}
-    explanation = explain(options.path, options.realisation, **given)
+    given = {name: getattr(options, name) for name in CONTACT_DIMS}
+    levels = {name: level for name, level in given.items() if level is not None}
+    explanation = explain(options.path, options.realisation, **levels)
     print(in_words(explanation))
     return 1 if explanation.differing else 0
 

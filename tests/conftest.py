@@ -24,7 +24,7 @@ settings.load_profile("lube")
 
 
 class _FileByFile(LoadScopeScheduling):
-    """Share the tests: one file stays in one process."""
+    """Give all tests of a file to one process."""
 
     def _split_scope(self, nodeid):
         return nodeid.split("::", 1)[0]
@@ -34,17 +34,12 @@ def pytest_xdist_make_scheduler(config, log):
     return _FileByFile(config, log)
 
 
-# The two processes get these in turn: while one makes the smoke study, the other needs none.
-FIRST = ("test_archived_study.py", "test_fuzz.py", "test_faults.py")
-
-
 def pytest_collection_modifyitems(items):
-    """What takes longest comes first."""
+    """One process makes the smoke study first, while the other runs tests that need none."""
 
     def rank(item):
-        name = item.path.name
-        later = len(FIRST) + (item.path.parent.name != "workflow")
-        return FIRST.index(name) if name in FIRST else later, name
+        in_workflow = item.path.parent.name == "workflow"
+        return item.path.name != "test_run.py", in_workflow, item.path
 
     items.sort(key=rank)
 

@@ -1,4 +1,4 @@
-"""RO-Crates under their own validator, which asks the network for one file: here it is given it."""
+"""The validator of RO-Crate, which asks the network for one file: here it is given that file."""
 
 import importlib.resources
 import io
@@ -16,7 +16,7 @@ CONTEXT = f"https://w3id.org/ro/crate/{RO_CRATE}/context"
 
 
 class _Shipped(BaseAdapter):
-    """Answers with the context that the rocrate library brings along."""
+    """Answers with the context that is part of the rocrate library."""
 
     def send(self, request, **options):
         content = (importlib.resources.files(rocrate) / "data/ro-crate.jsonld").read_bytes()
@@ -33,7 +33,7 @@ class _Shipped(BaseAdapter):
 
 
 def issues_of(folder, scratch):
-    """What the validator finds wrong with the crate in a folder: all that is required."""
+    """List what the validator finds wrong with the crate in a folder: its required properties."""
     cache = str(scratch / "cache")
     with CachedSession(cache, backend="sqlite", expire_after=-1) as session:
         session.mount("https://", _Shipped())

@@ -15,19 +15,12 @@ from lube.stages.lubricant import lubricant_table
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
 from lube.stages.trace import contact_trace
-from lube.storage.netcdf import opened
 
-KINDS = list(FILES)
-
-
-def load_as_jobs_do(path, kind, study=None):
-    """Batches of lines stay whole steps, everything else is in its unit."""
-    with opened(path, kind, study, raw=kind == "roughness_batch") as dataset:
-        return dataset.load()
+KINDS = [kind for kind in FILES if kind != "roughness_batch"]  # which stays in memory
 
 
-def measured_times(kind):
-    """Times as `snakemake benchmark` saves them, none like another."""
+def measured_values(kind):
+    """Values as `snakemake benchmark` saves them, all different."""
     rng = np.random.default_rng(1)
     variables = {
         name: (row.dims, rng.uniform(1.0, 1e6, (2,) * len(row.dims)).astype(row.kind + "8"))
@@ -65,7 +58,6 @@ def datasets_of_every_kind(study):
         "lubricant": oil,
         "film": film,
         "roughness": lines,
-        "roughness_batch": batch,
         "contact_batch": run,
         "contact": contact,
         "master_batch": mapped,
@@ -75,7 +67,7 @@ def datasets_of_every_kind(study):
         "rig": rig_records(rig_lines, film, own),
         "comparison": comparison,
         "gauge": gauge_records(master, contact, comparison),
-        "speed": measured_times("speed"),
-        "reading": measured_times("reading"),
-        "coverage": measured_times("coverage"),
+        "speed": measured_values("speed"),
+        "reading": measured_values("reading"),
+        "coverage": measured_values("coverage"),
     }

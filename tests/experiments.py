@@ -1,4 +1,4 @@
-"""Experiments of given shares, for tests of what is done with them."""
+"""Experiments with given contact shares, for tests of the stages that use them."""
 
 import numpy as np
 import xarray as xr
@@ -16,8 +16,8 @@ THRESHOLDS = np.array([10.0, 100.0, 1000.0])
 def experiment_of(shares, force, speed, temperature, **values):
     """Records with given shares below 100 ohm; half as much below 10, the same below 1000.
 
-    Unless told otherwise they are of one turn in rolling, of one pair of rollers, and each is
-    at the level that its conditions say.
+    By default they are of one revolution in pure rolling, of one pair of rollers, and each is
+    assigned to the levels equal to its conditions.
     """
     count = len(shares)
     conditions = {"force": force, "speed": speed, "temperature": temperature}

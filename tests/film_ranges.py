@@ -1,4 +1,4 @@
-"""How far each film formula is from the computed film, over Moes' M and L.
+"""Errors of each film formula against the computed film, over Moes' M and L.
 
 ``python tests/film_ranges.py`` computes 888 films in some minutes, and prints for every formula the
 largest box in which it stays within the tolerance, and its errors there: these are the ranges and
@@ -25,16 +25,17 @@ OILS = [(VISCOSITY[at], ALPHA[at]) for at in (0, 2, 4)]  # the paper's at 40, 60
 
 @functools.cache
 def relative_errors(moes_load, moes_material, viscosity, alpha):
-    """Relative error of each formula against the computed film at its place."""
+    """Relative error of each formula against the computed film, central or minimum."""
     numbers, (central, minimum) = solve_at(moes_load, moes_material, viscosity, alpha)
     return {
-        name: row.evaluate(*numbers) * RADIUS / (minimum if row.place == "minimum" else central) - 1
+        name: row.evaluate(*numbers) * RADIUS / (minimum if row.thickness == "minimum" else central)
+        - 1
         for name, row in FORMULAS.items()
     }
 
 
 def largest_box(holds):
-    """Slices of M and of L between whose levels all hold, largest in log M times log L."""
+    """Slices of M and L in which the formula holds everywhere, largest in log M times log L."""
     spans = [
         [slice(at, to + 1) for at, to in combinations(range(levels.size), 2)]
         for levels in (LOADS, MATERIALS)

@@ -1,4 +1,4 @@
-"""A numerical solution that film formulas are held against."""
+"""A numerical solution with which film formulas are compared."""
 
 import numpy as np
 from paper_grid import LENGTH, MODULUS, RADIUS
@@ -27,7 +27,7 @@ class NumericalFilm:
             dimensionless.dimensionless_speed(viscosity, speed, 2 * MODULUS, RADIUS),
             dimensionless.dimensionless_material(alpha, 2 * MODULUS),
         )
-        # Moes' formula lies above the computed film by about so much.
+        # Moes' formula lies above the computed film by about this factor.
         self.guess = 0.85 * film_formulas.moes(*numbers) * RADIUS
         self.step = min(0.02, 0.5 / dimensionless.moes_numbers(*numbers)[0])
         self.a = np.sqrt(4 * load * RADIUS / (np.pi * MODULUS))
@@ -41,7 +41,7 @@ class NumericalFilm:
     def nodes(self):
         core = np.arange(-2.0, 1.61, self.step)
         reach = np.cumsum(self.step * 1.06 ** np.arange(1, 300))
-        # So many half-widths off the undeformed gap x^2/2 is that high; the rollers bulge there.
+        # At this distance the undeformed gap x^2/2 has that height; the rollers bulge there.
         far = np.sqrt(2 * FLOODED * self.guess * RADIUS) / self.a + 2.0
         inlet = -2.0 - reach[: 1 + np.searchsorted(reach, far)]
         return np.concatenate([inlet[::-1], core, core[-1] + reach[reach < 4.4]])
@@ -113,7 +113,7 @@ class NumericalFilm:
 def solve_at(moes_load, moes_material, viscosity, alpha):
     """W, U and G of a contact at M and L with some oil, and its central and minimum film, m.
 
-    The oil is given, as its Roelands law knows more of it than M and L; speed and force follow.
+    The oil is given, because Roelands' law needs more than M and L; speed and force follow.
     """
     material = dimensionless.dimensionless_material(alpha, 2 * MODULUS)
     speed = (moes_material / material) ** 4 / 2

@@ -1,15 +1,16 @@
-"""The paper's study, and its content with values exchanged or removed."""
+"""The paper's study and the smoke study: their content, with values exchanged or removed."""
 
 import copy
 from pathlib import Path
 
-import yaml
+from lube.study.resolve import resolved_content
 
 ROOT = Path(__file__).parents[1]
 CONFIG = ROOT / "workflow" / "config"
 PAPER = CONFIG / "paper.yaml"
 SMOKE = CONFIG / "smoke.yaml"
-PAPER_CONTENT = yaml.safe_load(PAPER.read_text(encoding="utf-8"))
+PAPER_CONTENT = resolved_content(PAPER)
+SMOKE_CONTENT = resolved_content(SMOKE)
 OIL = "mobilgear-shc-xmp-320"
 REMOVED = object()
 
@@ -18,11 +19,11 @@ def with_value(content, key, value):
     """A copy of a study's content with the value of one dotted key exchanged, or removed."""
     content = copy.deepcopy(content)
     *path, last = [int(part) if part.isdigit() else part for part in key.split(".")]
-    place = content
+    section = content
     for part in path:
-        place = place[part]
+        section = section[part]
     if value is REMOVED:
-        del place[last]
+        del section[last]
     else:
-        place[last] = value
+        section[last] = value
     return content

@@ -1,4 +1,4 @@
-"""Records of the rig as others may write them, and what is read of them."""
+"""Recordings as measuring programs write them, and what is read of them."""
 
 from functools import partial
 
@@ -16,7 +16,7 @@ STEP = 0.0005
 """Volts of one step of the converter."""
 
 COUNTS = np.random.default_rng(1).integers(-200, 20_000, SAMPLES).astype(np.int16)
-"""What the converter read."""
+"""Steps that the converter recorded."""
 
 VOLTS = COUNTS * STEP
 TIMES = np.arange(SAMPLES) * INTERVAL
@@ -66,7 +66,7 @@ def write_tdms(path, values, name="Voltage", segments=4, others=(), **properties
 
 
 def write_logger(folder, kind):
-    """Times and three channels, of which no name tells a voltage, and the third has no unit."""
+    """Times and three channels; no name says voltage, and the third has no unit."""
     channels = {"CH1": ("V", -VOLTS), "CH2": ("mV", 1e3 * VOLTS), "CH3": (None, VOLTS)}
     path = folder / f"logger.{kind}"
     match kind:
@@ -84,17 +84,17 @@ def write_logger(folder, kind):
             channels = {"Time": ("s", TIMES)} | channels
             with TdmsWriter(path) as file:
                 for name, (unit, values) in channels.items():
-                    told = {"unit_string": unit} if unit else {}
-                    file.write_segment([ChannelObject("rig", name, values, properties=told)])
+                    properties = {"unit_string": unit} if unit else {}
+                    file.write_segment([ChannelObject("rig", name, values, properties=properties)])
     return path
 
 
-def read(path, *interval, **told):
-    return np.concatenate([np.array([]), *open_recording(path, *interval, **told).pieces()])
+def read(path, *interval, **options):
+    return np.concatenate([np.array([]), *open_recording(path, *interval, **options).pieces()])
 
 
-def refusal(path, *interval, **told):
-    """The one line that a bad record is told in, its path left out."""
-    message = one_line(DataError, partial(read, **told), path, *interval)
+def refusal(path, *interval, **options):
+    """The one line in which a recording is refused, without its path."""
+    message = one_line(DataError, partial(read, **options), path, *interval)
     assert message.startswith(f"{path}: ")
     return message.removeprefix(f"{path}: ")

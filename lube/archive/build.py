@@ -1,18 +1,18 @@
-"""The archive of a study: everything a stranger needs to check it and draw its figures again.
+"""The archive of a study: everything needed to check it and to draw its figures again.
 
 An archive is a folder, and the same folder as a zip. It holds the datasets, figures and executed
 notebooks, the study as written and as understood, the lubricant records, the code, the exact
-versions of its libraries, a fingerprint of every file, and metadata for those who cite and
-catalogue it. Nothing in it tells the hour: the same results make the same archive.
+versions of its libraries, the SHA-256 sum of every file, and metadata for citations and
+catalogues. It holds no clock time: the same results give the same archive.
 """
 
-import errno
 import json
 import os
 import platform
 import shutil
 import zipfile
 from collections import Counter
+from collections.abc import Sequence
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -20,38 +20,46 @@ from lube.archive.citation import citation_file, zenodo_metadata
 from lube.archive.crate import CATALOGUE, crate_metadata
 from lube.archive.page import archive_page
 from lube.errors import DataError, StudyError, shown
-from lube.storage.files import scratch_beside, why_not, written_whole
+from lube.storage.files import why_not, written_whole
 from lube.storage.git import ROOT, code_files, commit
 from lube.storage.netcdf import load
 from lube.storage.provenance import config_text, digest, fingerprint
-from lube.study.field_types import read_yaml
-from lube.study.lubricant_record import shipped_records
+from lube.study.lubricant_record import SHIPPED_FOLDER, is_record_path
+from lube.study.resolve import study_files
+from lube.study.study import Study
+from lube.study.text_files import read_yaml
 from lube.workflow.figures import origin, products, wrong_figures
 
 SUMS = "SHA256SUMS"
-"""Name of the file of fingerprints, as ``sha256sum --check`` reads it."""
+"""Name of the file of SHA-256 sums, in the format of ``sha256sum --check``."""
 VALUES = "values.json"
-"""Name of the file with the study's values, as they were understood."""
+"""Name of the file with the study's values as they were understood."""
 
 
-def make_archive(study, study_file, results, kinds, figures, folder):
-    """Gather a study's results into an archive.
+def make_archive(
+    study: Study,
+    study_file: str | Path,
+    results: str | Path,
+    kinds: Sequence[str],
+    figures: Sequence[str],
+    folder: str | Path,
+) -> None:
+    """Write the archive of a study: a folder, its zip, and the SHA-256 sum of the zip.
 
     Parameters
     ----------
     study : Study
-        The study; it names its creators.
+        The study; it must name its creators.
     study_file : str or Path
         Its YAML file.
     results : str or Path
         Folder of its results.
     kinds : sequence of str
-        Datasets to take, by the kinds of `lube.schema`.
+        Datasets to include, by the kinds of `lube.schema`.
     figures : sequence of str
-        Figures to take.
+        Figures to include.
     folder : str or Path
-        The archive; its zip and the zip's SHA-256 go beside it. What was there before is replaced
-        when the new one is whole.
+        The archive; its zip goes beside it. An older one is replaced when the new one is whole.
 
     Raises
     ------
@@ -59,34 +67,33 @@ def make_archive(study, study_file, results, kinds, figures, folder):
         If a result is missing, a figure or executed notebook is not as the workflow made it
         from these datasets, or the archive cannot be written.
     """
-    folder = Path(folder)
+    folder, results = Path(folder), Path(results)
     for wrong in wrong_figures(figures, results, results):
         raise DataError(wrong)
     contents = archive_contents(study, study_file, results, kinds, figures)
+    new, packed = (folder.with_name(folder.name + end) for end in (".part", ".zip"))
     try:
-        with scratch_beside(folder) as scratch:
-            new = scratch / folder.name
-            _fill(new, contents, study)
-            packed = folder.with_name(folder.name + ".zip")
-            _zip(new, packed)
-            if folder.exists():
-                os.rename(folder, scratch / "old")
-            os.rename(new, folder)
+        shutil.rmtree(new, ignore_errors=True)  # of a killed process
+        _fill(new, contents, study)
+        _zip(new, packed, folder.name)
+        shutil.rmtree(folder, ignore_errors=True)
+        os.rename(new, folder)
         with written_whole(packed.with_name(packed.name + ".sha256")) as part:
             part.write_text(f"{fingerprint(packed)}  {packed.name}\n", encoding="utf-8")
     except OSError as error:
-        raise DataError(f"{folder}: cannot be archived: {_told(error, folder)}") from error
+        raise DataError(f"{folder}: cannot be archived: {why_not(error, folder)}") from error
+    finally:
+        shutil.rmtree(new, ignore_errors=True)
 
 
-def _told(error, folder):
-    """Tell why a file could not be read, or not be written."""
-    if error.errno == errno.ENOENT:
-        return f"{error.filename}: {error.strerror}"
-    return why_not(error, folder)
-
-
-def archive_contents(study, study_file, results, kinds, figures):
-    """List what goes into an archive, but for its catalogue and its fingerprints.
+def archive_contents(
+    study: Study,
+    study_file: str | Path,
+    results: str | Path,
+    kinds: Sequence[str],
+    figures: Sequence[str],
+) -> dict[str, Path | str]:
+    """List what an archive contains, apart from its catalogue and its SHA-256 sums.
 
     Parameters
     ----------
@@ -96,15 +103,14 @@ def archive_contents(study, study_file, results, kinds, figures):
     Returns
     -------
     dict
-        From the name below the archive's root to the file to copy, or the text to write.
+        From the path below the archive's root to the file to copy, or the text to write.
     """
     results = Path(results)
-    datasets = {f"data/{kind}.nc": results / f"{kind}.nc" for kind in kinds}
-    drawn = [name for figure in figures for name in (*products(figure), origin(figure))]
     written = written_files(study, study_file)
     archived_as = next(iter(written))
+    drawn = [name for figure in figures for name in (*products(figure), origin(figure))]
     return {
-        **datasets,
+        **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in kinds},
         **{name: results / name for name in drawn},
         **{f"study/{name}": path for name, path in written.items()},
         **{f"lubricants/{name}": path for name, path in _records(study).items()},
@@ -125,8 +131,8 @@ def _refused(results, kinds):
     return load(results / "experiment.nc", "experiment").attrs["refused"].splitlines()
 
 
-def written_files(study, study_file):
-    """Files of a study that people wrote, but for the measured records.
+def written_files(study: Study, study_file: str | Path) -> dict[str, Path]:
+    """List the files of a study that people wrote, apart from the measured records.
 
     Parameters
     ----------
@@ -138,54 +144,59 @@ def written_files(study, study_file):
     Returns
     -------
     dict
-        From their places towards one another, with slashes, to the files: the study's file
-        first, then lubricant records of its own and the list of its measured records.
+        From their paths relative to their common folder, with slashes, to the files: first the
+        study's own file, then the files it is based on, lubricant records that do not come with
+        the package, and the manifest of its measured records.
 
     Raises
     ------
     StudyError
-        If it names one of them by a path that would lead nowhere in an archive.
+        If the study names one of them by a path that would not resolve in an archive.
     """
-    content = read_yaml(study_file, StudyError)
-    records = zip(content["lubricants"], study.lubricants, strict=True)
-    named = {name: record.files for name, record in records if name not in shipped_records()}
+    files = study_files(study_file)
+    for file in files:
+        _check_paths(file)
+    for record in study.lubricants:
+        if Path(record.files[0]).parent != SHIPPED_FOLDER:
+            files += record.files
     if study.experiment.manifest is not None:
-        named[content["experiment"]["manifest"]] = (study.experiment.manifest,)
-    for name in named:
-        _check_path(name, study_file)
-    own = {str(file) for files in named.values() for file in files}
-    # As they are called, wherever links may lead.
-    written = [Path(os.path.abspath(file)) for file in (study_file, *sorted(own))]
-    folder = os.path.commonpath([path.parent for path in written])
-    return {path.relative_to(folder).as_posix(): path for path in written}
+        files.append(study.experiment.manifest)
+    # By the names that the study uses, even where one is a symbolic link.
+    paths = [Path(os.path.abspath(file)) for file in files]
+    folder = os.path.commonpath([path.parent for path in paths])
+    return {path.relative_to(folder).as_posix(): path for path in paths}
 
 
-def _check_path(name, study_file):
-    """Refuse any way to a file but the straight one from the study's folder.
+def _check_paths(study_file):
+    """Refuse paths in a study's file that would not resolve in an archive.
 
-    Others hang on folders that are not archived: those above, those passed on the way.
+    These are absolute ones, and those that pass through a folder only to leave it again: that
+    folder would not exist in the archive.
     """
-    here = os.path.abspath(Path(study_file).parent)
-    straight = os.path.relpath(os.path.join(here, name), here)
-    if Path(name) != Path(straight):
-        raise StudyError(
-            f"{study_file}: got {shown(name)}, need the straight path from the study's folder, "
-            f"{shown(straight)}: any other leads nowhere in an archive"
-        )
+    content, folder = read_yaml(study_file, StudyError), os.path.abspath(Path(study_file).parent)
+    records = [name for name in content.get("lubricants", ()) if is_record_path(name)]
+    manifest = content.get("experiment", {}).get("manifest")
+    for name in filter(None, [content.get("based_on"), *records, manifest]):
+        direct = os.path.relpath(os.path.join(folder, name), folder)
+        if Path(name) != Path(direct):
+            raise StudyError(
+                f"{study_file}: got {shown(name)}, need the direct relative path from the study's "
+                f"folder, {shown(direct)}: another would not resolve in an archive"
+            )
 
 
 def _records(study):
-    """Files of the lubricant records by their names, with the record's before one of several."""
+    """Files of the lubricant records by name, preceded by the record's name if not unique."""
     files = {Path(file): record.name for record in study.lubricants for file in record.files}
-    times = Counter(file.name for file in files)
+    count = Counter(file.name for file in files)
     return {
-        file.name if times[file.name] == 1 else f"{name}/{file.name}": file
+        file.name if count[file.name] == 1 else f"{name}/{file.name}": file
         for file, name in sorted(files.items())
     }
 
 
-def values_text(study, kinds, study_file):
-    """Tell a study as it was understood: the values behind each dataset, their fingerprints.
+def values_text(study: Study, kinds: Sequence[str], study_file: str) -> str:
+    """State a study as it was understood: the values that determine each dataset.
 
     Parameters
     ----------
@@ -194,7 +205,7 @@ def values_text(study, kinds, study_file):
     kinds : sequence of str
         Its datasets.
     study_file : str
-        Where its file stands in the archive's folder ``study``, with slashes.
+        Path of its file below the archive's folder ``study``, with slashes.
 
     Returns
     -------
@@ -217,13 +228,13 @@ def values_text(study, kinds, study_file):
     return json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 
 
-def exact_versions():
-    """Versions of Python and of all installed packages, fit for ``pip install -c``.
+def exact_versions() -> str:
+    """List the versions of Python and of all installed packages, for ``pip install -c``.
 
     Returns
     -------
     str
-        One a line.
+        One per line.
     """
     system = f"# Python {platform.python_version()}, {platform.system()} {platform.machine()}\n"
     installed = {f"{found.name}=={found.version}" for found in distributions()}
@@ -231,8 +242,8 @@ def exact_versions():
     return system + "\n".join(kept) + "\n"
 
 
-def check_is_archive(folder):
-    """Refuse a folder that is no archive.
+def check_is_archive(folder: str | Path) -> None:
+    """Check that a folder is an archive.
 
     Parameters
     ----------
@@ -242,13 +253,13 @@ def check_is_archive(folder):
     Raises
     ------
     DataError
-        If it has no fingerprints.
+        If it has no file of SHA-256 sums.
     """
     if not (Path(folder) / SUMS).is_file():
         raise DataError(f"{folder}: not an archive: {SUMS} is missing")
 
 
-def files_of(folder):
+def files_of(folder: str | Path) -> list[str]:
     """List all files below a folder.
 
     Parameters
@@ -259,18 +270,16 @@ def files_of(folder):
     Returns
     -------
     list of str
-        Their paths below it, with slashes, in order; links and pipes as well.
+        Their paths below it, with slashes, sorted.
     """
-    folder, found = Path(folder), Path(folder).rglob("*")
+    folder = Path(folder)
     return sorted(
-        path.relative_to(folder).as_posix()
-        for path in found
-        if path.is_symlink() or not path.is_dir()
+        path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()
     )
 
 
 def _fill(folder, contents, study):
-    """Write an archive's folder, its catalogue and its fingerprints."""
+    """Write an archive's folder, its catalogue and its SHA-256 sums."""
     for name, content in contents.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -279,17 +288,22 @@ def _fill(folder, contents, study):
         else:
             path.write_text(content, encoding="utf-8")
     sizes = {name: (folder / name).stat().st_size for name in files_of(folder)}
-    catalogue = crate_metadata(study, sizes)
-    (folder / CATALOGUE).write_text(catalogue, encoding="utf-8")
-    sums = [f"{fingerprint(folder / name)}  {name}\n" for name in files_of(folder)]
-    (folder / SUMS).write_text("".join(sums), encoding="utf-8")
+    (folder / CATALOGUE).write_text(crate_metadata(study, sizes), encoding="utf-8")
+    (folder / SUMS).write_text(sums_of(folder), encoding="utf-8")
 
 
-def _zip(folder, path):
-    """Pack a folder, the same bytes each time."""
+def sums_of(folder: str | Path) -> str:
+    """SHA-256 sums of all files below a folder, in the format of ``sha256sum``."""
+    folder = Path(folder)
+    names = [name for name in files_of(folder) if name != SUMS]
+    return "".join(f"{fingerprint(folder / name)}  {name}\n" for name in names)
+
+
+def _zip(folder, path, root):
+    """Pack a folder under the name `root`, the same bytes each time."""
     with written_whole(path) as part, zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as packed:
         for name in files_of(folder):
-            entry = zipfile.ZipInfo(f"{folder.name}/{name}")  # of the year 1980
+            entry = zipfile.ZipInfo(f"{root}/{name}")  # dated 1980
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = 0o644 << 16
             packed.writestr(entry, (folder / name).read_bytes())

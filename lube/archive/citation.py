@@ -1,4 +1,4 @@
-"""How an archive is cited: CITATION.cff, and what Zenodo asks for."""
+"""How an archive is cited: CITATION.cff, and the metadata for Zenodo."""
 
 import datetime
 import html
@@ -11,10 +11,11 @@ from lube.errors import StudyError
 from lube.storage.git import commit_date
 from lube.storage.provenance import title_of
 from lube.study.metadata import PAPER
+from lube.study.study import Study
 
 
-def publication_date(study):
-    """Day that an archive bears.
+def publication_date(study: Study) -> datetime.date:
+    """Date of publication of an archive: the study's, or else that of the code's commit.
 
     Parameters
     ----------
@@ -24,7 +25,7 @@ def publication_date(study):
     Returns
     -------
     datetime.date
-        As the study says; else that of the code's commit.
+        The date.
 
     Raises
     ------
@@ -35,14 +36,14 @@ def publication_date(study):
         return study.about.date
     if commit_date() is None:
         raise StudyError(
-            "about.date: missing, and the code has no commit whose day could stand for it; need "
-            "the day of publication, such as 2026-11-21"
+            "about.date: missing, and the code has no commit whose date could be taken; need the "
+            "date of publication, such as 2026-11-21"
         )
     return datetime.date.fromisoformat(commit_date())
 
 
-def check_about(study):
-    """Refuse a study that does not say enough of itself for an archive.
+def check_about(study: Study) -> None:
+    """Check that a study names its creators and its date, as an archive needs them.
 
     Parameters
     ----------
@@ -52,18 +53,18 @@ def check_about(study):
     Raises
     ------
     StudyError
-        If it names no creators, or there is no day of publication.
+        If one of them is missing.
     """
     if not study.about.creators:
         raise StudyError(
-            "about.creators: missing, an archive needs someone who made it, such as "
+            "about.creators: missing, an archive needs at least one, such as "
             "about: {creators: [{name: 'Family, Given'}]}"
         )
     publication_date(study)
 
 
-def citation_file(study):
-    """Text of CITATION.cff, by the Citation File Format 1.2.0.
+def citation_file(study: Study) -> str:
+    """Write CITATION.cff, by the Citation File Format 1.2.0.
 
     Parameters
     ----------
@@ -86,7 +87,7 @@ def citation_file(study):
         "keywords": list(about.keywords),
         "license": about.licence,
         "date-released": publication_date(study),
-        **({"doi": about.doi} if about.doi else {}),
+        **_doi(about),
         "references": [
             {"type": "article", "title": PAPER, "authors": [{"name": "The authors of the paper"}]},
             {
@@ -100,6 +101,10 @@ def citation_file(study):
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=90)
 
 
+def _doi(about):
+    return {"doi": about.doi} if about.doi else {}
+
+
 def _cff_person(creator):
     family, comma, given = (part.strip() for part in creator.name.partition(","))
     names = {"family-names": family, "given-names": given} if comma else {"name": creator.name}
@@ -108,8 +113,8 @@ def _cff_person(creator):
     return names | ({"orcid": f"https://orcid.org/{creator.orcid}"} if creator.orcid else {})
 
 
-def zenodo_metadata(study):
-    """Text of .zenodo.json, the metadata of a deposit on Zenodo.
+def zenodo_metadata(study: Study) -> str:
+    """Write .zenodo.json, the metadata of a deposit on Zenodo.
 
     Parameters
     ----------
@@ -131,8 +136,8 @@ def zenodo_metadata(study):
         "access_right": "open",
         "license": about.licence.lower(),
         "keywords": list(about.keywords),
-        "notes": "Made with lube. README.md tells how to check the files and make the figures "
+        "notes": "Made with lube. README.md explains how to check the files and draw the figures "
         "again.",
-        **({"doi": about.doi} if about.doi else {}),
+        **_doi(about),
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"

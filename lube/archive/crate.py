@@ -1,7 +1,9 @@
-"""The catalogue of an archive: an RO-Crate, which says what each of its files is."""
+"""The catalogue of an archive: an RO-Crate, which describes each of its files."""
 
 import json
 import mimetypes
+from collections.abc import Mapping
+from pathlib import PurePosixPath
 from urllib.parse import quote
 
 from rocrate.model import ContextEntity, File, Person
@@ -12,9 +14,10 @@ from lube.archive.citation import publication_date
 from lube.schema import SUMMARIES
 from lube.storage.provenance import title_of
 from lube.study.metadata import LICENCES
+from lube.study.study import Study
 
 CATALOGUE = "ro-crate-metadata.json"
-"""Name of the catalogue, as RO-Crate wants it."""
+"""Name of the catalogue, as the RO-Crate specification demands it."""
 RO_CRATE = "1.3"
 """Version of the RO-Crate specification that the archive follows."""
 
@@ -23,29 +26,28 @@ _FORMATS = {
     ".ipynb": "application/x-ipynb+json",
     ".yaml": "application/yaml",
     ".cff": "application/yaml",
-    ".smk": "text/plain",
     ".md": "text/markdown",
 }
 
 _FOLDERS = {
-    "data/": "the datasets, NetCDF by the CF and ACDD conventions",
-    "figures/": "each figure as PNG and PDF, and fingerprints of what it was drawn from",
-    "notebooks/": "the executed notebook of each figure",
-    "study/": "the study as it was written, and its values as they were understood",
-    "lubricants/": "the records of its lubricants",
-    "code/": "the code that made everything, its workflow and the figures' notebooks: lube, "
+    "data": "the datasets, NetCDF by the CF and ACDD conventions",
+    "figures": "each figure as PNG and PDF, and the SHA-256 sums of what it was drawn from",
+    "notebooks": "the executed notebook of each figure",
+    "study": "the study as it was written",
+    "lubricants": "the lubricant records of the study",
+    "code": "the code that made everything, its workflow and the figures' notebooks: lube, "
     "under the licence in its file LICENSE",
 }
 
 
-def crate_metadata(study, files):
-    """Text of ro-crate-metadata.json: what each file of an archive is.
+def crate_metadata(study: Study, files: Mapping[str, int]) -> str:
+    """Write ro-crate-metadata.json, the description of each file of an archive.
 
     Parameters
     ----------
     study : Study
         The study.
-    files : dict
+    files : mapping
         From the path of each file below the archive's root, with slashes, to its size in bytes.
 
     Returns
@@ -60,21 +62,22 @@ def crate_metadata(study, files):
     crate.license = crate.add(_licence(crate, about.licence))
     people = [_person(crate, *numbered) for numbered in enumerate(about.creators, start=1)]
     crate.creator = _one_or_all(people)
-    # Who makes it public: the first maker's institution, else the first maker.
+    # The publisher is the first creator's institution, or else that creator.
     crate.publisher = people[0].get("affiliation") or people[0]
     if about.doi:
         crate.root_dataset["identifier"] = f"https://doi.org/{about.doi}"
-    folders = {
-        folder: crate.add(Dataset(crate, None, folder, properties=_folder(folder)))
-        for folder in sorted({_folder_of(path) for path in files} - {""})
-    }
+    parts = {}
     for path, size in sorted(files.items()):
-        if _folder_of(path) != "code/":  # which is described as a whole
-            crate.add(File(crate, None, path, properties=_described(path, size)))
-    for name, folder in folders.items():
-        parts = [file for file in crate.data_entities if _folder_of(file.id) == name != file.id]
-        if parts:
-            folder["hasPart"] = _one_or_all(parts)
+        folder = _folder_of(path)
+        parts.setdefault(folder, [])
+        if folder != "code":  # which is described as a whole
+            parts[folder].append(crate.add(File(crate, None, path, properties=_file(path, size))))
+    parts.pop("", None)
+    for folder, described in parts.items():
+        properties = {"name": folder, "description": _FOLDERS[folder]}
+        entity = crate.add(Dataset(crate, None, f"{folder}/", properties=properties))
+        if described:
+            entity["hasPart"] = _one_or_all(described)
     return json.dumps(crate.metadata.generate(), indent=2, ensure_ascii=False) + "\n"
 
 
@@ -92,7 +95,7 @@ def _person(crate, number, creator):
     person = crate.add(Person(crate, identifier, properties={"name": creator.name}))
     if creator.affiliation:
         properties = {"@type": "Organization", "name": creator.affiliation}
-        # One entity, however many work there.
+        # Named after itself, so that creators of one institution share one entity.
         name = f"#institution-{quote(creator.affiliation, safe='')}"
         institution = ContextEntity(crate, name, properties=properties)
         person["affiliation"] = crate.add(institution)
@@ -100,29 +103,24 @@ def _person(crate, number, creator):
 
 
 def _one_or_all(entities):
-    """Reduce a list of one to its one, as RO-Crate wants it."""
+    """Replace a list of one entity by the entity, as RO-Crate demands it."""
     return entities[0] if len(entities) == 1 else entities
 
 
 def _folder_of(path):
-    """First folder of a path below the archive's root, with a slash; empty for a file there."""
+    """First folder of a path below the archive's root; empty for a file in the root."""
     first, slash, _ = path.partition("/")
-    return first + slash if slash else ""
+    return first if slash else ""
 
 
-def _folder(name):
-    return {"name": name.rstrip("/"), "description": _FOLDERS[name]}
-
-
-def _described(path, size):
-    """Name, meaning, size and format of a file, for the catalogue."""
-    folder, _, name = path.rpartition("/")
-    stem, dot, suffix = name.rpartition(".")
-    described = SUMMARIES[stem] if folder == "data" else _FOLDERS.get(_folder_of(path))
-    guessed = _FORMATS.get(dot + suffix) or mimetypes.guess_type(name)[0] or "text/plain"
+def _file(path, size):
+    """Name, description, size and format of a file."""
+    name, folder = PurePosixPath(path), _folder_of(path)
+    description = SUMMARIES[name.stem] if folder == "data" else _FOLDERS.get(folder)
+    guessed = _FORMATS.get(name.suffix) or mimetypes.guess_type(path)[0] or "text/plain"
     return {
-        "name": name,
-        "description": described or "about the archive",
+        "name": name.name,
+        "description": description or "about the archive",
         "contentSize": str(size),
         "encodingFormat": guessed,
     }

@@ -1,68 +1,53 @@
-"""Where a number of contact.nc comes from, and the same number made again, to the last bit.
+"""Trace a number of contact.nc to what determines it, and compute it again to the last bit.
 
-The file itself says which values of the study it follows from; with the film table beside it
-that is all it takes to draw the roughness anew and run the model on it.
+The file states the values of the study that determine it. With the film table beside it they
+suffice to draw the roughness again and run the contact model on it.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Any
 
 import xarray as xr
-from pydantic import BaseModel, Field, ValidationError
 
 from lube.errors import DataError
-from lube.grid.levels import level_index, levels_told
+from lube.grid.levels import format_levels, level_index
 from lube.schema import CONTACT_DIMS
 from lube.stages.contact import contact_statistics
 from lube.stages.ensemble import with_intervals
 from lube.stages.roughness import roughness_batch
 from lube.storage.netcdf import load
-from lube.storage.provenance import fingerprint, told_by, told_inputs
+from lube.storage.provenance import fingerprint, input_sums, json_attribute
 from lube.study.rollers import BoundaryLayer, LineSpec
-
-
-class _Layer(BaseModel):
-    critical_thickness: float
-    shear_strength: float
-
-
-class _Run(BaseModel):
-    """How the model was run for a contact.nc, as the file tells it."""
-
-    lines: LineSpec
-    boundary_layer: _Layer
-    reduced_modulus: float
-    seed: Annotated[int, Field(ge=0)]
-    revolutions: Annotated[int, Field(ge=1)]
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """A cell of contact.nc, what it follows from, and what comes out when it is made again.
+    """An operating point of contact.nc, what determines it, and the same point computed again.
 
     Attributes
     ----------
     contact : xarray.Dataset
-        The cell as it stands in the file, its realisations those that were made again.
+        The operating point as stored in the file, with the realisations computed again.
     lubricant : xarray.Dataset
         The properties of its lubricant at its temperature.
     film : xarray.Dataset
         The film table at the operating point.
     values : dict
-        The study's values behind it, from stage to values, in SI units (but rpm and degC).
+        The study's values that determine it, by stage, in SI units (but rpm and degC).
     again : xarray.Dataset
-        The same cell, made again.
+        The same operating point, computed again.
     """
 
     contact: xr.Dataset
     lubricant: xr.Dataset
     film: xr.Dataset
-    values: dict
+    values: dict[str, Any]
     again: xr.Dataset
 
     @property
-    def differing(self):
+    def differing(self) -> list[str]:
         """Names of the variables that are not the same to the last bit."""
         return [
             name
@@ -71,73 +56,69 @@ class Explanation:
         ]
 
 
-def explain(path, realisation=0, **levels):
-    """Trace a cell of contact.nc, and make it again.
+def explain(path: str | Path, realisation: int | None = 0, **levels: float | str) -> Explanation:
+    """Trace an operating point of contact.nc and compute it again.
 
     Parameters
     ----------
     path : str or Path
-        A contact.nc; the film.nc and lubricant.nc that it follows from lie beside it.
+        A contact.nc, with the film.nc and lubricant.nc that it was made from beside it.
     realisation : int or None, optional
-        Which realisation is made again; None for all of them, and then their mean and interval
-        as well.
+        The realisation to compute again; None for all of them, with their mean and interval.
     **levels
-        Operating point, by the coordinates of the file, such as ``force=800``; a number within
-        half a per cent of a level means that level. A coordinate of one level may be left out;
-        of lubricant, film_formula and slide_to_roll_ratio the first stands if none is named.
+        The operating point, by the coordinates of the file, such as ``force=800``; a number
+        within half a per cent of a level selects that level. A coordinate with one level may be
+        omitted; of lubricant, film_formula and slide_to_roll_ratio the first is the default.
 
     Returns
     -------
     Explanation
-        The cell, what is behind it, and the same cell made again.
+        The operating point, what determines it, and the same point computed again.
 
     Raises
     ------
     DataError
-        If a file cannot be used, they do not belong together, or there is no such cell.
+        If a file cannot be used, the files do not belong together, or there is no such
+        operating point or realisation.
     """
     path = Path(path)
     if path.is_dir():
         raise DataError(f"{path}: got a folder, need a contact.nc; an archive's is in its data")
     contact = load(path, "contact")
-    film = _beside(path, contact, "film")
-    lubricant = _beside(path.with_name("film.nc"), film, "lubricant")
-    cell = _cell(contact, path, levels)
+    film = _input_of(contact, path, "film")
+    lubricant = _input_of(film, path.with_name("film.nc"), "lubricant")
+    stored = _operating_point(contact, path, levels)
     if realisation is not None:
-        if realisation not in cell["realisation"]:
-            known = f"{cell['realisation'].values[0]} to {cell['realisation'].values[-1]}"
-            raise DataError(f"{path}: realisation: got {realisation}, need {known}")
-        cell = cell.sel(realisation=[realisation])
-    values = told_by(contact, "config", path)
-    try:
-        run = _Run.model_validate(values.get("contact"))
-    except ValidationError:
-        raise DataError(f"{path}: its attribute 'config' does not tell how it was made") from None
-    oil, point = (
-        table.sel({name: cell[name].values for name in CONTACT_DIMS if name in table.dims})
-        for table in (lubricant, film)
+        if realisation not in stored["realisation"]:
+            first, last = stored["realisation"].values[[0, -1]]
+            raise DataError(f"{path}: realisation: got {realisation}, need {first} to {last}")
+        stored = stored.sel(realisation=[realisation])
+    point, properties = (
+        table.sel({name: stored[name].values for name in CONTACT_DIMS if name in table.dims})
+        for table in (film, lubricant)
     )
-    # Only the names of the realisations and the slip: the stored results stay out of its reach.
+    values = json_attribute(contact, "config", path)
+    # Of the stored dataset only the levels are used, never a result.
     realisations, ratios = (
-        cell[name].values.tolist() for name in ("realisation", "slide_to_roll_ratio")
+        stored[name].values.tolist() for name in ("realisation", "slide_to_roll_ratio")
     )
-    again = _made_again(realisations, ratios, point, run)
+    again = _computed_again(realisations, ratios, point, values["contact"])
     if realisation is None:
         again = with_intervals(again, point)
-    return Explanation(cell, oil, point, values, again)
+    return Explanation(stored, properties, point, values, again)
 
 
-def _beside(path, dataset, kind):
-    """Load the file beside another, which must be the one that the other was made from."""
+def _input_of(dataset, path, kind):
+    """Load the file beside a dataset's that it was made from."""
     other = path.with_name(f"{kind}.nc")
     loaded = load(other, kind)
-    if fingerprint(other) not in told_inputs(dataset, path).get(other.name, ()):
+    if fingerprint(other) not in input_sums(dataset, path).get(other.name, ()):
         raise DataError(f"{other}: not the file that {path} was made from")
     return loaded
 
 
-def _cell(contact, path, levels):
-    """Select one operating point, all dimensions kept."""
+def _operating_point(contact, path, levels):
+    """Select one operating point; all dimensions are kept."""
     unknown = sorted(set(levels) - set(CONTACT_DIMS))
     if unknown:
         raise DataError(f"{path}: got {unknown[0]}, need names among {', '.join(CONTACT_DIMS)}")
@@ -146,31 +127,34 @@ def _cell(contact, path, levels):
 
 
 def _level(coordinate, path, wanted):
-    """Index of the level that is wanted."""
+    """Index of the level that is asked for."""
     levels, name = coordinate.values.tolist(), coordinate.name
     if wanted is None and (len(levels) == 1 or name not in ("temperature", "speed", "force")):
         return 0
     index = level_index(levels, wanted)
     if index is None:
         came = "missing" if wanted is None else f"got {wanted}"
-        raise DataError(f"{path}: {name}: {came}, need one of {levels_told(levels)}")
+        raise DataError(f"{path}: {name}: {came}, need one of {format_levels(levels)}")
     return index
 
 
-def _made_again(realisations, ratios, film, run):
-    """Draw the roughness of some realisations anew, and run the model on it."""
-    layer = BoundaryLayer.model_construct(**dict(run.boundary_layer))
+def _computed_again(
+    realisations: Sequence[int], ratios: Sequence[float], film: xr.Dataset, run: dict[str, Any]
+) -> xr.Dataset:
+    """Draw the roughness of some realisations again and run the contact model on it."""
+    spec = LineSpec(**run["lines"])
+    layer = BoundaryLayer.model_construct(**run["boundary_layer"])
     parts = []
     for realisation in realisations:
-        lines = roughness_batch(run.lines, run.seed, [realisation])
-        parts.append(contact_statistics(lines, film, layer, ratios, run.revolutions))
+        lines = roughness_batch(spec, run["seed"], [realisation])
+        parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"]))
     return xr.concat(
         parts, "realisation", join="exact", data_vars="minimal", combine_attrs="override"
     )
 
 
-def in_words(explanation):
-    """Tell an explanation as text.
+def in_words(explanation: Explanation) -> str:
+    """Format an explanation as text.
 
     Parameters
     ----------
@@ -188,17 +172,17 @@ def in_words(explanation):
             (name, contact.attrs[name])
             for name in ("study", "config_sha256", "source", "code_commit", "software")
         ],
-        "Operating point": [_told(contact, name) for name in CONTACT_DIMS],
-        "Lubricant": [_told(explanation.lubricant, name) for name in _OIL],
-        "Film": [_told(explanation.film, name) for name in _FILM],
-        "Roughness": _lines_told(contact, run),
+        "Operating point": [_row(contact, name) for name in CONTACT_DIMS],
+        "Lubricant": [_row(explanation.lubricant, name) for name in _LUBRICANT],
+        "Film": [_row(explanation.film, name) for name in _FILM],
+        "Roughness": list(_roughness_rows(contact, run)),
         "Contact": [
             ("critical thickness of the layer", f"{run['boundary_layer']['critical_thickness']} m"),
             ("limiting shear stress", f"{run['boundary_layer']['shear_strength']} Pa"),
             ("reduced modulus E*", f"{run['reduced_modulus']} Pa"),
             ("revolutions", run["revolutions"]),
         ],
-        "In the file, and made again": list(_results_told(explanation)),
+        "Stored value, and whether it came out again": list(_result_rows(explanation)),
     }
     width = max(len(name) for rows in sections.values() for name, _ in rows)
     return "\n\n".join(
@@ -207,15 +191,17 @@ def in_words(explanation):
     )
 
 
-_OIL = ("kinematic_viscosity", "density", "dynamic_viscosity", "pressure_viscosity_coefficient")
+_LUBRICANT = (
+    *("kinematic_viscosity", "density", "dynamic_viscosity", "pressure_viscosity_coefficient"),
+)
 _FILM = (
     *("film_thickness", "lambda_ratio", "contact_half_width", "hertz_pressure"),
     *("entrainment_speed", "moes_load", "moes_material", "in_validity_range", "formula_source"),
 )
 
 
-def _told(dataset, name):
-    """Name and value of a variable that has one value."""
+def _row(dataset, name):
+    """Long name and value of a variable with a single value."""
     array = dataset[name]
     value = array.values.item()
     if "flag_meanings" in array.attrs:
@@ -228,32 +214,27 @@ def _with_units(value, array):
     return f"{value}" if units == "1" else f"{value} {units}"
 
 
-def _lines_told(contact, run):
-    realisations = contact["realisation"].values.tolist()
+def _roughness_rows(contact, run) -> Iterator[tuple[str, Any]]:
+    realisations, spec = contact["realisation"].values.tolist(), run["lines"]
     last = realisations[-1]
     which, each = (last, last) if len(realisations) == 1 else (f"r = 0 to {last}", "r")
-    spec = run["lines"]
-    return [
-        ("realisation", which),
-        ("seeds of the two lines", f"numpy.random.SeedSequence(({run['seed']}, {each})).spawn(2)"),
-        ("points of either line", ", ".join(str(points) for points in spec["points"])),
-        ("spacing", f"{spec['spacing']} m"),
-        ("rms heights", ", ".join(f"{height} m" for height in spec["rms_height"])),
-        ("Hurst exponent", spec["hurst_exponent"]),
-        ("wave vectors", f"{spec['q_min']} to {spec['q_max']} rad/m"),
-    ]
+    yield "realisation", which
+    yield "seeds of the two lines", f"numpy.random.SeedSequence(({run['seed']}, {each})).spawn(2)"
+    yield "points of each line", ", ".join(str(points) for points in spec["points"])
+    yield "spacing", f"{spec['spacing']} m"
+    yield "rms heights", ", ".join(f"{height} m" for height in spec["rms_height"])
+    yield "Hurst exponent", spec["hurst_exponent"]
+    yield "wave vectors", f"{spec['q_min']} to {spec['q_max']} rad/m"
 
 
-def _results_told(explanation):
+def _result_rows(explanation) -> Iterator[tuple[str, str]]:
+    differing = set(explanation.differing)
     for name, again in explanation.again.data_vars.items():
-        if again.size > 1 or not again.dims:
-            continue  # of many realisations only the mean and its interval fit a line
-        stored, made = (one.values.item() for one in (explanation.contact[name], again))
-        verdict = "the same bits" if name not in explanation.differing else f"NOT THE SAME: {made}"
-        yield again.attrs["long_name"], f"{_with_units(stored, again)}: {verdict}"
+        if again.size == 1 and again.dims:  # not the many realisations behind a mean
+            stored = _with_units(explanation.contact[name].values.item(), again)
+            verdict = f"NOT THE SAME: {again.item()}" if name in differing else "the same bits"
+            yield again.attrs["long_name"], f"{stored}: {verdict}"
     count = explanation.contact.sizes["realisation"]
     if count > 1:
-        differing = [
-            name for name in explanation.differing if "realisation" in explanation.again[name].dims
-        ]
-        yield f"all {count} realisations", "NOT THE SAME" if differing else "the same bits"
+        wrong = any("realisation" in explanation.again[name].dims for name in differing)
+        yield f"all {count} realisations", "NOT THE SAME" if wrong else "the same bits"

@@ -1,5 +1,6 @@
-"""The figures of an archive, drawn again from what is in it and compared with those that are."""
+"""Draw the figures of an archive again from its own content and compare them."""
 
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from lube.archive.build import check_is_archive
@@ -8,7 +9,9 @@ from lube.workflow.figures import paths_for, read_origin
 from lube.workflow.notebooks import execute_notebook
 
 
-def redraw(folder, target, figures=()):
+def redraw(
+    folder: str | Path, target: str | Path, figures: Iterable[str] = ()
+) -> Iterator[tuple[str, bool]]:
     """Draw figures of an archive again, from its datasets and notebooks alone.
 
     Parameters
@@ -16,7 +19,7 @@ def redraw(folder, target, figures=()):
     folder : str or Path
         The unpacked archive.
     target : str or Path
-        Where the new figures go, outside the archive.
+        Folder for the new figures, outside the archive.
     figures : iterable of str, optional
         Which figures, such as ``fig02_film``; all if none is named.
 
@@ -29,7 +32,7 @@ def redraw(folder, target, figures=()):
     Raises
     ------
     LubeError
-        If it is no archive, there is no such figure, or its notebook cannot be executed.
+        If it is not an archive, there is no such figure, or its notebook cannot be executed.
     """
     folder, target = Path(folder).resolve(), Path(target).resolve()
     check_is_archive(folder)
@@ -38,20 +41,16 @@ def redraw(folder, target, figures=()):
     if target.exists() and not target.is_dir():
         raise DataError(f"got {target} for the new figures, need a folder, not a file")
     archived = sorted(path.stem for path in (folder / "figures").glob("*.png"))
-    if not archived:
-        raise DataError(f"{folder}: holds no figures")
     for figure in figures:
         if figure not in archived:
             raise DataError(f"got {figure}, need a figure of the archive: {', '.join(archived)}")
     datasets = list((folder / "data").glob("*.nc"))
     for figure in figures or archived:
         notebook = folder / "code/notebooks" / f"{figure}.ipynb"
-        # What else stands in its parameters cell keeps its value, as in the workflow.
         parameters = {**paths_for(notebook, datasets), "figure": str(target / figure)}
-        told = read_origin(figure, folder)["drawn_by"]
-        # The archived code is used, whatever else is installed.
-        execute_notebook(notebook, target / notebook.name, parameters, told, folder / "code")
+        changes = read_origin(figure, folder)["drawn_by"]
+        # Notebooks use the archived code, whatever else is installed.
+        execute_notebook(notebook, target / notebook.name, parameters, changes, folder / "code")
         for name in (f"{figure}.png", f"{figure}.pdf"):
             kept = folder / "figures" / name
-            same = kept.is_file() and kept.read_bytes() == (target / name).read_bytes()
-            yield name, same
+            yield name, kept.is_file() and kept.read_bytes() == (target / name).read_bytes()

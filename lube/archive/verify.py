@@ -1,38 +1,28 @@
-"""Whether an archive is what it was, and whether what is in it hangs together.
+"""Check an archive: the sums of its files, their contents, and their origin.
 
-Every check yields one line for each thing that is wrong; silence is a good answer.
+Every check yields one line for each thing that is wrong.
 """
 
 import contextlib
-import errno
 import json
 import os
 import tempfile
 import zipfile
 import zlib
+from collections.abc import Iterator
 from pathlib import Path
-from urllib.parse import unquote
 
 from lube.archive.build import SUMS, VALUES, check_is_archive, files_of, values_text
-from lube.archive.crate import CATALOGUE
 from lube.errors import DataError, LubeError, shown
 from lube.schema import DATASETS
-from lube.storage.files import why_not
-from lube.storage.netcdf import opened
-from lube.storage.provenance import WAY_OUT, fingerprint, names_of, told_inputs
-from lube.storage.seals import holds
+from lube.storage.netcdf import load
+from lube.storage.provenance import REMEDY, descriptive_attributes, fingerprint, input_sums
 from lube.study.study import load_study
 from lube.workflow.figures import wrong_figures
 
-_INPUTS = ("data/", "lubricants/")
-_DRAWN = ("figures/", "notebooks/")
-
-# What Python's zipfile says of a file that is none, damaged, or locked by a password.
-_UNREADABLE = (OSError, EOFError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error)
-
 
 @contextlib.contextmanager
-def unpacked(path):
+def unpacked(path: str | Path) -> Iterator[Path]:
     """Open an archive, zipped or not.
 
     Parameters
@@ -43,12 +33,12 @@ def unpacked(path):
     Yields
     ------
     Path
-        Its folder; that of a zip is there for the time being.
+        Its folder; a zip is unpacked into a temporary one.
 
     Raises
     ------
     DataError
-        If it is neither, or not there.
+        If it does not exist, is neither, or cannot be unpacked.
     """
     path = Path(path)
     if not path.exists():
@@ -56,31 +46,23 @@ def unpacked(path):
     if path.is_dir():
         yield path
         return
-    if not path.is_file():  # to open a pipe may take forever
+    if not zipfile.is_zipfile(path):
         raise DataError(f"{path}: neither an archive's folder nor its zip")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
         try:
             with zipfile.ZipFile(path) as packed:
-                packed.extractall(scratch)  # which keeps every entry below the folder
-        except _UNREADABLE as error:
-            if isinstance(error, OSError) and error.errno == errno.ENOSPC:
-                told = f"cannot be unpacked: {why_not(error, Path(scratch) / path.name)}"
-            else:
-                told = f"neither an archive's folder nor its zip ({error})"
-            raise DataError(f"{path}: {told}") from None
-        yield _root(Path(scratch), path)
+                packed.extractall(scratch)
+        except (OSError, zipfile.BadZipFile, zlib.error) as error:
+            raise DataError(f"{path}: cannot be unpacked: {error}") from None
+        # Whoever packed it, with its folder or without.
+        roots = sorted(Path(scratch).rglob(SUMS), key=lambda sums: len(sums.parts))
+        if not roots:
+            raise DataError(f"{path}: not an archive: {SUMS} is missing")
+        yield roots[0].parent
 
 
-def _root(scratch, path):
-    """Find the archive in what was in a zip, whoever packed it: with its folder or without."""
-    roots = [sums.parent for depth in ("", "*/", "*/*/") for sums in scratch.glob(depth + SUMS)]
-    if not roots:
-        raise DataError(f"{path}: not an archive: {SUMS} is missing")
-    return roots[0]
-
-
-def verify_archive(folder):
-    """Check an archive: fingerprints, catalogue, study, datasets, figures, how they hang together.
+def verify_archive(folder: str | Path) -> list[str]:
+    """Check the sums of an archive's files, their contents and their origin.
 
     Parameters
     ----------
@@ -90,80 +72,59 @@ def verify_archive(folder):
     Returns
     -------
     list of str
-        What is wrong, a line each; empty if all is as it should be. Files are told by their
-        places in the archive.
+        What is wrong, one line each, with paths below the archive; empty if nothing is.
 
     Raises
     ------
     DataError
-        If it is no archive.
+        If it is not an archive.
     """
     check_is_archive(folder)
     folder = Path(folder).resolve()
-    # What one finds wrong, the next would only repeat.
-    for look in (_wrong_sums, _wrong_catalogue, _wrong_datasets, _wrong_figures):
-        wrong = [line.replace(f"{folder}{os.sep}", "") for line in look(folder)]
+    # A later check would only repeat what an earlier one found.
+    for check in (_wrong_sums, _wrong_datasets, _wrong_figures):
+        wrong = [line.replace(f"{folder}{os.sep}", "") for line in check(folder)]
         if wrong:
-            return [line.removesuffix(WAY_OUT) for line in wrong]
+            return [line.removesuffix(REMEDY) for line in wrong]
     return []
 
 
 def _sums(folder):
-    """Fingerprints by file, as the archive tells them."""
-    lines = (folder / SUMS).read_text(encoding="utf-8").split("\n")
-    pairs = [line.rstrip("\r").split("  ", 1) for line in lines]
-    return {pair[1]: pair[0] for pair in pairs if len(pair) == 2}
+    """SHA-256 by file, as stated by the archive."""
+    lines = (folder / SUMS).read_text(encoding="utf-8").splitlines()
+    return {name: sha for sha, _, name in (line.partition("  ") for line in lines)}
 
 
 def _wrong_sums(folder):
-    """Compare every file with its fingerprint."""
+    """Compare every file with its SHA-256 sum."""
     try:
         sums = _sums(folder)
-    except (OSError, ValueError):
+    except ValueError:
         yield f"{SUMS}: damaged"
         return
-    there = set(files_of(folder)) - {SUMS}
+    present = set(files_of(folder)) - {SUMS}
     for name, expected in sums.items():
-        if name not in there:
+        if name not in present:
             yield f"{name}: missing"
-        elif not (folder / name).is_file() or fingerprint(folder / name) != expected:
-            yield f"{name}: not what it was: its SHA-256 is not the one in {SUMS}"
-    for name in sorted(there - set(sums)):
+        elif fingerprint(folder / name) != expected:
+            yield f"{name}: changed: its SHA-256 is not the one in {SUMS}"
+    for name in sorted(present - set(sums)):
         if not _is_byproduct(name):
             yield f"{name}: does not belong to the archive: not in {SUMS}"
 
 
 def _is_byproduct(name):
-    """Whether a file appears when an archive is looked at, or its code installed and run."""
-    folder, *parts = name.split("/")
-    if folder == "code" and parts:
-        return parts[0] in ("build", "lube.egg-info") or "__pycache__" in parts
-    return [folder, *parts][-1] in (".DS_Store", "Thumbs.db", "desktop.ini")
-
-
-def _wrong_catalogue(folder):
-    """Compare the files with what the catalogue lists; the code it lists as a whole."""
-    try:
-        graph = json.loads((folder / CATALOGUE).read_text(encoding="utf-8"))["@graph"]
-        listed = {unquote(each["@id"]) for each in graph if each["@type"] in ("File", "Dataset")}
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        yield f"{CATALOGUE}: missing or damaged"
-        return
-    named = set(_sums(folder))
-    folders = {name.split("/")[0] + "/" for name in named if "/" in name}
-    there = {name for name in named if not name.startswith("code/")} | folders
-    for name in sorted((listed ^ there) - {CATALOGUE, "./"}):
-        told = "missing" if name in listed else "does not belong to the archive"
-        yield f"{name}: {told}, by {CATALOGUE}"
+    """Whether a file is left by running the archived code, or by a file browser."""
+    return name.startswith("code/") or Path(name).name in (".DS_Store", "Thumbs.db", "desktop.ini")
 
 
 def _wrong_datasets(folder):
-    """Check the study, and that every dataset is whole, by its schema, and of this study."""
+    """Check that the study can be read and that every dataset is whole and of this study."""
     try:
         text = (folder / VALUES).read_text(encoding="utf-8")
         study_file = json.loads(text)["study_file"]
         study = load_study(folder / "study" / study_file)
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+    except (OSError, ValueError, KeyError):
         yield f"{VALUES}: missing or damaged"
         return
     except LubeError as error:
@@ -172,42 +133,36 @@ def _wrong_datasets(folder):
     for kind in DATASETS:
         path = folder / "data" / f"{kind}.nc"
         try:
-            if holds(path) is None:
-                yield f"{path}: has no seal: not as lube saved it"
-                continue
-            with opened(path, kind, study, raw=False) as dataset:
-                dataset.load()  # every chunk has a checksum
-                yield from _wrong_names(dataset, path, names_of(study, kind))
-                yield from _wrong_inputs(dataset, path, kind, study)
-        except (OSError, DataError) as error:
+            dataset = load(path, kind, study)
+        except DataError as error:
             yield str(error)
+        else:
+            yield from _wrong_origin(dataset, path, kind, study)
     if text != values_text(study, DATASETS, study_file):
         yield f"{VALUES}: not what study/{study_file} says"
 
 
-def _wrong_figures(folder):
-    """Compare figures and executed notebooks with what the workflow made of the datasets."""
-    drawn = {Path(name).stem for name in _sums(folder) if name.startswith(_DRAWN)}
-    yield from wrong_figures(sorted(drawn), folder, folder / "data")
-
-
-def _wrong_names(dataset, path, wanted):
-    """Compare what a dataset says of its study and makers with the study."""
-    for name, needed in wanted.items():
+def _wrong_origin(dataset, path, kind, study):
+    """Check that a dataset names this study and was made from the archive's files."""
+    for name, needed in descriptive_attributes(study, kind).items():
         if dataset.attrs.get(name) != needed:
             yield f"{path}: {name} is {shown(dataset.attrs.get(name))}, need {shown(needed)}"
-
-
-def _wrong_inputs(dataset, path, kind, study):
-    """Compare what a dataset says of the files it was made from with those files."""
-    told = told_inputs(dataset, path)
+    made_from = input_sums(dataset, path)
     if kind == "experiment" and study.experiment.manifest is not None:
-        # The measured records, of whatever names, are not in the archive.
+        # The measured records themselves are not in the archive.
         files = [path.with_name("film.nc"), Path(study.experiment.manifest)]
-        wrong = [file.name for file in files if fingerprint(file) not in told.get(file.name, ())]
+        other = [
+            file.name for file in files if fingerprint(file) not in made_from.get(file.name, ())
+        ]
     else:
-        sums = _sums(path.parents[1])
-        at_hand = {digits for name, digits in sums.items() if name.startswith(_INPUTS)}
-        wrong = [name for name, digits in told.items() if not digits <= at_hand]
-    for name in wrong:
+        sums = _sums(path.parents[1]).items()
+        archived = {sha for name, sha in sums if name.startswith(("data/", "lubricants/"))}
+        other = [name for name, shas in made_from.items() if not shas <= archived]
+    for name in other:
         yield f"{path}: was made from another {name} than the archive's"
+
+
+def _wrong_figures(folder):
+    """Check that the figures were drawn from these datasets."""
+    figures = sorted(path.stem for path in (folder / "notebooks").glob("*.ipynb"))
+    yield from wrong_figures(figures, folder, folder / "data")

@@ -1,1 +1,1 @@
-"""Operating points, their levels, and the step from metres to whole numbers."""
+"""Operating points, their levels, and the step from SI units to the kernels' whole numbers."""

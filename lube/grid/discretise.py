@@ -1,65 +1,110 @@
-"""Between labelled metres and the kernels' whole numbers: height steps, grid points, time steps."""
+"""From SI units to the kernels' whole numbers: height steps, grid points and time steps."""
+
+from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
+import xarray as xr
 
 from lube.errors import DataError
+from lube.grid.operating_points import surface_speeds
 from lube.kernels.layer import layer_factor
 
 
-def speed_ratios(slide_to_roll_ratio):
-    """Speeds of the two surfaces, over the faster one's.
+class Layer(Protocol):
+    """Boundary layer on the rollers.
+
+    Attributes
+    ----------
+    critical_thickness : float
+        h_c, m.
+    shear_strength : float
+        Limiting shear stress tau_0, Pa.
+    """
+
+    critical_thickness: float
+    shear_strength: float
+
+
+def speed_ratios(slide_to_roll_ratio: float) -> tuple[float, float]:
+    r"""Speeds of the two surfaces over that of the faster one.
+
+    .. math:: \frac{v_i}{\max(v_1, v_2)}
 
     Parameters
     ----------
     slide_to_roll_ratio : float
-        (v1 - v2) / v with the mean surface speed v = (v1 + v2) / 2.
+        As in `lube.grid.operating_points.surface_speeds`.
 
     Returns
     -------
     tuple of float
-        v1 / max(v1, v2) and v2 / max(v1, v2).
+        Ratios of the first and the second surface; one of them is 1.
+
+    Examples
+    --------
+    >>> speed_ratios(0.0), speed_ratios(1.0)
+    ((1.0, 1.0), (1.0, 0.3333333333333333))
     """
-    first, second = 1.0 + slide_to_roll_ratio / 2.0, 1.0 - slide_to_roll_ratio / 2.0
+    first, second = surface_speeds(1.0, slide_to_roll_ratio)
     return first / max(first, second), second / max(first, second)
 
 
-def revolution(pair, ratios):
-    """Time steps in one revolution of the roller with the faster surface.
+def revolution(pair: tuple[np.ndarray, np.ndarray], ratios: tuple[float, float]) -> int:
+    """Count the time steps in one revolution of the roller with the faster surface.
 
     Parameters
     ----------
     pair : tuple of numpy.ndarray
-        The two lines.
+        The two lines, shapes (N1,) and (N2,).
     ratios : tuple of float
         From `speed_ratios`.
 
     Returns
     -------
     int
-        Points around that roller; the first roller's where both are equally fast.
+        Points around that roller; around the first roller where both are equally fast.
+
+    Examples
+    --------
+    >>> revolution((np.zeros(100), np.zeros(80)), speed_ratios(-0.1))
+    80
     """
     return pair[0].size if ratios[0] == 1.0 else pair[1].size
 
 
-def line_pair(lines, realisation):
-    """Pick the two lines of a realisation as whole height steps.
+def line_pair(lines: xr.Dataset, realisation: int) -> tuple[np.ndarray, np.ndarray]:
+    """Extract the two lines of a realisation in whole height steps.
 
     Parameters
     ----------
     lines : xarray.Dataset
         A ``roughness`` or ``roughness_batch`` dataset.
     realisation : int
-        Which realisation.
+        Number of the realisation.
 
     Returns
     -------
     tuple of numpy.ndarray
-        Two int32 lines, shapes (N1,) and (N2,).
+        Two int32 lines, shapes (N1,) and (N2,), height steps.
 
     Raises
     ------
     DataError
         If the dataset does not hold the realisation.
+
+    Examples
+    --------
+    Lines of three and two points, with height steps of 1 pm:
+
+    >>> heights = [[[1e-9, 0.0, 0.0], [0.0, 2e-9, np.nan]]]
+    >>> lines = xr.Dataset(
+    ...     {"height": (("realisation", "roller", "position"), heights)},
+    ...     {"realisation": [7]},
+    ...     {"points": [3, 2], "height_step": 1e-12},
+    ... )
+    >>> line_pair(lines, 7)
+    (array([1000,    0,    0], dtype=int32), array([   0, 2000], dtype=int32))
     """
     if realisation not in lines["realisation"].values:
         raise DataError(f"realisation {realisation} is not among the roughness lines")
@@ -73,8 +118,8 @@ def line_pair(lines, realisation):
     return tuple(pair)
 
 
-def layer_factor_of(lines, reduced_modulus, boundary_layer):
-    """Factor of `lube.kernels.layer.layer_factor` for labelled lines.
+def layer_factor_of(lines: xr.Dataset, reduced_modulus: float, boundary_layer: Layer) -> float:
+    """Apply `lube.kernels.layer.layer_factor` to a dataset of lines.
 
     Parameters
     ----------
@@ -82,8 +127,8 @@ def layer_factor_of(lines, reduced_modulus, boundary_layer):
         A ``roughness`` or ``roughness_batch`` dataset.
     reduced_modulus : float
         E*, Pa.
-    boundary_layer : BoundaryLayer
-        With attributes ``critical_thickness`` (m) and ``shear_strength`` (Pa).
+    boundary_layer : Layer
+        The boundary layer.
 
     Returns
     -------
@@ -99,22 +144,31 @@ def layer_factor_of(lines, reduced_modulus, boundary_layer):
     )
 
 
-def whole_numbers(film_thickness, half_width, lines):
-    """Film in height steps and half-window in grid points, as the kernels take them.
+def whole_numbers(
+    film_thickness: npt.ArrayLike, half_width: npt.ArrayLike, lines: xr.Dataset
+) -> tuple[np.ndarray, np.ndarray]:
+    r"""Express films in height steps and half-windows in grid points.
 
     Parameters
     ----------
     film_thickness, half_width : array_like
-        h0 and a, m, of equal shape.
+        :math:`h_0` and :math:`a`, m, of equal shape.
     lines : xarray.Dataset
         A ``roughness`` or ``roughness_batch`` dataset.
 
     Returns
     -------
     films, half_windows : numpy.ndarray
-        h0 rounded to height steps, and floor(a / dx); int64.
+        int64: :math:`h_0 / q` rounded, with the height step :math:`q`, and
+        :math:`\lfloor a / \Delta x \rfloor`.
+
+    Examples
+    --------
+    >>> lines = xr.Dataset(attrs={"height_step": 1e-12, "spacing": 1e-6})
+    >>> whole_numbers([1e-9], [3.9e-6], lines)
+    (array([1000]), array([3]))
     """
-    # Lines never reach through so many steps, and more than 2**63 would wrap round to few.
+    # No line reaches 2**40 steps, and 2**63 would overflow.
     steps = np.minimum(np.asarray(film_thickness) / lines.attrs["height_step"], 2.0**40)
     films = np.rint(steps)
     half_windows = np.floor(np.asarray(half_width) / lines.attrs["spacing"])

@@ -1,27 +1,36 @@
-"""Which level of a study a number or a name means."""
+"""The level of a study that a given number or name stands for."""
+
+from collections.abc import Sequence
 
 NEAR = 0.005
-"""Relative distance within which what people write means a level: 86 r/min is 600/7."""
+"""Relative tolerance for numbers that people write: 86 r/min stands for 600/7."""
 SAME = 1e-9
-"""Relative distance of levels that are the same but for rounding."""
+"""Relative tolerance for numbers that differ by rounding only."""
 
 
-def level_index(levels, wanted, within=NEAR):
-    """Find the level that a number or a name means.
+def level_index(
+    levels: Sequence[float | str], wanted: float | str, within: float = NEAR
+) -> int | None:
+    """Find the level that a number or a name stands for.
 
     Parameters
     ----------
     levels : sequence of float or of str
-        The levels there are.
+        Levels of the study.
     wanted : float or str
-        What is asked for.
+        Number or name to look up.
     within : float, optional
-        Relative distance that numbers may have, `NEAR` or `SAME`.
+        Relative tolerance of numbers, `NEAR` or `SAME`.
 
     Returns
     -------
     int or None
-        Index of the first level that is meant; None if there is none.
+        Index of the first level that matches; None if there is none.
+
+    Examples
+    --------
+    >>> level_index([60.0, 600.0 / 7.0, 100.0], 86)
+    1
     """
     for index, level in enumerate(levels):
         numbers = isinstance(level, int | float) and isinstance(wanted, int | float)
@@ -30,38 +39,48 @@ def level_index(levels, wanted, within=NEAR):
     return None
 
 
-def level_near(levels, value, tolerance):
-    """Find the level that a measured value means.
+def level_near(levels: Sequence[float], value: float, tolerance: float) -> float | None:
+    """Find the level nearest to a measured value.
 
     Parameters
     ----------
     levels : sequence of float
-        The levels there are.
+        Levels of the study.
     value : float
-        The value.
+        Measured value.
     tolerance : float
-        How far it may be from a level, in their unit.
+        Largest distance from a level, in the unit of the levels.
 
     Returns
     -------
     float or None
-        The nearest level; None if it is farther away than that.
+        The nearest level; None if it is farther away than the tolerance.
+
+    Examples
+    --------
+    >>> level_near([40.0, 80.0], 79.2, tolerance=1.0)
+    80.0
     """
     nearest = min(levels, key=lambda level: abs(level - value))
     return nearest if abs(nearest - value) <= tolerance else None
 
 
-def levels_told(levels):
-    """Tell levels in a line, such as ``800, 1600``.
+def format_levels(levels: Sequence[float | str]) -> str:
+    """List levels in one line.
 
     Parameters
     ----------
     levels : sequence of float or of str
-        The levels there are.
+        Levels of the study.
 
     Returns
     -------
     str
-        Numbers to six digits, names as they are.
+        Numbers to six digits, names as they are, separated by commas.
+
+    Examples
+    --------
+    >>> format_levels([60.0, 600.0 / 7.0])
+    '60, 85.7143'
     """
     return ", ".join(level if isinstance(level, str) else f"{level:g}" for level in levels)

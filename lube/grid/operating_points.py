@@ -1,21 +1,51 @@
-"""Operating points as plain numbers, and the rows of a film table as such points."""
+"""Operating points as plain numbers, and the speeds of their surfaces."""
 
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+import xarray as xr
 
 from lube.schema import EXPERIMENT_DIMS
 
 
+def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tuple[float, float]:
+    r"""Speeds of the two surfaces under slip.
+
+    .. math::
+
+        v_{1,2} = v \left( 1 \pm \frac{S}{2} \right), \qquad
+        v = \frac{v_1 + v_2}{2}, \quad S = \frac{v_1 - v_2}{v}
+
+    Parameters
+    ----------
+    entrainment_speed : float
+        Mean surface speed :math:`v`, in any unit of speed.
+    slide_to_roll_ratio : float
+        Slide-to-roll ratio :math:`S`, from -2 to 2.
+
+    Returns
+    -------
+    tuple of float
+        :math:`v_1` and :math:`v_2`, in the same unit.
+
+    Examples
+    --------
+    >>> surface_speeds(1.0, 0.5)
+    (1.25, 0.75)
+    """
+    first, second = 1.0 + slide_to_roll_ratio / 2.0, 1.0 - slide_to_roll_ratio / 2.0
+    return entrainment_speed * first, entrainment_speed * second
+
+
 @dataclass(frozen=True)
 class OperatingPoint:
-    """An operating point of a rig, with what its contact follows from.
+    """An operating point, with its film thickness and contact width.
 
     Attributes
     ----------
     slide_to_roll_ratio : float
-        (v1 - v2) / v, with the surface speeds and their mean v.
+        (v1 - v2) / v, with the surface speeds v1 and v2 and their mean v.
     lubricant : str
         Name of the lubricant.
     temperature, speed, force : float
@@ -39,35 +69,46 @@ class OperatingPoint:
     reduced_modulus: float
 
     @property
-    def levels(self):
+    def levels(self) -> dict[str, float | str]:
         """Levels of the operating variables, by the names of `lube.schema.EXPERIMENT_DIMS`."""
         return {name: getattr(self, name) for name in EXPERIMENT_DIMS}
 
     @property
-    def faster_speed(self):
+    def faster_speed(self) -> float:
         """Speed of the faster surface, m/s."""
-        return self.entrainment_speed * (1.0 + abs(self.slide_to_roll_ratio) / 2.0)
-
-    @property
-    def slower_speed(self):
-        """Speed of the slower surface, m/s."""
-        return self.entrainment_speed * (1.0 - abs(self.slide_to_roll_ratio) / 2.0)
+        return max(surface_speeds(self.entrainment_speed, self.slide_to_roll_ratio))
 
 
-def operating_points(table, slide_to_roll_ratio):
-    """Operating points of a film table, in the order of its dimensions.
+def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[OperatingPoint]:
+    """List the operating points of a film table.
 
     Parameters
     ----------
     table : xarray.Dataset
         A ``film`` dataset of one film formula, without that dimension.
     slide_to_roll_ratio : float
-        Of all points; the film does not depend on it.
+        Slide-to-roll ratio of all points; the film thickness does not depend on it.
 
     Returns
     -------
     list of OperatingPoint
-        The lubricant changes most slowly, then temperature, speed and force.
+        In the order of lubricant, temperature, speed and force; the force changes fastest.
+
+    Examples
+    --------
+    >>> names = "lubricant", "temperature", "speed", "force"
+    >>> levels = ["oil"], [40.0], [100.0], [200.0, 400.0]
+    >>> table = xr.Dataset(
+    ...     {
+    ...         "film_thickness": (names, [[[[1.0e-6, 0.9e-6]]]]),
+    ...         "contact_half_width": ("force", [5e-5, 7e-5]),
+    ...         "entrainment_speed": ("speed", [0.5]),
+    ...         "reduced_modulus": 1.15e11,
+    ...     },
+    ...     dict(zip(names, levels)),
+    ... )
+    >>> [point.force for point in operating_points(table, 0.0)]
+    [200.0, 400.0]
     """
     names = EXPERIMENT_DIMS[1:]
     films = table["film_thickness"].transpose(*names).values

@@ -1,6 +1,7 @@
-"""Compiled kernels on plain arrays, SI units or integers; no labels, no files.
+"""Compiled kernels on plain arrays of whole numbers, without labels or files.
 
-Heights, film thicknesses and overlaps are integers here: multiples of one tiny height step
-(a picometre in the paper's study). Sums of integers do not depend on their order, which is
-what lets a fast method equal the literal scan to the last bit.
+Heights, film thicknesses and overlaps are integers: multiples of one *height step* (a picometre
+in the paper's study). Positions are grid points, and time is counted in time steps. A sum of
+integers does not depend on its order, so a fast method can equal the literal scan to the last
+bit.
 """

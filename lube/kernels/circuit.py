@@ -1,4 +1,4 @@
-"""What an amplifier makes of a contact that comes and goes."""
+"""The measuring circuit: film capacitance, amplifier, low-pass filter and sampling."""
 
 import numpy as np
 
@@ -6,36 +6,60 @@ from lube.kernels.compiler import kernel
 
 
 @kernel
-def sampled_voltage(contact, targets, memories, gain, offset, limit, passed, ratio, samples):
-    """Run the contact through film capacitance, amplifier and low-pass, and sample it.
+def sampled_voltage(
+    contact: np.ndarray,
+    targets: np.ndarray,
+    memories: np.ndarray,
+    gain: float,
+    offset: float,
+    limit: float,
+    passed: float,
+    ratio: float,
+    samples: int,
+) -> np.ndarray:
+    r"""Compute the sampled voltage of a contact that is known at every time step.
 
-    At every time step the voltage over the gap approaches its target, which the contact
-    sets, exactly as over a resistance that stays for the step; the low-pass takes the
-    amplified voltage at the end of the step for all of it.
+    In a time step the contact resistance is constant, so that the voltage over the gap, which
+    charges the film's capacitance, approaches its target exponentially. The amplifier limits it,
+    and the low-pass filter takes its value at the end of the step as the input:
+
+    .. math::
+
+        u_i &= u_\infty(w_i) + (u_{i-1} - u_\infty(w_i)) \, m(w_i) \\
+        v_i &= a_i + (v_{i-1} - a_i) \, k, \qquad a_i = [g u_i + o]_{-l}^{l}
 
     Parameters
     ----------
     contact : numpy.ndarray
-        Shape (T,), points in metallic contact at each time step.
+        Shape (T,), number w of points in metallic contact at each time step.
     targets : numpy.ndarray
-        Shape (W + 1,): voltage that the gap approaches with so many points in contact, V.
+        Shape (W + 1,): steady voltage over the gap for each number of points, V.
     memories : numpy.ndarray
-        Shape (W + 1,): share of the distance to the target that is left after a time step.
+        Shape (W + 1,): factor m of the distance to the target in one time step.
     gain, offset : float
-        The amplifier sees ``gain * gap voltage + offset``, V.
+        Input of the amplifier is ``gain * gap voltage + offset``, V.
     limit : float
-        Voltage of either sign at which the amplifier saturates, V.
+        Voltage l of either sign at which the amplifier saturates, V.
     passed : float
-        Share of its distance to the input that the low-pass keeps for a time step.
+        Factor k of the filter's distance to its input in one time step.
     ratio : float
         Time steps per sample.
     samples : int
-        How many samples, the first at the first time step.
+        Number of samples, the first at the first time step.
 
     Returns
     -------
     numpy.ndarray
         Shape (samples,), float64, V.
+
+    Examples
+    --------
+    Open for two steps, then in contact; a capacitance that halves the distance in each step:
+
+    >>> contact, targets = np.array([0, 0, 1, 1], np.int32), np.array([1.0, 0.0])
+    >>> memories = np.array([0.5, 0.5])
+    >>> sampled_voltage(contact, targets, memories, 1.0, 0.0, 9.0, 0.0, 1.0, 4)
+    array([1.  , 1.  , 0.5 , 0.25])
     """
     record = np.empty(samples)
     gap = targets[contact[0]]
@@ -46,7 +70,7 @@ def sampled_voltage(contact, targets, memories, gain, offset, limit, passed, rat
     for sample in range(samples):
         last = min(int(sample * ratio), contact.size - 1)
         touched = 0
-        for i in range(step, last + 1):  # without a branch, so the compiler vectorises it
+        for i in range(step, last + 1):  # without a branch, so that the compiler vectorises it
             touched |= contact[i]
         if touched == 0 and abs(gap - targets[0]) < settled:
             gap = targets[0]

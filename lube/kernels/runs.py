@@ -1,10 +1,10 @@
-"""Where the sum of two rough lines lies above a film.
+"""Runs of points at which the sum of two rough lines lies above a film.
 
-Only blocks of points that may do so are looked at. In pure rolling the two lines keep one
-alignment for the whole revolution, so their sum is made once and the highest of each block found.
-With slip, alignments come and go, few steps each. The highest points of two blocks then bound
-their sum: these are found once for all blocks that may ever meet, wherever they begin, and most
-windows are known to be free of contact before a single height is added.
+Points are searched in blocks, and blocks that cannot reach above the film are skipped. In pure
+rolling the two lines keep one alignment for the whole revolution, so their sum is computed once
+and the maximum of each block taken. With slip an alignment lasts for a few time steps only. There
+the maxima of two blocks bound the maximum of their sum: they are computed once for blocks that
+begin at any point, and most windows are excluded before a single pair of heights is added.
 """
 
 import numpy as np
@@ -12,21 +12,30 @@ import numpy as np
 from lube.kernels.compiler import kernel
 
 BLOCK = 32
-"""Points whose highest decides on whether any of them is looked at."""
+"""Number of points that are searched, or skipped, together."""
 
 
 @kernel
-def add_lines(line_1, line_2, first_1, first_2, line):
-    """Fill the line of a strip with the sum of the two lines from the given indices on.
+def add_lines(
+    line_1: np.ndarray, line_2: np.ndarray, first_1: int, first_2: int, line: np.ndarray
+) -> None:
+    """Add two periodic lines, each from its own first point on.
 
     Parameters
     ----------
     line_1, line_2 : numpy.ndarray
-        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 steps.
+        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     first_1, first_2 : int
-        Indices that come first, wrapped around.
+        Indices of the first points, any whole numbers.
     line : numpy.ndarray
-        Filled, int32 steps.
+        Shape (L,), int32; filled with the sum, height steps.
+
+    Examples
+    --------
+    >>> line = np.empty(5, np.int32)
+    >>> add_lines(np.array([1, 2, 3], np.int32), np.array([0, 10], np.int32), 2, 0, line)
+    >>> line.tolist()
+    [3, 11, 2, 13, 1]
     """
     i, k = first_1 % line_1.size, first_2 % line_2.size
     done = 0
@@ -40,22 +49,31 @@ def add_lines(line_1, line_2, first_1, first_2, line):
 
 
 @kernel
-def high_stretches(line, film, starts, stops):
-    """Find the stretches of blocks in which some point lies above a film.
+def high_stretches(line: np.ndarray, film: int, starts: np.ndarray, stops: np.ndarray) -> int:
+    """Find the stretches of successive blocks in each of which a point lies above a film.
 
     Parameters
     ----------
     line : numpy.ndarray
-        Heights, int32 steps.
+        Heights, shape (L,), int32 height steps.
     film : int
-        Film thickness, steps.
+        Film thickness, height steps.
     starts, stops : numpy.ndarray
-        Filled with the first index and the index after the last of each stretch.
+        Filled with the first index of each stretch and the index after its last.
 
     Returns
     -------
     int
-        How many stretches were found.
+        Number of stretches.
+
+    Examples
+    --------
+    >>> line = np.zeros(5 * BLOCK, np.int32)
+    >>> line[[BLOCK + 1, 2 * BLOCK + 5, 4 * BLOCK]] = 9
+    >>> starts, stops = np.empty((2, 9), np.int64)
+    >>> count = high_stretches(line, 8, starts, stops)
+    >>> starts[:count] // BLOCK, stops[:count] // BLOCK
+    (array([1, 4]), array([3, 5]))
     """
     found = 0
     inside = False
@@ -74,21 +92,27 @@ def high_stretches(line, film, starts, stops):
 
 
 @kernel
-def block_maxima(line, reach):
-    """Highest point of every block of a periodic line, wherever the block begins.
+def block_maxima(line: np.ndarray, reach: int) -> np.ndarray:
+    """Maximum of each block of a periodic line, for blocks that begin at any point.
 
     Parameters
     ----------
     line : numpy.ndarray
-        Heights of a periodic line, shape (N,), int32 steps.
+        Heights of a periodic line, shape (N,), int32 height steps.
     reach : int
-        Points, wrapped around, that stretches from anywhere on the line extend to.
+        Number of points beyond the end of the line, wrapped around, to take in.
 
     Returns
     -------
     numpy.ndarray
-        Shape (BLOCK, C), int32: in row r and column c the highest of the `BLOCK` points from
-        index r + c BLOCK on. So the blocks that follow one another stand side by side.
+        Shape (BLOCK, C), int32: in row r and column c the maximum of the `BLOCK` points from
+        index r + c BLOCK on. Successive blocks are neighbours in a row.
+
+    Examples
+    --------
+    >>> maxima = block_maxima(np.arange(100, dtype=np.int32), 0)
+    >>> maxima[0, :3].tolist()
+    [31, 63, 95]
     """
     size = (line.size + reach) // BLOCK * BLOCK + BLOCK
     highest = np.empty(size + BLOCK, np.int32)
@@ -98,11 +122,11 @@ def block_maxima(line, reach):
         for i in range(stretch):
             highest[done + i] = line[i]
         done += stretch
-    known = 1  # points that each maximum is taken of so far
-    while known < BLOCK:
-        for i in range(highest.size - known):
-            highest[i] = max(highest[i], highest[i + known])
-        known *= 2
+    covered = 1  # points in each maximum so far
+    while covered < BLOCK:
+        for i in range(highest.size - covered):
+            highest[i] = max(highest[i], highest[i + covered])
+        covered *= 2
     maxima = np.empty((BLOCK, size // BLOCK), np.int32)
     for column in range(maxima.shape[1]):
         for row in range(BLOCK):
@@ -111,7 +135,16 @@ def block_maxima(line, reach):
 
 
 @kernel
-def possible_stretches(maxima_1, maxima_2, first_1, first_2, size, film, starts, stops):
+def possible_stretches(
+    maxima_1: np.ndarray,
+    maxima_2: np.ndarray,
+    first_1: int,
+    first_2: int,
+    size: int,
+    film: int,
+    starts: np.ndarray,
+    stops: np.ndarray,
+) -> int:
     """Find the stretches of blocks in which the sum of two lines may lie above a film.
 
     Parameters
@@ -119,19 +152,29 @@ def possible_stretches(maxima_1, maxima_2, first_1, first_2, size, film, starts,
     maxima_1, maxima_2 : numpy.ndarray
         From `block_maxima`, of either line.
     first_1, first_2 : int
-        Indices that come first, not below zero.
+        Indices of the first points, zero or more.
     size : int
-        Number of points to look at.
+        Number of points to search.
     film : int
-        Film thickness, steps.
+        Film thickness, height steps.
     starts, stops : numpy.ndarray
-        Filled with the first index and the index after the last of each stretch, counted
-        from the points that come first.
+        Filled with the first index of each stretch and the index after its last, counted from
+        the first points.
 
     Returns
     -------
     int
-        How many stretches were found.
+        Number of stretches.
+
+    Examples
+    --------
+    >>> line = np.zeros(4 * BLOCK, np.int32)
+    >>> line[2 * BLOCK] = 9
+    >>> maxima = block_maxima(line, line.size)
+    >>> starts, stops = np.empty((2, 9), np.int64)
+    >>> count = possible_stretches(maxima, maxima, 0, 0, line.size, 8, starts, stops)
+    >>> starts[:count] // BLOCK, stops[:count] // BLOCK
+    (array([2]), array([3]))
     """
     blocks = (size + BLOCK - 1) // BLOCK
     column_1, column_2 = first_1 // BLOCK, first_2 // BLOCK
@@ -157,30 +200,39 @@ def possible_stretches(maxima_1, maxima_2, first_1, first_2, size, film, starts,
 
 @kernel
 def fill_high_stretches(
-    line_1, line_2, maxima_1, maxima_2, first_1, first_2, film, line, starts, stops
-):
-    """Add two lines in all stretches of blocks where their sum may lie above a film.
+    line_1: np.ndarray,
+    line_2: np.ndarray,
+    maxima_1: np.ndarray,
+    maxima_2: np.ndarray,
+    first_1: int,
+    first_2: int,
+    film: int,
+    line: np.ndarray,
+    starts: np.ndarray,
+    stops: np.ndarray,
+) -> int:
+    """Add two lines in all stretches of blocks in which their sum may lie above a film.
 
     Parameters
     ----------
     line_1, line_2 : numpy.ndarray
-        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 steps.
+        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     maxima_1, maxima_2 : numpy.ndarray
-        From `block_maxima`, of either line; empty to add the lines everywhere, which is the
-        shorter way where the same sum serves many steps.
+        From `block_maxima`, of either line; empty to add the lines everywhere, which is faster
+        where one sum serves many time steps.
     first_1, first_2 : int
-        Indices that come first, within the lines.
+        Indices of the first points, within the lines.
     film : int
-        Film thickness, steps.
+        Film thickness, height steps.
     line : numpy.ndarray
-        Shape (L,), int32, filled with the sum wherever it lies above the film.
+        Shape (L,), int32; filled with the sum, height steps, in the stretches at least.
     starts, stops : numpy.ndarray
-        Filled with the first index in `line` and the index after the last of each stretch.
+        Filled with the first index of each stretch in `line` and the index after its last.
 
     Returns
     -------
     int
-        How many stretches were found.
+        Number of stretches.
     """
     if maxima_1.size == 0:
         add_lines(line_1, line_2, first_1, first_2, line)
@@ -193,26 +245,43 @@ def fill_high_stretches(
 
 
 @kernel
-def find_runs(line, film, starts, stops, count, new_starts, new_stops):
-    """Find the runs of points above a film, looking only within given stretches.
+def find_runs(
+    line: np.ndarray,
+    film: int,
+    starts: np.ndarray,
+    stops: np.ndarray,
+    count: int,
+    new_starts: np.ndarray,
+    new_stops: np.ndarray,
+) -> int:
+    """Find the runs of points above a film within given stretches.
 
     Parameters
     ----------
     line : numpy.ndarray
-        Heights, shape (L,), int32 steps.
+        Heights, shape (L,), int32 height steps.
     film : int
-        Film thickness, steps.
+        Film thickness, height steps.
     starts, stops : numpy.ndarray
-        First index and index after the last of the stretches to look in, int64.
+        First index of each stretch to search and index after its last, int64.
     count : int
-        How many stretches there are.
+        Number of stretches.
     new_starts, new_stops : numpy.ndarray
-        Filled with the runs found, in order; length at least (L + 1) // 2.
+        Filled with the first index of each run and the index after its last, in order; length
+        at least (L + 1) // 2.
 
     Returns
     -------
     int
-        How many runs were found.
+        Number of runs.
+
+    Examples
+    --------
+    >>> line = np.array([0, 3, 4, 0, 5], np.int32)
+    >>> starts, stops = np.empty((2, 3), np.int64)
+    >>> count = find_runs(line, 2, np.array([0]), np.array([5]), 1, starts, stops)
+    >>> starts[:count], stops[:count]
+    (array([1, 4]), array([3, 5]))
     """
     found = 0
     for stretch in range(count):

@@ -1,6 +1,6 @@
-"""The literal scan: the model as the paper tells it, step by step and point by point.
+"""The literal scan: the paper's model step by step and point by point.
 
-It costs O(steps x window) and serves as the reference for every faster method. It holds
+It costs O(time steps x window points) and is the reference for every faster method. It holds
 for any two surface speeds.
 """
 
@@ -12,22 +12,33 @@ from lube.kernels.motion import surface_position
 
 
 @kernel
-def scan_window(line_1, line_2, first_1, first_2, width, film, factor):
-    """Find the segments in one window and what becomes of their boundary layers.
+def scan_window(
+    line_1: np.ndarray,
+    line_2: np.ndarray,
+    first_1: int,
+    first_2: int,
+    width: int,
+    film: int,
+    factor: float,
+) -> tuple[int, int, int]:
+    r"""Find the segments in one contact window, and those whose boundary layer breaks.
 
-    A segment is a maximal run of points with positive overlap z1 + z2 - h0; the edges of
-    the window cut it.
+    A segment is a maximal run of points with positive overlap
+
+    .. math:: \Delta z = z_1 + z_2 - h_0 > 0 ,
+
+    cut at the window's edges.
 
     Parameters
     ----------
     line_1, line_2 : numpy.ndarray
-        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 steps.
+        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     first_1, first_2 : int
         Indices of the window's first point on either line.
     width : int
         Number of points in the window.
     film : int
-        Film thickness h0, steps.
+        Film thickness h0, height steps.
     factor : float
         From `lube.kernels.layer.layer_factor`.
 
@@ -36,15 +47,25 @@ def scan_window(line_1, line_2, first_1, first_2, width, film, factor):
     contact_points : int
         Points with positive overlap.
     broken_points : int
-        Points of segments whose layer breaks.
+        Points of the segments whose boundary layer breaks.
     overlap : int
-        Sum of the positive overlaps, steps.
+        Sum of the positive overlaps, height steps.
+
+    Examples
+    --------
+    Two segments, of one and of two points; the layer breaks on the first only:
+
+    >>> line = np.array([5, 0, 2, 2, 0], np.int32)
+    >>> scan_window(line, np.zeros_like(line), 0, 0, 5, 1, 1.0)
+    (3, 1, 6)
     """
     contact_points = broken_points = total_overlap = 0
     segment_points = segment_overlap = 0
     i, k = first_1, first_2
-    for _ in range(width):
+    for point in range(width + 1):
         overlap = np.int64(line_1[i]) + line_2[k] - film
+        if point == width:
+            overlap = 0  # beyond the right edge, which cuts the last segment
         if overlap > 0:
             segment_points += 1
             segment_overlap += overlap
@@ -60,37 +81,49 @@ def scan_window(line_1, line_2, first_1, first_2, width, film, factor):
         k += 1
         if k == line_2.size:
             k = 0
-    if segment_points > 0:  # cut by the right edge
-        contact_points += segment_points
-        total_overlap += segment_overlap
-        if layer_breaks(segment_points, segment_overlap, factor):
-            broken_points += segment_points
     return contact_points, broken_points, total_overlap
 
 
 @kernel
-def scan_trace(line_1, line_2, speed_ratios, steps, film, half_window, factor):
-    """Contact at every time step, for one operating point (physics: section 5).
+def scan_trace(
+    line_1: np.ndarray,
+    line_2: np.ndarray,
+    speed_ratios: tuple[float, float],
+    steps: int,
+    film: int,
+    half_window: int,
+    factor: float,
+) -> np.ndarray:
+    """Contact at every time step of one operating point.
 
     Parameters
     ----------
     line_1, line_2 : numpy.ndarray
-        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 steps.
+        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     speed_ratios : tuple of float
-        Surface speeds over the faster one's.
+        Surface speeds over that of the faster surface.
     steps : int
         Number T of time steps.
     film : int
-        Film thickness h0, steps.
+        Film thickness h0, height steps.
     half_window : int
-        Points m on either side of the window's middle, floor(a / dx).
+        Points on either side of the window's centre, floor(a / dx).
     factor : float
         From `lube.kernels.layer.layer_factor`.
 
     Returns
     -------
     numpy.ndarray
-        Shape (T, 3), int64: contact points, broken points and overlap (steps) in the window.
+        Shape (T, 3), int64: contact points, broken points and overlap (height steps) in the
+        window.
+
+    Examples
+    --------
+    One high point passes a window of three points in pure rolling:
+
+    >>> line = np.array([5, 0, 0, 0, 0], np.int32)
+    >>> scan_trace(line, np.zeros_like(line), (1.0, 1.0), 5, 3, 1, 1.0)[:, 0].tolist()
+    [1, 1, 0, 0, 1]
     """
     trace = np.empty((steps, 3), np.int64)
     width = 2 * half_window + 1
@@ -102,7 +135,15 @@ def scan_trace(line_1, line_2, speed_ratios, steps, film, half_window, factor):
 
 
 @kernel
-def scan_statistics(line_1, line_2, speed_ratios, steps, films, half_windows, factor):
+def scan_statistics(
+    line_1: np.ndarray,
+    line_2: np.ndarray,
+    speed_ratios: tuple[float, float],
+    steps: int,
+    films: np.ndarray,
+    half_windows: np.ndarray,
+    factor: float,
+) -> np.ndarray:
     """Contact statistics of many operating points by the literal scan.
 
     Parameters
@@ -110,32 +151,29 @@ def scan_statistics(line_1, line_2, speed_ratios, steps, films, half_windows, fa
     line_1, line_2, speed_ratios, steps, factor
         As in `scan_trace`.
     films, half_windows : numpy.ndarray
-        Film thickness in steps and points beside the window's middle, shape (P,), int64.
+        Film thickness (height steps) and points on either side of the window's centre, shape
+        (P,), int64.
 
     Returns
     -------
     numpy.ndarray
-        Shape (P, 4), int64: steps with contact, steps with a broken layer, and the sums
-        over all steps of broken points and of overlap (steps).
+        Shape (P, 4), int64: time steps with contact, time steps with a broken boundary layer,
+        and the sums over all time steps of broken points and of overlap (height steps).
+
+    Examples
+    --------
+    >>> line = np.array([5, 0, 0, 0, 0], np.int32)
+    >>> scan_statistics(
+    ...     line, np.zeros_like(line), (1.0, 1.0), 5, np.array([3, 9]), np.array([1, 1]), 1.0
+    ... ).tolist()
+    [[3, 3, 3, 6], [0, 0, 0, 0]]
     """
-    statistics = np.zeros((films.size, 4), np.int64)
+    statistics = np.empty((films.size, 4), np.int64)
     for point in range(films.size):
-        half_window = half_windows[point]
-        width = 2 * half_window + 1
-        for step in range(steps):
-            first_1 = surface_position(step, speed_ratios[0]) - half_window
-            first_2 = surface_position(step, speed_ratios[1]) - half_window
-            contact, broken, overlap = scan_window(
-                line_1,
-                line_2,
-                first_1 % line_1.size,
-                first_2 % line_2.size,
-                width,
-                films[point],
-                factor,
-            )
-            statistics[point, 0] += contact > 0
-            statistics[point, 1] += broken > 0
-            statistics[point, 2] += broken
-            statistics[point, 3] += overlap
+        film, half_window = films[point], half_windows[point]
+        trace = scan_trace(line_1, line_2, speed_ratios, steps, film, half_window, factor)
+        statistics[point, 0] = np.sum(trace[:, 0] > 0)
+        statistics[point, 1] = np.sum(trace[:, 1] > 0)
+        statistics[point, 2] = np.sum(trace[:, 1])
+        statistics[point, 3] = np.sum(trace[:, 2])
     return statistics

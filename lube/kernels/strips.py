@@ -1,12 +1,13 @@
 """Contact at any slip, strip by strip, equal to the literal scan to the last bit.
 
-As long as both surfaces advance by one point a step, their alignment stays, and the window
-slides along one fixed line, the sum of the two. Such a stretch of steps is a strip: the whole
-revolution in pure rolling, some 1 / slip steps at small slip, a single step at large slip. On a
-strip every run of points above the film is met by the windows in the same three ways: its
-beginning enters at the right edge, it is seen whole (or fills the window), its end leaves at the
-left edge. So each run is visited once, point by point, whatever the window's width. All operating
-points share one search for runs: a thicker film's runs lie within a thinner film's.
+While both surfaces advance by one point per time step their alignment stays the same, and the
+window slides along one fixed line, the sum of the two. Such a sequence of time steps is a *strip*:
+the whole revolution in pure rolling, about 1 / slip steps at small slip, a single step at large
+slip. On a strip the windows meet every run of points above the film in the same three ways: its
+beginning enters at the right edge, it lies inside the window (or fills it), and its end leaves at
+the left edge. So each run is visited once, point by point, whatever the window's width. The search
+for runs is shared by all operating points: the runs of a thicker film lie within those of a
+thinner one.
 """
 
 import numpy as np
@@ -17,26 +18,32 @@ from lube.kernels.motion import surface_position
 from lube.kernels.runs import block_maxima, fill_high_stretches, find_runs
 
 LONGEST_STRIP = 2**14
-"""Longer strips are cut: what belongs to one then stays in the processor's nearest memory."""
+"""Longer strips are cut, so that the data of one strip stay in the processor's cache."""
 
 
 @kernel
-def strip_end(step, steps, speed_ratios):
-    """First step after the strip that begins at a step.
+def strip_end(step: int, steps: int, speed_ratios: tuple[float, float]) -> int:
+    """Find the end of the strip that begins at a time step.
 
     Parameters
     ----------
     step : int
-        First step of the strip.
+        First time step of the strip.
     steps : int
         Number T of time steps.
     speed_ratios : tuple of float
-        Surface speeds over the faster one's.
+        Surface speeds over that of the faster surface.
 
     Returns
     -------
     int
-        The step at which the alignment differs, or the strip is cut, or all is over.
+        The first time step after the strip: the alignment changes there, or the strip is cut
+        at `LONGEST_STRIP` time steps, or T is reached.
+
+    Examples
+    --------
+    >>> strip_end(0, 1000, (1.0, 0.99)), strip_end(0, 1000, (1.0, 1.0))
+    (51, 1000)
     """
     last = min(steps, step + LONGEST_STRIP)
     if speed_ratios[0] == speed_ratios[1]:
@@ -56,8 +63,8 @@ def strip_end(step, steps, speed_ratios):
 
 
 @kernel
-def overlap_sum(line, start, stop, film):
-    """Sum of the overlaps of the points start .. stop - 1, steps."""
+def overlap_sum(line: np.ndarray, start: int, stop: int, film: int) -> int:
+    """Sum the overlaps of the points start .. stop - 1, in height steps."""
     total = np.int64(0)
     for i in range(start, stop):
         total += line[i]
@@ -65,8 +72,8 @@ def overlap_sum(line, start, stop, film):
 
 
 @kernel
-def _record(step, points, broken, lengths):
-    """Note that at a step of the strip a segment of so many points has broken."""
+def _mark_step(step, points, broken, lengths):
+    """Mark a time step at which the layer on a segment of n points is broken; return n."""
     broken[step] = 1
     if lengths is not None:
         lengths[step] += points
@@ -74,8 +81,8 @@ def _record(step, points, broken, lengths):
 
 
 @kernel
-def _record_many(first, last, points, broken, lengths):
-    """Note the same for all the steps first..last."""
+def _mark_steps(first, last, points, broken, lengths):
+    """Mark the time steps first .. last in the same way; return n for each of them."""
     broken[first : last + 1] = 1
     if lengths is not None:
         lengths[first : last + 1] += points
@@ -83,85 +90,110 @@ def _record_many(first, last, points, broken, lengths):
 
 
 @kernel
-def visit_run(line, start, stop, film, width, factor, broken, lengths):
-    """Let every window of a strip see one run, and note where its boundary layer breaks.
+def visit_run(
+    line: np.ndarray,
+    start: int,
+    stop: int,
+    film: int,
+    width: int,
+    factor: float,
+    broken: np.ndarray,
+    lengths: np.ndarray | None,
+) -> int:
+    """Pass all windows of a strip over one run, and mark where its boundary layer breaks.
 
-    The window of the strip's step t covers the indices t .. t + width - 1 of `line`.
+    The window at the strip's time step t covers the indices t .. t + width - 1 of `line`.
 
     Parameters
     ----------
     line : numpy.ndarray
-        Heights, shape (T + width - 1,), int32 steps.
+        Heights, shape (T + width - 1,), int32 height steps.
     start, stop : int
-        The run's first index, and the index after its last.
+        First index of the run and the index after its last.
     film : int
-        Film thickness, steps.
+        Film thickness, height steps.
     width : int
         Number of points in the window.
     factor : float
         From `lube.kernels.layer.layer_factor`.
     broken : numpy.ndarray
-        Shape (T,), uint8; set to one at the steps where the layer breaks.
+        Shape (T,), uint8; set to one at the time steps where the layer breaks.
     lengths : numpy.ndarray or None
-        Shape (T,), int32, the broken points at each step, added to; None if not wanted,
-        which the compiler makes a kernel of its own of.
+        Shape (T,), int32; the broken points are added at each time step. With None they are
+        not counted step by step, and numba compiles a kernel without them.
 
     Returns
     -------
     int
-        Broken points summed over the steps.
+        Broken points summed over the time steps.
+
+    Examples
+    --------
+    A run of two points breaks in all four windows of three points that hold one of them:
+
+    >>> line = np.array([0, 0, 9, 9, 0, 0], np.int32)
+    >>> broken, lengths = np.zeros(4, np.uint8), np.zeros(4, np.int32)
+    >>> visit_run(line, 2, 4, 1, 3, 1.0, broken, lengths), lengths.tolist()
+    (6, [1, 2, 2, 1])
     """
     total = 0
     steps = broken.size
     points = min(stop - start, width)
 
-    # The first i points have entered at the right edge, at step start + i - width.
+    # The first i points have entered at the right edge: time step start + i - width.
     least, most = max(1, width - start), min(points - 1, steps - 1 + width - start)
     overlap = overlap_sum(line, start, start + least - 1, film) if least <= most else 0
     for i in range(least, most + 1):
         overlap += line[start + i - 1] - film
         if layer_breaks(i, overlap, factor):
-            total += _record(start + i - width, i, broken, lengths)
+            total += _mark_step(start + i - width, i, broken, lengths)
 
-    if stop - start <= width:  # seen whole
+    if stop - start <= width:  # lies inside the window
         first, last = max(stop - width, 0), min(start, steps - 1)
         if first <= last and layer_breaks(points, overlap_sum(line, start, stop, film), factor):
-            total += _record_many(first, last, points, broken, lengths)
+            total += _mark_steps(first, last, points, broken, lengths)
     else:  # fills the window, which slides along it
         overlap = overlap_sum(line, start, start + width, film)
         for step in range(start, min(stop - width, steps - 1) + 1):
             if step > start:
                 overlap += line[step + width - 1] - line[step - 1]
             if layer_breaks(width, overlap, factor):
-                total += _record(step, width, broken, lengths)
+                total += _mark_step(step, width, broken, lengths)
 
-    # The last i points have not yet left at the left edge, at step stop - i.
+    # The last i points have not yet left at the left edge: time step stop - i.
     least, most = max(1, stop - steps + 1), min(points - 1, stop)
     overlap = overlap_sum(line, stop - most, stop, film) if least <= most else 0
     for i in range(most, least - 1, -1):
         if layer_breaks(i, overlap, factor):
-            total += _record(stop - i, i, broken, lengths)
+            total += _mark_step(stop - i, i, broken, lengths)
         overlap -= line[stop - i] - film
     return total
 
 
 @kernel
-def seen_overlap(line, start, stop, film, width, steps):
-    """Sum of a run's overlaps over all windows of a strip that see them.
+def windowed_overlap(
+    line: np.ndarray, start: int, stop: int, film: int, width: int, steps: int
+) -> int:
+    """Sum the overlaps of a run over all windows of a strip.
 
     Parameters
     ----------
     line, start, stop, film, width
         As in `visit_run`.
     steps : int
-        Number of steps in the strip.
+        Number of time steps in the strip.
 
     Returns
     -------
     int
-        Overlap in steps, each point counted once for every window that holds it.
+        Overlap in height steps, each point counted once for every window that holds it.
+
+    Examples
+    --------
+    >>> windowed_overlap(np.array([0, 0, 9, 9, 0, 0], np.int32), 2, 4, 1, 3, 4)
+    48
     """
-    if start >= width - 1 and stop <= steps:  # away from the ends all windows pass over it
+    if start >= width - 1 and stop <= steps:  # away from the ends every window passes over it
         return width * overlap_sum(line, start, stop, film)
     total = 0
     for i in range(start, stop):
@@ -175,26 +207,26 @@ def _strip_point(line, starts, stops, runs, film, width, factor, broken, lengths
     """Add one operating point's statistics of one strip to its counts."""
     steps = broken.size
     first = (line.size - steps + 1 - width) // 2  # the widest window's margin, less this one's
-    seen = line[first : line.size - first]
+    line = line[first : line.size - first]
     broken[:] = 0
-    touched_until = -1
+    contact_until = -1
     for run in range(runs):
         start = max(starts[run] - first, 0)
-        stop = min(stops[run] - first, seen.size)
+        stop = min(stops[run] - first, line.size)
         if start >= stop:
             continue
-        # The run is touched at the steps start - width + 1 .. stop - 1.
+        # The window holds a part of the run at the time steps start - width + 1 .. stop - 1.
         last = min(stop - 1, steps - 1)
-        counts[0] += last - max(start - width, touched_until)
-        touched_until = last
-        counts[2] += visit_run(seen, start, stop, film, width, factor, broken, lengths)
-        counts[3] += seen_overlap(seen, start, stop, film, width, steps)
+        counts[0] += last - max(start - width, contact_until)
+        contact_until = last
+        counts[2] += visit_run(line, start, stop, film, width, factor, broken, lengths)
+        counts[3] += windowed_overlap(line, start, stop, film, width, steps)
     counts[1] += np.sum(broken)
 
 
 @kernel
 def _steps_of(lengths, point, begin, end):
-    """Pick where one operating point's lengths at the steps of a strip are kept, if at all."""
+    """Slice one operating point's lengths at the time steps of a strip, if they are wanted."""
     if lengths is None:
         return None
     return lengths[point, begin:end]
@@ -213,7 +245,7 @@ def _run_strips(
     margin,
     lengths,
 ):
-    """Statistics as of `strip_statistics`; fills the lengths of `strip_trace` if wanted."""
+    """Return the statistics of `strip_statistics`; fill the lengths of `strip_trace` if given."""
     statistics = np.zeros((films.size, 4), np.int64)
     buffer = np.empty(min(steps, LONGEST_STRIP) + 2 * margin, np.int32)
     marks = np.empty(buffer.size - 2 * margin, np.uint8)
@@ -235,7 +267,7 @@ def _run_strips(
             line_1, line_2, maxima_1, maxima_2, first_1, first_2, thinnest, line, starts, stops
         )
         for point in thinnest_first:
-            if runs == 0:  # nor has any thicker film
+            if runs == 0:  # a thicker film has none either
                 break
             film, width = films[point], 2 * half_windows[point] + 1
             runs = find_runs(line, film, starts, stops, runs, new_starts, new_stops)
@@ -248,7 +280,15 @@ def _run_strips(
     return statistics
 
 
-def strip_statistics(line_1, line_2, speed_ratios, steps, films, half_windows, factor):
+def strip_statistics(
+    line_1: np.ndarray,
+    line_2: np.ndarray,
+    speed_ratios: tuple[float, float],
+    steps: int,
+    films: np.ndarray,
+    half_windows: np.ndarray,
+    factor: float,
+) -> np.ndarray:
     """Contact statistics of many operating points at any slip.
 
     Equal to `lube.kernels.scan.scan_statistics` to the last bit.
@@ -256,27 +296,45 @@ def strip_statistics(line_1, line_2, speed_ratios, steps, films, half_windows, f
     Parameters
     ----------
     line_1, line_2 : numpy.ndarray
-        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 steps.
+        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     speed_ratios : tuple of float
-        Surface speeds over the faster one's.
+        Surface speeds over that of the faster surface.
     steps : int
         Number T of time steps.
     films, half_windows : numpy.ndarray
-        Film thickness in steps and points beside the window's middle, shape (P,), int64.
+        Film thickness (height steps) and points on either side of the window's centre, shape
+        (P,), int64.
     factor : float
         From `lube.kernels.layer.layer_factor`.
 
     Returns
     -------
     numpy.ndarray
-        Shape (P, 4), int64, as from `scan_statistics`.
+        Shape (P, 4), int64: time steps with contact, time steps with a broken boundary layer,
+        and the sums over all time steps of broken points and of overlap (height steps).
+
+    Examples
+    --------
+    >>> line = np.array([5, 0, 0, 0, 0], np.int32)
+    >>> strip_statistics(
+    ...     line, np.zeros_like(line), (1.0, 1.0), 5, np.array([3, 9]), np.array([1, 1]), 1.0
+    ... ).tolist()
+    [[3, 3, 3, 6], [0, 0, 0, 0]]
     """
     motion = line_1, line_2, speed_ratios, steps
     plan = _plan(films, half_windows)
     return _run_strips(*motion, films, half_windows, factor, *plan, None)
 
 
-def strip_trace(line_1, line_2, speed_ratios, steps, films, half_windows, factor):
+def strip_trace(
+    line_1: np.ndarray,
+    line_2: np.ndarray,
+    speed_ratios: tuple[float, float],
+    steps: int,
+    films: np.ndarray,
+    half_windows: np.ndarray,
+    factor: float,
+) -> np.ndarray:
     """Broken points at every time step of many operating points, at any slip.
 
     Equal to the broken points of `lube.kernels.scan.scan_trace`.
@@ -289,7 +347,14 @@ def strip_trace(line_1, line_2, speed_ratios, steps, films, half_windows, factor
     Returns
     -------
     numpy.ndarray
-        Shape (P, T), int32: points of broken segments in the window.
+        Shape (P, T), int32: points in the window whose segment's boundary layer is broken.
+
+    Examples
+    --------
+    >>> line = np.array([5, 0, 0, 0, 0], np.int32)
+    >>> film, half_window = np.array([3]), np.array([1])
+    >>> strip_trace(line, np.zeros_like(line), (1.0, 1.0), 5, film, half_window, 1.0).tolist()
+    [[1, 1, 0, 0, 1]]
     """
     lengths = np.zeros((films.size, steps), np.int32)
     motion = line_1, line_2, speed_ratios, steps
@@ -299,8 +364,8 @@ def strip_trace(line_1, line_2, speed_ratios, steps, films, half_windows, factor
 
 
 def _plan(films, half_windows):
-    """Operating points by rising film, and the margin that the widest window needs.
+    """Order the operating points by rising film; take the margin of the widest window.
 
-    Left to NumPy: to compile a sort takes longer than to compile the kernel.
+    Not compiled, because compiling a sort takes longer than compiling the kernel.
     """
     return np.argsort(films, kind="stable"), int(half_windows.max())

@@ -1,4 +1,4 @@
-"""Random phases and exact heights: what a roughness line needs around its Fourier transform."""
+"""Random phases and rounded heights: the steps around a roughness line's Fourier transform."""
 
 import math
 
@@ -7,33 +7,41 @@ import numpy as np
 from lube.kernels.compiler import kernel
 
 PHASES = 2**16
+"""Number of equally spaced phases that the phasors are drawn from."""
+
 _ANGLES = 2.0 * math.pi * np.arange(PHASES) / PHASES
-# Rounded to single precision, the directions are the same on every machine, which sines and
-# cosines computed line by line would not be. So fine a wheel cannot be told from a circle.
-_WHEEL = (np.cos(_ANGLES) + 1j * np.sin(_ANGLES)).astype(np.complex64)
+# Rounded to single precision this table is the same on every machine; sines and cosines computed
+# for each line would not be.
+_PHASORS = (np.cos(_ANGLES) + 1j * np.sin(_ANGLES)).astype(np.complex64)
 
 
-def random_directions(generator, count):
-    """Draw unit phasors with random phases.
+def random_phasors(generator: np.random.Generator, count: int) -> np.ndarray:
+    r"""Draw unit phasors :math:`e^{i \varphi}` with uniformly distributed random phases.
 
     Parameters
     ----------
     generator : numpy.random.Generator
         Source of randomness.
     count : int
-        How many.
+        Number of phasors.
 
     Returns
     -------
     numpy.ndarray
-        Shape (count,), complex64, of modulus one.
+        Shape (count,), complex64.
+
+    Examples
+    --------
+    >>> phasors = random_phasors(np.random.default_rng(1), 3)
+    >>> np.allclose(np.abs(phasors), 1.0)
+    True
     """
-    return _WHEEL[generator.integers(0, PHASES, count, dtype=np.uint16)]
+    return _PHASORS[generator.integers(0, PHASES, count, dtype=np.uint16)]
 
 
 @kernel
-def whole_steps(heights):
-    """Round heights, already in units of the step, to whole steps.
+def whole_steps(heights: np.ndarray) -> np.ndarray:
+    """Round heights in units of the height step to whole height steps.
 
     Parameters
     ----------
@@ -43,7 +51,12 @@ def whole_steps(heights):
     Returns
     -------
     numpy.ndarray
-        Shape (N,), int32.
+        Shape (N,), int32; halves are rounded to even.
+
+    Examples
+    --------
+    >>> whole_steps(np.array([-1.6, 0.5, 2.51], np.float32)).tolist()
+    [-2, 0, 3]
     """
     steps = np.empty(heights.size, np.int32)
     for i in range(heights.size):

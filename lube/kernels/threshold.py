@@ -1,7 +1,7 @@
-"""Counting the samples of a record that lie below limits, block by block.
+"""Counts of a record's samples below limits, block by block.
 
-The blocks of a record are equally long, a power of two of samples, and follow one another
-from its first sample on: sample n lies in block n >> doublings.
+The blocks of a record are equally long, a power of two of samples: sample n is in block
+n >> doublings.
 """
 
 import numpy as np
@@ -9,12 +9,14 @@ import numpy as np
 from lube.kernels.compiler import kernel
 
 CHUNK = 4096
-"""Values held against all limits at a time; so many stay in the nearest cache."""
+"""Values compared with all limits at a time: so many stay in the first-level cache."""
 
 
 @kernel
-def count_below(values, seen, doublings, limits, counts):
-    """Add a piece of a record to the number of samples below each limit.
+def count_below(
+    values: np.ndarray, seen: int, doublings: int, limits: np.ndarray, counts: np.ndarray
+) -> None:
+    """Count the samples of a piece of a record below each limit.
 
     Parameters
     ----------
@@ -27,7 +29,16 @@ def count_below(values, seen, doublings, limits, counts):
     limits : numpy.ndarray
         Shape (K,), in the unit of `values`.
     counts : numpy.ndarray
-        Shape (K, B), int64: samples below each limit in each block, added to in place.
+        Shape (K, B), int64: samples below each limit in each block, increased in place.
+
+    Examples
+    --------
+    Blocks of two samples:
+
+    >>> counts = np.zeros((1, 3), np.int64)
+    >>> count_below(np.array([0.0, 0.0, 9.0, 0.0, 9.0]), 0, 1, np.array([1.0]), counts)
+    >>> counts
+    array([[2, 1, 0]])
     """
     begin = 0
     while begin < values.size:
@@ -43,12 +54,21 @@ def count_below(values, seen, doublings, limits, counts):
 
 
 @kernel
-def follow_contact(values, seen, doublings, limits, releases, hold, states, counts):
-    """Add a piece of a record to the number of samples in contact, with hysteresis and hold.
+def follow_contact(
+    values: np.ndarray,
+    seen: int,
+    doublings: int,
+    limits: np.ndarray,
+    releases: np.ndarray,
+    hold: int,
+    states: np.ndarray,
+    counts: np.ndarray,
+) -> None:
+    """Count the samples of a piece of a record in contact, with hysteresis and hold time.
 
-    A trigger closes where a value is below the limit, and opens where one is not below the
-    release. Contact follows the trigger once that has stayed changed for `hold` samples, and
-    then from the first of them on. Before the record there is no contact.
+    A trigger closes where a value is below the limit, and opens where a value is not below the
+    release. Contact follows the trigger if its change lasts `hold` samples, and then from the
+    first of them on. Before the record there is no contact.
 
     Parameters
     ----------
@@ -57,12 +77,22 @@ def follow_contact(values, seen, doublings, limits, releases, hold, states, coun
     limits, releases : numpy.ndarray
         Shape (K,), in the unit of `values`.
     hold : int
-        Samples that a change must last; 0 and 1 mean the same.
+        Samples that a change must last; 0 and 1 have the same effect.
     states : numpy.ndarray
         Shape (K, 3), int64, zeros before the record, updated in place: trigger closed, in
         contact, and samples since the two differ.
     counts : numpy.ndarray
-        Shape (K, B), int64: samples in contact in each block, added to in place.
+        Shape (K, B), int64: samples in contact in each block, increased in place.
+
+    Examples
+    --------
+    One contact, from the value below 1 to the value that reaches 2:
+
+    >>> counts, states = np.zeros((1, 3), np.int64), np.zeros((1, 3), np.int64)
+    >>> values, limits = np.array([9.0, 0.5, 1.5, 2.0, 1.5]), np.array([1.0])
+    >>> follow_contact(values, 0, 1, limits, 2.0 * limits, 0, states, counts)
+    >>> counts
+    array([[1, 1, 0]])
     """
     for k in range(limits.size):
         closed, contact, lasting = states[k]

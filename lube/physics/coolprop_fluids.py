@@ -1,9 +1,9 @@
-"""Properties of pure liquids from CoolProp, guarded.
+"""Properties of pure liquids from CoolProp, with checks of their range.
 
-CoolProp does not refuse states outside a fluid's range: it returns negative viscosities
-beyond the highest pressure, and a gas above the boiling point. Here every state is checked
-before it is asked for, and every answer before it is passed on. CoolProp is imported on
-first use, because that takes a second or two. Temperatures are in kelvin.
+CoolProp does not refuse states outside a fluid's range: it returns negative viscosities above the
+maximum pressure, and properties of the gas above the boiling point. Here the state is checked
+before the call and the result after it. CoolProp is imported on first use, because that takes a
+second or two. Temperatures are in kelvin.
 """
 
 import functools
@@ -15,22 +15,23 @@ from lube.errors import RangeError, RecordError
 from lube.physics.viscosity import ZERO_CELSIUS
 
 ATMOSPHERIC_PRESSURE = 101325.0
+"""Standard atmosphere, Pa."""
 
-# Over this pressure the slope of ln(viscosity) is taken by three points. CoolProp is smooth
-# to ten digits and the curvature term is cancelled: the slope is right to about 1e-5.
+# Pressure step of the difference quotient of ln(viscosity), Pa. CoolProp is smooth to ten digits
+# and the curvature cancels, so the slope is accurate to about 1e-5.
 _SLOPE_STEP = 3e5
 
-# CoolProp is undecided within a hair of the boiling point, and at the triple point's
-# temperature atmospheric pressure already means a solid.
+# Distance kept from the boiling point, where CoolProp may return either phase, and from the
+# triple point's temperature, where the fluid is solid at atmospheric pressure, K.
 _MARGIN = 0.1
 
-# Numbers read as degC and turned into K may miss a limit by rounding.
+# Temperatures converted from degC to K may miss a limit by rounding, K.
 _ROUNDING = 1e-6
 
 _PROPERTIES = {"viscosity": "V", "density": "D", "conductivity": "L"}
 
-# Neither mixtures (A&B, A[0.5]) nor other backends (INCOMP::S800, whose oils do not know
-# pressure) have what the study needs.
+# Mixtures (A&B, A[0.5]) and other backends (INCOMP::S800, with oils whose viscosity does not
+# depend on pressure) lack properties that the study needs.
 _PURE_FLUID = re.compile(r"[A-Za-z0-9()-]{1,60}")
 
 
@@ -41,8 +42,8 @@ def _coolprop():
 
 
 @functools.cache
-def liquid_range(fluid):
-    """Temperatures at which a fluid is liquid at atmospheric pressure.
+def liquid_range(fluid: str) -> tuple[float, float]:
+    """Temperature range in which a fluid is liquid at atmospheric pressure.
 
     Parameters
     ----------
@@ -53,12 +54,18 @@ def liquid_range(fluid):
     -------
     tuple of float
         Lowest and highest temperature, K: from 0.1 K above the lower limit of the equation
-        of state to 0.1 K below boiling.
+        of state to 0.1 K below the boiling point.
 
     Raises
     ------
     RecordError
-        If CoolProp has no such pure fluid, or it is nowhere liquid at this pressure.
+        If CoolProp has no such pure fluid, or the fluid is never liquid at this pressure.
+
+    Examples
+    --------
+    >>> lowest, highest = liquid_range("n-Dodecane")
+    >>> f"{lowest:.1f}", f"{highest:.1f}"
+    ('263.7', '489.3')
     """
     coolprop = _coolprop()
     try:
@@ -84,7 +91,7 @@ def liquid_range(fluid):
 
 
 def _within_range(fluid, temperature, pressure):
-    """Temperatures as a float array, refused outside the fluid's range of states."""
+    """Return temperatures as a float array; refuse states outside the fluid's range."""
     lowest, highest = liquid_range(fluid)
     temperature = np.asarray(temperature, dtype=float)
     beyond = np.maximum(lowest - temperature, temperature - highest)
@@ -105,7 +112,9 @@ def _within_range(fluid, temperature, pressure):
     return np.clip(temperature, lowest, highest)
 
 
-def liquid_property(fluid, name, temperature, pressure=ATMOSPHERIC_PRESSURE):
+def liquid_property(
+    fluid: str, name: str, temperature: np.ndarray, pressure: float = ATMOSPHERIC_PRESSURE
+) -> np.ndarray:
     """Viscosity, density or thermal conductivity of a pure liquid.
 
     Parameters
@@ -118,7 +127,7 @@ def liquid_property(fluid, name, temperature, pressure=ATMOSPHERIC_PRESSURE):
     temperature : numpy.ndarray, shape (n,)
         Temperatures, K.
     pressure : float, optional
-        Pressure, Pa. Whether the liquid freezes under it CoolProp knows for some fluids only.
+        Pressure, Pa. CoolProp knows for some fluids only whether the liquid freezes under it.
 
     Returns
     -------
@@ -130,7 +139,12 @@ def liquid_property(fluid, name, temperature, pressure=ATMOSPHERIC_PRESSURE):
     RecordError
         If CoolProp does not know the fluid, or this property of it.
     RangeError
-        If a state lies outside CoolProp's range for the fluid, or gives no positive value.
+        If a state lies outside CoolProp's range for the fluid, or the result is not positive.
+
+    Examples
+    --------
+    >>> liquid_property("n-Dodecane", "viscosity", np.array([313.15])).round(6)
+    array([0.001061])
     """
     temperature = _within_range(fluid, temperature, pressure)
     try:
@@ -150,8 +164,10 @@ def liquid_property(fluid, name, temperature, pressure=ATMOSPHERIC_PRESSURE):
     return values
 
 
-def secant_pressure_viscosity(fluid, temperature, pressure):
-    """Mean rise of ln(viscosity) with pressure from atmospheric pressure p0 to p.
+def secant_pressure_viscosity(fluid: str, temperature: np.ndarray, pressure: float) -> np.ndarray:
+    r"""Secant pressure-viscosity coefficient, from atmospheric pressure to a given one.
+
+    .. math:: \alpha = \frac{\ln(\eta(p) / \eta(p_0))}{p - p_0}
 
     Parameters
     ----------
@@ -160,17 +176,22 @@ def secant_pressure_viscosity(fluid, temperature, pressure):
     temperature : numpy.ndarray, shape (n,)
         Temperatures, K.
     pressure : float
-        Pressure p, Pa.
+        Pressure :math:`p`, Pa.
 
     Returns
     -------
     numpy.ndarray, shape (n,)
-        ln(eta(p)/eta(p0))/(p - p0), 1/Pa.
+        :math:`\alpha`, 1/Pa.
 
     Raises
     ------
     RecordError, RangeError
-        As of `liquid_property`.
+        As in `liquid_property`.
+
+    Examples
+    --------
+    >>> f"{secant_pressure_viscosity('n-Dodecane', np.array([313.15]), 200e6)[0]:.3g}"
+    '8.68e-09'
     """
     ratio = liquid_property(fluid, "viscosity", temperature, pressure) / liquid_property(
         fluid, "viscosity", temperature
@@ -178,10 +199,12 @@ def secant_pressure_viscosity(fluid, temperature, pressure):
     return np.log(ratio) / (pressure - ATMOSPHERIC_PRESSURE)
 
 
-def initial_pressure_viscosity(fluid, temperature):
-    """Slope of ln(viscosity) against pressure at atmospheric pressure.
+def initial_pressure_viscosity(fluid: str, temperature: np.ndarray) -> np.ndarray:
+    r"""Pressure-viscosity coefficient as the slope of ln(viscosity) at atmospheric pressure.
 
-    Two secants, of which one is twice as long, are extrapolated to length zero.
+    .. math:: \alpha = \left. \frac{d \ln \eta}{d p} \right|_{p_0}
+
+    Two secants, one twice as long as the other, are extrapolated to length zero.
 
     Parameters
     ----------
@@ -193,12 +216,17 @@ def initial_pressure_viscosity(fluid, temperature):
     Returns
     -------
     numpy.ndarray, shape (n,)
-        d ln(eta)/dp, 1/Pa.
+        :math:`\alpha`, 1/Pa.
 
     Raises
     ------
     RecordError, RangeError
-        As of `liquid_property`.
+        As in `liquid_property`.
+
+    Examples
+    --------
+    >>> f"{initial_pressure_viscosity('n-Dodecane', np.array([313.15]))[0]:.3g}"
+    '1.27e-08'
     """
     short = secant_pressure_viscosity(fluid, temperature, ATMOSPHERIC_PRESSURE + _SLOPE_STEP)
     long = secant_pressure_viscosity(fluid, temperature, ATMOSPHERIC_PRESSURE + 2.0 * _SLOPE_STEP)

@@ -1,88 +1,132 @@
-"""Dimensionless groups of a lubricated line contact.
+r"""Dimensionless groups of a lubricated line contact.
 
-With the load w' per length, the entrainment speed v (the *mean* of the surface speeds), the
-reduced radius R* and E' = 2 E* (twice the reduced modulus of `lube.physics.hertz`)::
+With the load :math:`w'` per length, the entrainment speed :math:`v` (the *mean* of the surface
+speeds), the reduced radius :math:`R^*` and :math:`E' = 2 E^*` (twice the reduced modulus of
+`lube.physics.hertz`):
 
-    W = w' / (E' R*)        U = eta0 v / (E' R*)        G = alpha E'
+.. math::
 
-On two of these alone, Moes' M and L, hangs the film over R* (2U)^(1/2).
+    W = \frac{w'}{E' R^*}, \qquad U = \frac{\eta_0 v}{E' R^*}, \qquad G = \alpha E'
+
+The film thickness over :math:`R^* \sqrt{2U}` depends on only two combinations of these, Moes'
+:math:`M` and :math:`L`.
 """
 
 import numpy as np
 
+from lube.physics import Values
 
-def dimensionless_load(load_per_length, film_modulus, reduced_radius):
-    """Load parameter W = w' / (E' R*).
+
+def dimensionless_load(
+    load_per_length: Values, film_modulus: float, reduced_radius: float
+) -> Values:
+    r"""Load parameter W of a line contact.
+
+    .. math:: W = \frac{w'}{E' R^*}
 
     Parameters
     ----------
     load_per_length : float or numpy.ndarray
-        Force per length of the contact w' = F_N / L', N/m.
-    film_modulus, reduced_radius : float
-        E' = 2 E* in Pa and R* in m.
+        Force per length of the contact :math:`w' = F_N / L'`, N/m.
+    film_modulus : float
+        :math:`E' = 2 E^*`, Pa.
+    reduced_radius : float
+        :math:`R^*`, m.
 
     Returns
     -------
     float or numpy.ndarray
-        Load parameter W.
+        Load parameter :math:`W`.
+
+    Examples
+    --------
+    >>> f"{dimensionless_load(8e4, 2.31e11, 0.025):.3g}"
+    '1.39e-05'
     """
     return load_per_length / (film_modulus * reduced_radius)
 
 
-def dimensionless_speed(viscosity, entrainment_speed, film_modulus, reduced_radius):
-    """Speed parameter U = eta0 v / (E' R*), with the mean of the surface speeds.
+def dimensionless_speed(
+    viscosity: Values, entrainment_speed: Values, film_modulus: float, reduced_radius: float
+) -> Values:
+    r"""Speed parameter U of a line contact, made with the mean of the surface speeds.
+
+    .. math:: U = \frac{\eta_0 v}{E' R^*}, \qquad v = \frac{v_1 + v_2}{2}
 
     Parameters
     ----------
     viscosity : float or numpy.ndarray
-        Dynamic viscosity eta0 at ambient pressure, Pa s.
+        Dynamic viscosity :math:`\eta_0` at ambient pressure, Pa s.
     entrainment_speed : float or numpy.ndarray
-        Mean surface speed v = (v1 + v2) / 2, m/s.
-    film_modulus, reduced_radius : float
-        E' = 2 E* in Pa and R* in m.
+        Mean surface speed :math:`v`, m/s.
+    film_modulus : float
+        :math:`E' = 2 E^*`, Pa.
+    reduced_radius : float
+        :math:`R^*`, m.
 
     Returns
     -------
     float or numpy.ndarray
-        Speed parameter U.
+        Speed parameter :math:`U`.
+
+    Examples
+    --------
+    >>> f"{dimensionless_speed(0.28, 0.52, 2.31e11, 0.025):.3g}"
+    '2.52e-11'
     """
     return viscosity * entrainment_speed / (film_modulus * reduced_radius)
 
 
-def dimensionless_material(pressure_viscosity_coefficient, film_modulus):
-    """Materials parameter G = alpha E'.
+def dimensionless_material(pressure_viscosity_coefficient: Values, film_modulus: float) -> Values:
+    r"""Materials parameter G of a line contact.
+
+    .. math:: G = \alpha E'
 
     Parameters
     ----------
     pressure_viscosity_coefficient : float or numpy.ndarray
-        Pressure-viscosity coefficient alpha, 1/Pa.
+        Pressure-viscosity coefficient :math:`\alpha`, 1/Pa.
     film_modulus : float
-        E' = 2 E*, Pa.
+        :math:`E' = 2 E^*`, Pa.
 
     Returns
     -------
     float or numpy.ndarray
-        Materials parameter G.
+        Materials parameter :math:`G`.
+
+    Examples
+    --------
+    >>> f"{dimensionless_material(16e-9, 2.31e11):.0f}"
+    '3696'
     """
     return pressure_viscosity_coefficient * film_modulus
 
 
-def moes_numbers(load, speed, material):
-    """Moes' load number M = W (2U)^(-1/2) and material number L = G (2U)^(1/4).
+def moes_numbers(load: Values, speed: Values, material: Values) -> tuple[Values, Values]:
+    r"""Moes' load number M and material number L.
+
+    .. math:: M = \frac{W}{\sqrt{2U}}, \qquad L = G\,(2U)^{1/4}
 
     Parameters
     ----------
     load, speed, material : float or numpy.ndarray
-        W, U and G. Moes' own speed parameter is made with the sum of the surface speeds,
-        twice the mean; hence 2U.
+        :math:`W`, :math:`U` and :math:`G`. Moes' own speed parameter is made with the sum of the
+        surface speeds, twice the mean; hence :math:`2U`.
 
     Returns
     -------
     tuple of float or numpy.ndarray
-        M and L.
+        :math:`M` and :math:`L`.
 
     References
     ----------
-    Moes, Wear 159 (1992).
+    H. Moes, Optimum similarity analysis with applications to elastohydrodynamic lubrication,
+    Wear 159 (1992) 57-66.
+
+    Examples
+    --------
+    >>> moes_load, moes_material = moes_numbers(1.39e-5, 2.52e-11, 3696.0)
+    >>> f"{moes_load:.3g}", f"{moes_material:.3g}"
+    ('1.96', '9.85')
     """
     return load / np.sqrt(2.0 * speed), material * (2.0 * speed) ** 0.25

@@ -1,8 +1,8 @@
-"""Film thickness of lubricated line contacts: the formulas, and where each may be used.
+"""Film thickness of lubricated line contacts: the formulas, and their ranges of validity.
 
-Every formula is a plain function of the groups W, U and G of `lube.physics.dimensionless`
-(floats, or arrays that broadcast) and returns the film thickness over R*. Above each stands its
-row of `FORMULAS`: adding a formula is writing the function and its row.
+Each formula is a plain function of the groups W, U and G of `lube.physics.dimensionless` (numbers,
+or arrays that broadcast) and returns the film thickness over R*. The row of `FORMULAS` stands above
+it: to add a formula, write the function and its row.
 """
 
 from collections.abc import Callable
@@ -11,25 +11,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from lube.errors import StudyError
+from lube.physics import Values
 from lube.physics.dimensionless import moes_numbers
 from lube.physics.regimes import moes_asymptotes
 
-FORMULAS = {}
-"""Registry of the film formulas, by name; its order is the order of tables."""
-
 TOLERANCE = 0.15
-"""Relative error against the computed film up to which a formula counts as holding.
+"""Relative error against a numerical solution up to which a formula counts as valid.
 
-The film is not flat: at the outlet it is 15 to 18 % thinner than in the middle (for instance at
-800 N, 100 r/min, 40 degC), and the contact model takes it as flat. A formula nearer than that is
-as good as what is made of it.
+The film is not flat: at the outlet it is 15 to 18 % thinner than at the centre (for instance at
+800 N, 100 r/min, 40 degC), but the contact model takes it as flat. A formula with a smaller error
+than that is as accurate as the model needs.
 
-The ranges in the rows below are this study's own. Each is the largest box in M and L in which the
-formula stayed within the tolerance of numerical solutions of the Reynolds equation (Roelands
-viscosity, Dowson-Higginson density, fully flooded), at M 0.1 to 100 and L 5 to 12, with the
-paper's oil at 40, 60 and 80 degC: ``python tests/film_ranges.py``. Formulas of the central and
-the mean film are held against the film in the middle, those of the minimum film against the
-least.
+The validity ranges in the rows below were determined in this study. Each is the largest box in M
+and L in which the formula stayed within the tolerance of numerical solutions of the Reynolds
+equation (Roelands viscosity, Dowson-Higginson density, fully flooded), at M 0.1 to 100 and L 5 to
+12, with the paper's oil at 40, 60 and 80 degC: ``python tests/film_ranges.py``. Formulas of the
+central and the mean film are compared with the computed central film, those of the minimum film
+with the computed minimum.
 """
 
 
@@ -41,28 +39,28 @@ class Formula:
     ----------
     name : str
         Label along the dimension ``film_formula``.
-    place : str
-        Which film it gives: ``central``, ``minimum`` or ``mean``.
+    thickness : str
+        Which film thickness it gives: ``central``, ``minimum`` or ``mean``.
     evaluate : callable
-        Film thickness over R* of (load, speed, material), that is W, U and G.
+        Film thickness over R* of (load, speed, material), that is of W, U and G.
     source : str
-        Where it was published.
+        Publication.
     moes_load, moes_material : tuple of float
-        Lowest and highest M and L for which it holds, both included.
+        Lowest and highest M and L of its range of validity, both included.
     remark : str
-        How far it was seen from the computed film there, and what else to know.
+        Its error against the numerical solution in that range, and other remarks.
     """
 
     name: str
-    place: str
-    evaluate: Callable
+    thickness: str
+    evaluate: Callable[[Values, Values, Values], Values]
     source: str
-    moes_load: tuple
-    moes_material: tuple
+    moes_load: tuple[float, float]
+    moes_material: tuple[float, float]
     remark: str
 
-    def holds(self, moes_load, moes_material):
-        """Whether the formula is within its range of validity.
+    def holds(self, moes_load: Values, moes_material: Values) -> bool | np.ndarray:
+        """Check whether points lie within the formula's range of validity.
 
         Parameters
         ----------
@@ -73,6 +71,11 @@ class Formula:
         -------
         bool or array of bool
             True inside the limits, ends included.
+
+        Examples
+        --------
+        >>> formula("pan-hamrock").holds(np.array([0.2, 2.0]), 8.0).tolist()
+        [False, True]
         """
         least_load, greatest_load = self.moes_load
         least_material, greatest_material = self.moes_material
@@ -84,7 +87,7 @@ class Formula:
         )
 
     @property
-    def validity(self):
+    def validity(self) -> str:
         """Range of validity in words."""
         load, material = (
             f"{low:g} to {high:g}" for low, high in (self.moes_load, self.moes_material)
@@ -92,8 +95,12 @@ class Formula:
         return f"M {load}, L {material}; {self.remark}"
 
 
-def formula(name):
-    """Row of the registry.
+FORMULAS: dict[str, Formula] = {}
+"""Registry of the film formulas by name, in the order of tables."""
+
+
+def formula(name: str) -> Formula:
+    """Find a film formula by its name.
 
     Parameters
     ----------
@@ -103,19 +110,24 @@ def formula(name):
     Returns
     -------
     Formula
-        Its row.
+        Its row of the registry.
 
     Raises
     ------
     StudyError
         If no formula has that name.
+
+    Examples
+    --------
+    >>> formula("pan-hamrock").source
+    'Pan & Hamrock, J. Tribol. 111 (1989)'
     """
     if name not in FORMULAS:
         raise StudyError(f"unknown film formula {name!r}, need one of {', '.join(FORMULAS)}")
     return FORMULAS[name]
 
 
-def _row(name, **entries):
+def _register(name, **entries):
     """Enter the function below into the registry."""
 
     def enter(evaluate):
@@ -125,97 +137,158 @@ def _row(name, **entries):
     return enter
 
 
-@_row(
+@_register(
     name="paper",
-    place="central",
+    thickness="central",
     source="the paper, Eq. 3",
     moes_load=(1.5, 100.0),
     moes_material=(5.0, 12.0),
     remark="-6 to +13 %; 2.4 % above pan-hamrock by a digit transposed in print",
 )
-def paper(load, speed, material):
-    """Central film of the paper's Eq. 3, with the constant 2.992 as printed."""
+def paper(load: Values, speed: Values, material: Values) -> Values:
+    r"""Central film of the paper's Eq. 3, with the constant 2.992 as printed.
+
+    .. math:: h_0 / R^* = 2.992\, G^{0.470}\, U^{0.692}\, W^{-0.166}
+
+    Examples
+    --------
+    >>> f"{paper(1.39e-5, 2.52e-11, 3696.0):.3g}"
+    '4.22e-05'
+    """
     return 2.992 * material**0.470 * speed**0.692 * load**-0.166
 
 
-@_row(
+@_register(
     name="pan-hamrock",
-    place="central",
+    thickness="central",
     source="Pan & Hamrock, J. Tribol. 111 (1989)",
     moes_load=(1.3, 100.0),
     moes_material=(5.0, 12.0),
     remark="-8 to +15 %",
 )
-def pan_hamrock(load, speed, material):
-    """Central film of Pan and Hamrock, the source of the paper's Eq. 3."""
+def pan_hamrock(load: Values, speed: Values, material: Values) -> Values:
+    r"""Central film of Pan and Hamrock, the source of the paper's Eq. 3.
+
+    .. math:: h_0 / R^* = 2.922\, G^{0.470}\, U^{0.692}\, W^{-0.166}
+
+    Examples
+    --------
+    >>> f"{pan_hamrock(1.39e-5, 2.52e-11, 3696.0):.3g}"
+    '4.12e-05'
+    """
     return 2.922 * material**0.470 * speed**0.692 * load**-0.166
 
 
-@_row(
+@_register(
     name="pan-hamrock-minimum",
-    place="minimum",
+    thickness="minimum",
     source="Pan & Hamrock, J. Tribol. 111 (1989)",
     moes_load=(1.0, 100.0),
     moes_material=(5.0, 12.0),
     remark="-13 to +3 %",
 )
-def pan_hamrock_minimum(load, speed, material):
-    """Minimum film of Pan and Hamrock, at the outlet constriction."""
+def pan_hamrock_minimum(load: Values, speed: Values, material: Values) -> Values:
+    r"""Minimum film of Pan and Hamrock, at the outlet constriction.
+
+    .. math:: h_{min} / R^* = 1.714\, G^{0.568}\, U^{0.694}\, W^{-0.128}
+
+    Examples
+    --------
+    >>> f"{pan_hamrock_minimum(1.39e-5, 2.52e-11, 3696.0):.3g}"
+    '3.36e-05'
+    """
     return 1.714 * material**0.568 * speed**0.694 * load**-0.128
 
 
-@_row(
+@_register(
     name="dowson-toyoda",
-    place="central",
+    thickness="central",
     source="Dowson & Toyoda, Proc. 5th Leeds-Lyon Symp. Tribol. (1978)",
     moes_load=(0.6, 6.0),
     moes_material=(5.0, 6.0),
     remark="-9 to +14 %; up to 38 % above at higher M and L",
 )
-def dowson_toyoda(load, speed, material):
-    """Central film of Dowson and Toyoda."""
+def dowson_toyoda(load: Values, speed: Values, material: Values) -> Values:
+    r"""Central film of Dowson and Toyoda.
+
+    .. math:: h_0 / R^* = 3.06\, G^{0.56}\, U^{0.69}\, W^{-0.10}
+
+    Examples
+    --------
+    >>> f"{dowson_toyoda(1.39e-5, 2.52e-11, 3696.0):.3g}"
+    '4.53e-05'
+    """
     return 3.06 * material**0.56 * speed**0.69 * load**-0.10
 
 
-@_row(
+@_register(
     name="dowson-higginson-minimum",
-    place="minimum",
+    thickness="minimum",
     source="Dowson & Higginson, Elasto-hydrodynamic Lubrication (1966); Dowson (1968)",
     moes_load=(0.8, 100.0),
     moes_material=(5.0, 12.0),
     remark="-12 to +12 %",
 )
-def dowson_higginson_minimum(load, speed, material):
-    """Minimum film of Dowson and Higginson."""
+def dowson_higginson_minimum(load: Values, speed: Values, material: Values) -> Values:
+    r"""Minimum film of Dowson and Higginson.
+
+    .. math:: h_{min} / R^* = 2.65\, G^{0.54}\, U^{0.7}\, W^{-0.13}
+
+    Examples
+    --------
+    >>> f"{dowson_higginson_minimum(1.39e-5, 2.52e-11, 3696.0):.3g}"
+    '3.65e-05'
+    """
     return 2.65 * material**0.54 * speed**0.7 * load**-0.13
 
 
-@_row(
+@_register(
     name="grubin",
-    place="mean",
+    thickness="mean",
     source="Grubin, Central Sci. Res. Inst. Technol. Mech. Eng., Book 30 (1949)",
     moes_load=(0.7, 12.0),
     moes_material=(6.0, 9.0),
     remark="-13 to +13 %; up to 34 % above at higher M and L",
 )
-def grubin(load, speed, material):
-    """Film of Ertel and Grubin, whose Hertzian zone is parallel: one mean thickness."""
+def grubin(load: Values, speed: Values, material: Values) -> Values:
+    r"""Mean film of Ertel and Grubin, who take the Hertzian zone as parallel.
+
+    .. math:: \bar h / R^* = 1.95\, (G U)^{8/11}\, W^{-1/11}
+
+    Examples
+    --------
+    >>> f"{grubin(1.39e-5, 2.52e-11, 3696.0):.3g}"
+    '4.15e-05'
+    """
     return 1.95 * (material * speed) ** (8.0 / 11.0) * load ** (-1.0 / 11.0)
 
 
-@_row(
+@_register(
     name="moes",
-    place="central",
+    thickness="central",
     source="Moes, Wear 159 (1992)",
     moes_load=(1.8, 3.5),
     moes_material=(5.0, 8.0),
     remark="+6 to +15 %; above the computed film everywhere, by 6 to 37 %: it gives the film of a "
     "Barus oil where the pressure is greatest",
 )
-def moes(load, speed, material):
-    """Central film of Moes, which joins the asymptotes of all four regimes.
+def moes(load: Values, speed: Values, material: Values) -> Values:
+    r"""Central film of Moes, which joins the asymptotes of all four regimes.
 
-    See the note of `lube.physics.regimes.moes_asymptotes` for the place it is at.
+    .. math::
+
+        \frac{h_0}{R^*} = \sqrt{2U}
+        \left[ \left( H_{RI}^{7/3} + H_{EI}^{7/3} \right)^{3s/7}
+        + \left( H_{RP}^{-7/2} + H_{EP}^{-7/2} \right)^{-2s/7} \right]^{1/s},
+        \qquad s = \frac{7 + 8 e^{-2 H_{EI} / H_{RI}}}{5}
+
+    The asymptotes, and where in the contact this film is found, are given in
+    `lube.physics.regimes.moes_asymptotes`.
+
+    Examples
+    --------
+    >>> f"{moes(1.39e-5, 2.52e-11, 3696.0):.3g}"
+    '4.51e-05'
     """
     rigid_iso, rigid_piezo, elastic_iso, elastic_piezo = moes_asymptotes(
         *moes_numbers(load, speed, material)

@@ -1,15 +1,19 @@
-"""Hertzian line contact of two cylinders, as plain functions of numbers or arrays.
+"""Hertzian line contact of two cylinders.
 
-The pair is replaced by an elastic cylinder of the reduced radius on a rigid plane, with
-the reduced modulus E* of the paper (section 2). Film-thickness formulas are written with
-E' = 2 E*; wherever a modulus is passed on, its name says which of the two it is.
+The pair is replaced by an elastic cylinder of the reduced radius on a rigid plane, with the
+reduced modulus E* of the paper (section 2). Film formulas are written with E' = 2 E*; the name of
+a modulus says which of the two it is.
 """
 
 import numpy as np
 
+from lube.physics import Values
 
-def reduced_radius(radius_1, radius_2):
-    """Radius R* of the equivalent cylinder on a plane, 1/R* = 1/R1 + 1/R2.
+
+def reduced_radius(radius_1: float, radius_2: float) -> float:
+    r"""Radius of the equivalent cylinder on a plane (paper, section 2).
+
+    .. math:: \frac{1}{R^*} = \frac{1}{R_1} + \frac{1}{R_2}
 
     Parameters
     ----------
@@ -19,13 +23,22 @@ def reduced_radius(radius_1, radius_2):
     Returns
     -------
     float
-        Reduced radius R*, m.
+        Reduced radius :math:`R^*`, m.
+
+    Examples
+    --------
+    >>> reduced_radius(0.05, 0.05)
+    0.025
     """
     return 1.0 / (1.0 / radius_1 + 1.0 / radius_2)
 
 
-def reduced_modulus(young_modulus_1, poisson_ratio_1, young_modulus_2, poisson_ratio_2):
-    """Reduced modulus E* of the pair, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+def reduced_modulus(
+    young_modulus_1: float, poisson_ratio_1: float, young_modulus_2: float, poisson_ratio_2: float
+) -> float:
+    r"""Reduced modulus of the pair (paper, section 2).
+
+    .. math:: \frac{1}{E^*} = \frac{1 - \nu_1^2}{E_1} + \frac{1 - \nu_2^2}{E_2}
 
     Parameters
     ----------
@@ -37,35 +50,55 @@ def reduced_modulus(young_modulus_1, poisson_ratio_1, young_modulus_2, poisson_r
     Returns
     -------
     float
-        Reduced modulus E*, Pa. The film formulas' E' is twice this value.
+        Reduced modulus :math:`E^*`, Pa. The film formulas' :math:`E'` is twice this value.
+
+    Examples
+    --------
+    >>> f"{reduced_modulus(210e9, 0.3, 210e9, 0.3):.4g}"
+    '1.154e+11'
     """
     compliance_1 = (1.0 - poisson_ratio_1**2) / young_modulus_1
     compliance_2 = (1.0 - poisson_ratio_2**2) / young_modulus_2
     return 1.0 / (compliance_1 + compliance_2)
 
 
-def contact_half_width(force, length, reduced_radius, reduced_modulus):
-    """Half the width of the Hertzian contact strip, the paper's Eq. 2.
+def contact_half_width(
+    force: Values, length: float, reduced_radius: float, reduced_modulus: float
+) -> Values:
+    r"""Half the width of the Hertzian contact strip (paper, Eq. 2).
+
+    .. math:: a = \sqrt{\frac{4 F_N R^*}{\pi L' E^*}}
 
     Parameters
     ----------
     force : float or numpy.ndarray
-        Normal force F_N, N.
+        Normal force :math:`F_N`, N.
     length : float
-        Length L' of the cylinders' contact, m.
-    reduced_radius, reduced_modulus : float
-        R* in m and E* in Pa.
+        Length :math:`L'` of the line contact, m.
+    reduced_radius : float
+        :math:`R^*`, m.
+    reduced_modulus : float
+        :math:`E^*`, Pa.
 
     Returns
     -------
     float or numpy.ndarray
-        Half-width a, m; the contact strip is 2a wide.
+        Half-width :math:`a`, m; the contact strip is :math:`2a` wide.
+
+    Examples
+    --------
+    >>> f"{contact_half_width(1600.0, 0.01, 0.025, 1.154e11):.3g}"
+    '0.00021'
     """
     return np.sqrt(4.0 * force * reduced_radius / (np.pi * length * reduced_modulus))
 
 
-def maximum_pressure(force, length, reduced_radius, reduced_modulus):
-    """Maximum Hertzian pressure, p_H = 2 F_N / (pi a L').
+def maximum_pressure(
+    force: Values, length: float, reduced_radius: float, reduced_modulus: float
+) -> Values:
+    r"""Maximum Hertzian pressure, on the centre line of the contact strip.
+
+    .. math:: p_H = \frac{2 F_N}{\pi a L'}
 
     Parameters
     ----------
@@ -75,7 +108,12 @@ def maximum_pressure(force, length, reduced_radius, reduced_modulus):
     Returns
     -------
     float or numpy.ndarray
-        Pressure in the middle of the strip, Pa.
+        Pressure :math:`p_H`, Pa.
+
+    Examples
+    --------
+    >>> f"{maximum_pressure(1600.0, 0.01, 0.025, 1.154e11):.3g}"
+    '4.85e+08'
     """
     half_width = contact_half_width(force, length, reduced_radius, reduced_modulus)
     return 2.0 * force / (np.pi * half_width * length)

@@ -1,30 +1,43 @@
-"""Heating of the oil by shear at the inlet, where a film is made."""
+"""Shear heating of the oil at the inlet, where the film forms."""
+
+from lube.physics import Values
 
 
 def inlet_shear_heating_factor(
-    viscosity, temperature_viscosity_coefficient, entrainment_speed, thermal_conductivity
-):
-    """Film reduction by shear heating in the inlet, C = 1 / (1 + 0.254 Q^0.62).
+    viscosity: Values,
+    temperature_viscosity_coefficient: Values,
+    entrainment_speed: Values,
+    thermal_conductivity: Values,
+) -> Values:
+    r"""Film reduction by shear heating in the inlet.
+
+    .. math:: C = \frac{1}{1 + 0.254\, Q^{0.62}}, \qquad Q = \frac{\eta \beta v^2}{k}
 
     Parameters
     ----------
     viscosity : float or numpy.ndarray
-        Dynamic viscosity eta at ambient pressure, Pa s.
+        Dynamic viscosity :math:`\eta` at ambient pressure, Pa s.
     temperature_viscosity_coefficient : float or numpy.ndarray
-        Relative fall of viscosity with temperature beta = -d(ln eta)/dT, 1/K.
+        Relative fall of viscosity with temperature :math:`\beta = -d(\ln \eta)/dT`, 1/K.
     entrainment_speed : float or numpy.ndarray
-        Mean surface speed v, m/s.
+        Mean surface speed :math:`v`, m/s.
     thermal_conductivity : float or numpy.ndarray
-        Of the oil, k, W/(m K).
+        Thermal conductivity of the oil :math:`k`, W/(m K).
 
     Returns
     -------
     float or numpy.ndarray
-        Factor C between 0 and 1, with the thermal loading Q = eta beta v^2 / k.
+        Factor :math:`C` on the film thickness, from 0 to 1.
 
     References
     ----------
-    Murch and Wilson, J. Lubr. Technol. 97 (1975). Derived for rolling without sliding.
+    L. E. Murch and W. R. D. Wilson, A thermal elastohydrodynamic inlet zone analysis,
+    J. Lubr. Technol. 97 (1975) 212-216. Derived for rolling without sliding.
+
+    Examples
+    --------
+    >>> f"{inlet_shear_heating_factor(0.28, 0.05, 0.52, 0.14):.3f}"
+    '0.974'
     """
     loading = (
         viscosity * temperature_viscosity_coefficient * entrainment_speed**2 / thermal_conductivity

@@ -1,31 +1,51 @@
 """The four regimes of lubrication: the film that each alone would give, and which one holds.
 
-Rollers stay rigid or flatten, and the oil's viscosity rises with pressure or not. Which of it
-matters follows from Moes' M and L alone (`lube.physics.dimensionless`).
+The rollers stay rigid or deform elastically, and the oil's viscosity rises with pressure or not.
+Moes' M and L (`lube.physics.dimensionless`) alone decide which of the four combinations holds.
 """
 
 import numpy as np
 
+from lube.physics import Values
 
-def moes_asymptotes(moes_load, moes_material):
-    """Moes' film parameter in the four corners of the (M, L) plane.
+
+def moes_asymptotes(
+    moes_load: Values, moes_material: Values
+) -> tuple[Values, Values, Values, Values]:
+    r"""Moes' asymptotic films in the four corners of the (M, L) plane.
+
+    .. math::
+
+        H_{RI} = \frac{3}{M}, \quad
+        H_{RP} = 1.287\, L^{2/3}, \quad
+        H_{EI} = 2.621\, M^{-1/5}, \quad
+        H_{EP} = 1.311\, M^{-1/8} L^{3/4}
 
     Parameters
     ----------
     moes_load, moes_material : float or numpy.ndarray
-        M and L.
+        :math:`M` and :math:`L`.
 
     Returns
     -------
     tuple of float or numpy.ndarray
-        Rigid-isoviscous 3/M, rigid-piezoviscous 1.287 L^(2/3), elastic-isoviscous
-        2.621 M^(-1/5), elastic-piezoviscous 1.311 M^(-1/8) L^(3/4), in the order of
-        `lube.schema.REGIMES`. Each is film thickness over R* (2U)^(1/2).
+        Film thickness over :math:`R^* \sqrt{2U}`: isoviscous-rigid, piezoviscous-rigid,
+        isoviscous-elastic and piezoviscous-elastic, in the order of `lube.schema.REGIMES`.
 
     Notes
     -----
-    The film meant is the one where the pressure is greatest. In the rigid limits that is
-    1.226 times the film at the line of centres: 3/M is 2.447/M there, Martin's 4.9 U/W.
+    The film is the one at the maximum of pressure. In the rigid limits that is 1.226 times the
+    film at the line of centres, where 3/M becomes 2.447/M, Martin's 4.9 U/W.
+
+    References
+    ----------
+    H. Moes, Optimum similarity analysis with applications to elastohydrodynamic lubrication,
+    Wear 159 (1992) 57-66.
+
+    Examples
+    --------
+    >>> moes_asymptotes(1.0, 1.0)
+    (3.0, 1.287, 2.621, 1.311)
     """
     return (
         3.0 / moes_load,
@@ -35,13 +55,15 @@ def moes_asymptotes(moes_load, moes_material):
     )
 
 
-def regime(moes_load, moes_material):
-    """Regime of lubrication: the one whose asymptote the film follows.
+def regime(moes_load: Values, moes_material: Values) -> np.ndarray:
+    r"""Regime of lubrication: the one whose asymptote the film follows.
+
+    .. math:: H = \max(\max(H_{RI}, H_{EI}), \min(H_{RP}, H_{EP}))
 
     Parameters
     ----------
     moes_load, moes_material : float or numpy.ndarray
-        M and L.
+        :math:`M` and :math:`L`.
 
     Returns
     -------
@@ -50,11 +72,15 @@ def regime(moes_load, moes_material):
 
     Notes
     -----
-    Of the asymptotes IR, PR, IE and PE, the film follows max(max(IR, IE), min(PR, PE)).
-    Flattening *adds* to the film of an oil whose viscosity does not rise with pressure, but
-    *limits* that of one whose viscosity does: the rigid film does not depend on the load, the
-    elastic one falls with it. Moes' own formula joins the asymptotes the same way, by a positive
-    power of the isoviscous ones and a negative power of the piezoviscous ones.
+    Elastic deformation *raises* the film of an oil whose viscosity does not rise with pressure,
+    but *limits* that of an oil whose viscosity does: the rigid film does not depend on the load,
+    the elastic one falls with it. Moes' own formula joins the asymptotes in the same way, by a
+    positive power of the isoviscous ones and a negative power of the piezoviscous ones.
+
+    Examples
+    --------
+    >>> regime(np.array([0.2, 1.0, 50.0]), 8.0).tolist()
+    [0, 1, 3]
     """
     rigid_iso, rigid_piezo, elastic_iso, elastic_piezo = moes_asymptotes(moes_load, moes_material)
     isoviscous = np.maximum(rigid_iso, elastic_iso)

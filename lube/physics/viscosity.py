@@ -1,12 +1,11 @@
-"""Viscosity, density and pressure-viscosity coefficient as plain functions of temperature.
+"""Viscosity, density and pressure-viscosity coefficient of an oil.
 
-Temperatures here are absolute, in kelvin, and kinematic viscosities are in mm2/s, because
+Temperatures are absolute, in kelvin. Kinematic viscosities are in mm2/s, not in SI units, because
 the constants of ASTM D341, ASTM D2270 and Gold's form hold for mm2/s only. Callers convert.
 
-The three viscosity-temperature laws stand in one registry, `VISCOSITY_LAWS`. Each becomes a
-straight line in coordinates of its own, so each is fitted by one linear least-squares line:
-exact for two points, and for more the line with the least squared residuals in those
-coordinates.
+The viscosity-temperature laws are listed in the registry `VISCOSITY_LAWS`. Each is a straight line
+in suitable coordinates, and is fitted by linear least squares in these: exactly through two points,
+with the least squared residuals through more.
 """
 
 from collections.abc import Callable
@@ -15,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lube.errors import RangeError
+from lube.physics import Values
 
 ZERO_CELSIUS = 273.15
 DENSITY_REFERENCE = ZERO_CELSIUS + 15.0
@@ -29,14 +29,14 @@ _POLE_GRID = 200
 
 
 def _straight_line(x, y):
-    """Intercept and slope of the least-squares line, computed about the centre."""
+    """Intercept and slope of the least-squares line, computed about the centroid."""
     x_mean, y_mean = np.mean(x), np.mean(y)
     slope = np.sum((x - x_mean) * (y - y_mean)) / np.sum((x - x_mean) ** 2)
     return float(y_mean - slope * x_mean), float(slope)
 
 
 def _data(temperature, kinematic_viscosity, least=0.0):
-    """Fit data as float arrays, refused where no law can go through them."""
+    """Return the data as float arrays; refuse those that no law can be fitted to."""
     temperature = np.asarray(temperature, dtype=float)
     viscosity = np.asarray(kinematic_viscosity, dtype=float)
     if np.unique(temperature).size < 2:
@@ -47,14 +47,17 @@ def _data(temperature, kinematic_viscosity, least=0.0):
 
 
 def _low_viscosity_term(kinematic_viscosity):
-    """C of ASTM D341 by natural exponent; it matters below 2 mm2/s only."""
+    """C of ASTM D341, with the natural base; it matters below 2 mm2/s only."""
     return np.exp(-1.47 - 1.84 * kinematic_viscosity - 0.51 * kinematic_viscosity**2)
 
 
-def fit_astm_d341(temperature, kinematic_viscosity):
-    """Fit ASTM D341 (Ubbelohde-Walther), log10 log10 Z = A - B log10 T.
+def fit_astm_d341(temperature: np.ndarray, kinematic_viscosity: np.ndarray) -> tuple[float, float]:
+    r"""Fit the law of ASTM D341 (Ubbelohde-Walther).
 
-    Z = nu + 0.7 + C with C = exp(-1.47 - 1.84 nu - 0.51 nu^2).
+    .. math::
+
+        \log_{10} \log_{10} Z = A - B \log_{10} T, \qquad
+        Z = \nu + 0.7 + e^{-1.47 - 1.84 \nu - 0.51 \nu^2}
 
     Parameters
     ----------
@@ -66,12 +69,18 @@ def fit_astm_d341(temperature, kinematic_viscosity):
     Returns
     -------
     tuple of float
-        A and B. Two points are met exactly; more by least squares in log10 log10 Z.
+        A and B: exact for two points, by least squares in log10 log10 Z for more.
 
     Raises
     ------
     RangeError
-        With fewer than two temperatures, or a viscosity of 0.21 mm2/s or less.
+        If there are fewer than two temperatures, or a viscosity is 0.21 mm2/s or less.
+
+    Examples
+    --------
+    >>> a, b = fit_astm_d341([313.15, 373.15], [335.0, 38.3])
+    >>> f"{a:.4f}", f"{b:.4f}"
+    ('6.9831', '2.6367')
     """
     temperature, viscosity = _data(temperature, kinematic_viscosity, least=ASTM_D341_LEAST)
     z = viscosity + 0.7 + _low_viscosity_term(viscosity)
@@ -79,11 +88,8 @@ def fit_astm_d341(temperature, kinematic_viscosity):
     return intercept, -slope
 
 
-def evaluate_astm_d341(temperature, a, b):
+def evaluate_astm_d341(temperature: Values, a: float, b: float) -> Values:
     """Kinematic viscosity by ASTM D341.
-
-    Z(nu) is inverted by Newton's method. Z rises with nu and is convex, so that starting
-    at nu = Z - 0.7, which lies above the root, every step comes closer from one side.
 
     Parameters
     ----------
@@ -95,7 +101,18 @@ def evaluate_astm_d341(temperature, a, b):
     Returns
     -------
     float or numpy.ndarray
-        Kinematic viscosity, mm2/s; infinite or nan where the law leaves the floats.
+        Kinematic viscosity, mm2/s; infinite or NaN where Z overflows.
+
+    Notes
+    -----
+    Z(nu) is inverted by Newton's method. Z rises with nu and is convex, so the iteration, started
+    above the root at nu = Z - 0.7, converges from one side.
+
+    Examples
+    --------
+    >>> a, b = fit_astm_d341([313.15, 373.15], [335.0, 38.3])
+    >>> f"{evaluate_astm_d341(333.15, a, b):.3f}"
+    '139.100'
     """
     with np.errstate(over="ignore", invalid="ignore"):
         z = 10.0 ** (10.0 ** (a - b * np.log10(temperature)))
@@ -107,14 +124,12 @@ def evaluate_astm_d341(temperature, a, b):
     return viscosity
 
 
-def fit_vogel(temperature, kinematic_viscosity):
-    """Fit Vogel's law, nu = a exp(b/(T - c)).
+def fit_vogel(
+    temperature: np.ndarray, kinematic_viscosity: np.ndarray
+) -> tuple[float, float, float]:
+    r"""Fit Vogel's law.
 
-    With two temperatures c is fixed by Cameron's convention T - c = theta + 95, theta in
-    degC. With more, ln nu is a straight line in 1/(T - c) for any pole c; the c with the
-    least squared residuals in ln nu is sought between 0 K, where the law is Andrade's, and
-    1 K below the coldest datum: first on a grid, then by bounded minimisation, so that
-    the result depends on no starting guess.
+    .. math:: \nu = a\, e^{b / (T - c)}
 
     Parameters
     ----------
@@ -131,8 +146,27 @@ def fit_vogel(temperature, kinematic_viscosity):
     Raises
     ------
     RangeError
-        With fewer than two temperatures, a viscosity of zero or less, or just two
-        temperatures of which one is at or below Cameron's pole of -95 degC.
+        If there are fewer than two temperatures, a viscosity is zero or less, or there are two
+        temperatures only and one is at or below Cameron's pole of -95 degC.
+
+    Notes
+    -----
+    With two temperatures the pole c is Cameron's: T - c = theta + 95, with theta in degC. With
+    more, ln nu is a straight line in 1/(T - c) for any pole. The pole with the least squared
+    residuals in ln nu is searched between 0 K, where the law becomes Andrade's, and 1 K below
+    the lowest temperature: first on a grid, then by bounded minimisation, so that the result
+    does not depend on a starting value.
+
+    References
+    ----------
+    H. Vogel, Das Temperaturabhängigkeitsgesetz der Viskosität von Flüssigkeiten, Phys. Z. 22
+    (1921) 645-646.
+
+    Examples
+    --------
+    >>> a, b, c = fit_vogel([313.15, 373.15], [335.0, 38.3])
+    >>> f"{a:.4f}", f"{b:.1f}", f"{c:.2f}"
+    ('0.2911', '951.5', '178.15')
     """
     temperature, viscosity = _data(temperature, kinematic_viscosity)
     log_viscosity = np.log(viscosity)
@@ -150,7 +184,7 @@ def fit_vogel(temperature, kinematic_viscosity):
 
 
 def _best_pole(temperature, log_viscosity):
-    """Pole c of Vogel's law with the least squared residuals in ln nu, K."""
+    """Find the pole c of Vogel's law with the least squared residuals in ln nu, K."""
     from scipy.optimize import minimize_scalar  # on first use: Snakemake imports this module
 
     def squared_residuals(pole):
@@ -167,8 +201,10 @@ def _best_pole(temperature, log_viscosity):
     return refined.x
 
 
-def evaluate_vogel(temperature, a, b, c):
-    """Kinematic viscosity by Vogel's law, nu = a exp(b/(T - c)).
+def evaluate_vogel(temperature: Values, a: float, b: float, c: float) -> Values:
+    r"""Kinematic viscosity by Vogel's law.
+
+    .. math:: \nu = a\, e^{b / (T - c)}
 
     Parameters
     ----------
@@ -181,14 +217,21 @@ def evaluate_vogel(temperature, a, b, c):
     -------
     float or numpy.ndarray
         Kinematic viscosity, mm2/s; infinite at the pole c and below it.
+
+    Examples
+    --------
+    >>> f"{evaluate_vogel(333.15, 0.3, 950.0, 178.0):.1f}"
+    '136.9'
     """
     above_pole = np.maximum(np.asarray(temperature, dtype=float) - c, 0.0)
     with np.errstate(over="ignore", divide="ignore"):
         return a * np.exp(b / above_pole)
 
 
-def fit_andrade(temperature, kinematic_viscosity):
-    """Fit Andrade's law (of Arrhenius' form), nu = a exp(b/T).
+def fit_andrade(temperature: np.ndarray, kinematic_viscosity: np.ndarray) -> tuple[float, float]:
+    r"""Fit Andrade's law, which has Arrhenius' form.
+
+    .. math:: \nu = a\, e^{b / T}
 
     Parameters
     ----------
@@ -200,20 +243,28 @@ def fit_andrade(temperature, kinematic_viscosity):
     Returns
     -------
     tuple of float
-        a in mm2/s and b in K. Two points are met exactly; more by least squares in ln nu.
+        a in mm2/s and b in K: exact for two points, by least squares in ln nu for more.
 
     Raises
     ------
     RangeError
-        With fewer than two temperatures, or a viscosity of zero or less.
+        If there are fewer than two temperatures, or a viscosity is zero or less.
+
+    Examples
+    --------
+    >>> a, b = fit_andrade([313.15, 373.15], [335.0, 38.3])
+    >>> f"{a:.3g}", f"{b:.0f}"
+    ('0.000465', '4224')
     """
     temperature, viscosity = _data(temperature, kinematic_viscosity)
     intercept, slope = _straight_line(1.0 / temperature, np.log(viscosity))
     return float(np.exp(intercept)), slope
 
 
-def evaluate_andrade(temperature, a, b):
-    """Kinematic viscosity by Andrade's law, nu = a exp(b/T).
+def evaluate_andrade(temperature: Values, a: float, b: float) -> Values:
+    r"""Kinematic viscosity by Andrade's law.
+
+    .. math:: \nu = a\, e^{b / T}
 
     Parameters
     ----------
@@ -226,13 +277,18 @@ def evaluate_andrade(temperature, a, b):
     -------
     float or numpy.ndarray
         Kinematic viscosity, mm2/s.
+
+    Examples
+    --------
+    >>> f"{evaluate_andrade(333.15, 4.6e-4, 4225.0):.1f}"
+    '148.1'
     """
     return a * np.exp(b / np.asarray(temperature, dtype=float))
 
 
 @dataclass(frozen=True)
 class ViscosityLaw:
-    """A viscosity-temperature law: temperature in K, viscosity in mm2/s.
+    """A viscosity-temperature law, with temperatures in K and viscosities in mm2/s.
 
     Attributes
     ----------
@@ -243,11 +299,11 @@ class ViscosityLaw:
     parameters : tuple of str
         Names of the parameters, in order; keys of `PARAMETER_UNITS`.
     source : str
-        The equation and where it comes from.
+        The equation and its publication.
     """
 
-    fit: Callable
-    evaluate: Callable
+    fit: Callable[[np.ndarray, np.ndarray], tuple[float, ...]]
+    evaluate: Callable[..., Values]
     parameters: tuple[str, ...]
     source: str
 
@@ -272,11 +328,10 @@ VISCOSITY_LAWS = {
 """Viscosity-temperature laws by name."""
 
 PARAMETER_UNITS = {"A": "1", "B": "1", "a": "mm2 s-1", "b": "K", "c": "K"}
-"""Units of the laws' parameters; a parameter of one name has one unit in every law."""
-
+"""Units of the laws' parameters; parameters of the same name have the same unit in every law."""
 
 # Quadratic fits of the standard to its table of reference oils: from Y = KV100 upwards,
-# L = a Y^2 + b Y + c and H = d Y^2 + e Y + f. The last row is equation text of the standard.
+# L = a Y^2 + b Y + c and H = d Y^2 + e Y + f. The last row is an equation in its text.
 _REFERENCE_OILS = np.array(
     [
         # Y        a         b         c        d        e        f
@@ -300,7 +355,7 @@ _REFERENCE_OILS = np.array(
 )
 
 
-def reference_oils(viscosity_100):
+def reference_oils(viscosity_100: float) -> tuple[float, float]:
     """Viscosities at 40 degC of the reference oils of VI 0 and VI 100 (ASTM D2270).
 
     Parameters
@@ -311,13 +366,19 @@ def reference_oils(viscosity_100):
     Returns
     -------
     tuple of float
-        L of the oil of viscosity index 0 and H of that of 100, mm2/s. The standard's
-        quadratic fits; they meet its table within 0.2 %.
+        L of the oil of viscosity index 0 and H of the oil of viscosity index 100, mm2/s, by the
+        standard's quadratic fits, which agree with its table within 0.2 %.
 
     Raises
     ------
     RangeError
         Below 2 mm2/s, where the viscosity index is not defined.
+
+    Examples
+    --------
+    >>> low, high = reference_oils(10.0)
+    >>> f"{low:.1f}", f"{high:.2f}"
+    ('147.7', '82.87')
     """
     if not viscosity_100 >= 2.0:
         raise RangeError(
@@ -331,13 +392,19 @@ def reference_oils(viscosity_100):
     )
 
 
-def viscosity_index(viscosity_40, viscosity_100):
-    """Viscosity index by ASTM D2270, procedure A up to 100 and procedure B above.
+def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:
+    r"""Viscosity index by ASTM D2270, procedure A up to 100 and procedure B above.
+
+    .. math::
+
+        VI = 100 \frac{L - Y_{40}}{L - H} \quad (Y_{40} \ge H), \qquad
+        VI = 100 + \frac{10^N - 1}{0.00715}, \;
+        N = \frac{\ln(H / Y_{40})}{\ln Y_{100}} \quad (Y_{40} < H)
 
     Parameters
     ----------
     viscosity_40, viscosity_100 : float
-        Kinematic viscosities at 40 and at 100 degC, mm2/s.
+        Kinematic viscosities :math:`Y_{40}` and :math:`Y_{100}` at 40 and at 100 degC, mm2/s.
 
     Returns
     -------
@@ -348,6 +415,11 @@ def viscosity_index(viscosity_40, viscosity_100):
     ------
     RangeError
         Below 2 mm2/s at 100 degC.
+
+    Examples
+    --------
+    >>> f"{viscosity_index(335.0, 38.3):.1f}"
+    '164.4'
     """
     low, high = reference_oils(viscosity_100)
     if viscosity_40 >= high:
@@ -365,40 +437,54 @@ GOLD_BASES = {
 """Gold's s and t by base oil (Gold et al., J. Synth. Lubr. 18, 2001)."""
 
 
-def gold_pressure_viscosity(kinematic_viscosity, base):
-    """Pressure-viscosity coefficient by Gold's form, alpha = s nu^t 1e-9 1/Pa.
+def gold_pressure_viscosity(kinematic_viscosity: Values, base: str) -> Values:
+    r"""Pressure-viscosity coefficient by Gold's form.
+
+    .. math:: \alpha = s\, \nu^t \times 10^{-9}\ \mathrm{Pa}^{-1}
 
     Parameters
     ----------
     kinematic_viscosity : float or numpy.ndarray
-        Kinematic viscosity at the temperature in question, mm2/s.
+        Kinematic viscosity :math:`\nu` at the temperature of interest, mm2/s.
     base : str
         A key of `GOLD_BASES`.
 
     Returns
     -------
     float or numpy.ndarray
-        Pressure-viscosity coefficient, 1/Pa.
+        Pressure-viscosity coefficient :math:`\alpha`, 1/Pa.
+
+    Examples
+    --------
+    >>> f"{gold_pressure_viscosity(335.0, 'polyalphaolefin'):.3g}"
+    '1.6e-08'
     """
     s, t = GOLD_BASES[base]
     return s * np.asarray(kinematic_viscosity, dtype=float) ** t * 1e-9
 
 
-def linear_density(temperature, density_15, thermal_coefficient):
-    """Density falling linearly with temperature about 15 degC.
+def linear_density(temperature: Values, density_15: float, thermal_coefficient: float) -> Values:
+    r"""Density, falling linearly with temperature.
+
+    .. math:: \rho = \rho_{15}\, (1 - \kappa\, (T - 288.15\ \mathrm{K}))
 
     Parameters
     ----------
     temperature : float or numpy.ndarray
-        Absolute temperature T, K.
+        Absolute temperature :math:`T`, K.
     density_15 : float
-        Density at 15 degC, kg/m3.
+        Density :math:`\rho_{15}` at 15 degC, kg/m3.
     thermal_coefficient : float
-        Its relative fall per kelvin, 1/K.
+        Relative fall of density :math:`\kappa` per kelvin, 1/K.
 
     Returns
     -------
     float or numpy.ndarray
-        density_15 (1 - thermal_coefficient (T - 288.15 K)), kg/m3.
+        Density :math:`\rho`, kg/m3.
+
+    Examples
+    --------
+    >>> f"{linear_density(313.15, 860.0, 6.4e-4):.1f}"
+    '846.2'
     """
     return density_15 * (1.0 - thermal_coefficient * (temperature - DENSITY_REFERENCE))

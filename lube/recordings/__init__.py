@@ -1,1 +1,1 @@
-"""Measured files, in the formats of the field."""
+"""Reading measured voltage and resistance recordings: CSV, NetCDF and TDMS files, and manifests."""

@@ -1,28 +1,35 @@
-"""Records as NetCDF and TDMS files, read in slices.
+"""Recordings as NetCDF and TDMS files, read in slices.
 
 A NetCDF file holds them as variables with ``units``, a TDMS file as channels with the property
-``unit_string`` or ``NI_UnitDescription``. Whole numbers with a scale are read as what they mean.
+``unit_string`` or ``NI_UnitDescription``. Integers with a scale are converted to their values.
 """
 
 import contextlib
-import os
-import struct
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import netCDF4
 import numpy as np
 from nptdms import TdmsFile
+from scipy.io import netcdf_file
 
 from lube.errors import DataError, LubeError, shown
-from lube.recordings.classic_netcdf import needed_length
-from lube.recordings.signals import FIRST_STEPS, Channel, Part, Signal, find_signals
+from lube.recordings.signals import Channel, Signal, find_signals
 from lube.units import convert, parse_number, parse_quantity
 
 SLICE = 2**20
 """Samples read at a time, about."""
+
+
+class _Array(NamedTuple):
+    """One array of a file: its description, its values to be sliced, and its attributes."""
+
+    channel: Channel
+    values: Any
+    attributes: dict
 
 
 @dataclass(frozen=True)
@@ -33,100 +40,89 @@ class BinarySignal:
     ----------
     path : Path
         The file.
-    arrays : callable
-        From the path to a context manager that gives the file's arrays, to be sliced.
+    open_arrays : callable
+        From the path to a context manager that gives the file's arrays.
     time : Signal or None
         Array of the time.
     measured : Signal
         Array of the voltage or resistance.
-    told_interval : float or None
-        Sampling interval that the file tells in its attributes, s.
+    sampling_interval : float or None
+        Sampling interval stated in the file's attributes, s.
     """
 
     path: Path
-    arrays: Callable
+    open_arrays: Callable
     time: Signal | None
     measured: Signal
-    told_interval: float | None
+    sampling_interval: float | None
 
-    def head(self):
-        """First samples of the record, a `Part`; None if there are none."""
-        return next(self._parts_of(FIRST_STEPS + 1), None)
+    def head(self) -> tuple[np.ndarray, np.ndarray | None] | None:
+        """Read the first samples and times, as of `parts`; None if there are none."""
+        return next(self.parts(), None)
 
-    def parts(self):
-        """Read the record.
+    def parts(self) -> Iterator[tuple[np.ndarray, np.ndarray | None]]:
+        """Read the recording.
 
         Yields
         ------
-        Part
-            About a million samples, but never less than a chunk of the file.
+        values, times : numpy.ndarray
+            The next samples, V or ohm, and their times, s, None if the file has none. About a
+            million, but never less than a chunk of the file.
 
         Raises
         ------
         DataError
             If the file is truncated or damaged.
         """
-        yield from self._parts_of(None)
+        with self.open_arrays(self.path) as arrays:
+            values = arrays[self.measured.index].values
+            times = None if self.time is None else arrays[self.time.index].values
+            step = _slice_length(values)
+            for first in range(0, len(values), step):
+                part = slice(first, first + step)
+                yield (
+                    _read(values, part, self.measured),
+                    None if times is None else _read(times, part, self.time),
+                )
 
-    def _parts_of(self, most):
-        """Yield the parts of so many samples at most, or of all."""
-        with self.arrays(self.path) as arrays:
-            values = arrays[self.measured.place].values
-            end, step = min(most or len(values), len(values)), _slice_length(values)
-            for first in range(0, end, step):
-                wanted = slice(first, min(first + step, end))
-                times = None
-                if self.time is not None:
-                    times = _read(arrays[self.time.place].values, wanted, self.time)
-                yield Part(_read(values, wanted, self.measured), times, partial(_place, first))
-
-
-def _place(first, index):
-    return f"sample {first + index + 1}"
+    def where(self, sample: int) -> str:
+        """Position of a sample, counted from 0, in the file."""
+        return f"sample {sample + 1}"
 
 
 def _slice_length(values):
     """Whole chunks of a NetCDF variable, so that none is unpacked twice."""
-    chunks = values.chunking() if isinstance(values, netCDF4.Variable) else "contiguous"
-    if chunks == "contiguous" or chunks is None:
+    chunks = values.chunking() if isinstance(values, netCDF4.Variable) else None
+    if chunks in (None, "contiguous"):
         return SLICE
     return max(SLICE // chunks[0], 1) * chunks[0]
 
 
-def _read(values, wanted, signal):
-    part = values[wanted]
-    if np.ma.isMaskedArray(part):
-        part = part.astype(float).filled(np.nan)
-    return signal.converted(part)
-
-
-@dataclass(frozen=True)
-class _Array:
-    """One array of a file, with what the file states of it, its values and its attributes."""
-
-    channel: Channel
-    values: object
-    attributes: dict
+def _read(values, part, signal):
+    found = values[part]
+    if np.ma.isMaskedArray(found):
+        found = found.astype(float).filled(np.nan)
+    return signal.converted(found)
 
 
 @contextlib.contextmanager
-def _told(path, kind):
-    """Tell in one line what a library says of a file that it cannot read."""
+def _refused_in_one_line(path, kind):
+    """Turn any error of a library that cannot read a file into a DataError."""
     try:
         yield
     except LubeError:
         raise
-    except Exception as error:  # of many kinds, all meaning one thing
+    except Exception as error:  # the libraries raise many kinds for a damaged file
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise DataError(
-            f"{path}: not a whole {kind} file, truncated, damaged or foreign ({reason})"
+            f"{path}: not a whole {kind} file, truncated, damaged or of another kind ({reason})"
         ) from error
 
 
 @contextlib.contextmanager
 def _netcdf_arrays(path):
-    with _told(path, "NetCDF"):
-        _check_length(path)
+    with _refused_in_one_line(path, "NetCDF"):
+        _check_classic(path)
         with netCDF4.Dataset(path) as file:
             file.set_always_mask(False)
             shared = {name: file.getncattr(name) for name in file.ncattrs()}
@@ -137,19 +133,33 @@ def _netcdf_arrays(path):
             ]
 
 
-def _check_length(path):
-    """Refuse a classic NetCDF file that is cut short: the library reads zeros, in silence."""
-    needed, size = needed_length(path), os.path.getsize(path)
-    if needed is not None and size < needed:
+def _check_classic(path):
+    """Refuse a truncated classic file: the NetCDF library would read zeros, which mean contact."""
+    with open(path, "rb") as file:
+        mark = file.read(4)
+    if mark == b"CDF\x05":
         raise DataError(
-            f"{path}: not a whole NetCDF file, truncated: ends at byte {size}, need {needed}"
+            f"{path}: got the 64-bit data format (CDF-5), need NetCDF-4, as from 'nccopy -k nc4'"
         )
+    if mark.startswith(b"CDF") and not _is_whole(path):
+        raise DataError(f"{path}: not a whole NetCDF file, truncated or damaged")
+
+
+def _is_whole(path):
+    """Whether a classic file has all the bytes that its header says, by SciPy's reader."""
+    # SciPy warns of the memory map that it cannot close after a failure.
+    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):
+        try:
+            netcdf_file(path).close()
+        except Exception:  # of many kinds
+            return False
+    return True
 
 
 def _netcdf_array(variable, shared):
     attributes = shared | {name: variable.getncattr(name) for name in variable.ncattrs()}
     units = attributes.get("units")
-    # A time may be told from a date on, which matters nothing here.
+    # Only steps of time are used, so that the reference date does not matter.
     units = units.split(" since ")[0] if isinstance(units, str) else None
     channel = Channel(variable.name, units, variable.name, variable.dimensions[0], variable.size)
     return _Array(channel, variable, attributes)
@@ -157,15 +167,15 @@ def _netcdf_array(variable, shared):
 
 @contextlib.contextmanager
 def _tdms_arrays(path):
-    with _told(path, "TDMS"):
-        _check_segments(path)
-        with TdmsFile.open(path) as file:
-            yield [
-                _tdms_array(group.name, channel)
-                for group in file.groups()
-                for channel in group.channels()
-                if channel.dtype.kind in "fiu"
-            ]
+    with _refused_in_one_line(path, "TDMS"), TdmsFile.open(path) as file:
+        if file.file_status.incomplete_final_segment:
+            raise DataError(f"{path}: not a whole TDMS file, truncated within its last segment")
+        yield [
+            _tdms_array(group.name, channel)
+            for group in file.groups()
+            for channel in group.channels()
+            if channel.dtype.kind in "fiu"
+        ]
 
 
 def _tdms_array(group, array):
@@ -175,85 +185,66 @@ def _tdms_array(group, array):
     return _Array(channel, array, array.properties)
 
 
-# National Instruments, The NI TDMS file format (2023): tag, table of contents (whose bit 6 says
-# that big-endian numbers follow), version, and the lengths of the segment and of its metadata.
-_LEAD_IN, _BIG_ENDIAN = 28, 1 << 6
+def open_netcdf(path: Path, channel: str | None = None, unit: str | None = None) -> BinarySignal:
+    """Find the recording in a NetCDF file.
 
-
-def _check_segments(path):
-    """Refuse a TDMS file that ends within a segment: npTDMS reads what there is, in silence."""
-    size, begin = os.path.getsize(path), 0
-    with open(path, "rb") as file:
-        while begin < size:
-            file.seek(begin)
-            lead_in = file.read(_LEAD_IN)
-            if len(lead_in) < _LEAD_IN or not lead_in.startswith(b"TDSm"):
-                raise DataError(f"{path}: no TDMS segment at byte {begin}, truncated or damaged")
-            big = lead_in[4] & _BIG_ENDIAN
-            begin += _LEAD_IN + struct.unpack(">Q" if big else "<Q", lead_in[12:20])[0]
-    if begin != size:
-        raise DataError(f"{path}: ends at byte {size} within a TDMS segment, truncated")
-
-
-def open_netcdf(path, channel=None, unit=None):
-    """Find the record in a NetCDF file.
-
-    The variable ``voltage`` or ``resistance`` has its time in a variable as long as itself, or
-    else in an attribute ``sampling_interval``, such as ``10 us``, its own or the file's.
+    The time is a variable as long as the recording, or an attribute ``sampling_interval``, such
+    as ``10 us``, of the variable or of the file.
 
     Parameters
     ----------
     path : Path
         The file.
     channel : str, optional
-        Name of the record's variable.
+        Name of the variable to read; else the first voltage or resistance.
     unit : str, optional
-        Its unit, in place of what the file states.
+        Its unit; overrides the one in the file.
 
     Returns
     -------
     BinarySignal
-        The record, not read yet.
+        The recording, not read yet.
 
     Raises
     ------
     DataError
-        If the file is truncated, damaged or foreign, or `find_signals` refuses its variables.
+        If the file is truncated, damaged or of another kind, or
+        `lube.recordings.signals.find_signals` refuses its variables.
     """
     return _opened(path, _netcdf_arrays, _netcdf_interval, channel, unit)
 
 
-def open_tdms(path, channel=None, unit=None):
-    """Find the record in a TDMS file.
+def open_tdms(path: Path, channel: str | None = None, unit: str | None = None) -> BinarySignal:
+    """Find the recording in a TDMS file.
 
-    Its time is a channel as long as itself, or else its property ``wf_increment``. A channel
-    may be asked for as ``group/channel`` too. What goes in, what comes out and what is refused
-    is as in `open_netcdf`.
+    The time is a channel as long as the recording, or the property ``wf_increment``. The channel
+    to read may also be given as ``group/channel``. Otherwise as `open_netcdf`.
     """
     return _opened(path, _tdms_arrays, _tdms_interval, channel, unit)
 
 
-def _opened(path, opener, interval_of, asked, unit):
-    with opener(path) as arrays:
+def _opened(path, open_arrays, interval_of, selected, unit):
+    with open_arrays(path) as arrays:
         channels = [array.channel for array in arrays]
-        time, measured = find_signals(channels, path, asked, unit)
-        record = channels[measured.place]
+        time, measured = find_signals(channels, path, selected, unit)
+        channel = channels[measured.index]
         try:
-            interval = interval_of(arrays[measured.place].attributes)
+            interval = interval_of(arrays[measured.index].attributes)
         except LubeError as error:
-            raise DataError(f"{path}: sampling interval of {shown(record.name)}: {error}") from None
-        if time and interval is not None and channels[time.place].group != record.group:
-            time = None  # what a channel says of itself is nearer than another group's times
-        return BinarySignal(path, opener, time, measured, interval)
+            name = shown(channel.name)
+            raise DataError(f"{path}: sampling interval of {name}: {error}") from None
+        if time and interval is not None and channels[time.index].group != channel.group:
+            time = None  # a channel's own interval precedes the times of another group
+        return BinarySignal(path, open_arrays, time, measured, interval)
 
 
 def _netcdf_interval(attributes):
-    told = attributes.get("sampling_interval")
-    return None if told is None else parse_quantity(told, "s")
+    stated = attributes.get("sampling_interval")
+    return None if stated is None else parse_quantity(stated, "s")
 
 
 def _tdms_interval(properties):
-    told = properties.get("wf_increment")
-    if told is None:
+    stated = properties.get("wf_increment")
+    if stated is None:
         return None
-    return convert(parse_number(told), str(properties.get("wf_xunit_string") or "s"), "s")
+    return convert(parse_number(stated), str(properties.get("wf_xunit_string") or "s"), "s")

@@ -1,28 +1,27 @@
-"""Records as CSV files of any length, read in blocks of whole lines.
+"""Recordings as CSV files of any length, parsed by PyArrow in pieces of whole lines."""
 
-PyArrow parses the blocks, one on each core, so that none waits for another and the record is
-evaluated meanwhile. It does not say where it failed: a block that it refuses is gone through
-line by line, to name the first that is wrong.
-"""
-
+import os
+import re
 from collections import deque
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 from itertools import islice
 from pathlib import Path
 
+import numpy as np
 import pyarrow
 import pyarrow.csv
 
-from lube.errors import DataError
-from lube.recordings.signals import FIRST_STEPS, Channel, Part, Signal, find_signals, header_cell
+from lube.errors import DataError, shown
+from lube.recordings.signals import Channel, Signal, find_signals, header_cell
 from lube.study.small_csv import delimiter_of, split_cells
 
 HEAD_BYTES = 2**20
-"""The column names, and a row that tells the decimal sign, come within so many bytes."""
+"""The first rows, which show decimal sign and sampling interval, are within so many bytes."""
 
-BLOCK_BYTES = 2**22
+PIECE_BYTES = 2**22
+"""Text parsed at a time on each core."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +32,12 @@ class TextSignal:
     ----------
     path : Path
         The file.
+    header_line : int
+        Number of the line of column names.
     begin : int
         Byte at which the first row begins.
     delimiter, decimal_sign : str
-        What parts the columns, and the digits of a number.
+        Separators of the columns and of a number's decimals.
     width : int
         Number of columns.
     time : Signal or None
@@ -46,6 +47,7 @@ class TextSignal:
     """
 
     path: Path
+    header_line: int
     begin: int
     delimiter: str
     decimal_sign: str
@@ -53,177 +55,153 @@ class TextSignal:
     time: Signal | None
     measured: Signal
 
-    # A CSV file has no place for it but a column of times.
-    told_interval = None
+    # A CSV file can state its sampling interval by a column of times only.
+    sampling_interval = None
 
-    def head(self):
-        """First samples of the record, a `Part`; None if there are none."""
-        with open(self.path, "rb") as file:
-            file.seek(self.begin)
-            rows = b"".join(islice(file, FIRST_STEPS + 1))
-        return None if _is_blank(rows) else self._part(self.begin, rows)
+    def head(self) -> tuple[np.ndarray, np.ndarray | None] | None:
+        """Read the first samples and times, as of `parts`; None if there are none."""
+        return next(self._converted(map(self._parsed, self._pieces())), None)
 
-    def parts(self):
-        """Read the record, on all cores.
+    def parts(self) -> Iterator[tuple[np.ndarray, np.ndarray | None]]:
+        """Read the recording, on all cores.
 
         Yields
         ------
-        Part
-            The samples of some megabytes of text.
+        values, times : numpy.ndarray
+            The next samples, V or ohm, and their times, s, None if the file has none.
 
         Raises
         ------
         DataError
-            At the first line that is no row of numbers.
+            At the first line that is not a row of numbers.
         """
-        cores, waiting = pyarrow.cpu_count(), deque()
-        with ThreadPoolExecutor(cores) as pool:
-            for offset, block in self._blocks():
-                waiting.append(pool.submit(self._part, offset, block))
-                if len(waiting) > cores:  # so many blocks are in memory at most
-                    yield waiting.popleft().result()
-            while waiting:
-                yield waiting.popleft().result()
+        return self._converted(_on_all_cores(self._parsed, self._pieces()))
 
-    def _blocks(self):
-        """Offset and text of blocks that end with a line and are not blank."""
-        with open(self.path, "rb") as file:
-            file.seek(self.begin)
-            offset = self.begin
-            while block := file.read(BLOCK_BYTES):
-                whole_lines = block.rfind(b"\n") + 1
-                if whole_lines and len(block) == BLOCK_BYTES:
-                    block = memoryview(block)[:whole_lines]
-                    file.seek(offset + whole_lines)
-                if not _is_blank(block):
-                    yield offset, block
-                offset += len(block)
-
-    def _part(self, offset, block):
-        table = self._parsed(offset, block)
-        times = None if self.time is None else self._column(table, self.time)
-        place = partial(self._place_of_row, offset, block)
-        return Part(self._column(table, self.measured), times, place)
-
-    def _parsed(self, offset, block):
-        names = [str(place) for place in range(self.width)]
-        used = [str(signal.place) for signal in (self.time, self.measured) if signal is not None]
-        try:
-            return pyarrow.csv.read_csv(
-                pyarrow.BufferReader(pyarrow.py_buffer(block)),
-                pyarrow.csv.ReadOptions(
-                    use_threads=False, block_size=len(block), column_names=names
-                ),
-                pyarrow.csv.ParseOptions(delimiter=self.delimiter),
-                pyarrow.csv.ConvertOptions(
-                    include_columns=used,
-                    column_types=dict.fromkeys(used, pyarrow.float64()),
-                    null_values=[],
-                    decimal_point=self.decimal_sign,
-                ),
-            )
-        except pyarrow.ArrowInvalid as error:
-            raise DataError(f"{self.path}: {self._fault(offset, block, error)}") from None
-
-    def _column(self, table, signal):
-        return signal.converted(table[str(signal.place)].to_numpy())
-
-    def _place_of_row(self, offset, block, row):
-        number, _ = next(islice(self._rows(offset, block), row, None))
+    def where(self, sample: int) -> str:
+        """Line of a sample, counted from 0, in the file."""
+        number, _ = self._row(sample)
         return f"line {number}"
 
-    def _rows(self, offset, block):
-        """Yield number in the file, and text, of each line of a block that is not empty."""
-        first = _line_number(self.path, offset)
-        for number, line in enumerate(bytes(block).split(b"\n"), start=first):
-            if line.rstrip(b"\r"):
-                yield number, line.rstrip(b"\r").decode(errors="replace")
+    def _pieces(self):
+        """Text of the rows, in pieces of whole lines; the first is small, and is soon read."""
+        size = min(HEAD_BYTES, PIECE_BYTES)
+        with open(self.path, "rb") as file:
+            file.seek(self.begin)
+            while text := file.read(size):
+                size = PIECE_BYTES
+                whole_lines = text.rfind(b"\n") + 1 or len(text)
+                file.seek(whole_lines - len(text), os.SEEK_CUR)
+                yield memoryview(text)[:whole_lines]
 
-    def _fault(self, offset, block, error):
-        """First line of a block that is no row of numbers, and why."""
-        for number, line in self._rows(offset, block):
-            # As the reader does, which knows no other digits or blanks than ASCII's.
-            cells = split_cells(line, self.delimiter, blanks=" \t")
-            if len(cells) != self.width:
-                return f"line {number}: got {len(cells)} values, need {self.width}"
-            for signal in filter(None, (self.time, self.measured)):
-                if not self._is_number(cells[signal.place]):
-                    needed = "a number" + " with a decimal comma" * (self.decimal_sign == ",")
-                    came = cells[signal.place][:40]
-                    return f"line {number}: got {came!r} as {signal.quantity}, need {needed}"
-        first = _line_number(self.path, offset)
-        found = str(error).splitlines()[0]
-        return f"lines from {first} on: got what is no row ({found}), need a table of numbers"
+    def _parsed(self, text):
+        names = [str(index) for index in range(self.width)]
+        used = [str(signal.index) for signal in (self.time, self.measured) if signal is not None]
+        return pyarrow.csv.read_csv(
+            pyarrow.py_buffer(text),
+            # Only on a single core does PyArrow say which row is wrong.
+            pyarrow.csv.ReadOptions(use_threads=False, block_size=len(text), column_names=names),
+            pyarrow.csv.ParseOptions(delimiter=self.delimiter),
+            pyarrow.csv.ConvertOptions(
+                include_columns=used,
+                column_types=dict.fromkeys(used, pyarrow.float64()),
+                null_values=[],
+                decimal_point=self.decimal_sign,
+            ),
+        )
 
-    def _is_number(self, cell):
-        if self.decimal_sign == "," and "." in cell:
-            return False
+    def _converted(self, tables):
+        """Values and times of tables that are parsed one after the other."""
+        rows = 0
         try:
-            pyarrow.scalar(cell.replace(self.decimal_sign, ".")).cast("float64")
-        except pyarrow.ArrowInvalid:
-            return False
-        return True
+            for table in tables:
+                rows += table.num_rows
+                if table.num_rows:
+                    times = None if self.time is None else _column(table, self.time)
+                    yield _column(table, self.measured), times
+        except pyarrow.ArrowInvalid as error:
+            raise DataError(f"{self.path}: {self._refusal(str(error), rows)}") from None
+
+    def _refusal(self, reason, rows_before):
+        """Say which line is not a row of numbers, given PyArrow's reason."""
+        wrong = re.search(r"Row #(\d+)", reason)
+        if wrong is None:
+            return f"not a table of numbers, truncated or damaged ({reason})"
+        number, line = self._row(rows_before + int(wrong[1]) - 1)
+        quantities = [signal.quantity for signal in (self.time, self.measured) if signal]
+        commas = " with decimal commas" if self.decimal_sign == "," else ""
+        return (
+            f"line {number}: got {shown(line)}, need {self.width} values, "
+            f"numbers{commas} for {' and '.join(quantities)}"
+        )
+
+    def _row(self, row):
+        """Line number and text of a row; lines that are empty are no rows."""
+        # Any of the usual ends of a line, as PyArrow has it.
+        with open(self.path, encoding="utf-8-sig", errors="replace") as file:
+            lines = ((number, line.rstrip("\n")) for number, line in enumerate(file, start=1))
+            rows = (line for line in islice(lines, self.header_line, None) if line[1])
+            return next(islice(rows, row, None))
 
 
-def _is_blank(block):
-    # Only where the beginning is blank is it worth a copy of the whole.
-    return not bytes(block[:64]).strip() and not bytes(block).strip()
+def _on_all_cores(function, items):
+    """Yield the results of a function in order, computing some of them ahead."""
+    cores, items = pyarrow.cpu_count(), iter(items)
+    with ThreadPoolExecutor(cores) as pool:
+        ahead = deque(pool.submit(function, item) for item in islice(items, cores + 1))
+        while ahead:
+            yield ahead.popleft().result()
+            ahead.extend(pool.submit(function, item) for item in islice(items, 1))
 
 
-def _line_number(path, offset):
-    """Count the lines up to the byte at which one begins, itself included."""
-    number = 1
-    with open(path, "rb") as file:
-        while file.tell() < offset:
-            number += file.read(min(BLOCK_BYTES, offset - file.tell())).count(b"\n")
-    return number
+def _column(table, signal):
+    return signal.converted(table[str(signal.index)].to_numpy())
 
 
-def open_text(path, channel=None, unit=None):
-    """Read the head of a CSV file: where rows begin, and which columns matter.
+def open_text(path: Path, channel: str | None = None, unit: str | None = None) -> TextSignal:
+    """Find the recording in a CSV file.
 
-    Lines that are empty or begin with ``#`` may stand before the one of column names. Columns
-    are parted by tabs, semicolons or commas; where not by commas, numbers may have decimal
-    commas.
+    Empty lines and lines that begin with ``#`` may precede the line of column names. Columns are
+    separated by tabs, semicolons or commas; unless by commas, numbers may have decimal commas.
 
     Parameters
     ----------
     path : Path
         The file, UTF-8 text.
     channel : str, optional
-        Name of the record's column, or the whole head of it.
+        Name of the column to read, or its whole header.
     unit : str, optional
-        Its unit, in place of what the file states.
+        Its unit; overrides the one in the file.
 
     Returns
     -------
     TextSignal
-        The record, not read yet.
+        The recording, not read yet.
 
     Raises
     ------
     DataError
-        If it has no line of column names, or `lube.recordings.signals.find_signals` refuses those.
+        If there is no line of column names, or `lube.recordings.signals.find_signals` refuses it.
     """
     with open(path, "rb") as file:
         number, header = _header_line(file, path)
         begin = file.tell()
         rows = file.read(HEAD_BYTES)
-    # A comma in a lone column is a decimal one.
+    # In a single column, a comma can only be a decimal sign.
     delimiter = delimiter_of(header) if "," in header else delimiter_of(header + ";")
     cells = split_cells(header, delimiter)
     columns = [Channel(*header_cell(cell), full_name=cell) for cell in cells]
     time, measured = find_signals(columns, f"{path}: line {number}", channel, unit)
     sign = "," if delimiter != "," and b"," in rows else "."
-    return TextSignal(path, begin, delimiter, sign, len(cells), time, measured)
+    return TextSignal(path, number, begin, delimiter, sign, len(cells), time, measured)
 
 
 def _header_line(file, path):
-    for number, line in enumerate(iter(lambda: file.readline(HEAD_BYTES), b""), start=1):
+    """Find the first line that is neither empty nor a comment; return its number and text."""
+    for number, line in enumerate(file, start=1):
         try:
             text = line.decode("utf-8-sig").strip()
         except UnicodeDecodeError:
             raise DataError(f"{path}: line {number}: need UTF-8 text") from None
         if text and not text.startswith("#"):
             return number, text
-    raise DataError(f"{path}: empty record, need a line of column names and rows of numbers")
+    raise DataError(f"{path}: empty, need a line of column names and rows of numbers")

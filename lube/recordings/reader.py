@@ -1,39 +1,38 @@
-"""Measured records of the rig: CSV, NetCDF and TDMS files, streamed and checked as they are read.
+"""Measured recordings: CSV, NetCDF and TDMS files, streamed and checked as they are read.
 
-A record is a voltage or a resistance, sampled uniformly: its share of samples in contact is a
-share of time. What breaks that, a gap or a repeated time or a missing value, ends the reading
-with its place in the file; nothing is mended in silence.
+A recording is a voltage or a resistance, sampled uniformly, so that its share of samples in
+contact is a share of time. A gap, a repeated time or a missing value ends the reading with an
+error that names its position in the file; nothing is repaired silently.
 """
 
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+
+import numpy as np
 
 from lube.errors import DataError, LubeError, shown
 from lube.recordings.binary_signals import BinarySignal, open_netcdf, open_tdms
 from lube.recordings.csv_signals import TextSignal, open_text
-from lube.recordings.signals import Clock, first_interval, value_fault
 from lube.study.field_types import bounded
 from lube.units import parse_electrical, parse_number
 
-_KIND_OF_SUFFIX = {
-    ".csv": "text",
-    ".tsv": "text",
-    ".txt": "text",
-    ".nc": "NetCDF",
-    ".nc4": "NetCDF",
-    ".tdms": "TDMS",
-}
+_KIND_OF_SUFFIX = (
+    dict.fromkeys((".csv", ".tsv", ".txt"), "text")
+    | dict.fromkeys((".nc", ".nc4"), "NetCDF")
+    | {".tdms": "TDMS"}
+)
 _KIND_OF_MARK = {b"\x89HDF": "NetCDF", b"CDF": "NetCDF", b"TDSm": "TDMS"}
 _OPENERS = {"text": open_text, "NetCDF": open_netcdf, "TDMS": open_tdms}
 
-# Two tellings of one sampling interval may differ by rounding.
-_AGREEMENT = 0.01
+_FIRST_STEPS = 1000  # their median is the sampling interval
+_AGREEMENT = 0.01  # the interval given and that of the file may differ by rounding
 
 
 @dataclass(frozen=True)
 class Recording:
-    """A record of the rig in a file. Make it with `open_recording`.
+    """A voltage or resistance in a file. Make it with `open_recording`.
 
     Attributes
     ----------
@@ -50,8 +49,8 @@ class Recording:
     sampling_interval: float
     _signal: TextSignal | BinarySignal = field(repr=False)
 
-    def pieces(self):
-        """Read the record in bounded memory, checking each sample.
+    def pieces(self) -> Iterator[np.ndarray]:
+        """Read the recording in bounded memory, checking each sample.
 
         Yields
         ------
@@ -61,70 +60,105 @@ class Recording:
         Raises
         ------
         DataError
-            At the first sample that is missing or no number, or whose time does not follow on
-            the one before; and if the file turns out to be damaged, or empty. Which line or
-            sample, and why.
+            At the first sample that is missing or not a number, or whose time is not one sampling
+            interval after the one before; or if the file is damaged. It names the line or sample.
         """
-        clock = Clock(self.sampling_interval)
-        for part in self._signal.parts():
-            faults = [value_fault(part.values, self.quantity)]
-            if part.times is not None:
-                faults.append(clock.fault(part.times))
+        samples, before = 0, None
+        for values, times in self._signal.parts():
+            faults = [_value_fault(values, self.quantity)]
+            if times is not None:
+                before = times[0] - self.sampling_interval if before is None else before
+                faults.append(_time_fault(times, before, self.sampling_interval))
+                before = times[-1]
             for index, reason in sorted(filter(None, faults)):
-                raise DataError(f"{self.path}: {part.place(index)}: {reason}")
-            yield part.values
+                raise DataError(f"{self.path}: {self._signal.where(samples + index)}: {reason}")
+            samples += values.size
+            yield values
 
 
-def open_recording(path, sampling_interval=None, channel=None, unit=None, gain=1.0, offset=0.0):
-    """Open a record of the rig, whose samples are read later.
+def _value_fault(values, quantity):
+    """Index of the first value that is not allowed, and the reason; None if there is none."""
+    # An infinite resistance is an open circuit. Comparisons with NaN are false.
+    most = np.inf if quantity == "resistance" else np.finfo(float).max
+    if values.min() > -np.inf and values.max() <= most:
+        return None
+    index = int(np.argmin((values > -np.inf) & (values <= most)))
+    return index, f"got {values[index]} as {quantity}, need a number"
 
-    Between rig and recorder there may be an amplifier: recorded = gain * true + offset. What is
-    read is true = (recorded - offset) / gain.
+
+def _time_fault(times, before, interval):
+    """Index of the first time that does not follow the one before, and the reason; or None."""
+    steps = np.diff(times, prepend=before)
+    least, most = 0.5 * interval, 1.5 * interval
+    if steps.min() > least and steps.max() < most:
+        return None
+    index = int(np.argmin((steps > least) & (steps < most)))
+    before, now = times[index - 1] if index else before, times[index]
+    return index, (
+        f"time goes from {before:.9g} s to {now:.9g} s, need uniform steps of about "
+        f"{interval:.6g} s (gaps are not filled)"
+    )
+
+
+def open_recording(
+    path: str | Path,
+    sampling_interval: float | None = None,
+    channel: str | None = None,
+    unit: str | None = None,
+    gain: float = 1.0,
+    offset: float | str = 0.0,
+) -> Recording:
+    """Open a measured recording, whose samples are read later.
+
+    An amplifier between test rig and recorder is taken into account: recorded = gain * true +
+    offset, so that the samples returned are true = (recorded - offset) / gain.
 
     Parameters
     ----------
     path : str or Path
         CSV file (.csv, .tsv, .txt), NetCDF file (.nc, .nc4) or TDMS file (.tdms).
     sampling_interval : float, optional
-        Time between samples, s, for a file that does not tell it.
+        Time between samples, s, for a file that does not state it.
     channel : str, optional
-        Name of the column, variable or channel that is the record, without its unit; of a TDMS
-        file ``group/channel`` too. By default the first voltage or resistance.
+        Name of the column, variable or channel to read, without its unit; in a TDMS file also
+        ``group/channel``. By default the first voltage or resistance.
     unit : str, optional
-        Unit of that channel, such as ``mV``. It is believed even where the file states another.
+        Unit of that channel, such as ``mV``; overrides the one in the file.
     gain : float, optional
-        Factor of the amplifier, not 0; below 0 if it inverts.
+        Gain of the amplifier, not 0; negative if it inverts.
     offset : float or str, optional
-        What is recorded when the true value is 0: in V or ohm, or a text with its unit.
+        Recorded value when the true value is 0: in V or ohm, or a text with its unit.
 
     Returns
     -------
     Recording
-        The record.
+        The recording.
 
     Raises
     ------
     DataError
-        If the file is missing, not what its name says, empty or damaged; if it holds no
-        voltage or resistance, or not the channel, or several of its name, or a unit is missing,
-        unknown or not of what the channel's name says; if the gain is 0 or the offset is not of
-        the record's quantity; if the sampling interval is not known, not positive, or told
-        twice and differently.
+        If the file is missing, not of the kind its suffix says, empty or damaged; if it has no
+        voltage or resistance, or not the channel, or several of its name; if a unit is missing,
+        unknown or contradicts the channel's name; if the gain is 0 or the offset is not of the
+        recording's quantity; if the sampling interval is unknown, not positive, or not the one in
+        the file.
     """
     path = Path(path)
     signal = _OPENERS[_kind(path)](path, channel, unit)
     signal = replace(signal, measured=_before_amplifier(path, signal.measured, gain, offset))
     head = signal.head()
     if head is None:
-        raise DataError(f"{path}: empty record, need samples")
-    interval = _agreed_interval(path, _told_interval(path, signal, head), sampling_interval)
+        raise DataError(f"{path}: empty recording, need samples")
+    _, times = head
+    stated = signal.sampling_interval if times is None else _interval_of(path, signal, times)
+    interval = _agreed_interval(path, stated, sampling_interval)
     return Recording(path, signal.measured.quantity, interval, signal)
 
 
 def _kind(path):
-    """Kind of a file, by its suffix, if its first bytes do not belie it."""
-    if not os.path.isfile(path):  # whatever its name holds
-        raise DataError(f"{path}: no such file, need a record of the rig")
+    """Kind of a file by its suffix, if its first bytes agree."""
+    if not os.path.isfile(path):
+        raise DataError(f"{path}: no such file, need a measured recording")
     claimed = _KIND_OF_SUFFIX.get(path.suffix.lower())
     if claimed is None:
         raise DataError(
@@ -136,58 +170,57 @@ def _kind(path):
     except OSError as error:
         raise DataError(f"{path}: cannot be read: {error.strerror}") from None
     if not first:
-        raise DataError(f"{path}: empty record, the file has no bytes")
+        raise DataError(f"{path}: empty recording, the file has no bytes")
     kinds = (kind for mark, kind in _KIND_OF_MARK.items() if first.startswith(mark))
     found = next(kinds, "unknown binary data" if b"\0" in first else "text")
     if found != claimed:
-        raise DataError(f"{path}: named as {claimed} but begins as {found}, need one of the two")
+        raise DataError(f"{path}: the suffix says {claimed}, the content is {found}; need one kind")
     return claimed
 
 
 def _before_amplifier(path, measured, gain, offset):
+    """Undo the gain and offset of an amplifier."""
+    key = "gain"
     try:
         gain = bounded(parse_number(gain), None, other_than=0.0)
+        key = "offset"
+        offset = _offset(offset, measured.quantity)
     except LubeError as error:
-        raise DataError(f"{path}: gain: {error}") from None
-    try:
-        volts_or_ohms = _offset(offset, measured.quantity)
-    except LubeError as error:
-        raise DataError(f"{path}: offset: {error}") from None
-    return measured.before_amplifier(gain, volts_or_ohms)
+        raise DataError(f"{path}: {key}: {error}") from None
+    return measured.before_amplifier(gain, offset)
 
 
 def _offset(offset, quantity):
-    """Offset in V or ohm, as the record's quantity is."""
+    """Offset in V or ohm, whichever the recording is in."""
     if not isinstance(offset, str):
         return parse_number(offset)
     number, kind = parse_electrical(offset)
     if kind != quantity:
-        raise LubeError(f"got {shown(offset)}, need a {quantity}, as the record is one")
+        raise LubeError(f"got {shown(offset)}, need a {quantity}, as the recording is one")
     return number
 
 
-def _told_interval(path, signal, head):
-    """Return what the record's times, or else the file's attributes, tell of the interval, s."""
-    if head.times is None:
-        return signal.told_interval
-    if head.times.size == 1:
-        raise DataError(f"{path}: got a single sample, need two or more to tell the time between")
-    interval = first_interval(head.times)
-    if interval is None:
-        raise DataError(f"{path}: {head.place(1)}: time does not rise, need rising times")
-    return interval
+def _interval_of(path, signal, times):
+    """Median of the first steps of time that rise, s."""
+    if times.size == 1:
+        raise DataError(f"{path}: got a single sample, need two or more to know the time between")
+    steps = np.diff(times[: _FIRST_STEPS + 1])
+    rising = steps[(steps > 0.0) & np.isfinite(steps)]
+    if not rising.size:
+        raise DataError(f"{path}: {signal.where(1)}: time does not rise, need rising times")
+    return float(np.median(rising))
 
 
-def _agreed_interval(path, told, given):
-    """Return the sampling interval that the file tells or, if it tells none, the given one."""
-    for interval in (told, given):
+def _agreed_interval(path, stated, given):
+    """Return the interval that the file states or, if it states none, the given one."""
+    for interval in (stated, given):
         if interval is not None and not 0.0 < interval < float("inf"):
             raise DataError(f"{path}: got a sampling interval of {interval:g} s, need one above 0")
-    if told is None and given is None:
+    if stated is None and given is None:
         raise DataError(f"{path}: no time, need a time column or a sampling interval")
-    if told is not None and given is not None and abs(told - given) > _AGREEMENT * told:
+    if stated is not None and given is not None and abs(stated - given) > _AGREEMENT * stated:
         raise DataError(
-            f"{path}: its time steps by {told:.6g} s, but the sampling interval was given as "
-            f"{given:.6g} s, need one of them"
+            f"{path}: its time steps by {stated:.6g} s, but the sampling interval was given as "
+            f"{given:.6g} s, need them to agree"
         )
-    return given if told is None else told
+    return given if stated is None else stated

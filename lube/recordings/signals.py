@@ -1,23 +1,22 @@
-"""What the columns, variables and channels of a record mean, and whether their samples are sound.
+"""Which channel of a file is the time, which the voltage or resistance, and in which units.
 
-A record is one quantity, a voltage or a resistance, sampled uniformly. Its files name that
-quantity in many ways; the unit must be written, it is never guessed.
+A channel is a column of a CSV file, a variable of a NetCDF file or a channel of a TDMS file. Its
+quantity follows from its name or its unit. The unit must be stated; it is never guessed.
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from lube.errors import DataError, LubeError, shown
-from lube.kernels.uniform import first_uneven, first_unsound
 from lube.units import ELECTRICAL, convert, electrical_quantity, usual_spelling
 
 UNITS = {"time": "s"} | ELECTRICAL
-
-FIRST_STEPS = 1000
-"""The median of so many first steps of time is the sampling interval."""
+"""Quantities of a recording, and the unit each is converted to."""
 
 _ENDINGS = {
     "time": ("time", "zeit"),
@@ -26,12 +25,12 @@ _ENDINGS = {
 }
 _SYMBOLS = {"t": "time", "U": "voltage", "u": "voltage", "R": "resistance", "r": "resistance"}
 _HEADER = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\)|/\s*([^/\s]+))")
-_LONGEST_HEADER = 200
+_MOST_NAMES = 5  # channels that a message lists
 
 
 @dataclass(frozen=True)
 class Channel:
-    """A column, variable or channel, as its file tells of it.
+    """A column, variable or channel, as its file describes it.
 
     Attributes
     ----------
@@ -40,11 +39,11 @@ class Channel:
     units : str or None
         Its unit, if the file states one.
     full_name : str
-        By which it may be asked for as well: ``group/channel``, or the whole head of a column.
+        A second name by which it can be selected: ``group/channel``, or the whole column header.
     group : str
-        What is logged together has the same: a group of channels, or a dimension.
+        Channels that were logged together have the same: a TDMS group or a NetCDF dimension.
     size : int
-        Number of its samples, as far as it matters; 0 in a table.
+        Number of samples; 0 for the columns of a table, which are equally long.
     """
 
     name: str
@@ -56,30 +55,30 @@ class Channel:
 
 @dataclass(frozen=True)
 class Signal:
-    """What is read of a record: a channel, and how its values are converted.
+    """A channel that is read, and the conversion of its values to SI.
 
     Attributes
     ----------
-    place : int
-        The channel's number among those of the file.
+    index : int
+        Position of the channel among those of the file.
     quantity : str
         ``time``, ``voltage`` or ``resistance``.
     factor : float
-        From the unit of the file to s, V or ohm, of a voltage or resistance at the rig.
+        Multiplies the values of the file.
     shift : float
-        Added after that, s, V or ohm.
+        Added to the product, s, V or ohm.
     """
 
-    place: int
+    index: int
     quantity: str
     factor: float
     shift: float = 0.0
 
-    def before_amplifier(self, gain, offset):
-        """Signal of the rig, of which ``gain`` times so much and ``offset`` were recorded."""
+    def before_amplifier(self, gain: float, offset: float) -> "Signal":
+        """Signal at the amplifier's input, where recorded = gain * true + offset."""
         return replace(self, factor=self.factor / gain, shift=(self.shift - offset) / gain)
 
-    def converted(self, values):
+    def converted(self, values: npt.ArrayLike) -> np.ndarray:
         """Values of the file in s, V or ohm, float64."""
         values = np.asarray(values, float)
         if self.factor != 1.0:
@@ -87,32 +86,13 @@ class Signal:
         return values + self.shift if self.shift else values
 
 
-@dataclass(frozen=True)
-class Part:
-    """Some successive samples of a record.
-
-    Attributes
-    ----------
-    values : numpy.ndarray
-        Shape (N,), float64, V or ohm.
-    times : numpy.ndarray or None
-        Shape (N,), float64, s, if the file tells them.
-    place : callable
-        From the index of a sample to where it stands in the file, such as ``line 17``.
-    """
-
-    values: np.ndarray
-    times: np.ndarray | None
-    place: Callable
-
-
-def header_cell(cell):
-    """Part the head of a column into name and unit: ``U [mV]``, ``U (mV)`` or ``U/mV``.
+def header_cell(cell: str) -> tuple[str, str | None]:
+    """Split a column header into name and unit.
 
     Parameters
     ----------
     cell : str
-        Head of the column.
+        Such as ``U [mV]``, ``U (mV)`` or ``U/mV``.
 
     Returns
     -------
@@ -120,108 +100,117 @@ def header_cell(cell):
         The name.
     units : str or None
         The unit, None if there is none.
+
+    Examples
+    --------
+    >>> header_cell("Dev1/ai0 [mV]"), header_cell("t/s"), header_cell("voltage")
+    (('Dev1/ai0', 'mV'), ('t', 's'), ('voltage', None))
     """
-    cell = cell.strip()
-    # A longer one is none, and would keep the pattern busy for hours.
-    match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST_HEADER else None
+    match = _HEADER.fullmatch(cell.strip())
     if match is None:
-        return cell, None
+        return cell.strip(), None
     name, *units = match.groups()
-    return name, next(filter(None, units), None)
+    return name, next((unit.strip() for unit in units if unit), None)
 
 
-def find_signals(channels, where, asked=None, unit=None):
+def find_signals(
+    channels: Sequence[Channel],
+    where: str | Path,
+    selected: str | None = None,
+    unit: str | None = None,
+) -> tuple[Signal | None, Signal]:
     """Find the time and the measured quantity among the channels of a file.
 
-    Names decide, and where none of them tells, units. Where a file holds several voltages or
-    resistances, the first counts, unless one is asked for. The time is as long as the record; one
-    of the same group comes first.
+    A channel's name tells its quantity; if no name does, units do. The first voltage or resistance
+    is taken unless a channel is selected. The time has as many samples as that channel; one of the
+    same group is preferred.
 
     Parameters
     ----------
-    channels : list of Channel
-        All columns, variables or channels of numbers.
+    channels : sequence of Channel
+        All numeric columns, variables or channels.
     where : str or Path
-        The file, for the message.
-    asked : str, optional
-        Name, or full name, of the channel that is the record.
+        The file, for error messages.
+    selected : str, optional
+        Name, or full name, of the channel to read.
     unit : str, optional
-        Its unit, in place of what the file states.
+        Its unit; overrides the one in the file.
 
     Returns
     -------
     time : Signal or None
-        The time, if the file has any.
+        The time, if the file has one.
     measured : Signal
         The voltage or resistance.
 
     Raises
     ------
     DataError
-        If there is no voltage or resistance, or not the channel that is asked for, or several of
-        its name; if a unit is missing or unknown, or not of what the channel's name says.
+        If there is no voltage or resistance; if no channel, or more than one, has the selected
+        name; if a unit is missing, unknown, or contradicts the channel's name.
+
+    Examples
+    --------
+    >>> columns = [Channel("t", "ms", "t [ms]"), Channel("U", "mV", "U [mV]")]
+    >>> time, measured = find_signals(columns, "run.csv")
+    >>> time.factor, measured.quantity
+    (0.001, 'voltage')
     """
     everywhere = range(len(channels))
-    if asked is None:
-        place = _place_of(ELECTRICAL, channels, everywhere)
+    if selected is None:
+        index = _first_of(ELECTRICAL, channels, everywhere)
     else:
-        place = _asked_place(channels, asked, where)
-    if place is None:
-        names = ", ".join(shown(channel.name) for channel in channels[:5]) or "nothing"
+        index = _selected(channels, selected, where)
+    if index is None:
         raise DataError(
-            f"{where}: got {names}, need a voltage or a resistance with its unit, such as "
-            "'voltage [V]', or 'channel' given beside the file"
+            f"{where}: got {_listed(channels) or 'nothing'}, need a voltage or a resistance with "
+            "its unit, such as 'voltage [V]', or 'channel' given beside the file"
         )
-    record = channels[place] if unit is None else replace(channels[place], units=unit)
-    named = _named_quantity(record)
-    measured = _signal(place, record, named if named in ELECTRICAL else None, where)
-    taken = None if asked is None else place  # what is asked for is no time, whatever its name
-    beside = [at for at in everywhere if at != taken and channels[at].size == record.size]
-    return _time(channels, beside, record.group, where), measured
+    channel = channels[index] if unit is None else replace(channels[index], units=unit)
+    named = _quantity_of_name(channel)
+    measured = _signal(index, channel, named if named in ELECTRICAL else None, where)
+    others = [at for at in everywhere if at != index and channels[at].size == channel.size]
+    own_group = [at for at in others if channels[at].group == channel.group]
+    for candidates in (own_group, others):
+        at = _first_of(["time"], channels, candidates)
+        if at is not None:
+            return _signal(at, channels[at], "time", where), measured
+    return None, measured
 
 
-def _place_of(quantities, channels, places):
-    """First of some places where a channel is one of some quantities; None if there is none."""
-    for told_by in (_named_quantity, _quantity_of_unit):
-        for place in places:
-            if told_by(channels[place]) in quantities:
-                return place
+def _first_of(quantities, channels, indices):
+    """Index of the first channel of one of the quantities, by name or else by unit; or None."""
+    for quantity_of in (_quantity_of_name, _quantity_of_unit):
+        for index in indices:
+            if quantity_of(channels[index]) in quantities:
+                return index
     return None
 
 
-def _asked_place(channels, asked, where):
-    places = [
-        place
-        for place, channel in enumerate(channels)
-        if asked in (channel.name, channel.full_name)
+def _selected(channels, name, where):
+    """Index of the only channel of a name or full name."""
+    found = [
+        index for index, channel in enumerate(channels) if name in (channel.name, channel.full_name)
     ]
-    if len(places) == 1:
-        return places[0]
-    fitting = [channels[place] for place in places] or channels
-    names = ", ".join(shown(channel.full_name) for channel in fitting[:5])
-    more = f" and {len(fitting) - 5} more" if len(fitting) > 5 else ""
-    if places:
+    if len(found) == 1:
+        return found[0]
+    if found:
+        listed = _listed([channels[index] for index in found])
         raise DataError(
-            f"{where}: got the channel {shown(asked)}, which may be {names}{more}, need a name "
-            "that one alone has"
+            f"{where}: channel {shown(name)} is ambiguous, need the full name of one: {listed}"
         )
-    raise DataError(
-        f"{where}: got the channel {shown(asked)}, need one that is there: "
-        f"{names or 'there is none'}{more}"
-    )
+    listed = _listed(channels) or "the file has no numeric channel"
+    raise DataError(f"{where}: no channel {shown(name)}, need one of: {listed}")
 
 
-def _time(channels, places, group, where):
-    own = [place for place in places if channels[place].group == group]
-    for candidates in (own, places):
-        place = _place_of(("time",), channels, candidates)
-        if place is not None:
-            return _signal(place, channels[place], "time", where)
-    return None
+def _listed(channels):
+    names = ", ".join(shown(channel.full_name) for channel in channels[:_MOST_NAMES])
+    more = len(channels) - _MOST_NAMES
+    return f"{names} and {more} more" if more > 0 else names
 
 
-def _named_quantity(channel):
-    # Symbols as they are, since T is a temperature; words in any case, compound ones too.
+def _quantity_of_name(channel):
+    # Words in any case, compounds too; symbols as they are, since T is a temperature.
     words = re.split(r"[\W_\d]+", channel.name)
     for quantity, endings in _ENDINGS.items():
         if any(word.casefold().endswith(endings) for word in words):
@@ -239,100 +228,17 @@ def _quantity_of_unit(channel):
     return None
 
 
-def _signal(place, channel, quantity, where):
-    """Signal of a channel; where its quantity is None, the unit must tell a measured one."""
+def _signal(index, channel, quantity, where):
+    """Signal of a channel; if its quantity is None, the unit decides between the measured ones."""
     if not channel.units:
         example = f"'{channel.name} [{UNITS[quantity or 'voltage']}]'"
-        given = "" if quantity == "time" else ", or 'unit' given beside the file"
+        other = "" if quantity == "time" else ", or 'unit' given beside the file"
         raise DataError(
-            f"{where}: {shown(channel.name)} has no unit, need one such as {example}{given}"
+            f"{where}: {shown(channel.name)} has no unit, need one such as {example}{other}"
         )
     try:
         quantity = quantity or electrical_quantity(channel.units)
         factor = convert(1.0, usual_spelling(channel.units), UNITS[quantity])
     except LubeError as error:
         raise DataError(f"{where}: {shown(channel.name)}: {error}") from None
-    return Signal(place, quantity, factor)
-
-
-def first_interval(times):
-    """Tell the sampling interval from the first times of a record.
-
-    Parameters
-    ----------
-    times : numpy.ndarray
-        Shape (N,), s.
-
-    Returns
-    -------
-    float or None
-        Median of the first steps that rise, s; None if none does.
-    """
-    steps = np.diff(times[: FIRST_STEPS + 1])
-    rising = steps[(steps > 0.0) & np.isfinite(steps)]
-    return float(np.median(rising)) if rising.size else None
-
-
-class Clock:
-    """Watch over the times of a record, which must be uniform, part after part.
-
-    Parameters
-    ----------
-    interval : float
-        Sampling interval, s.
-    """
-
-    def __init__(self, interval):
-        self._interval = interval
-        self._last = None
-
-    def fault(self, times):
-        """Find the first departure from uniform sampling.
-
-        Parameters
-        ----------
-        times : numpy.ndarray
-            Shape (N,) and N > 0, the next times, s.
-
-        Returns
-        -------
-        tuple or None
-            Index of the sample and what is wrong, None if all is well.
-        """
-        before = times[0] - self._interval if self._last is None else self._last
-        index = first_uneven(times, before, self._interval)
-        self._last = times[-1]
-        if index < 0:
-            return None
-        return index, self._reason(times[index - 1] if index else before, times[index])
-
-    def _reason(self, before, now):
-        if not np.isfinite(now):
-            return f"got {now} as time, need a number"
-        if now == before:
-            return f"time {now:.9g} s is repeated, need rising times"
-        if now < before:
-            return f"time falls from {before:.9g} s to {now:.9g} s, need rising times"
-        return (
-            f"time steps by {now - before:.6g} s, need steps of about {self._interval:.6g} s "
-            "(gaps are not filled)"
-        )
-
-
-def value_fault(values, quantity):
-    """Find the first value that a record may not hold.
-
-    Parameters
-    ----------
-    values : numpy.ndarray
-        Shape (N,), V or ohm.
-    quantity : str
-        ``voltage``, or ``resistance``, which may be infinite: an open circuit.
-
-    Returns
-    -------
-    tuple or None
-        Index of the sample and what is wrong, None if all is well.
-    """
-    index = first_unsound(values, np.inf if quantity == "resistance" else np.finfo(float).max)
-    return None if index < 0 else (index, f"got {values[index]} as {quantity}, need a number")
+    return Signal(index, quantity, factor)

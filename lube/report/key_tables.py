@@ -1,22 +1,73 @@
-"""Tables of the README that follow from the code: files, keys, columns of a manifest, formulas.
+"""Tables of the documentation that follow from the code: files, variables, keys, film formulas.
 
-``python -m lube.report.key_tables README.md`` writes them anew between their markers; a test
-holds the README to them.
+``python -m lube.report.key_tables docs/*.md`` rewrites them between their markers; a test
+compares the documentation with the code.
 """
 
 import re
 import sys
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from lube.physics.film_formulas import FORMULAS, TOLERANCE
 from lube.recordings.manifest import manifest_schema
-from lube.schema import MEASURED, SUMMARIES
+from lube.schema import COORDINATES, DATASETS, FILES, MEASURED, SUMMARIES
 from lube.study.lubricant_record import LubricantRecord
 from lube.study.study import Study
 
 
-def study_table():
-    """Table of the keys of a study, from its schema.
+def file_table() -> str:
+    """Table of the datasets.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    rows = [(f"`{kind}.nc`", SUMMARIES[kind]) for kind in DATASETS]
+    return _table(("file", "content"), rows)
+
+
+def coordinate_table() -> str:
+    """Table of the coordinates that several files share.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    return _variables(COORDINATES)
+
+
+def variable_tables() -> str:
+    """Tables of the variables of all datasets and benchmarks, each under a heading.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    return "\n\n".join(
+        f"### `{kind}.nc`\n\n{SUMMARIES[kind]}\n\n{_variables(FILES[kind])}"
+        for kind in (*DATASETS, *MEASURED)
+    )
+
+
+def formula_table() -> str:
+    """Table of the film formulas.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    rows = [(f"`{row.name}`", row.thickness, row.source, row.validity) for row in FORMULAS.values()]
+    range_ = f"within {100.0 * TOLERANCE:g} % of the computed film for"
+    return _table(("name", "film", "source", range_), rows)
+
+
+def study_table() -> str:
+    """Table of the keys of a study.
 
     Returns
     -------
@@ -26,8 +77,8 @@ def study_table():
     return _table(("key", "value", "meaning"), study_keys())
 
 
-def record_table():
-    """Table of the keys of a lubricant record, from its schema.
+def record_table() -> str:
+    """Table of the keys of a lubricant record.
 
     Returns
     -------
@@ -37,8 +88,8 @@ def record_table():
     return _table(("key", "value", "meaning"), record_keys())
 
 
-def manifest_table():
-    """Table of the columns, or keys, of a manifest, from its schema.
+def manifest_table() -> str:
+    """Table of the columns, or keys, of a list of measured records.
 
     Returns
     -------
@@ -48,46 +99,19 @@ def manifest_table():
     return _table(("column or key", "value", "meaning"), _keys(manifest_schema()))
 
 
-def formula_table():
-    """Table of the film formulas, from their registry.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
-    rows = [(f"`{row.name}`", row.place, row.source, row.validity) for row in FORMULAS.values()]
-    held = f"within {100.0 * TOLERANCE:g} % of the computed film for"
-    return _table(("name", "film", "source", held), rows)
-
-
-def file_table():
-    """Table of the datasets, from the schema.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
-    rows = [
-        (f"`{kind}.nc`", summary) for kind, summary in SUMMARIES.items() if kind not in MEASURED
-    ]
-    return _table(("file", "what is in it"), rows)
-
-
-def study_keys():
-    """Keys of a study, from its schema.
+def study_keys() -> list[tuple[str, str, str]]:
+    """Keys of a study.
 
     Returns
     -------
     list of tuple of str
-        Key with dots, between backticks; what may stand there; meaning.
+        Dotted key between backticks; allowed value; meaning.
     """
-    return _keys(Study.model_json_schema(), skip="lubricants")
+    return _keys(Study.model_json_schema())
 
 
-def record_keys():
-    """Keys of a lubricant record, from its schema.
+def record_keys() -> list[tuple[str, str, str]]:
+    """Keys of a lubricant record.
 
     Returns
     -------
@@ -99,75 +123,72 @@ def record_keys():
 
 TABLES = {
     "files": file_table,
+    "coordinates": coordinate_table,
+    "variables": variable_tables,
     "study": study_table,
     "record": record_table,
     "manifest": manifest_table,
     "formulas": formula_table,
 }
+"""Functions that write the tables, by the names in the markers."""
 
 
-def with_tables(text):
-    """Fill the tables into a text that holds their markers.
+def with_tables(text: str) -> str:
+    """Rewrite the tables of a text.
 
     Parameters
     ----------
     text : str
-        With pairs of lines ``<!-- table: NAME -->`` and ``<!-- end -->``.
+        Markdown with pairs of lines ``<!-- table: NAME -->`` and ``<!-- end -->``.
 
     Returns
     -------
     str
         The text with the present tables between the markers.
     """
+    return re.sub(
+        r"(<!-- table: (\w+) -->\n).*?(?=<!-- end -->)",
+        lambda match: f"{match[1]}{TABLES[match[2]]()}\n",
+        text,
+        flags=re.DOTALL,
+    )
 
-    def fill(match):
-        return f"{match[1]}\n{TABLES[match[2]]()}\n<!-- end -->"
 
-    return re.sub(r"(<!-- table: (\w+) -->)\n.*?<!-- end -->", fill, text, flags=re.DOTALL)
-
-
-def _table(head, rows):
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(str(cell) for cell in line)} |" for line in lines)
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def _keys(schema, path="", definitions=None, skip=None, section=""):
+def _variables(variables):
+    rows = [
+        (f"`{name}`", ", ".join(one.dims), one.units or "text", one.long_name)
+        for name, one in variables.items()
+    ]
+    return _table(("name", "dimensions", "unit", "meaning"), rows)
+
+
+def _keys(schema, path="", definitions=None, section=""):
     """Rows (key, value, meaning) of all keys below a schema, nested ones with dots."""
     definitions = definitions or schema.get("$defs", {})
     rows = []
     for name, field in schema["properties"].items():
         inner, many = _resolve(field, definitions)
-        key = f"{path}{name}{'[]' if many else ''}"
-        if "properties" in inner and name != skip:
-            optional = "" if name in schema.get("required", []) else " (section optional)"
-            rows += _keys(inner, f"{key}.", definitions, section=section or optional)
+        required = name in schema.get("required", [])
+        if name == "lubricants":  # records have a table of their own
+            rows.append((f"`{path}{name}`", "list of names or paths", field["description"]))
+        elif "properties" in inner:
+            optional = "" if required else " (section optional)"
+            key = f"{path}{name}{'[]' if many else ''}."
+            rows += _keys(inner, key, definitions, section or optional)
         else:
+            value = _value(field, inner) + (section if required else _default(field))
             meaning = field.get("description", inner.get("description", ""))
-            value = "list of names or paths" if name == skip else _value(field, inner)
-            optional = section if name in schema.get("required", []) else _by_default(field)
-            rows.append((f"`{path}{name}`", value + optional, meaning))
+            rows.append((f"`{path}{name}`", value, meaning))
     return rows
 
 
-_LONGEST = 60  # letters of a default that is told
-
-
-def _by_default(field):
-    """Say that a key may be left out, and what then stands for it."""
-    default = field.get("default")
-    if isinstance(default, list):
-        default = ", ".join(default) or None
-    if isinstance(default, float):
-        default = f"{default:g}"
-    if default is None or len(str(default)) > _LONGEST:
-        return " (optional)"
-    if isinstance(default, dict):
-        default = f"{', '.join(str(value) for value in default['values'])} {default['units']}"
-    return f" (by default {default})"
-
-
 def _resolve(field, definitions):
-    """Follow references and look through optional fields and lists to what they hold."""
+    """Follow references, optional fields and lists to the innermost field; and whether a list."""
     many = False
     while True:
         if "$ref" in field:
@@ -181,14 +202,27 @@ def _resolve(field, definitions):
 
 
 def _value(field, inner):
-    """Say what may stand there."""
     if "enum" in inner:
         return " or ".join(f"`{choice}`" for choice in inner["enum"])
-    words = {"integer": "whole number", "string": "text"}
-    value = inner.get("format") or words[inner["type"]]
+    value = inner.get("format") or {"integer": "whole number", "string": "text"}[inner["type"]]
     return f"list of {value}s" if field.get("type") == "array" else value
 
 
+def _default(field):
+    """Say that a key is optional, with its default if that is short."""
+    default = field.get("default")
+    if isinstance(default, dict):
+        default = f"{', '.join(map(str, default['values']))} {default['units']}"
+    elif isinstance(default, list):
+        default = ", ".join(default)
+    elif isinstance(default, float):
+        default = f"{default:g}"
+    # A summary of several lines would fill the table.
+    shown = default not in (None, "") and len(str(default)) <= 60
+    return f" (by default {default})" if shown else " (optional)"
+
+
 if __name__ == "__main__":
-    page = Path(sys.argv[1])
-    page.write_text(with_tables(page.read_text(encoding="utf-8")), encoding="utf-8")
+    for name in sys.argv[1:]:
+        page = Path(name)
+        page.write_text(with_tables(page.read_text(encoding="utf-8")), encoding="utf-8")

@@ -1,74 +1,83 @@
-"""From a record to the share of time in contact, and how far that share can be trusted.
+"""Contact share of a record, and its confidence interval.
 
-A record of the rig may hold more samples than fit into memory, so it is counted in pieces as
-they come. What stays of it are counts in many equal blocks: their sum is the share of time
-below a limit, their scatter tells its interval, and they can be folded by the revolution.
+A record may hold more samples than fit into memory, so it is counted in pieces as they arrive. The
+result is counts in many equal blocks: their sum is the share of time below a threshold, their
+scatter gives its interval, and they can be folded by the revolution.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
+import numpy.typing as npt
 
 from lube.errors import RangeError
 from lube.kernels.threshold import count_below, follow_contact
 from lube.physics.electrical import divider_voltage
 from lube.statistics.confidence import probability_limits
+from lube.study.rig_settings import Experiment, Rig
 
 BLOCKS = 2**18
-"""So many blocks at most; whenever they are full, each two become one."""
+"""Largest number of blocks; when all are full, each two are added to one."""
 
 MOST_STRETCHES = 4096
-"""Shorter stretches than in so many equal parts see the same contact as their neighbours."""
+"""Largest number of stretches: shorter ones see the same contact as their neighbours."""
 
 STRETCHES = 64
-"""Stretches of the circumference that a folded record is cut into, at most."""
+"""Largest number of stretches of the circumference that a folded record is divided into."""
 
 LEAST_BLOCKS = 8
-"""Fewer blocks than this tell too little of their scatter."""
+"""Smallest number of blocks whose scatter is used."""
+
+Counts = tuple[np.ndarray, np.ndarray]
+"""Samples in contact, shape (K, B), and all samples, shape (B,), in each block."""
 
 
 class ContactShare:
-    """Count the share of time below limits, of a record that comes in pieces.
+    """Count the samples of a record that lie below limits, piece by piece.
 
     Contact begins where a value is below the limit, and ends where one reaches the release.
-    The counts depend on the samples only, never on how the record is cut into pieces.
+    The counts do not depend on how the record is divided into pieces.
 
     Parameters
     ----------
-    limits : numpy.ndarray
+    limits : array_like
         Shape (K,), rising, in the record's own unit (V or ohm).
-    releases : numpy.ndarray, optional
-        Shape (K,), no less than the limits; by default the limits, which is no hysteresis.
+    releases : array_like, optional
+        Shape (K,), not below the limits; by default the limits, which is no hysteresis.
     hold : int, optional
-        A change of state counts only once it has lasted so many samples, and then from its
-        first sample on; 0 is off.
+        A change of state counts only if it lasts so many samples, and then from its first sample
+        on; 0 is off.
 
     Raises
     ------
     RangeError
-        If the limits do not rise, a release is below its limit, or `hold` is negative.
+        If the limits do not rise, or a release is below its limit.
+
+    Examples
+    --------
+    >>> share = ContactShare([1.0, 3.0])
+    >>> share.add(np.array([0.5, 2.0]))
+    >>> share.add(np.array([2.0, 4.0]))
+    >>> share.below.sum(axis=1) / share.samples
+    array([0.25, 0.75])
     """
 
-    def __init__(self, limits, releases=None, hold=0):
+    def __init__(
+        self, limits: npt.ArrayLike, releases: npt.ArrayLike | None = None, hold: int = 0
+    ) -> None:
         self._limits = np.array(limits, float)
         self._releases = self._limits if releases is None else np.array(releases, float)
         self._hold = hold
-        self._check()
+        if self._limits.size == 0 or not np.all(np.diff(self._limits) > 0.0):
+            raise RangeError(f"limits: got {limits}, need one or more, rising")
+        if self._releases.size != self._limits.size or np.any(self._releases < self._limits):
+            raise RangeError(f"releases: got {releases}, need one for each limit, not below it")
         self._remembers = releases is not None or hold > 0
         self._states = np.zeros((self._limits.size, 3), np.int64)
         self._counts = np.zeros((self._limits.size, BLOCKS), np.int64)
         self._doublings = self._samples = 0
 
-    def _check(self):
-        limits, releases = self._limits.tolist(), self._releases.tolist()
-        if not limits or not np.all(np.diff(limits) > 0.0) or not np.all(np.isfinite(limits)):
-            raise RangeError(f"limits: got {limits}, need one or more, finite and rising")
-        if len(releases) != len(limits) or not np.all(self._releases >= self._limits):
-            raise RangeError(
-                f"releases: got {releases}, need one for each limit, no less than it: {limits}"
-            )
-        if self._hold < 0:
-            raise RangeError(f"hold: got {self._hold}, need a number of samples, or 0")
-
-    def add(self, values):
+    def add(self, values: np.ndarray) -> None:
         """Count the next piece of the record.
 
         Parameters
@@ -86,12 +95,12 @@ class ContactShare:
                 self._merge()
 
     def _count(self, values):
-        place = values, self._samples, self._doublings
+        piece = values, self._samples, self._doublings
         if self._remembers:
             limits = self._limits, self._releases, self._hold
-            follow_contact(*place, *limits, self._states, self._counts)
+            follow_contact(*piece, *limits, self._states, self._counts)
         else:
-            count_below(*place, self._limits, self._counts)
+            count_below(*piece, self._limits, self._counts)
 
     def _merge(self):
         self._counts[:, : BLOCKS // 2] = _pairs(self._counts)
@@ -99,33 +108,35 @@ class ContactShare:
         self._doublings += 1
 
     @property
-    def samples(self):
+    def samples(self) -> int:
         """Samples counted so far."""
         return self._samples
 
     @property
-    def below(self):
+    def below(self) -> np.ndarray:
         """Samples in contact, shape (K, B), int64: at each limit, in each block."""
         return self._counts[:, : self.sizes.size].copy()
 
     @property
-    def sizes(self):
+    def sizes(self) -> np.ndarray:
         """Samples in each block, shape (B,), int64; the last may be shorter."""
         firsts = np.arange(0, self._samples, 1 << self._doublings)
         return np.diff(firsts, append=self._samples)
 
 
-def record_counter(experiment, rig, quantity, sampling_interval):
-    """Begin to count the time that a record of the rig lies below a study's thresholds.
+def record_counter(
+    experiment: Experiment, rig: Rig, quantity: str, sampling_interval: float
+) -> ContactShare:
+    """Prepare to count the time that a record lies below a study's thresholds.
 
     Parameters
     ----------
     experiment : Experiment
-        Thresholds (ohm), release ratio and debounce (s).
+        Thresholds (ohm), release ratio and debounce time (s).
     rig : Rig
-        The circuit, which tells a resistance's voltage.
+        The circuit, which relates resistance and voltage.
     quantity : str
-        What the record holds, ``voltage`` (V) or ``resistance`` (ohm).
+        Quantity of the record, ``voltage`` (V) or ``resistance`` (ohm).
     sampling_interval : float
         Time between its samples, s.
 
@@ -143,14 +154,14 @@ def record_counter(experiment, rig, quantity, sampling_interval):
 
 
 def _pairs(counts):
-    """Add neighbours along the last axis; a last one without a partner stays alone."""
+    """Add neighbours along the last axis; a last one without a neighbour stays alone."""
     if counts.shape[-1] % 2:
         counts = np.append(counts, np.zeros_like(counts[..., :1]), axis=-1)
     return counts[..., ::2] + counts[..., 1::2]
 
 
-def folded_counts(below, sizes, interval, period):
-    """Count a record by the phase of a revolution, all its revolutions together.
+def folded_counts(below: np.ndarray, sizes: np.ndarray, interval: float, period: float) -> Counts:
+    """Sum the counts of a record over its revolutions, by phase.
 
     Parameters
     ----------
@@ -161,12 +172,19 @@ def folded_counts(below, sizes, interval, period):
     interval : float
         Duration of a block, s.
     period : float
-        Of a revolution, s.
+        Period of a revolution, s.
 
     Returns
     -------
     below, sizes : numpy.ndarray
-        The same over at most `STRETCHES` phases, those that were seen, shapes (K, F) and (F,).
+        The same in at most `STRETCHES` phases, those that were seen, shapes (K, F) and (F,).
+
+    Examples
+    --------
+    Two revolutions of three blocks:
+
+    >>> folded_counts(np.array([[1, 0, 2, 3, 0, 0]]), np.full(6, 10), 1.0, 3.0)
+    (array([[4., 0., 2.]]), array([20., 20., 20.]))
     """
     phases = min(STRETCHES, max(int(period / interval), 1))
     turns = (np.arange(sizes.size) + 0.5) * interval / period
@@ -176,28 +194,33 @@ def folded_counts(below, sizes, interval, period):
     return counts[:-1], counts[-1]
 
 
-def share_interval(below, sizes, windows, folded=()):
-    """Share of one record and its 95 % interval, from the scatter between stretches of it.
+def share_interval(
+    below: npt.ArrayLike, sizes: npt.ArrayLike, windows: float, folded: Sequence[Counts] = ()
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    r"""Contact share of one record and its 95 % interval, from the scatter within the record.
 
-    It is the interval of the mean over pairs of rollers, as far as the record of one pair
-    tells it. Neighbouring samples see the same roughness and are no independent looks; long
-    stretches are nearly so. The variance of the mean grows with the length of the stretches
-    that it is taken from, until they are longer than what a record remembers. It is taken from
-    blocks, from pairs of them, pairs of pairs and so on, and the largest of these is believed.
-    Where rollers repeat themselves, stretches a revolution apart are no independent looks
-    either: then stretches of the circumference take the place of stretches of time.
+    It is the interval of the mean over pairs of rollers, as far as the record of one pair shows
+    it. Neighbouring samples see the same roughness and are correlated; long stretches nearly are
+    not. The variance of the mean estimated from stretches grows with their length, until they are
+    longer than the correlation of the record. It is estimated from blocks, from pairs of blocks,
+    pairs of pairs and so on, and the largest estimate is used [1]_. Where rollers repeat
+    themselves, stretches one revolution apart are correlated too; then the counts are folded by
+    the revolution, and stretches of the circumference take the part of stretches of time. From
+    the variance :math:`s^2` of the share :math:`p` follows the effective sample size
+
+    .. math:: n = \frac{p (1 - p)}{s^2}
 
     Parameters
     ----------
-    below : numpy.ndarray
+    below : array_like
         Shape (K, B), samples in contact at each limit in each block of the record.
-    sizes : numpy.ndarray
+    sizes : array_like
         Shape (B,), samples in each block.
     windows : float
-        Independent windows in the record, at least one; they stand in where the record has
-        no scatter to tell (`lube.statistics.confidence.probability_limits`).
+        Independent windows in the record, at least one; the sample size where the record does not
+        scatter (`lube.statistics.confidence.probability_limits`).
     folded : sequence of tuple, optional
-        The same counts over phases of a revolution, from `folded_counts`, once for each roller.
+        The same counts by phase of a revolution, from `folded_counts`, for each roller.
 
     Returns
     -------
@@ -211,8 +234,14 @@ def share_interval(below, sizes, windows, folded=()):
 
     References
     ----------
-    H. Flyvbjerg, H. G. Petersen, Error estimates on averages of correlated data,
-    J. Chem. Phys. 91 (1989) 461-466.
+    .. [1] H. Flyvbjerg, H. G. Petersen, Error estimates on averages of correlated data,
+       J. Chem. Phys. 91 (1989) 461-466.
+
+    Examples
+    --------
+    >>> share, lower, upper = share_interval([[2, 3, 1, 2] * 4], [10] * 16, windows=50.0)
+    >>> share
+    array([0.2])
     """
     below, sizes = np.asarray(below), np.asarray(sizes)
     if not sizes.sum() > 0:
@@ -220,18 +249,18 @@ def share_interval(below, sizes, windows, folded=()):
     if not windows >= 1.0:
         raise RangeError(f"windows: got {windows:g}, need at least 1")
     share = below.sum(axis=-1) / sizes.sum()
-    variance, degrees = _levelled_variance(below, sizes)
+    variance, degrees = _largest_variance(below, sizes)
     for counts in folded:
-        around, freedom = _levelled_variance(*counts)
-        degrees = np.where(around > variance, freedom, degrees)
-        variance = np.maximum(around, variance)
+        by_phase, freedom = _largest_variance(*counts)
+        degrees = np.where(by_phase > variance, freedom, degrees)
+        variance = np.maximum(by_phase, variance)
     with np.errstate(divide="ignore", invalid="ignore"):
-        looks = np.where(variance > 0.0, share * (1.0 - share) / variance, np.nan)
-    return share, *probability_limits(share, looks, degrees, windows)
+        samples = np.where(variance > 0.0, share * (1.0 - share) / variance, np.nan)
+    return share, *probability_limits(share, samples, degrees, windows)
 
 
-def _levelled_variance(below, sizes):
-    """Largest variance of the share over all lengths of stretches, and its degrees of freedom."""
+def _largest_variance(below, sizes):
+    """Largest variance of the share over all lengths of stretches, with its degrees of freedom."""
     variance, degrees = np.zeros(below.shape[0]), np.ones(below.shape[0])
     while sizes.size > MOST_STRETCHES:
         below, sizes = _pairs(below), _pairs(sizes)
@@ -248,5 +277,5 @@ def _variance(below, sizes):
     shares, weights = below / sizes, sizes / sizes.sum()
     excess = weights * (shares - (weights * shares).sum(axis=-1, keepdims=True))
     variance = sizes.size / (sizes.size - 1) * (excess**2).sum(axis=-1)
-    # Asked of the shares themselves: the variance of equal ones need not round to zero.
+    # Decided by the shares: the variance of equal ones need not round to zero.
     return np.where(np.ptp(shares, axis=-1) > 0.0, variance, 0.0)

@@ -1,8 +1,7 @@
-"""One unknown of the model, from all records together.
+"""Fits of one unknown of the model to all records together.
 
-The film is taken from its formula and the probability from the master map; what is looked for is
-the pressure-viscosity coefficient, or the strength of the boundary layer, that explains the
-records best.
+The film thickness is taken from its formula and the probability from the master map. The fit
+varies the pressure-viscosity coefficient, or the strength of the boundary layer.
 """
 
 import numpy as np
@@ -11,28 +10,29 @@ import scipy.special
 import xarray as xr
 
 from lube.physics.film_formulas import formula
-from lube.rig.study_shares import limited
+from lube.rig.map_curves import curve_at, layer_curve_at, logits_on
+from lube.rig.study_shares import values_with_limits
 from lube.schema import LIMITS
 from lube.statistics.curves import fit_factor, realisation_correlation
-from lube.statistics.map_curves import curve_at, layer_curve_at, logits_on
-from lube.statistics.one_pair import independent_windows, quantile, sample_size
+from lube.statistics.one_pair import quantile
+from lube.statistics.sample_size import effective_sample_size, independent_windows
 
 ALPHA_FACTORS = np.geomspace(1.0 / 8.0, 8.0, 193)
 """Factors of the pressure-viscosity coefficient that are tried."""
 STRENGTH_LEVELS = 193
-"""Strengths of the boundary layer that are tried, between the map's weakest and strongest."""
+"""Number of layer strengths that are tried, between the map's weakest and strongest."""
 
 
-def fit_alpha(master, contact, comparison):
-    """Factor of the pressure-viscosity coefficient that explains all records together.
+def fit_alpha(master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
+    """Fit the factor of the pressure-viscosity coefficient to all records together.
 
-    For every lubricant and film formula one factor, common to all records. The film is
-    recomputed by the formula itself, and the probability read from the map.
+    For every lubricant and film formula there is one factor, common to all records. The film
+    thickness is recomputed with the formula, and the probability read from the map.
 
     All records of a pair see the same rollers, so their errors are correlated as the
-    realisations are; those of different pairs are not, but the map's own error is common to
-    all. Assumed besides: that the film formula is right but for the coefficient, and that the
-    simulated roughness is the rollers'.
+    realisations are; those of different pairs are independent, except for the map's own error.
+    It is assumed that the film formula is correct but for the coefficient, and that the
+    simulated roughness is that of the rollers.
 
     Parameters
     ----------
@@ -45,13 +45,13 @@ def fit_alpha(master, contact, comparison):
         ``alpha_factor`` with ``_lower`` and ``_upper`` over (fitted_lubricant, film_formula): 1
         is the coefficient of the study. Beyond `ALPHA_FACTORS` the factor is NaN, a limit 0 or
         infinity. ``alpha_factor_coverage`` is the share of realisations whose interval, each
-        left out and taken as the records, holds 1.
+        left out and taken as the records, contains 1.
     """
     logits = alpha_logits(master, comparison)
     return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison)
 
 
-def alpha_logits(master, comparison):
+def alpha_logits(master: xr.Dataset, comparison: xr.Dataset) -> xr.DataArray:
     """Logits of the map's mean probability at the records, for each of `ALPHA_FACTORS`.
 
     Parameters
@@ -65,14 +65,16 @@ def alpha_logits(master, comparison):
         Over (factor, film_formula, record).
     """
     factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
-    logits = _mean_logits(master, comparison, _ratios(comparison, factor))
+    logits = _mean_logits(master, comparison, _lambda_ratios(comparison, factor))
     return logits.transpose("factor", "film_formula", "record")
 
 
-def fit_layer_strength(master, contact, comparison):
-    """Strength tau0 / h_c of the boundary layer that explains all records together.
+def fit_layer_strength(
+    master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset
+) -> xr.Dataset:
+    """Fit the strength tau0 / h_c of the boundary layer to all records together.
 
-    As `fit_alpha`, with the film left as the formula gives it.
+    As `fit_alpha`, with the film thickness as the formula gives it.
 
     Parameters
     ----------
@@ -91,8 +93,10 @@ def fit_layer_strength(master, contact, comparison):
     return _fits("fitted_layer_strength", tried, truth, logits, contact, comparison)
 
 
-def strength_logits(master, contact, comparison):
-    """Logits of the map's mean probability at the records, for many strengths of the layer.
+def strength_logits(
+    master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset
+) -> tuple[np.ndarray, xr.DataArray]:
+    """Logits of the map's mean probability at the records, for many layer strengths.
 
     Parameters
     ----------
@@ -102,13 +106,13 @@ def strength_logits(master, contact, comparison):
     Returns
     -------
     tried : numpy.ndarray
-        The strengths, shape (factor,), Pa/m, rising.
+        The strengths, shape (factor,), Pa/m, increasing.
     logits : xarray.DataArray
         Over (factor, film_formula, record).
     """
     tried = np.geomspace(*master["layer_strength"].values[[0, -1]], STRENGTH_LEVELS)
-    logits = _strength_logits(master, comparison, study_strength(contact))
-    # A record at which some layer's contact is too rare for the map is left out.
+    logits = _coarse_strength_logits(master, comparison, study_strength(contact))
+    # A record is left out if the contact of any layer is too rare for the map there.
     known = logits.notnull().all("layer_strength")
     spline = scipy.interpolate.PchipInterpolator(
         np.log(logits["layer_strength"]), logits.fillna(0.0)
@@ -116,8 +120,24 @@ def strength_logits(master, contact, comparison):
     return tried, known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
 
 
-def _ratios(comparison, factor):
-    """Lambda ratios with the pressure-viscosity coefficient times a factor.
+def study_strength(contact: xr.Dataset) -> float:
+    """Strength of the study's boundary layer; the model depends on its properties only by this.
+
+    Parameters
+    ----------
+    contact : xarray.Dataset
+        A ``contact`` dataset.
+
+    Returns
+    -------
+    float
+        tau0 / h_c, Pa/m.
+    """
+    return contact["shear_strength"].item() / contact["critical_thickness"].item()
+
+
+def _lambda_ratios(comparison, factor):
+    """Lambda ratios with the pressure-viscosity coefficient multiplied by a factor.
 
     The dimensionless groups follow from the film at the records: W = pi/8 (a / R*)^2 from Hertz'
     half-width, U and G from Moes' numbers M = W (2U)^(-1/2) and L = G (2U)^(1/4).
@@ -138,26 +158,10 @@ def _mean_logits(master, comparison, ratios):
     return logits_on(lambda width: curve_at(master, width), widths, ratios)
 
 
-def study_strength(contact):
-    """Strength of the study's boundary layer: nothing else of the layer matters.
+def _coarse_strength_logits(master, comparison, study):
+    """Logits over (layer_strength, film_formula, record) at the strengths of the coarse map.
 
-    Parameters
-    ----------
-    contact : xarray.Dataset
-        A ``contact`` dataset.
-
-    Returns
-    -------
-    float
-        tau0 / h_c, Pa/m.
-    """
-    return contact["shear_strength"].item() / contact["critical_thickness"].item()
-
-
-def _strength_logits(master, comparison, study):
-    """Logits over (layer_strength, film_formula, record).
-
-    The study's layer has the fine map; the coarse one tells how much other layers differ.
+    The coarse map gives the difference to the study's layer, for which there is the fine map.
     """
     maps = master["layer_breakthrough_probability"].mean("realisation")
     ratios, widths = comparison["lambda_ratio"], 2.0 * comparison["contact_half_width"]
@@ -174,15 +178,13 @@ def _strength_logits(master, comparison, study):
 def _fits(name, tried, truth, logits, contact, comparison):
     """Fit a factor, with its limits and coverage, for every lubricant and film formula."""
     oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
-    fits = np.full((oils.size, formulas.size, len(LIMITS) + 1), np.nan)
-    for o, f in np.ndindex(fits.shape[:-1]):
-        records = comparison["lubricant"].values == oils[o]
-        here = comparison.isel(film_formula=f, record=records)
-        model = logits.isel(film_formula=f, record=records).values
-        coverage = _coverage(np.log(tried), np.log(truth), model, here)
-        fits[o, f] = *fit_records(np.log(tried), model, here), coverage
-    *found, coverage = np.moveaxis(fits, -1, 0)
-    variables = limited(name, found) | {f"{name}_coverage": coverage}
+    fits = np.empty((len(LIMITS) + 1, oils.size, formulas.size))
+    for oil, number in np.ndindex(fits.shape[1:]):
+        here = {"film_formula": number, "record": comparison["lubricant"].values == oils[oil]}
+        model, records = logits.isel(here).values, comparison.isel(here)
+        fits[:-1, oil, number] = fit_records(np.log(tried), model, records)
+        fits[-1, oil, number] = _coverage(np.log(tried), np.log(truth), model, records)
+    variables = values_with_limits(name, fits[:-1]) | {f"{name}_coverage": fits[-1]}
     dims = ("fitted_lubricant", "film_formula")
     return xr.Dataset(
         {each: (dims, values) for each, values in variables.items()},
@@ -190,15 +192,17 @@ def _fits(name, tried, truth, logits, contact, comparison):
     )
 
 
-def fit_records(log_factors, logits, comparison):
-    """Fit a factor to records of one lubricant, by one film formula.
+def fit_records(
+    log_factors: np.ndarray, logits: np.ndarray, comparison: xr.Dataset
+) -> tuple[float, float, float]:
+    """Fit a factor to the records of one lubricant, with one film formula.
 
     Parameters
     ----------
     log_factors : numpy.ndarray
-        Logarithms of the factor, shape (F,), rising.
+        Logarithms of the factor, shape (F,), increasing.
     logits : numpy.ndarray
-        Of the model's probability, shape (F, P).
+        Logits of the model's probability, shape (F, P).
     comparison : xarray.Dataset
         A ``comparison`` dataset of these P records and one film formula, without its dimension.
 
@@ -207,55 +211,58 @@ def fit_records(log_factors, logits, comparison):
     factor, lower, upper : float
         From `lube.statistics.curves.fit_factor`.
     """
+    logits, comparison = _usable(logits, comparison)
+    probabilities, size = _members(comparison)
+    deviations = comparison["record_deviation"].values
+    # Only the first realisations were run as records of several revolutions.
+    deviations = deviations[np.isfinite(deviations).all(axis=1)]
+    covariance = realisation_correlation(deviations) * _pair_scatter(comparison)
+    covariance += realisation_correlation(probabilities) / len(probabilities)
+    shares, noise = comparison["measured_share"].values, comparison["share_error"].values
+    return fit_factor(log_factors, logits, shares, size, covariance, len(probabilities), noise)
+
+
+def _usable(logits, comparison):
+    """Keep the records that have a share and a probability at every factor."""
     shares = comparison["measured_share"].values
     used = np.isfinite(shares) & np.isfinite(logits).all(axis=0)
-    comparison = comparison.isel(record=used)
-    probabilities, looks = _members(comparison)
-    count = probabilities.shape[0]
-    covariance = _correlation(comparison["record_deviation"].values) * _of_records(comparison)
-    covariance += realisation_correlation(probabilities) / count
-    noise = comparison["share_error"].values
-    return fit_factor(log_factors, logits[:, used], shares[used], looks, covariance, count, noise)
-
-
-def _correlation(deviations):
-    """Correlation between the records of one pair, by the realisations that tell it."""
-    return realisation_correlation(deviations[np.isfinite(deviations).all(axis=1)])
+    return logits[:, used], comparison.isel(record=used)
 
 
 def _members(comparison):
     """Probabilities of the realisations at the records, and their effective sample size."""
     probabilities = comparison["breakthrough_probability"].values
     widths = 2.0 * comparison["contact_half_width"].values
-    return probabilities, sample_size(probabilities, independent_windows(comparison, widths))
+    attributes = comparison.attrs
+    windows = independent_windows(attributes["travel"], widths, attributes["longest_wavelength"])
+    return probabilities, effective_sample_size(probabilities, windows)
 
 
-def _of_records(comparison):
-    """Scatter ratio of the records, and between those of one pair; none between pairs."""
+def _pair_scatter(comparison):
+    """Scatter ratio of each two records of one pair; none between records of different pairs."""
     ratio = np.sqrt(comparison["scatter_ratio"].values)
     pair = comparison["pair"].values
     return np.where(pair[:, None] == pair, ratio[:, None] * ratio, 0.0)
 
 
 def _coverage(log_factors, truth, logits, comparison):
-    """Share of the realisations, each left out and taken as the records, whose interval is right.
+    """Share of realisations whose interval, each left out and taken as the records, is correct.
 
-    The interval is all that the misfit does not contradict, so it holds the truth where the
-    misfit there is within its quantile.
+    The interval holds all factors that the misfit does not contradict, so it contains the truth
+    where the misfit there is within its quantile.
     """
-    used = np.isfinite(comparison["measured_share"].values) & np.isfinite(logits).all(axis=0)
-    logits = logits[:, used]
-    probabilities, looks = _members(comparison.isel(record=used))
-    count = probabilities.shape[0]
-    if count < 3 or not looks.size:
+    logits, comparison = _usable(logits, comparison)
+    probabilities, size = _members(comparison)
+    count = len(probabilities)
+    if count < 3 or not size.size:
         return np.nan
     slopes = np.gradient(logits, log_factors, axis=0)
-    place = int(np.argmin(np.abs(log_factors - truth)))
-    model = scipy.special.expit(logits[place])
-    pull = looks * slopes[place]
+    nearest = int(np.argmin(np.abs(log_factors - truth)))
+    model = scipy.special.expit(logits[nearest])
+    weight = size * slopes[nearest]
     others = (count * model - probabilities) / (count - 1)
-    misfit = np.sum(pull * (probabilities - others), axis=1)
-    sums = np.sum(pull * probabilities, axis=1)
+    misfit = np.sum(weight * (probabilities - others), axis=1)
+    sums = np.sum(weight * probabilities, axis=1)
     scatter = np.array([np.delete(sums, one).std(ddof=1) for one in range(count)])
     error = scatter * np.sqrt(1.0 + 1.0 / (count - 1))
     return np.mean(np.abs(misfit) <= quantile(count - 1) * error)

@@ -1,13 +1,13 @@
-"""The simulated rig: from the metallic contact of its own rollers to the voltage that it logs.
+"""The simulated twin-disc rig: from the metallic contact of its rollers to the logged voltage.
 
-Its rollers are of realisations that no simulation uses. One pair of them turns at all operating
-points, again and again, as on a rig; several pairs take turns, and the roughness drifts from
-revolution to revolution, where the study says so.
+Its rollers are realisations that no simulation of the study uses. One pair runs all operating
+points, turn after turn, as on a real rig. If the study says so, several pairs follow each other,
+and the roughness drifts from revolution to revolution.
 
 A bias voltage drives a current through a series resistor, the leads and the contact. The film
-around the contact is a capacitor, and some current leaks past it. An amplifier of finite range
-looks at the voltage over leads and contact; what it gives is low-pass filtered, sampled, and
-rounded to the steps of the converter.
+around the contact is a capacitor, and a leak is parallel to it. An amplifier of finite range
+measures the voltage over leads and contact; its output is low-pass filtered, sampled, and rounded
+to the steps of the converter.
 
     bias --[ series ]--+--[ leads ]--+-- contact --+
                        |             +-- leak -----+-- ground
@@ -16,9 +16,11 @@ rounded to the steps of the converter.
 
 import logging
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 
 from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
 from lube.grid.operating_points import OperatingPoint
@@ -26,15 +28,17 @@ from lube.kernels.circuit import sampled_voltage
 from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_trace
 from lube.physics.electrical import contact_resistance, film_capacitance
+from lube.study.rig_settings import Rig
+from lube.study.study import Study
 
 log = logging.getLogger(__name__)
 
 TOGETHER = 16
-"""Operating points whose contact at all time steps is held at once: a matter of memory."""
+"""Operating points whose contact at all time steps is in memory at once."""
 
 
 class SimulatedRig:
-    """A rig that runs its own rollers at some operating points.
+    """A twin-disc rig that runs its own rollers at given operating points.
 
     Parameters
     ----------
@@ -46,34 +50,34 @@ class SimulatedRig:
         From `lube.grid.operating_points.operating_points`; all of one slide-to-roll ratio.
     """
 
-    def __init__(self, lines, study, points):
+    def __init__(self, lines: xr.Dataset, study: Study, points: list[OperatingPoint]) -> None:
         self._lines, self._study, self._points = lines, study, points
         self._ratios = speed_ratios(points[0].slide_to_roll_ratio)
 
-    def revolutions(self):
+    def revolutions(self) -> Iterator[tuple[int, int, "Revolution"]]:
         """Run all pairs of rollers, each at all operating points.
 
         Yields
         ------
         pair : int
-            Which pair of rollers, from 0.
+            Index of the pair of rollers.
         number : int
-            Which of the operating points.
+            Index of the operating point.
         revolution : Revolution
-            What happens there, one revolution after the other.
+            The next revolution of this pair at this point.
         """
         rig, realisations = self._study.rig, self._lines["realisation"].values
         for pair, drawn in enumerate(np.split(realisations, rig.pairs)):
             for begin in range(0, len(self._points), TOGETHER):
-                some = range(begin, min(begin + TOGETHER, len(self._points)))
-                for turn, contacts in enumerate(self._turns(drawn, some)):
-                    for number, contact in zip(some, contacts, strict=True):
+                numbers = range(begin, min(begin + TOGETHER, len(self._points)))
+                for turn, contacts in enumerate(self._turns(drawn, numbers)):
+                    for number, contact in zip(numbers, contacts, strict=True):
                         seed = (self._study.seed, int(drawn[0]), number + 1, turn)
                         yield pair, number, self._revolution(contact, number, seed)
-                log.info("simulated rig: pair %d, %d operating points", pair + 1, some.stop)
+                log.info("simulated rig: pair %d, %d operating points", pair + 1, numbers.stop)
 
-    def _turns(self, drawn, some):
-        """Points in metallic contact at all time steps, turn by turn, at some operating points."""
+    def _turns(self, drawn, numbers):
+        """Grid points in contact at all time steps of each turn, at some operating points."""
         rig, contacts = self._study.rig, None
         for turn, pair in enumerate(self._rollers(drawn)):
             steps = revolution(pair, self._ratios)
@@ -82,14 +86,14 @@ class SimulatedRig:
                     np.roll(line, -surface_position(turn * steps, ratio))
                     for line, ratio in zip(pair, self._ratios, strict=True)
                 )
-                contacts = self._contacts(begun, steps, some)
+                contacts = self._contacts(begun, steps, numbers)
             part = min(rig.revolutions - turn, 1.0)
             yield contacts[:, : max(round(part * steps), 1)]
 
     def _repeats(self, pair):
         """Whether each revolution is the same as the one before."""
-        alike = pair[0].size == pair[1].size and self._ratios[0] == self._ratios[1]
-        return alike and self._study.rig.drift == 0.0
+        equal = pair[0].size == pair[1].size and self._ratios[0] == self._ratios[1]
+        return equal and self._study.rig.drift == 0.0
 
     def _rollers(self, drawn):
         """Lines of a pair of rollers in each of its revolutions."""
@@ -103,9 +107,9 @@ class SimulatedRig:
                 )
             yield pair
 
-    def _contacts(self, pair, steps, some):
-        """Points in metallic contact over one revolution, shape (operating points, steps)."""
-        points = [self._points[number] for number in some]
+    def _contacts(self, pair, steps, numbers):
+        """Grid points in contact over one revolution, shape (operating points, steps)."""
+        points = [self._points[number] for number in numbers]
         modulus = points[0].reduced_modulus
         factor = layer_factor_of(self._lines, modulus, self._study.boundary_layer)
         films, half_windows = whole_numbers(
@@ -128,29 +132,29 @@ class SimulatedRig:
 
 
 def _renewed(line, other, drift):
-    """Line of which a share of the variance has become another's, int32 steps."""
+    """Replace a share of a line's variance by that of another line; int32 height steps."""
     kept, new = math.sqrt(1.0 - drift), math.sqrt(drift)
     return np.rint(kept * line + new * other).astype(np.int32)
 
 
 @dataclass(frozen=True)
 class Revolution:
-    """One revolution of a simulated rig at one operating point.
+    """One revolution of the simulated rig at one operating point.
 
     Attributes
     ----------
     contact : numpy.ndarray
-        Shape (T,), int32, points in metallic contact at each time step.
+        Shape (T,), int32, grid points in metallic contact at each time step.
     point : OperatingPoint
         The operating point.
     time_step : float
         Time between two steps, s.
     spot_resistance : float
-        Contact resistance of one point, rho / dx, ohm (paper, Eq. 1).
+        Contact resistance of one grid point, rho / dx, ohm (paper, Eq. 1).
     length : float
         Length L' of the line contact, m.
     seed : tuple of int
-        What the noise hangs on.
+        Seed of the noise.
     """
 
     contact: np.ndarray
@@ -158,10 +162,10 @@ class Revolution:
     time_step: float
     spot_resistance: float
     length: float
-    seed: tuple
+    seed: tuple[int, ...]
 
-    def voltage(self, rig):
-        """Log the revolution with a rig's circuit; all have the same noise but for its size.
+    def voltage(self, rig: Rig) -> np.ndarray:
+        """Log the revolution with a rig's circuit; the noise differs between rigs by a factor.
 
         Parameters
         ----------
@@ -185,19 +189,34 @@ class Revolution:
         )
 
 
-def logged_voltage(contact, time_step, spot_resistance, capacitance, rig, generator):
-    """Record that the rig logs of a contact that is known at every time step.
+def logged_voltage(
+    contact: np.ndarray,
+    time_step: float,
+    spot_resistance: float,
+    capacitance: float,
+    rig: Rig,
+    generator: np.random.Generator,
+) -> np.ndarray:
+    r"""Simulate the voltage that the rig logs, given the contact at every time step.
+
+    With :math:`w` points in contact, conductance :math:`G = 1 / R_c + 1 / R_{leak}` and
+    :math:`R = R_s + R_l`, the voltage over the gap approaches
+
+    .. math:: u_\infty = \frac{U}{1 + R G}
+
+    and in a time step the distance to it decreases by the factor
+    :math:`\exp(-\Delta t (G + 1 / R) / C)`.
 
     Parameters
     ----------
     contact : numpy.ndarray
-        Shape (T,), points in metallic contact at each time step.
+        Shape (T,), grid points in metallic contact at each time step.
     time_step : float
         Time between two steps, s.
     spot_resistance : float
-        Contact resistance of one point, rho / dx, ohm (paper, Eq. 1).
+        Contact resistance of one grid point, rho / dx, ohm (paper, Eq. 1).
     capacitance : float
-        Of the film, F.
+        Capacitance C of the film, F.
     rig : Rig
         Circuit, amplifier and sampling.
     generator : numpy.random.Generator

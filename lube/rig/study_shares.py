@@ -1,36 +1,45 @@
-"""Contact shares of a rig's records, and lines about them."""
+"""Contact shares of a study's records: selected, arranged over the grid, and described in words."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from logging import Logger
+from typing import Any
 
 import pandas as pd
 import xarray as xr
 
 from lube.errors import DataError
-from lube.grid.levels import SAME, level_index, levels_told
+from lube.grid.levels import format_levels
 from lube.schema import COORDINATES, LIMITS
 
 MOST_LINES = 10
-"""Lines that a log shows of a longer list."""
+"""Lines of a long list that are logged."""
 
 
-def limited(name, values):
+def values_with_limits(name: str, values: Iterable[Any]) -> dict[str, Any]:
     """Name a value and the limits of its interval.
 
     Parameters
     ----------
     name : str
         Name of the value.
-    values : sequence
-        Value, lower and upper limit.
+    values : iterable
+        Value, lower limit and upper limit.
 
     Returns
     -------
     dict
         The three by their names.
+
+    Examples
+    --------
+    >>> values_with_limits("share", [0.5, 0.4, 0.6])
+    {'share': 0.5, 'share_lower': 0.4, 'share_upper': 0.6}
     """
     return {f"{name}{limit}": value for limit, value in zip(LIMITS, values, strict=True)}
 
 
-def at_comparison_threshold(experiment):
-    """Shares at the threshold that is compared with the simulation.
+def at_comparison_threshold(experiment: xr.Dataset) -> xr.Dataset:
+    """Select the contact shares that are compared with the simulation.
 
     Parameters
     ----------
@@ -40,27 +49,25 @@ def at_comparison_threshold(experiment):
     Returns
     -------
     xarray.Dataset
-        ``contact_share`` and its limits over ``record``.
+        ``contact_share`` and its limits over ``record``, at ``comparison_threshold``.
 
     Raises
     ------
     DataError
         If the records were not evaluated at that threshold.
     """
-    wanted = experiment["comparison_threshold"].item()
-    levels = experiment["threshold"].values.tolist()
-    index = level_index(levels, wanted, SAME)
-    if index is None:
+    wanted, levels = experiment["comparison_threshold"].item(), experiment["threshold"].values
+    if wanted not in levels:
         raise DataError(
             f"experiment: threshold {wanted:g} ohm is not among those evaluated, "
-            f"{levels_told(levels)}"
+            f"{format_levels(levels)}"
         )
     shares = experiment[[f"contact_share{limit}" for limit in LIMITS]]
-    return shares.isel(threshold=index, drop=True)
+    return shares.sel(threshold=wanted, drop=True)
 
 
-def over_grid(dataset):
-    """View records as a table over the operating grid, by the levels that they are near.
+def over_grid(dataset: xr.Dataset) -> xr.Dataset:
+    """Arrange records over the operating grid, by the levels near their conditions.
 
     Parameters
     ----------
@@ -71,8 +78,8 @@ def over_grid(dataset):
     -------
     xarray.Dataset
         Its variables over (slide_to_roll_ratio, lubricant, temperature, speed, force, repeat)
-        in place of ``record``, NaN where there is none; ``repeat`` counts the records of one
-        point. Records near no level are left out.
+        instead of ``record``, NaN where there is no record; ``repeat`` numbers the records of one
+        operating point. Records near no level are left out.
     """
     levels = {name: dataset[f"{name}_level"].values for name in ("temperature", "speed", "force")}
     names = {name: dataset[name].values for name in ("slide_to_roll_ratio", "lubricant")}
@@ -88,8 +95,8 @@ def over_grid(dataset):
     return records.assign_coords(index).unstack("record")
 
 
-def refused_in_one_line(experiment):
-    """Name the records that were refused, with the reasons.
+def refused_in_one_line(experiment: xr.Dataset) -> str:
+    """List the records that were refused, with the reasons.
 
     Parameters
     ----------
@@ -108,31 +115,36 @@ def refused_in_one_line(experiment):
     return f"Refused: {len(refused)} of {records} records. {'; '.join(refused)}"
 
 
-def levels_named(levels):
+def levels_named(levels: Mapping[str, float]) -> str:
     """Name an operating point.
 
     Parameters
     ----------
-    levels : dict of str to float
+    levels : mapping of str to float
         Values of operating variables, by their coordinates' names.
 
     Returns
     -------
     str
-        Such as ``800 N, 100 rpm, 40 degC``.
+        The values with their units.
+
+    Examples
+    --------
+    >>> levels_named({"force": 800.0, "speed": 100.0, "temperature": 40.0})
+    '800 N, 100 rpm, 40 degC'
     """
     return ", ".join(f"{value:.6g} {COORDINATES[name].units}" for name, value in levels.items())
 
 
-def log_lines(log, lines):
-    """Warn of some lines, and of a longer list's first ones.
+def log_lines(log: Logger, lines: Sequence[str]) -> None:
+    """Log lines as warnings; of a long list the first `MOST_LINES`.
 
     Parameters
     ----------
     log : logging.Logger
-        Log to warn in.
-    lines : list of str
-        What to tell.
+        The log.
+    lines : sequence of str
+        The lines.
     """
     for line in lines[:MOST_LINES]:
         log.warning("%s", line)

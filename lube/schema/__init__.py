@@ -1,8 +1,8 @@
-"""What every file of a study contains: names, dimensions, units and meaning.
+"""The contents of every file of a study: names, dimensions, units and meaning.
 
-Stages return unlabelled arithmetic wrapped in xarray; `label` writes the attributes last,
-because arithmetic on labelled arrays keeps the wrong ones, and `check` refuses a dataset
-that is not what its name promises, before it is saved and after it is read.
+Arithmetic on labelled arrays keeps the attributes of one operand, which are wrong for the result.
+So each stage writes the attributes last, with `label`; `check` refuses a dataset that does not
+fit its kind, before it is saved and after it is read.
 """
 
 from lube.schema.coordinates import (
@@ -16,10 +16,11 @@ from lube.schema.coordinates import (
     OPERATING_DIMS,
     POINT_DIMS,
 )
-from lube.schema.kinds import ATTRIBUTES, DATASETS, FILES, MEASURED, SUMMARIES
+from lube.schema.kinds import ATTRIBUTES, FILES, SUMMARIES
 from lube.schema.labels import check, label
 from lube.schema.oil import REGIMES
 from lube.schema.rig import ORIGINS
+from lube.schema.stages import DATASETS, MEASURED, STAGES, Stage, forerunners
 from lube.schema.variables import LIMITS, Variable
 
 __all__ = [
@@ -39,8 +40,11 @@ __all__ = [
     "ORIGINS",
     "POINT_DIMS",
     "REGIMES",
+    "STAGES",
     "SUMMARIES",
+    "Stage",
     "Variable",
     "check",
+    "forerunners",
     "label",
 ]

@@ -1,92 +1,79 @@
-"""What `snakemake benchmark` measures of the study's code; it is no part of the results."""
+"""What `snakemake benchmark` measures of the study's code; not among the results of a study."""
 
-from lube.schema.variables import FileKind, number
+from lube.schema.variables import FileKind, count, number
 
 _SLIP_RUN = ("least_lambda", "slide_to_roll_ratio")
 _SPEED = {
-    "points_above": number(["least_lambda"], "1", "number of operating points", kind="i"),
-    "strip_time": number(_SLIP_RUN, "s", "time of one revolution, strip by strip"),
+    "points_above": count(["least_lambda"], "1", "number of operating points"),
+    "strip_time": number(_SLIP_RUN, "s", "time of one revolution, strip method"),
     "scan_time": number(_SLIP_RUN, "s", "time of one revolution, literal scan"),
-    "speedup": number(_SLIP_RUN, "1", "time of the literal scan over that of the strips"),
-    "transform_time": number([], "s", "time of a bare inverse FFT as long as a line"),
+    "speedup": number(_SLIP_RUN, "1", "time of the literal scan over that of the strip method"),
+    "transform_time": number([], "s", "time of an inverse FFT of the length of a line"),
     "reading_time": number([], "s", "time to read a line from memory"),
     "line_time": number([], "s", "time to draw a line"),
     "grid_time": number(["line_points"], "s", "time of a realisation"),
     "operating_points_time": number(["operating_points"], "s", "time of the contact runs"),
     "ensemble_time": number(["realisations"], "s", "time of an ensemble"),
-    "processes": number([], "1", "processes side by side", kind="i"),
+    "processes": count([], "1", "number of parallel processes"),
     "peak_memory": number([], "byte", "peak memory of a process"),
 }
 
 _READING = {
-    "record_samples": number([], "1", "samples of the binary record", kind="i"),
-    "record_time": number(["record_reader"], "s", "time to read and evaluate the record"),
+    "record_samples": count([], "1", "samples of the binary file"),
+    "record_time": number(["record_reader"], "s", "time to read and evaluate the file"),
     "record_memory": number(["record_reader"], "byte", "peak memory of the process"),
-    "table_rows": number([], "1", "rows of the CSV record", kind="i"),
-    "table_time": number(["table_reader"], "s", "time to read the record"),
+    "table_rows": count([], "1", "rows of the CSV file"),
+    "table_time": number(["table_reader"], "s", "time to read the file"),
     "table_memory": number(["table_reader"], "byte", "peak memory of the process"),
     "bare_memory": number([], "byte", "peak memory of a process that reads nothing"),
-    "thresholds": number([], "1", "number of thresholds", kind="i"),
+    "thresholds": count([], "1", "number of thresholds"),
 }
 
+_OVER_SPREAD = "over the central 95 % range between pairs"
 _BY_LENGTH = ("scenario", "record_turns")
 _BY_POINT = (*_BY_LENGTH, "point")
-_OF_PAIRS = "over the central 95 % spread between pairs"
-
-
-def _covered(dims, whose):
-    """Describe how often an interval is right."""
-    return number(dims, "1", f"share of {whose} interval holds the truth")
-
-
+_OF_POINT = ("scenario", "point")
+_SHARES = {
+    "film_coverage": "share of records whose film interval contains the true value",
+    "agreement": "share of records within their prediction interval",
+    "alpha_coverage": "share of pairs whose interval of the alpha factor contains the true value",
+    "layer_coverage": "share of pairs whose interval of layer strength contains the true value",
+    "closed_coverage": "share of two-sided film intervals that contain the true value",
+    "one_sided_coverage": "share of one-sided film intervals that contain the true value",
+    "closed_share": "share of film intervals that have two limits",
+}
+_WIDTHS = {
+    "film": "median width of the film interval",
+    "prediction": "width of the prediction interval",
+    "alpha": "median width of the interval of the alpha factor",
+    "layer": "median width of the interval of layer strength",
+}
 _COVERAGE = {
-    "pairs": number(["scenario"], "1", "held-out pairs of rollers", kind="i"),
-    "ensemble_realisations": number([], "1", "realisations of each ensemble", kind="i"),
-    "least_probability": number([], "1", "probability above which records are counted"),
-    "film_coverage": _covered(_BY_LENGTH, "records whose film's"),
-    "closed_coverage": _covered(_BY_LENGTH, "all records with two limits whose film's"),
-    "one_sided_coverage": _covered(_BY_LENGTH, "all records with one limit whose film's"),
-    "closed_share": number(_BY_LENGTH, "1", "share of all records whose film has two limits"),
-    "film_width_ratio": number(
-        _BY_LENGTH, "1", f"median width of the film's interval {_OF_PAIRS}, median of the points"
-    ),
-    "agreement": number(_BY_LENGTH, "1", "share of records within their prediction interval"),
-    "prediction_width_ratio": number(
-        _BY_LENGTH, "1", f"width of the prediction interval {_OF_PAIRS}, median of the points"
-    ),
+    "pairs": count(["scenario"], "1", "number of held-out pairs of rollers"),
+    "ensemble_realisations": count([], "1", "realisations of each ensemble"),
+    "least_probability": number([], "1", "lowest mean probability of the points counted"),
+    **{name: number(_BY_LENGTH, "1", words) for name, words in _SHARES.items()},
     **{
-        name: row
-        for fit, words in (("alpha", "factor of alpha"), ("layer", "strength of the layer"))
-        for name, row in (
-            (f"{fit}_coverage", _covered(_BY_LENGTH, f"pairs whose {words}'s")),
-            (
-                f"{fit}_width_ratio",
-                number(_BY_LENGTH, "1", f"median width of the {words}'s interval {_OF_PAIRS}"),
-            ),
-        )
+        f"{name}_width_ratio": number(_BY_LENGTH, "1", f"{words} {_OVER_SPREAD}")
+        for name, words in _WIDTHS.items()
     },
-    "point_lambda_ratio": number(["scenario", "point"], "1", "lambda ratio"),
-    "point_probability": number(["scenario", "point"], "1", "probability, mean over realisations"),
-    "point_film_coverage": _covered(_BY_POINT, "pairs whose film's"),
-    "point_agreement": number(_BY_POINT, "1", "share of pairs within the prediction interval"),
+    "point_lambda_ratio": number(_OF_POINT, "1", "lambda ratio"),
+    "point_probability": number(_OF_POINT, "1", "probability, mean over realisations"),
+    "point_film_coverage": number(_BY_POINT, "1", _SHARES["film_coverage"]),
+    "point_agreement": number(_BY_POINT, "1", _SHARES["agreement"]),
     **{
-        f"ensemble_{name}": number(["ensemble"], "1", f"{words}, by each ensemble")
-        for name, words in (
-            ("film_coverage", "share of records whose film's interval holds the truth"),
-            ("agreement", "share of records within their prediction interval"),
-            ("alpha_coverage", "share of pairs whose factor of alpha's interval holds the truth"),
-            ("layer_coverage", "share of pairs whose layer's interval holds the truth"),
-        )
+        f"ensemble_{name}": number(["ensemble"], "1", f"{_SHARES[name]}, by ensemble")
+        for name in ("film_coverage", "agreement", "alpha_coverage", "layer_coverage")
     },
-    "ensemble_turns": number([], "1", "turns of the records that several ensembles judge"),
-    "ensemble_pairs": number([], "1", "pairs that several ensembles judge", kind="i"),
+    "ensemble_turns": number([], "1", "revolutions in the records judged by every ensemble"),
+    "ensemble_pairs": count([], "1", "number of pairs judged by every ensemble"),
 }
 
 KINDS = {
     "coverage": FileKind(
         _COVERAGE,
-        "How often the study's intervals hold the truth, for pairs of rollers that no ensemble "
-        "has seen, and how wide they are beside the spread between pairs.",
+        "How often the study's intervals contain the true value, for pairs of rollers that are "
+        "in no ensemble, and the width of the intervals relative to the spread between pairs.",
     ),
     "speed": FileKind(
         _SPEED,

@@ -8,13 +8,7 @@ FILES = {kind: file.variables for kind, file in _KINDS.items()}
 """Variables of each kind of file, by the kind's name."""
 
 SUMMARIES = {kind: file.summary for kind, file in _KINDS.items() if file.summary}
-"""What is in each kind of file that stays, in a sentence or two."""
-
-MEASURED = tuple(benchmarks.KINDS)
-"""Files that `snakemake benchmark` measures; they are no part of the results."""
-
-DATASETS = tuple(kind for kind in SUMMARIES if kind not in MEASURED)
-"""The results of a study, a file each."""
+"""What each kind of file that is kept contains, in a sentence or two."""
 
 ATTRIBUTES = {kind: file.attributes for kind, file in _KINDS.items() if file.attributes}
 """Global attributes that the stages read from a file, by kind."""

@@ -1,16 +1,24 @@
-"""Labels written on a dataset, and a dataset held against its labels."""
+"""Writing labels on a dataset, and checking a dataset against the schema."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from lube.errors import DataError
 from lube.schema.coordinates import COORDINATES
 from lube.schema.kinds import ATTRIBUTES, FILES
+from lube.schema.variables import Variable
+
+if TYPE_CHECKING:  # Snakemake loads the schema at every start, without xarray
+    import xarray as xr
 
 
-def _expected(kind, name):
+def _expected(kind: str, name: str) -> Variable | None:
     return FILES[kind].get(name) or COORDINATES.get(name)
 
 
-def label(dataset, kind):
-    """Write units, long names and flags on a dataset, replacing what arithmetic left there.
+def label(dataset: xr.Dataset, kind: str) -> xr.Dataset:
+    """Write units, long names and flags on a dataset, replacing the attributes it has.
 
     Parameters
     ----------
@@ -33,7 +41,7 @@ def label(dataset, kind):
     for name in labelled.variables:
         expected = _expected(kind, name)
         if expected is None:
-            continue  # to be refused below, by name
+            continue  # refused by `check`
         attributes = {"long_name": expected.long_name, **expected.attributes}
         if expected.units is not None:
             attributes["units"] = expected.units
@@ -43,7 +51,7 @@ def label(dataset, kind):
 
 
 def _content(name, expected, dataset):
-    """ACDD's word for what a variable holds."""
+    """ACDD's ``coverage_content_type`` of a variable."""
     if name in COORDINATES:
         return "coordinate"
     if expected.content == "record":
@@ -52,7 +60,7 @@ def _content(name, expected, dataset):
     return expected.content
 
 
-def check(dataset, kind, where="dataset"):
+def check(dataset: xr.Dataset, kind: str, where: str = "dataset") -> xr.Dataset:
     """Refuse a dataset whose variables, dimensions, types or units are not the schema's.
 
     Parameters
@@ -62,7 +70,7 @@ def check(dataset, kind, where="dataset"):
     kind : str
         A key of `lube.schema.FILES`.
     where : str, optional
-        What to call the dataset in an error, for instance its path.
+        Name of the dataset in an error message, for instance its path.
 
     Returns
     -------
@@ -72,21 +80,24 @@ def check(dataset, kind, where="dataset"):
     Raises
     ------
     DataError
-        At the first departure, naming the variable, what it is and what it should be.
+        At the first difference, with the name of the variable, what it is and what it should
+        be.
     """
+    refusal = f"{where}: not a {kind} file"
     for name in dataset.variables:
         if _expected(kind, name) is None:
-            raise DataError(f"{where}: not a {kind} file: variable {name!r} does not belong there")
+            raise DataError(f"{refusal}: variable {name!r} does not belong there")
     for name, expected in FILES[kind].items():
         if name not in dataset.variables:
-            raise DataError(f"{where}: not a {kind} file: variable {name!r} is missing")
+            raise DataError(f"{refusal}: variable {name!r} is missing")
         _check_variable(dataset[name], name, expected, where)
     for name in dataset.dims:
+        # The positions of a batch of lines are not stored.
         if name in COORDINATES and (name in dataset.coords or name != "position"):
             _check_coordinate(dataset, name, where)
     for name in ATTRIBUTES.get(kind, ()):
         if name not in dataset.attrs:
-            raise DataError(f"{where}: not a {kind} file: attribute {name!r} is missing")
+            raise DataError(f"{refusal}: attribute {name!r} is missing")
     return dataset
 
 
@@ -105,7 +116,6 @@ def _check_variable(array, name, expected, where):
     wanted = "i" if expected.kind == "b" and kind == "i" else expected.kind
     if kind != wanted:
         raise DataError(f"{where}: {name!r} holds {array.dtype}, need kind {expected.kind!r}")
-    if array.attrs.get("units") != expected.units:
-        raise DataError(
-            f"{where}: {name!r} is in {array.attrs.get('units')!r}, need {expected.units!r}"
-        )
+    units = array.attrs.get("units")
+    if units != expected.units:
+        raise DataError(f"{where}: {name!r} is in {units!r}, need {expected.units!r}")

@@ -1,11 +1,14 @@
-"""What the schema says of a variable and of a kind of file, and short ways to say it."""
+"""How the schema describes a variable and a kind of file, with short constructors."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 LIMITS = ("", "_lower", "_upper")
-"""What the names of a value and of the limits of its 95 % interval end with."""
+"""Suffixes of the variables that hold an estimate and the limits of its 95 % interval."""
 
 
 @dataclass(frozen=True)
@@ -24,18 +27,18 @@ class Variable:
         Allowed NumPy kinds: ``f`` float64, ``i`` integer, ``b`` true/false (stored as int8),
         ``U`` text.
     content : str
-        What it is by ACDD's and ISO 19115-1's words for ``coverage_content_type``; ``record``
-        stands for what the rig's records tell, measured or simulated.
+        ACDD's ``coverage_content_type``, a term of ISO 19115-1; ``record`` stands for what
+        follows from the records, which are measurements or model results.
     attributes : dict
         Further CF attributes.
     """
 
-    dims: tuple
+    dims: tuple[str, ...]
     units: str | None
     long_name: str
     kind: str = "f"
     content: str = "modelResult"
-    attributes: dict = field(default_factory=dict)
+    attributes: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -45,60 +48,73 @@ class FileKind:
     Attributes
     ----------
     variables : dict
-        From the name of each variable that must be there to its `Variable`.
+        From the name of each required variable to its `Variable`.
     summary : str
-        What is in it, in a sentence or two; empty for what only passes from job to job.
+        What the file contains, in a sentence or two; empty for files that are deleted at the
+        end of a run.
     attributes : tuple of str
-        Global attributes that the stages read from it.
+        Required global attributes.
     """
 
-    variables: dict
+    variables: dict[str, Variable]
     summary: str = ""
-    attributes: tuple = ()
+    attributes: tuple[str, ...] = ()
 
 
-def number(dims, units, long_name, **more):
+def number(
+    dims: Iterable[str],
+    units: str,
+    long_name: str,
+    kind: str = "f",
+    content: str = "modelResult",
+    **attributes: Any,
+) -> Variable:
     """Describe numbers."""
-    return Variable(tuple(dims), units, long_name, **more)
+    return Variable(tuple(dims), units, long_name, kind, content, attributes)
 
 
-def text(dims, long_name):
+count = partial(number, kind="i")
+quality = partial(number, content="qualityInformation")
+recorded = partial(number, content="record")
+
+# CF cell methods of means; each names the coordinate that is averaged over.
+MEAN_OF_RUN = "revolutions: mean"
+MEAN_OF_RECORD = "duration: mean"
+THEN_REALISATIONS = "(then over the realisations)"
+run_mean = partial(number, cell_methods=MEAN_OF_RUN)
+
+
+def text(dims: Iterable[str], long_name: str) -> Variable:
     """Describe texts."""
-    return Variable(tuple(dims), None, long_name, kind="U", content="auxiliaryInformation")
+    return Variable(tuple(dims), None, long_name, "U", "auxiliaryInformation")
 
 
-def flag(dims, long_name, meanings, kind="b"):
-    """Describe a variable of few whole values, each with its meaning."""
-    attributes = {
-        "flag_values": np.arange(len(meanings), dtype="int8"),
-        "flag_meanings": " ".join(meanings),
-    }
-    return Variable(tuple(dims), "1", long_name, kind, "qualityInformation", attributes)
+def flag(dims: Iterable[str], long_name: str, meanings: Sequence[str], kind: str = "b") -> Variable:
+    """Describe a variable with few integer values, each with a meaning."""
+    return number(
+        dims,
+        "1",
+        long_name,
+        kind,
+        "qualityInformation",
+        flag_values=np.arange(len(meanings), dtype="int8"),
+        flag_meanings=" ".join(meanings),
+    )
 
 
-def limited(name, dims, units, long_name, value="", meaning="", **more):
-    """Describe a value, whose name may end in `value`, and the limits of its 95 % interval."""
+def sides(
+    dims: Iterable[str], units: str, long_name: str, stem: str, interval: str = "95 % interval"
+) -> dict[str, Variable]:
+    """Describe the limits of an interval, ``<stem>_lower`` and ``<stem>_upper``."""
     return {
-        name + value: number(dims, units, long_name + meaning, **more),
-        **{
-            name + limit: number(
-                dims,
-                units,
-                f"{long_name}, {limit[1:]} limit of the 95 % interval",
-                content="qualityInformation",
-            )
-            for limit in LIMITS[1:]
-        },
+        f"{stem}_{side}": quality(dims, units, f"{long_name}, {side} limit of the {interval}")
+        for side in ("lower", "upper")
     }
 
 
-# What is a mean says over what, by CF's cell methods, which name a coordinate of the variable.
-OVER_RUN = {"cell_methods": "revolutions: mean"}
-OVER_ALL = {"cell_methods": "revolutions: mean (then over the realisations)"}
-OVER_RECORD = {"cell_methods": "duration: mean"}
-OVER_RECORDS = {"cell_methods": "duration: mean (then over the realisations)"}
-
-
-def run_mean(dims, units, long_name, **attributes):
-    """Describe a mean over the revolutions of a run."""
-    return number(dims, units, long_name, attributes=OVER_RUN | attributes)
+def with_limits(
+    name: str, dims: Iterable[str], units: str, long_name: str, **more: Any
+) -> dict[str, Variable]:
+    """Describe an estimate and the limits of its 95 % interval."""
+    estimate = number(dims, units, long_name, **more)
+    return {name: estimate, **sides(dims, units, long_name, name)}

@@ -1,11 +1,16 @@
-"""From realisations to probabilities with honest intervals.
+r"""The ensemble stage: from realisations to probabilities with 95 % intervals.
 
-The scatter between realisations says how many independent looks at the contact an ensemble
-is worth: were each look a coin that shows contact with probability p, the variance of the
-mean would be p (1 - p) / n. With this effective number n, Wilson's score interval stays
-within 0 and 1, is lopsided near either end as it should be, and becomes the usual
-mean +- t s / sqrt(R) in between.
+The scatter between realisations determines the effective sample size n of an ensemble: the
+number of independent trials, each with contact at probability p, whose mean has the same
+variance,
+
+.. math:: s^2 = \frac{p (1 - p)}{n}
+
+With this n, Wilson's score interval stays within 0 and 1, is asymmetric near either end, and
+equals the usual interval, mean +- t s / sqrt(R), in between.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -13,17 +18,19 @@ import xarray as xr
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
 from lube.schema import label
+from lube.statistics import sample_size
 from lube.statistics.confidence import probability_interval
 
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
+ATTRIBUTES = ("travel", "longest_wavelength")
 
 
-def independent_windows(contact, film):
-    """Windows that share no roughness, in one realisation, for each force and slip.
+def independent_windows(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
+    """Count the independent contact windows in one realisation, for each force and slip.
 
     Two windows see independent roughness where they are a longest wavelength apart on both
-    surfaces, so it is the travel of the slower one that counts: a roller at rest shows all
-    windows the same.
+    surfaces. So the travel of the slower surface counts: if one roller stands still, all
+    windows see the same part of it.
 
     Parameters
     ----------
@@ -49,19 +56,20 @@ def independent_windows(contact, film):
             f"the contact results are at forces {contact['force'].values.tolist()} N, the film "
             f"table has {film['force'].values.tolist()} N"
         ) from None
-    reach = 2.0 * half_width + contact.attrs["longest_wavelength"]
     slower = xr.apply_ufunc(
         lambda ratio: min(speed_ratios(ratio)), contact["slide_to_roll_ratio"], vectorize=True
     )
-    return np.maximum(contact.attrs["travel"] * slower / reach, 1.0)
+    return sample_size.independent_windows(
+        contact.attrs["travel"] * slower, 2.0 * half_width, contact.attrs["longest_wavelength"]
+    )
 
 
-def gather(batches, film):
-    """Join batches of realisations and give every probability its interval.
+def gather(batches: Sequence[xr.Dataset], film: xr.Dataset) -> xr.Dataset:
+    """Join batches of realisations, and add the interval of every probability.
 
     Parameters
     ----------
-    batches : list of xarray.Dataset
+    batches : sequence of xarray.Dataset
         ``contact_batch`` datasets, together the realisations 0 .. R - 1.
     film : xarray.Dataset
         The ``film`` dataset they were made with.
@@ -74,17 +82,17 @@ def gather(batches, film):
     Raises
     ------
     DataError
-        If a realisation is missing or comes twice, or the operating points differ.
+        If a realisation is missing or repeated, or the operating points differ.
     """
     return with_intervals(_join(batches), film)
 
 
-def gather_map(batches):
-    """Join batches of a master map and give every probability its interval.
+def gather_map(batches: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Join batches of a master map, and add the interval of every probability.
 
     Parameters
     ----------
-    batches : list of xarray.Dataset
+    batches : sequence of xarray.Dataset
         ``master_batch`` datasets, together the realisations 0 .. R - 1.
 
     Returns
@@ -98,14 +106,37 @@ def gather_map(batches):
         As `gather`.
     """
     joined = _join(batches)
-    reach = joined["contact_width"] + joined.attrs["longest_wavelength"]
-    return _add_intervals(joined, np.maximum(joined.attrs["travel"] / reach, 1.0), "master")
+    windows = sample_size.independent_windows(
+        joined.attrs["travel"], joined["contact_width"], joined.attrs["longest_wavelength"]
+    )
+    return _add_intervals(joined, windows, "master")
+
+
+def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
+    """Add mean, lower and upper limit of each probability, over the realisations present.
+
+    Parameters
+    ----------
+    contact : xarray.Dataset
+        A ``contact_batch`` dataset, or a selection of realisations from a ``contact`` one.
+    film : xarray.Dataset
+        The ``film`` dataset it was made with.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``contact`` file of `lube.schema`.
+    """
+    return _add_intervals(contact, independent_windows(contact, film), "contact")
 
 
 def _join(batches):
     """All realisations in order, each once."""
-    # Batches of one study may have been made at different commits, and say so.
-    batches = [_with_attributes(batch) for batch in batches]
+    # Other attributes may differ: batches of one study may come from different commits.
+    batches = [
+        batch.drop_attrs(deep=False).assign_attrs({name: batch.attrs[name] for name in ATTRIBUTES})
+        for batch in batches
+    ]
     try:
         joined = xr.concat(
             batches,
@@ -125,37 +156,12 @@ def _join(batches):
     return joined
 
 
-def _with_attributes(batch):
-    """Keep of a batch's attributes those that its values follow from."""
-    kept = batch.copy()
-    kept.attrs = {name: batch.attrs[name] for name in ("travel", "longest_wavelength")}
-    return kept
-
-
-def with_intervals(contact, film):
-    """Add mean, lower and upper limit of each probability, over the realisations present.
-
-    Parameters
-    ----------
-    contact : xarray.Dataset
-        A ``contact_batch`` dataset, or a selection of realisations from a ``contact`` one.
-    film : xarray.Dataset
-        The ``film`` dataset it was made with.
-
-    Returns
-    -------
-    xarray.Dataset
-        The ``contact`` file of `lube.schema`.
-    """
-    return _add_intervals(contact, independent_windows(contact, film), "contact")
-
-
 def _add_intervals(dataset, windows, kind):
     dataset = dataset.copy()
     for name in PROBABILITIES:
         dims = dataset[name].dims[1:]
-        everywhere = windows.broadcast_like(dataset[name][0]).transpose(*dims)
-        limits = probability_interval(dataset[name].values, everywhere.values)
-        for suffix, values in zip(("mean", "lower", "upper"), limits, strict=True):
+        windows_here = windows.broadcast_like(dataset[name][0]).transpose(*dims)
+        interval = probability_interval(dataset[name].values, windows_here.values)
+        for suffix, values in zip(("mean", "lower", "upper"), interval, strict=True):
             dataset[f"{name}_{suffix}"] = (dims, values)
     return label(dataset, kind)

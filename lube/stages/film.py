@@ -1,6 +1,9 @@
 """The film stage: film thickness, lambda ratio and regime at every operating point."""
 
+from collections.abc import Sequence
+
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from lube import schema
@@ -8,45 +11,70 @@ from lube.physics import dimensionless, hertz
 from lube.physics.film_formulas import formula
 from lube.physics.inlet_heating import inlet_shear_heating_factor
 from lube.physics.regimes import regime
+from lube.study.rollers import RollerPair
 
 
-def film_table(lubricant, rollers, force, speed, formulas):
-    """Film thickness of a pair of rollers over the operating grid.
+def film_table(
+    lubricant: xr.Dataset,
+    rollers: RollerPair,
+    force: npt.ArrayLike,
+    speed: npt.ArrayLike,
+    formulas: Sequence[str],
+) -> xr.Dataset:
+    """Tabulate the film thickness of a pair of rollers over the operating grid.
 
     Parameters
     ----------
     lubricant : xarray.Dataset
-        Result of the lubricant stage, with ``dynamic_viscosity`` (Pa s),
-        ``pressure_viscosity_coefficient`` (1/Pa) and ``temperature_viscosity_coefficient`` (1/K)
-        along lubricant and temperature, ``thermal_conductivity`` (W/(m K)) along lubricant.
-    rollers : lube.study.study.RollerPair
+        A ``lubricant`` dataset, with ``dynamic_viscosity`` (Pa s),
+        ``pressure_viscosity_coefficient`` (1/Pa), ``temperature_viscosity_coefficient`` (1/K)
+        and ``thermal_conductivity`` (W/(m K)) over lubricant and temperature.
+    rollers : RollerPair
         Geometry, elasticity and roughness of the two rollers.
-    force : array_like
-        Normal forces F_N, shape (force,), N.
-    speed : array_like
-        Rotation speeds n of the first roller in pure rolling, shape (speed,), rpm. Slip shares
-        the same entrainment speed out between the rollers, so the film does not depend on it.
+    force : array_like, shape (force,)
+        Normal forces F_N, N.
+    speed : array_like, shape (speed,)
+        Rotation speeds n of the first roller in pure rolling, rpm. Slip leaves the entrainment
+        speed as it is, so the film does not depend on it.
     formulas : sequence of str
         Names of film formulas, keys of `lube.physics.film_formulas.FORMULAS`.
 
     Returns
     -------
     xarray.Dataset
-        The file ``film`` of `lube.schema`; the film thickness is not reduced by inlet shear
-        heating, whose factor stands beside it.
+        The ``film`` file of `lube.schema`. The film thickness is not reduced by inlet shear
+        heating; the reduction factor is a variable of its own.
 
     Raises
     ------
     StudyError
         If a film formula is unknown.
     DataError
-        If the result does not fit the schema, for want of a dimension or coordinate.
+        If the lubricant dataset lacks a dimension or coordinate.
+
+    Examples
+    --------
+    >>> from lube import film_table, load_study, lubricant_table
+    >>> study = load_study("workflow/config/paper.yaml")
+    >>> oil = lubricant_table(study.lubricants, [40.0])
+    >>> film = film_table(oil, study.rollers, [800.0], [100.0], ["paper"])
+    >>> f"{1e6 * film.film_thickness.item():.3f} um"
+    '1.070 um'
+    >>> f"lambda ratio {film.lambda_ratio.item():.2f}"
+    'lambda ratio 3.78'
     """
     table = film_at(lubricant, rollers, _axis("force", force), _axis("speed", speed), formulas)
     return schema.label(table.transpose(*schema.OPERATING_DIMS), "film")
 
 
-def film_at_records(experiment, lubricant, rollers, formulas):
+def _axis(name, values):
+    values = np.asarray(values, dtype=np.float64)
+    return xr.DataArray(values, dims=name, coords={name: values})
+
+
+def film_at_records(
+    experiment: xr.Dataset, lubricant: xr.Dataset, rollers: RollerPair, formulas: Sequence[str]
+) -> xr.Dataset:
     """Film thickness at the conditions of each record.
 
     Parameters
@@ -54,7 +82,7 @@ def film_at_records(experiment, lubricant, rollers, formulas):
     experiment : xarray.Dataset
         An ``experiment`` dataset.
     lubricant : xarray.Dataset
-        Result of the lubricant stage, at all temperatures of the records.
+        A ``lubricant`` dataset at all temperatures of the records.
     rollers, formulas
         As in `film_table`.
 
@@ -69,21 +97,27 @@ def film_at_records(experiment, lubricant, rollers, formulas):
         xr.DataArray(experiment[name].values, dims="record")
         for name in ("force", "speed", "temperature", "lubricant")
     )
-    here = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
-    table = film_at(here, rollers, force, speed, formulas)
-    names = ("film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width")
-    scales = ("reduced_radius", "composite_rms_roughness")
-    return table[[*names, *scales]].transpose("film_formula", "record")
+    properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
+    table = film_at(properties, rollers, force, speed, formulas)
+    names = ["film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width"]
+    names += ["reduced_radius", "composite_rms_roughness"]
+    return table[names].transpose("film_formula", "record")
 
 
-def film_at(lubricant, rollers, force, speed, formulas):
-    """Film thickness and all that goes with it, over whatever dimensions its arguments have.
+def film_at(
+    lubricant: xr.Dataset,
+    rollers: RollerPair,
+    force: xr.DataArray,
+    speed: xr.DataArray,
+    formulas: Sequence[str],
+) -> xr.Dataset:
+    """Film thickness over the dimensions that the lubricant, force and speed have.
 
     Parameters
     ----------
     lubricant : xarray.Dataset
-        As in `film_table`, or with a row of it for each record in place of its dimensions.
-    rollers : lube.study.study.RollerPair
+        As in `film_table`, over lubricant and temperature or over other dimensions.
+    rollers : RollerPair
         Geometry, elasticity and roughness of the two rollers.
     force, speed : xarray.DataArray
         Normal force, N, and rotation speed of the first roller in pure rolling, rpm.
@@ -93,27 +127,27 @@ def film_at(lubricant, rollers, force, speed, formulas):
     Returns
     -------
     xarray.Dataset
-        The variables of the file ``film``, without labels.
+        The variables of the ``film`` file, without attributes.
 
     Raises
     ------
     StudyError
         If a film formula is unknown.
     """
-    rows = [formula(name) for name in formulas]
-    # Grids that differ in one value would otherwise be cut to their intersection.
+    chosen = [formula(name) for name in formulas]
+    # "exact": coordinates that differ in one value would otherwise be cut to their intersection.
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = _hertz_contact(rollers, force, speed)
         numbers = _dimensionless_groups(lubricant, rollers, force, contact)
         table = contact.merge(_regime(*numbers), join="exact")
-        table = table.merge(_film(rows, rollers, numbers, table), join="exact")
-        table["inlet_shear_heating_factor"] = _inlet_shear_heating(lubricant, contact)
+        table = table.merge(_film(chosen, rollers, numbers, table), join="exact")
+        table["inlet_shear_heating_factor"] = inlet_shear_heating_factor(
+            lubricant["dynamic_viscosity"],
+            lubricant["temperature_viscosity_coefficient"],
+            contact["entrainment_speed"],
+            lubricant["thermal_conductivity"],
+        )
     return table
-
-
-def _axis(name, values):
-    values = np.asarray(values, dtype=np.float64)
-    return xr.DataArray(values, dims=name, coords={name: values})
 
 
 def _hertz_contact(rollers, force, speed):
@@ -131,6 +165,7 @@ def _hertz_contact(rollers, force, speed):
 
 
 def _dimensionless_groups(lubricant, rollers, force, contact):
+    """Load W, speed U and material parameter G of each operating point."""
     film_modulus = 2.0 * rollers.reduced_modulus
     scale = (film_modulus, rollers.reduced_radius)
     load = dimensionless.dimensionless_load(force / rollers.length, *scale)
@@ -146,35 +181,21 @@ def _dimensionless_groups(lubricant, rollers, force, contact):
 def _regime(load, speed, material):
     moes_load, moes_material = dimensionless.moes_numbers(load, speed, material)
     flag = xr.apply_ufunc(regime, moes_load, moes_material, join="exact")
-    return xr.Dataset(
-        {
-            "moes_load": moes_load,
-            "moes_material": moes_material,
-            "regime": flag.astype("int8"),  # the type of its flag_values, as CF demands
-        }
-    )
+    flag = flag.astype("int8")  # the type of its flag_values, as CF requires
+    return xr.Dataset({"moes_load": moes_load, "moes_material": moes_material, "regime": flag})
 
 
-def _film(rows, rollers, numbers, table):
-    names = xr.DataArray([row.name for row in rows], dims="film_formula", name="film_formula")
-    film = xr.concat([row.evaluate(*numbers) for row in rows], dim=names, join="exact")
+def _film(formulas, rollers, numbers, table):
+    names = xr.DataArray([row.name for row in formulas], dims="film_formula", name="film_formula")
+    film = xr.concat([row.evaluate(*numbers) for row in formulas], dim=names, join="exact")
     film = film * rollers.reduced_radius
-    valid = [row.holds(table["moes_load"], table["moes_material"]) for row in rows]
+    valid = [row.holds(table["moes_load"], table["moes_material"]) for row in formulas]
     return xr.Dataset(
         {
             "film_thickness": film,
             "lambda_ratio": film / rollers.composite_rms_roughness,
             "in_validity_range": xr.concat(valid, dim=names, join="exact"),
-            "formula_place": ("film_formula", [row.place for row in rows]),
-            "formula_source": ("film_formula", [row.source for row in rows]),
+            "formula_place": ("film_formula", [row.thickness for row in formulas]),
+            "formula_source": ("film_formula", [row.source for row in formulas]),
         }
-    )
-
-
-def _inlet_shear_heating(lubricant, contact):
-    return inlet_shear_heating_factor(
-        lubricant["dynamic_viscosity"],
-        lubricant["temperature_viscosity_coefficient"],
-        contact["entrainment_speed"],
-        lubricant["thermal_conductivity"],
     )

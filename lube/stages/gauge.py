@@ -1,15 +1,15 @@
-"""The gauge stage: from the contact share of a record back to the film that explains it.
+"""The gauge stage: from the contact share of a record to the film thickness that explains it.
 
-The master map says how probable contact is at every film and window; read the other way
-round it turns an ohmmeter into a film gauge, with no further run of the model. With the film
-taken from its formula instead, all records together tell one unknown of the model: the
-pressure-viscosity coefficient, or the strength of the boundary layer.
+The master map gives the probability of contact for every film thickness and contact width. Read in
+the other direction it turns a resistance measurement into a film thickness, without running the
+model again. If instead the film thickness is taken from its formula, all records together
+determine one unknown of the model: the pressure-viscosity coefficient, or the strength of the
+boundary layer.
 
-A record comes from one pair of rollers. How far its share may lie from the mean of the map is
-the scatter between the map's realisations, which its interval holds besides the map's own error.
+A record comes from one pair of rollers. How far its share may lie from the mean of the map follows
+from the scatter between the realisations; the interval includes it, and the map's own error.
 """
 
-import logging
 from functools import cache
 
 import numpy as np
@@ -17,18 +17,17 @@ import scipy.special
 import xarray as xr
 
 from lube.rig.fits import fit_alpha, fit_layer_strength, study_strength
-from lube.schema import AT_RECORDS, LIMITS, label
+from lube.rig.map_curves import curve_at
+from lube.rig.study_shares import values_with_limits
+from lube.schema import AT_RECORDS, label
 from lube.statistics.curves import film_interval
-from lube.statistics.map_curves import curve_at
 from lube.statistics.one_pair import quantile, standard_error
-
-log = logging.getLogger(__name__)
 
 _KEPT = ("film_thickness", "lambda_ratio", "contact_half_width", "comparison_threshold")
 
 
-def gauge_records(master, contact, comparison):
-    """Gauge films, the pressure-viscosity coefficient and the boundary layer.
+def gauge_records(master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
+    """Infer films, the pressure-viscosity coefficient and the boundary layer from the records.
 
     Parameters
     ----------
@@ -50,15 +49,17 @@ def gauge_records(master, contact, comparison):
     )
     for part in parts:
         gauged = gauged.merge(part, join="exact", combine_attrs="drop")
-    gauged["study_layer_strength"] = study_strength(contact)
-    oils = gauged["fitted_lubricant"].values
-    recorded = np.isfinite(comparison["measured_share"].values)
-    counts = [np.count_nonzero(recorded & (comparison["lubricant"].values == oil)) for oil in oils]
-    gauged["fitted_records"] = "fitted_lubricant", counts
+    known = np.isfinite(comparison["measured_share"].values)
+    oils = comparison["lubricant"].values[known]
+    counts = [np.count_nonzero(oils == oil) for oil in gauged["fitted_lubricant"].values]
+    gauged = gauged.assign(
+        study_layer_strength=study_strength(contact),
+        fitted_records=("fitted_lubricant", counts),
+    )
     return label(gauged.drop_attrs(deep=False), "gauge")
 
 
-def gauge_film(master, comparison):
+def gauge_film(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
     """Film thickness and lambda ratio that explain the contact share of every record.
 
     Parameters
@@ -70,13 +71,12 @@ def gauge_film(master, comparison):
     -------
     xarray.Dataset
         ``gauged_film_thickness`` (m) and ``gauged_lambda_ratio`` with ``_lower`` and ``_upper``
-        over ``record``, NaN without a share. A share below what the map resolves has no value
-        but a lower limit, and infinity for the upper; one above that of the map's thinnest film
-        an upper limit, and zero for the lower. The intervals are of 95 %, of one pair's record
-        and the ensemble together.
+        over ``record``, NaN without a share. A share below the resolution of the map has no
+        value, only a lower limit, and infinity as the upper limit; a share above that of the
+        map's thinnest film has only an upper limit, and zero as the lower limit. The 95 %
+        intervals include the scatter of one pair's record and the error of the ensemble.
     """
     curve = cache(lambda width: curve_at(master, width))
-    count = master.sizes["realisation"]
     records = zip(
         2.0 * comparison["contact_half_width"].values,
         comparison["measured_share"].values,
@@ -85,25 +85,24 @@ def gauge_film(master, comparison):
         strict=True,
     )
     films = [
-        film_interval(curve(width), share, ratio, count, noise)
+        film_interval(curve(width), share, ratio, master.sizes["realisation"], noise)
         for width, share, ratio, noise in records
     ]
     ratios = np.exp(films)
     ratios[:, 0] = np.where(np.isfinite(films)[:, 0], ratios[:, 0], np.nan)
-    gauged = xr.Dataset()
-    for limit, ratio in zip(LIMITS, ratios.T, strict=True):
-        gauged[f"gauged_lambda_ratio{limit}"] = "record", ratio
-        thickness = ratio * comparison["composite_rms_roughness"].item()
-        gauged[f"gauged_film_thickness{limit}"] = "record", thickness
-    return gauged
+    thickness = ratios * comparison["composite_rms_roughness"].item()
+    found = values_with_limits("gauged_lambda_ratio", ratios.T) | values_with_limits(
+        "gauged_film_thickness", thickness.T
+    )
+    return xr.Dataset({name: ("record", values) for name, values in found.items()})
 
 
-def gauge_coverage(master, comparison):
-    """How often the interval of a gauged film holds the true one, were each realisation the rig.
+def gauge_coverage(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
+    """How often the interval of a gauged film contains the true film thickness.
 
-    Each realisation in turn is left out of the map and gauged by the others as the record of
+    Each realisation in turn is left out of the map and gauged with the others, as a record of
     one pair of rollers, one revolution long, at the films of the first formula. Its interval
-    holds the true film where its share lies within the prediction of the others there.
+    contains the true film where its share lies within the prediction of the others there.
 
     Parameters
     ----------
@@ -113,21 +112,21 @@ def gauge_coverage(master, comparison):
     Returns
     -------
     xarray.Dataset
-        Over ``record``: ``interval_coverage``, of all intervals, ``closed_coverage`` of those
-        with two limits, ``one_sided_coverage`` of the others, and ``closed_share``, how many
-        have two; NaN where there are none, or the ensemble has fewer than three realisations.
+        Over ``record``: ``interval_coverage`` of all intervals, ``closed_coverage`` of those
+        with two limits, ``one_sided_coverage`` of the others, and ``closed_share``, the share of
+        intervals with two limits; NaN where there are none, or the ensemble has fewer than three
+        realisations.
     """
     members = comparison["breakthrough_probability"].values[:, 0]
-    count, records = members.shape
-    coverage = np.full((4, records), np.nan)
-    places = range(records) if count > 2 else ()
-    films = np.log(comparison["lambda_ratio"].values[0])
-    widths = 2.0 * comparison["contact_half_width"].values
-    curve = cache(lambda width: curve_at(master, width))
-    for place in places:
-        held, closed = _left_out(curve(widths[place]), films[place], members[:, place])
-        apart = (_mean(held[closed]), _mean(held[~closed]))
-        coverage[:, place] = np.mean(held), *apart, np.mean(closed)
+    coverage = np.full((4, members.shape[1]), np.nan)
+    if len(members) > 2:
+        films = np.log(comparison["lambda_ratio"].values[0])
+        widths = 2.0 * comparison["contact_half_width"].values
+        curve = cache(lambda width: curve_at(master, width))
+        for record, (width, film) in enumerate(zip(widths, films, strict=True)):
+            held, closed = _leave_one_out(curve(width), film, members[:, record])
+            by_side = _mean(held[closed]), _mean(held[~closed])
+            coverage[:, record] = np.mean(held), *by_side, np.mean(closed)
     names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")
     return xr.Dataset({name: ("record", row) for name, row in zip(names, coverage, strict=True)})
 
@@ -136,25 +135,23 @@ def _mean(held):
     return np.mean(held) if held.size else np.nan
 
 
-def _left_out(curve, film, shares):
-    """Whether the interval of each realisation holds a film, and whether it has two limits."""
-    count = shares.size
+def _leave_one_out(curve, film, shares):
+    """Whether the interval of each realisation contains a film, and whether it has two limits."""
     if curve.films.size < 2:
-        return np.ones(count, bool), np.zeros(count, bool)
-    places = (curve.films[0], film, curve.films[-1])
-    distances = [_distance(curve, place, shares) for place in places]
-    limit = quantile(count - 1)
-    closed = (distances[0] < -limit) & (distances[2] > limit)
-    return np.abs(distances[1]) <= limit, closed
+        return np.ones(shares.size, bool), np.zeros(shares.size, bool)
+    thinnest, here, thickest = (
+        _distance(curve, each, shares) for each in (curve.films[0], film, curve.films[-1])
+    )
+    limit = quantile(shares.size - 1)
+    return np.abs(here) <= limit, (thinnest < -limit) & (thickest > limit)
 
 
 def _distance(curve, film, shares):
     """Distance of each realisation from the mean of the others, over its standard error."""
     count = shares.size
     mean = scipy.special.expit(curve.logit_at(film))
-    others = (count * mean - shares) / (count - 1)
-    others = np.clip(others, 0.0, 1.0)
-    looks = np.interp(film, curve.films, curve.looks)
+    others = np.clip((count * mean - shares) / (count - 1), 0.0, 1.0)
+    size = np.interp(film, curve.films, curve.sample_size)
     with np.errstate(divide="ignore", invalid="ignore"):
-        distance = (shares - others) / standard_error(others, looks, 1.0, count - 1)
+        distance = (shares - others) / standard_error(others, size, 1.0, count - 1)
     return np.where(shares == others, 0.0, distance)

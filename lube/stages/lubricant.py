@@ -1,12 +1,14 @@
-"""Lubricant stage: from records and temperatures to a table of lubricant properties.
+"""The lubricant stage: from lubricant records and temperatures to a table of properties.
 
-Inside this module temperatures are in kelvin and viscosities in SI units; the laws of
-`lube.physics.viscosity` want mm2/s. The dataset's temperatures are in degC.
+Inside this module temperatures are in kelvin and viscosities in SI units, while the laws of
+`lube.physics.viscosity` take mm2/s. The temperatures of the dataset are in degC.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from lube.errors import RangeError, RecordError
@@ -24,13 +26,13 @@ from lube.physics.viscosity import (
     linear_density,
     viscosity_index,
 )
-from lube.schema import FILES, label
-from lube.study.lubricant_record import check_temperatures
+from lube.schema import label
+from lube.study.lubricant_record import LubricantRecord, check_temperatures
 
 MM2_PER_S = 1e-6
 """One mm2/s in m2/s."""
 
-# Temperatures at which a CoolProp fluid is sampled, to have data that the laws are fitted to.
+# Number of temperatures at which a CoolProp fluid is sampled, as data for the fits of all laws.
 _SAMPLES = 25
 
 # Half the step of the central difference in temperature, K: its error is below 1e-6 of the
@@ -39,7 +41,7 @@ _DIFFERENCE_STEP = 0.05
 
 
 class _MeasuredOil:
-    """Properties of a record with measured viscosities, between which a law leads."""
+    """Properties of a lubricant record with measured viscosities, interpolated by a law."""
 
     def __init__(self, record):
         self._record = record
@@ -48,6 +50,8 @@ class _MeasuredOil:
         self.data_viscosity = np.array([self._kinematic(point) for point in points])
         self._law = VISCOSITY_LAWS[record.law_used]
         self._parameters = self._law.fit(self.data_temperature, self.data_viscosity / MM2_PER_S)
+        # The law also holds a little outside the range of the data.
+        self.temperature_limits = -np.inf, np.inf
 
     def _kinematic(self, point):
         if point.kinematic_viscosity is not None:
@@ -71,13 +75,9 @@ class _MeasuredOil:
     def thermal_conductivity(self, temperature):
         return np.full(np.shape(temperature), self._record.thermal_conductivity.value)
 
-    def neighbours(self, temperature):
-        """Temperatures just below and above, for differences: the law leads beyond its ends."""
-        return temperature - _DIFFERENCE_STEP, temperature + _DIFFERENCE_STEP
-
 
 class _CoolPropFluid:
-    """Properties of a record that names a CoolProp fluid, at atmospheric pressure."""
+    """Properties of a lubricant record that names a CoolProp fluid, at atmospheric pressure."""
 
     def __init__(self, record):
         self._fluid = record.viscosity.coolprop_fluid
@@ -85,6 +85,7 @@ class _CoolPropFluid:
         lowest, highest = record.valid_temperatures
         self.data_temperature = np.linspace(lowest, highest, _SAMPLES) + ZERO_CELSIUS
         self.data_viscosity = self.kinematic_viscosity(self.data_temperature)
+        self.temperature_limits = liquid_range(self._fluid)
 
     def density(self, temperature):
         return liquid_property(self._fluid, "density", temperature)
@@ -102,106 +103,89 @@ class _CoolPropFluid:
     def thermal_conductivity(self, temperature):
         return liquid_property(self._fluid, "conductivity", temperature)
 
-    def neighbours(self, temperature):
-        """Temperatures just below and above, for differences, within the liquid's limits."""
-        below, above = temperature - _DIFFERENCE_STEP, temperature + _DIFFERENCE_STEP
-        lowest, highest = liquid_range(self._fluid)
-        return np.clip(below, lowest, highest), np.clip(above, lowest, highest)
 
-
-def lubricant_table(records, temperature):
-    """Properties of lubricants at the temperatures of a study.
+def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLike) -> xr.Dataset:
+    """Tabulate the properties of lubricants at the temperatures of a study.
 
     Parameters
     ----------
     records : sequence of LubricantRecord
-        The lubricants, each name once.
+        Lubricant records with distinct names.
     temperature : array_like of float, shape (n,)
         Temperatures of the study, degC.
 
     Returns
     -------
     xarray.Dataset
-        The variables of ``FILES["lubricant"]``. Beside the properties by each record's own
-        law it holds the fits of all laws: parameters, relative residuals on the data, and
-        curves over whole degrees, nan outside a record's range. The laws of a CoolProp
-        fluid are fitted to samples of it and give no property. Parameters that a law does
-        not have, data points that a record does not have, fits that a law refuses and
-        viscosity indices of thin liquids are nan.
+        The ``lubricant`` file of `lube.schema`. The properties follow from the law that the
+        lubricant record names. For comparison all viscosity laws are fitted to the data as
+        well: parameters, relative residuals, and curves at whole degrees within the record's
+        temperature range. The data of a CoolProp fluid are samples of it, and its properties
+        come from CoolProp itself. Values that do not exist are NaN: parameters that a law does
+        not have, data points beyond a lubricant's own, fits that a law does not allow, and the
+        viscosity index of a thin liquid.
 
     Raises
     ------
     RangeError
-        If a temperature lies outside a record's range, or a law or CoolProp has no
-        viscosity there.
+        If a temperature lies outside the range of a lubricant record, or a law or CoolProp has
+        no viscosity there.
     RecordError
         If a name is repeated or a CoolProp fluid cannot be used.
+
+    Examples
+    --------
+    >>> from lube import load_record
+    >>> table = lubricant_table([load_record("mobilgear-shc-xmp-320")], [40.0, 80.0])
+    >>> [f"{viscosity:.4f} Pa s" for viscosity in table.dynamic_viscosity.values[0]]
+    ['0.2835 Pa s', '0.0564 Pa s']
     """
     temperature = np.array(temperature, dtype=float)
     names = [record.name for record in records]
     if len(set(names)) < len(names):
         raise RecordError(f"lubricants: got the names {', '.join(names)}, need each once")
     fit_temperature = _whole_degrees(records)
-    rows = [_checked_row(record, temperature, fit_temperature) for record in records]
-    columns = {name: _stacked([row[name] for row in rows]) for name in rows[0]}
-    schema = FILES["lubricant"]
-    dataset = xr.Dataset(
-        {name: (schema[name].dims, column) for name, column in columns.items()}
-        | {
-            "parameter_units": ("parameter", list(PARAMETER_UNITS.values())),
-            "law_source": ("viscosity_law", [law.source for law in VISCOSITY_LAWS.values()]),
-        },
-        coords={
-            "lubricant": names,
-            "temperature": temperature,
-            "viscosity_law": list(VISCOSITY_LAWS),
-            "parameter": list(PARAMETER_UNITS),
-            "fit_temperature": fit_temperature,
-        },
+    rows = [_row(record, temperature, fit_temperature) for record in records]
+    # Lubricants have different numbers of data points; NaN stands for the missing ones.
+    table = xr.concat(rows, xr.Variable("lubricant", names), join="outer").drop_vars("data_point")
+    table = table.assign(
+        parameter_units=("parameter", list(PARAMETER_UNITS.values())),
+        law_source=("viscosity_law", [law.source for law in VISCOSITY_LAWS.values()]),
     )
-    return label(dataset, "lubricant")
+    table = table.assign_coords(
+        lubricant=names,
+        temperature=temperature,
+        viscosity_law=list(VISCOSITY_LAWS),
+        parameter=list(PARAMETER_UNITS),
+        fit_temperature=fit_temperature,
+    )
+    return label(table, "lubricant")
 
 
 def _whole_degrees(records):
-    """Whole degrees Celsius over the ranges of all records."""
+    """Whole degrees Celsius over the temperature ranges of all lubricant records."""
     ranges = [record.valid_temperatures for record in records]
     lowest = math.floor(min(low for low, _ in ranges))
     highest = math.ceil(max(high for _, high in ranges))
     return np.arange(lowest, highest + 1, dtype=float)
 
 
-def _stacked(rows):
-    """One array of the rows of all lubricants, the last axis padded with nan where short."""
-    rows = [np.asarray(row) for row in rows]
-    if rows[0].ndim == 0:
-        return np.array(rows)
-    longest = max(row.shape[-1] for row in rows)
-    return np.stack([_padded(row, longest) for row in rows])
-
-
-def _padded(row, length):
-    widths = [(0, 0)] * (row.ndim - 1) + [(0, length - row.shape[-1])]
-    return np.pad(row, widths, constant_values=np.nan)
-
-
-def _checked_row(record, temperature, fit_temperature):
-    """Values of one lubricant by variable, without the dimension lubricant."""
+def _row(record, temperature, fit_temperature):
+    """Variables of one lubricant."""
     check_temperatures(record, temperature)
     try:
-        fluid = _CoolPropFluid if record.law_used == "coolprop" else _MeasuredOil
-        substance = fluid(record)
+        substance = (_CoolPropFluid if record.law_used == "coolprop" else _MeasuredOil)(record)
         properties = _properties(substance, temperature + ZERO_CELSIUS)
         index = _viscosity_index(record, substance)
     except (RangeError, RecordError) as error:
         raise type(error)(f"{record.name}: {error}") from None
-    return {
-        **properties,
-        **_fits(record, substance, fit_temperature),
-        "viscosity_index": index,
-        "viscosity_law_used": record.law_used,
-        "pressure_viscosity_definition": record.pressure_viscosity.definition_text,
-        "lubricant_title": record.title,
-    }
+    row = xr.Dataset({name: ("temperature", values) for name, values in properties.items()})
+    return row.merge(_fits(record, substance, fit_temperature)).assign(
+        viscosity_index=index,
+        viscosity_law_used=record.law_used,
+        pressure_viscosity_definition=record.pressure_viscosity.definition_text,
+        lubricant_title=record.title,
+    )
 
 
 def _properties(substance, temperature):
@@ -221,13 +205,16 @@ def _properties(substance, temperature):
         "dynamic_viscosity": kinematic_viscosity * density,
         "pressure_viscosity_coefficient": substance.pressure_viscosity_coefficient(temperature),
         "thermal_conductivity": substance.thermal_conductivity(temperature),
-        "temperature_viscosity_coefficient": _relative_fall(substance, temperature),
+        "temperature_viscosity_coefficient": _temperature_viscosity(substance, temperature),
     }
 
 
-def _relative_fall(substance, temperature):
-    """Relative fall of dynamic viscosity with temperature, beta = -d ln(eta)/dT, 1/K."""
-    below, above = substance.neighbours(temperature)
+def _temperature_viscosity(substance, temperature):
+    """Temperature-viscosity coefficient beta = -d ln(eta)/dT, 1/K, by a central difference."""
+    below, above = (
+        np.clip(temperature + step, *substance.temperature_limits)
+        for step in (-_DIFFERENCE_STEP, _DIFFERENCE_STEP)
+    )
     log_below, log_above = (
         np.log(substance.kinematic_viscosity(side) * substance.density(side))
         for side in (below, above)
@@ -236,7 +223,7 @@ def _relative_fall(substance, temperature):
 
 
 def _viscosity_index(record, substance):
-    """Viscosity index, nan where a record does not reach 40 and 100 degC or is too thin."""
+    """Viscosity index; NaN for thin liquids and ranges without 40 and 100 degC."""
     try:
         check_temperatures(record, (40.0, 100.0))
         at_40_and_100 = np.array([40.0, 100.0]) + ZERO_CELSIUS
@@ -246,7 +233,7 @@ def _viscosity_index(record, substance):
 
 
 def _fits(record, substance, fit_temperature):
-    """Parameters, curve and residuals of every law on the data of one lubricant."""
+    """Parameters, curve and residuals of every law, fitted to the data of one lubricant."""
     lowest, highest = record.valid_temperatures
     inside = (lowest <= fit_temperature) & (fit_temperature <= highest)
     curve_temperature = np.where(inside, fit_temperature + ZERO_CELSIUS, np.nan)
@@ -256,17 +243,21 @@ def _fits(record, substance, fit_temperature):
         for law in VISCOSITY_LAWS.values()
     ]
     parameters, curves, fitted = (np.array(column) for column in zip(*fits, strict=True))
-    return {
-        "fit_parameter": parameters,
-        "fitted_kinematic_viscosity": np.where(np.isfinite(curves), curves, np.nan),
-        "data_temperature": substance.data_temperature - ZERO_CELSIUS,
-        "data_kinematic_viscosity": data,
-        "fit_residual": fitted / data - 1.0,
-    }
+    curves = np.where(np.isfinite(curves), curves, np.nan)
+    return xr.Dataset(
+        {
+            "fit_parameter": (("viscosity_law", "parameter"), parameters),
+            "fitted_kinematic_viscosity": (("viscosity_law", "fit_temperature"), curves),
+            "data_temperature": ("data_point", substance.data_temperature - ZERO_CELSIUS),
+            "data_kinematic_viscosity": ("data_point", data),
+            "fit_residual": (("viscosity_law", "data_point"), fitted / data - 1.0),
+        },
+        coords={"data_point": np.arange(data.size)},
+    )
 
 
 def _fit(law, data_temperature, data_viscosity, curve_temperature):
-    """Parameters by name, curve and fitted data of one law; nan where it refuses the data."""
+    """Parameters by name, curve and fitted data of one law; NaN where the law allows no fit."""
     try:
         parameters = law.fit(data_temperature, data_viscosity / MM2_PER_S)
     except RangeError:

@@ -1,20 +1,21 @@
-"""The rig stage: what the simulated rig logs at the trace points, and rigs of other bandwidths."""
+"""The rig stage: voltages that rigs of several bandwidths log at the trace points."""
 
 import numpy as np
 import xarray as xr
 
-from lube.grid.operating_points import operating_points
+from lube.grid.operating_points import OperatingPoint, operating_points
 from lube.physics.electrical import resistance_from_voltage
 from lube.rig.contact_share import record_counter
-from lube.rig.simulator import SimulatedRig
+from lube.rig.simulator import Revolution, SimulatedRig
 from lube.schema import EXPERIMENT_DIMS, POINT_DIMS, label
+from lube.study.study import Study
 
 BANDWIDTHS = (1e3, 3e3, 1e4, 3e4, 1e5, 3e5)
-"""Bandwidths in Hz that the rig's records are tried with, other things equal."""
+"""Bandwidths in Hz of the rigs that are compared, other things equal."""
 
 
-def rig_records(lines, film, study):
-    """Record the study's trace points with the simulated rig, and with others.
+def rig_records(lines: xr.Dataset, film: xr.Dataset, study: Study) -> xr.Dataset:
+    """Record the study's trace points with simulated rigs of several bandwidths.
 
     Parameters
     ----------
@@ -29,57 +30,58 @@ def rig_records(lines, film, study):
     -------
     xarray.Dataset
         The ``rig`` file of `lube.schema`: voltage (V) and resistance (ohm) over
-        (operating_point, rig_time) for the first revolution, and the shares of time below the
-        thresholds that rigs of several bandwidths would find, over all revolutions of all
-        its pairs of rollers.
+        (operating_point, rig_time) of the study's rig over the first revolution, and contact
+        shares by bandwidth and threshold over all revolutions of all pairs of rollers.
     """
     points = [_point_at(levels, film) for levels in study.trace_points]
-    records = [_TriedRecord(study) for _ in points]
+    records = [_BandwidthRecord(study) for _ in points]
     for _, number, revolution in SimulatedRig(lines, study, points).revolutions():
         records[number].add(revolution)
     return label(_dataset(points, records, study), "rig")
 
 
-def _point_at(levels, film):
-    """Operating point of the given levels, with the film of its formula."""
+def _point_at(levels: dict, film: xr.Dataset) -> OperatingPoint:
+    """Operating point of the given levels, with the film thickness of its formula."""
     table = film.sel(film_formula=levels["film_formula"])
     here = table.sel({name: [levels[name]] for name in POINT_DIMS})
     return operating_points(here, levels["slide_to_roll_ratio"])[0]
 
 
-class _TriedRecord:
-    """What rigs of several bandwidths log at one operating point, counted as it comes."""
+class _BandwidthRecord:
+    """Records of rigs of several bandwidths at one operating point, counted as they arrive."""
 
-    def __init__(self, study):
+    def __init__(self, study: Study) -> None:
         self._rig, self.voltage = study.rig, None
         interval = 1.0 / study.rig.sampling_rate
-        self._tried = [
+        self._counters = [
             (rig, record_counter(study.experiment, rig, "voltage", interval))
             for rig in (study.rig.model_copy(update={"bandwidth": band}) for band in BANDWIDTHS)
         ]
-        self._touched = self._steps = 0
+        self._steps_in_contact = self._steps = 0
 
-    def add(self, revolution):
+    def add(self, revolution: Revolution) -> None:
         if self.voltage is None:
             self.voltage = revolution.voltage(self._rig)
-        for rig, counter in self._tried:
+        for rig, counter in self._counters:
             counter.add(revolution.voltage(rig))
-        self._touched += np.count_nonzero(revolution.contact)
+        self._steps_in_contact += np.count_nonzero(revolution.contact)
         self._steps += revolution.contact.size
 
     @property
-    def shares(self):
-        """Share below each threshold, shape (bandwidth, threshold)."""
-        return [counter.below.sum(axis=1) / counter.samples for _, counter in self._tried]
+    def shares(self) -> list[np.ndarray]:
+        """Contact shares, shape (bandwidth, threshold)."""
+        return [counter.below.sum(axis=1) / counter.samples for _, counter in self._counters]
 
     @property
-    def true_share(self):
+    def true_share(self) -> float:
         """Share of time with metal contact."""
-        return self._touched / self._steps
+        return self._steps_in_contact / self._steps
 
 
-def _dataset(points, records, study):
-    """Set the records side by side, with their operating points."""
+def _dataset(
+    points: list[OperatingPoint], records: list[_BandwidthRecord], study: Study
+) -> xr.Dataset:
+    """Dataset of the records and their operating points."""
     voltage = np.array([record.voltage for record in records])
     along, over_time = ("operating_point",), ("operating_point", "rig_time")
     shares = np.array([record.shares for record in records])

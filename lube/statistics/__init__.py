@@ -1,1 +1,1 @@
-"""Intervals, the scatter of one pair, and curves of probability over the film: plain functions."""
+"""Confidence and prediction intervals of probabilities, and curves of them against the film."""

@@ -1,22 +1,25 @@
-"""Limits of a probability, from the independent looks at it or, for want of scatter, from windows.
+"""Confidence intervals of a probability, from its effective sample size.
 
-Both the realisations of an ensemble and the stretches of a record scatter about a share of
-time. Either scatter amounts to a number of independent looks, and from there on they are
-treated alike, so that the intervals of simulation and experiment mean the same.
+The realisations of an ensemble and the blocks of a record both scatter about a share of time.
+Either scatter is equivalent to a number of independent trials, the effective sample size, and from
+there on both are treated alike, so that the intervals of simulation and experiment mean the same.
+Without scatter, the number of independent windows takes its place.
 """
 
 import numpy as np
+import numpy.typing as npt
 import scipy.special
 
 CONFIDENCE = 0.95
+"""Confidence level of all intervals."""
 
 
-def mean_over_first(values):
-    """Mean over the first axis, its terms added one after the other.
+def mean_over_first(values: np.ndarray) -> np.ndarray:
+    """Mean over the first axis, with the terms added one after the other.
 
-    NumPy's own sum pairs the terms by the array's shape and memory layout, and so the last digit
-    of one column depends on the columns beside it. Here it does not, and one operating point
-    made again by itself has the bits that it had among many.
+    NumPy's own sum pairs the terms by the array's shape and memory layout, so the last digit of
+    one column depends on the columns beside it. Here it does not, and one operating point
+    computed by itself is bit-identical to the same point computed among others.
 
     Parameters
     ----------
@@ -27,6 +30,11 @@ def mean_over_first(values):
     -------
     numpy.ndarray
         Shape (...).
+
+    Examples
+    --------
+    >>> mean_over_first(np.array([[1.0, 2.0], [3.0, 6.0]]))
+    array([2., 4.])
     """
     total = np.zeros(values.shape[1:])
     for row in values:
@@ -34,17 +42,24 @@ def mean_over_first(values):
     return total / len(values)
 
 
-def score_interval(mean, looks, quantile):
-    """Wilson's score interval of a probability.
+def score_interval(
+    mean: npt.ArrayLike, sample_size: npt.ArrayLike, quantile: npt.ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    r"""Wilson's score interval of a probability.
+
+    .. math::
+
+        \frac{1}{1 + z^2/n} \left( p + \frac{z^2}{2n}
+        \pm z \sqrt{\frac{p (1 - p)}{n} + \frac{z^2}{4 n^2}} \right)
 
     Parameters
     ----------
-    mean : numpy.ndarray
-        Estimated probability.
-    looks : numpy.ndarray
-        Number of independent looks behind it.
-    quantile : float
-        Two-sided quantile: 1.96 for 95 % and many realisations, Student's t for few.
+    mean : float or numpy.ndarray
+        Estimated probability :math:`p`.
+    sample_size : float or numpy.ndarray
+        Effective sample size :math:`n` of the estimate.
+    quantile : float or numpy.ndarray
+        Two-sided quantile :math:`z`: 1.96 for 95 % and many realisations, Student's t for few.
 
     Returns
     -------
@@ -55,48 +70,64 @@ def score_interval(mean, looks, quantile):
     ----------
     E. B. Wilson, Probable inference, the law of succession, and statistical inference,
     J. Am. Stat. Assoc. 22 (1927) 209-212.
+
+    Examples
+    --------
+    >>> [f"{limit:.3f}" for limit in score_interval(0.1, 100, 1.96)]
+    ['0.055', '0.174']
     """
     # Products, not powers: NumPy may round the power of a single number otherwise than of many.
     square = quantile * quantile
-    shrink = 1.0 + square / looks
-    centre = (mean + square / (2.0 * looks)) / shrink
-    variance = mean * (1.0 - mean) / looks + square / (4.0 * looks * looks)
+    shrink = 1.0 + square / sample_size
+    centre = (mean + square / (2.0 * sample_size)) / shrink
+    variance = mean * (1.0 - mean) / sample_size + square / (4.0 * sample_size * sample_size)
     half = quantile * np.sqrt(variance) / shrink
     return np.maximum(centre - half, 0.0), np.minimum(centre + half, 1.0)
 
 
-def probability_limits(mean, looks, degrees, windows):
-    """Limits of the 95 % interval of a probability, which never is a point.
+def probability_limits(
+    mean: np.ndarray, sample_size: npt.ArrayLike, degrees: npt.ArrayLike, windows: npt.ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    r"""Limits of the 95 % confidence interval of a probability, which is never a point.
 
-    Where contact was seen never, or always, or the scatter is unknown, `windows` stands in for
-    the number of looks. Never seen then means a one-sided upper limit, 1 - 0.05^(1/n), the
-    exact binomial one for n windows without contact. No upper limit is below this one, nor a
-    lower one above its mirror image: what was seen often and evenly says nothing of what is
-    rare and was not met so far.
+    It is Wilson's interval with Student's quantile. Where the scatter is unknown, `windows` takes
+    the place of the effective sample size. If contact was never seen, the upper limit is the
+    exact one-sided binomial one for :math:`n_w` windows without contact,
+
+    .. math:: 1 - 0.05^{1/n_w} ,
+
+    and if it was always seen, the lower limit is one minus this. No upper limit is below it and
+    no lower limit above its mirror image, because frequent and evenly spread events say nothing
+    about rare ones that have not occurred so far.
 
     Parameters
     ----------
     mean : numpy.ndarray
         Estimated probability, shape (...).
-    looks : numpy.ndarray
-        Number of independent looks that the scatter amounts to, shape (...); NaN where there
-        is no scatter to tell.
-    degrees : numpy.ndarray or int
+    sample_size : float or numpy.ndarray
+        Effective sample size of the estimate, shape (...); NaN where there is no scatter.
+    degrees : int or numpy.ndarray
         Degrees of freedom of that scatter, broadcastable to shape (...).
-    windows : numpy.ndarray or float
-        Independent windows behind the estimate, broadcastable to shape (...).
+    windows : float or numpy.ndarray
+        Number :math:`n_w` of independent windows in all, broadcastable to shape (...).
 
     Returns
     -------
     lower, upper : numpy.ndarray
         Shape (...) each, within 0 and 1.
+
+    Examples
+    --------
+    >>> lower, upper = probability_limits(np.array([0.0, 0.1]), np.array([np.nan, 100.0]), 63, 500)
+    >>> lower.round(3), upper.round(3)
+    (array([0.   , 0.055]), array([0.006, 0.176]))
     """
     windows = np.broadcast_to(windows, np.shape(mean)).astype(float)
-    scattered = ~np.isnan(looks)
+    scattered = ~np.isnan(sample_size)
     student = scipy.special.stdtrit(degrees, 0.5 + CONFIDENCE / 2.0)
     normal = scipy.special.ndtri(0.5 + CONFIDENCE / 2.0)
     lower, upper = score_interval(
-        mean, np.where(scattered, looks, windows), np.where(scattered, student, normal)
+        mean, np.where(scattered, sample_size, windows), np.where(scattered, student, normal)
     )
     bound = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
     lower = np.select(
@@ -106,54 +137,46 @@ def probability_limits(mean, looks, degrees, windows):
     return lower, upper
 
 
-def effective_sample_size(probabilities):
-    """Count the independent looks that the scatter between realisations amounts to.
+def probability_interval(
+    probabilities: np.ndarray, windows: npt.ArrayLike
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    r"""Mean over realisations and its 95 % confidence interval.
+
+    The effective sample size of the mean is
+
+    .. math:: R\, n = \frac{p (1 - p)}{s^2 / R}
+
+    with :math:`n` of `lube.statistics.sample_size.effective_sample_size`. Where realisations do
+    not scatter, or where there is only one, their independent windows take its place. The windows
+    also bound the limits (`probability_limits`), because segments cut by the window's edges break
+    for a few time steps in every realisation: their small scatter says nothing about whole
+    segments, which are rare, break for the whole passage and may not have occurred so far.
 
     Parameters
     ----------
     probabilities : numpy.ndarray
         Shape (R, ...), one probability for each realisation.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (...): p (1 - p) / (s^2 / R), infinite where there is no scatter, NaN for a
-        single realisation.
-    """
-    mean = mean_over_first(probabilities)
-    realisations = probabilities.shape[0]
-    if realisations == 1:
-        return np.full(mean.shape, np.nan)
-    offsets = probabilities - mean
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return mean * (1.0 - mean) * (realisations - 1) / mean_over_first(offsets * offsets)
-
-
-def probability_interval(probabilities, windows):
-    """Mean over realisations and its 95 % interval.
-
-    With one realisation the scatter is unknown, and what it has of independent windows stands
-    in for it, as where contact was seen never or always (`probability_limits`): so many windows
-    that share no roughness fit into one revolution. They also bound the limits, since segments
-    cut by the window's edges break for a few steps in every realisation: their small scatter
-    says nothing of the whole segments, rare and seen for the whole passage, not met so far.
-
-    Parameters
-    ----------
-    probabilities : numpy.ndarray
-        Shape (R, ...), one probability for each realisation.
-    windows : numpy.ndarray
+    windows : float or numpy.ndarray
         Independent windows in one realisation, broadcastable to shape (...).
 
     Returns
     -------
     mean, lower, upper : numpy.ndarray
         Shape (...) each.
+
+    Examples
+    --------
+    >>> limits = probability_interval(np.array([0.28, 0.31, 0.30, 0.29]), 500.0)
+    >>> [f"{limit:.3f}" for limit in limits]
+    ['0.295', '0.275', '0.316']
     """
     realisations = probabilities.shape[0]
     mean = mean_over_first(probabilities)
-    # Asked of the values themselves: the variance of equal ones need not round to zero.
-    scattered = np.ptp(probabilities, axis=0) > 0.0
-    looks = np.where(scattered, effective_sample_size(probabilities), np.nan)
-    lower, upper = probability_limits(mean, looks, max(realisations - 1, 1), windows * realisations)
-    return mean, lower, upper
+    offsets = probabilities - mean
+    # Summed column by column, unlike in `effective_sample_size`: see `mean_over_first`.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sample_size = mean * (1.0 - mean) * (realisations - 1) / mean_over_first(offsets * offsets)
+    # By the values themselves: the variance of equal values need not round to zero.
+    sample_size = np.where(np.ptp(probabilities, axis=0) > 0.0, sample_size, np.nan)
+    degrees = max(realisations - 1, 1)
+    return mean, *probability_limits(mean, sample_size, degrees, windows * realisations)

@@ -1,19 +1,21 @@
-"""Curves of probability against the film, read in either direction, and fits along them.
+r"""Curves of probability against the film, read in either direction, and fits along them.
 
-Films enter by the logarithm of the lambda ratio, x, and probabilities by the logit
-ln(p / (1 - p)): on these scales a curve is smooth, and straight lines between its levels do.
+Films enter as the logarithm of the lambda ratio, :math:`x = \ln \Lambda`, and probabilities as
+the logit, :math:`\ln(p / (1 - p))`. On these scales the curves are smooth enough for linear
+interpolation.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import scipy.optimize
 import scipy.special
 
 from lube.statistics.one_pair import quantile, standard_error
 
 STEPS = 16
-"""Steps between two levels of a curve on which the limits of a film are looked for."""
+"""Steps between two levels of a curve in the search for the limits of a film."""
 
 
 @dataclass(frozen=True)
@@ -26,16 +28,22 @@ class Curve:
         Logarithms of the lambda ratio, shape (n,), rising.
     logits : numpy.ndarray
         Logits of the probability there, shape (n,), strictly falling.
-    looks : numpy.ndarray
+    sample_size : numpy.ndarray
         Effective sample size of one realisation there, shape (n,).
+
+    Examples
+    --------
+    >>> curve = Curve(np.array([0.0, 1.0]), np.array([2.0, -2.0]), np.array([50.0, 50.0]))
+    >>> float(curve.logit_at(0.5)), float(curve.film_at(0.5))
+    (0.0, 0.5)
     """
 
     films: np.ndarray
     logits: np.ndarray
-    looks: np.ndarray
+    sample_size: np.ndarray
 
-    def logit_at(self, films):
-        """Logit of the probability at some films, straight on beyond the ends.
+    def logit_at(self, films: npt.ArrayLike) -> np.ndarray:
+        """Logit of the probability at given films, extrapolated linearly beyond the ends.
 
         Parameters
         ----------
@@ -53,8 +61,8 @@ class Curve:
         segment = np.searchsorted(self.films, films).clip(1, slopes.size) - 1
         return self.logits[segment] + slopes[segment] * (films - self.films[segment])
 
-    def film_at(self, share):
-        """Film at which the probability is so large.
+    def film_at(self, share: float) -> float:
+        """Film at which the probability has a given value.
 
         Parameters
         ----------
@@ -64,8 +72,8 @@ class Curve:
         Returns
         -------
         float
-            Logarithm of the lambda ratio: -inf if the share is above the whole curve, +inf if
-            below; NaN if the curve is empty.
+            Logarithm of the lambda ratio: -inf if the share is above the whole curve, +inf if it
+            is below; NaN if the curve is empty.
         """
         if not self.films.size:
             return np.nan
@@ -73,11 +81,13 @@ class Curve:
         return np.interp(-logit, -self.logits, self.films, left=-np.inf, right=np.inf)
 
 
-def falling_curve(films, probabilities, looks, resolution):
-    """Curve through estimated probabilities, made non-increasing.
+def falling_curve(
+    films: np.ndarray, probabilities: np.ndarray, sample_size: np.ndarray, resolution: float
+) -> Curve:
+    """Fit a falling curve to estimated probabilities.
 
-    Neighbours out of order get their common mean (isotonic regression), and levels of equal
-    probability their mean film and sample size.
+    Neighbours out of order are replaced by their common mean (isotonic regression), and levels of
+    equal probability by one level with their mean film and mean sample size.
 
     Parameters
     ----------
@@ -85,51 +95,67 @@ def falling_curve(films, probabilities, looks, resolution):
         Logarithms of the lambda ratio, shape (n,), rising.
     probabilities : numpy.ndarray
         Shape (n,).
-    looks : numpy.ndarray
+    sample_size : numpy.ndarray
         Effective sample size of one realisation at each film, shape (n,).
     resolution : float
-        Levels closer than this to 0 or to 1 are left out.
+        Levels closer than this to 0 or to 1 are omitted.
 
     Returns
     -------
     Curve
-        What remains; it may be empty.
+        The remaining levels; it may be empty.
+
+    Examples
+    --------
+    >>> curve = falling_curve(
+    ...     np.arange(4.0), np.array([0.8, 0.3, 0.5, 0.1]), np.array([10.0, 20.0, 40.0, 80.0]), 1e-6
+    ... )
+    >>> curve.films, curve.sample_size
+    (array([0. , 1.5, 3. ]), array([10., 30., 80.]))
     """
     falling = scipy.optimize.isotonic_regression(probabilities, increasing=False).x
     inside = (falling >= resolution) & (falling <= 1.0 - resolution)
     sinking, level = np.unique(-scipy.special.logit(falling[inside]), return_inverse=True)
-    films, looks = (
-        np.bincount(level, each[inside]) / np.bincount(level) for each in (films, looks)
+    films, sample_size = (
+        np.bincount(level, each[inside]) / np.bincount(level) for each in (films, sample_size)
     )
-    return Curve(films, -sinking, looks)
+    return Curve(films, -sinking, sample_size)
 
 
-def film_interval(curve, share, ratio, realisations, noise=0.0):
+def film_interval(
+    curve: Curve, share: float, ratio: float, realisations: int, noise: float = 0.0
+) -> tuple[float, float, float]:
     """Film that explains the contact share of one pair's record, with its 95 % interval.
 
-    The interval holds all films whose predicted share the record does not contradict: those
-    at which it lies within `lube.statistics.one_pair.prediction_limits`.
+    The interval holds all films that are compatible with the record: those at which its share
+    lies within `lube.statistics.one_pair.prediction_limits`.
 
     Parameters
     ----------
     curve : Curve
         Mean probability over the realisations, against the film.
     share : float
-        The record's share of time in contact.
+        Contact share of the record.
     ratio : float
         From `lube.statistics.one_pair.scatter_ratio`.
     realisations : int
-        Number of realisations behind the curve.
+        Number of realisations from which the curve is estimated.
     noise : float, optional
-        Standard error of the share by what is not the roughness.
+        Standard error of the share from causes other than the roughness.
 
     Returns
     -------
     film, lower, upper : float
-        Logarithms of the lambda ratio. Where the curve ends before it contradicts the share, a
-        limit is -inf or +inf, and so is the film where the share is beyond the curve; where all
-        of the curve contradicts it, the other limit is the curve's end. All are NaN without a
-        share or a curve.
+        Logarithms of the lambda ratio. A limit is -inf or +inf if the record is compatible with
+        the curve up to its end; the film is -inf or +inf if the share lies beyond the curve. If no
+        film of the curve is compatible with the record, the finite limit is the curve's end. All
+        are NaN if the share is NaN or the curve has fewer than two levels.
+
+    Examples
+    --------
+    >>> curve = Curve(np.array([0.0, 1.0]), np.array([2.0, -2.0]), np.array([1e3, 1e3]))
+    >>> [f"{film:.3f}" for film in film_interval(curve, 0.5, ratio=1.0, realisations=64)]
+    ['0.500', '0.468', '0.532']
     """
     if np.isnan(share) or curve.films.size < 2:
         return np.nan, np.nan, np.nan
@@ -145,13 +171,13 @@ def _distances(curve, share, ratio, realisations, noise):
     levels = np.arange(STEPS * (curve.films.size - 1) + 1) / STEPS
     films = np.interp(levels, np.arange(curve.films.size), curve.films)
     model = scipy.special.expit(curve.logit_at(films))
-    looks = np.interp(films, curve.films, curve.looks)
-    error = standard_error(model, looks, ratio, realisations, noise)
+    sample_size = np.interp(films, curve.films, curve.sample_size)
+    error = standard_error(model, sample_size, ratio, realisations, noise)
     return films, np.maximum.accumulate((share - model) / error)
 
 
-def realisation_correlation(probabilities):
-    """Correlation between operating points that see the same realisation.
+def realisation_correlation(probabilities: np.ndarray) -> np.ndarray:
+    """Pearson correlation of the probabilities at different operating points.
 
     Parameters
     ----------
@@ -161,8 +187,14 @@ def realisation_correlation(probabilities):
     Returns
     -------
     numpy.ndarray
-        Shape (P, P). A point where realisations do not differ is taken as independent of the
-        others; with one realisation, which tells nothing, all are taken as the same.
+        Shape (P, P). A point at which the realisations do not scatter is taken as independent of
+        the others; with a single realisation all points are taken as fully correlated.
+
+    Examples
+    --------
+    >>> realisation_correlation(np.array([[0.1, 0.4], [0.2, 0.6], [0.3, 0.8]])).round(6)
+    array([[1., 1.],
+           [1., 1.]])
     """
     realisations, points = probabilities.shape
     if realisations == 1:
@@ -170,22 +202,33 @@ def realisation_correlation(probabilities):
     offsets = probabilities - probabilities.mean(axis=0)
     length = np.sqrt(np.sum(offsets**2, axis=0))
     offsets /= np.where(length > 0.0, length, 1.0)
-    # Not the matrix product: its last digits hang on which processor the BLAS finds.
+    # Not the matrix product, whose last digits depend on the processor that BLAS finds.
     correlation = np.einsum("ri,rj->ij", offsets, offsets)
     np.fill_diagonal(correlation, 1.0)
     return correlation
 
 
-def fit_factor(log_factors, logits, shares, looks, covariance, realisations, noise):
-    """Fit the one factor that explains the contact shares of all records.
+def fit_factor(
+    log_factors: np.ndarray,
+    logits: np.ndarray,
+    shares: np.ndarray,
+    sample_size: np.ndarray,
+    covariance: np.ndarray,
+    realisations: int,
+    noise: np.ndarray,
+) -> tuple[float, float, float]:
+    r"""Fit one factor, common to all records, to their contact shares.
 
-    At each level of the factor the misfit of all records is added up as in a quasi-likelihood
-    with binomial variances: the sum of n l (m - p), with the share m, the model's probability p,
-    the effective sample size n and l = d logit(p) / d ln(factor). It is set over its standard
-    error, in which the records are correlated. The factor is where the misfit is zero; its 95 %
-    interval is all that the misfit does not contradict (a score interval). So records whose
-    share is 0 or 1 count as well. The covariance is never inverted: from R realisations its
-    rank is R - 1, too low for that where there are more records.
+    The estimating function is that of a quasi-likelihood with binomial variances,
+
+    .. math:: S(f) = \sum_i n_i l_i (m_i - p_i), \qquad
+              l_i = \frac{d\, \mathrm{logit}(p_i)}{d \ln f}
+
+    with the measured share :math:`m`, the model's probability :math:`p` and the effective sample
+    size :math:`n`. It is divided by its standard error, in which the records are correlated. The
+    estimate is where it is zero; the 95 % interval holds all factors at which it lies within its
+    quantile (a score interval), so records with a share of 0 or 1 count as well. The covariance
+    is never inverted: from R realisations its rank is R - 1 only.
 
     Parameters
     ----------
@@ -195,35 +238,49 @@ def fit_factor(log_factors, logits, shares, looks, covariance, realisations, noi
         Logits of the model's probability, shape (F, P), falling with the factor.
     shares : numpy.ndarray
         Measured shares, shape (P,).
-    looks : numpy.ndarray
+    sample_size : numpy.ndarray
         Effective sample size of one realisation, shape (P,).
     covariance : numpy.ndarray
         Of the errors m - p, each over (p (1 - p) / n)^(1/2), shape (P, P).
     realisations : int
-        Behind the covariance; for few of them the interval is Student's.
+        Number R of realisations from which the covariance is estimated.
     noise : numpy.ndarray
-        Standard errors of the shares by what is not the roughness, shape (P,).
+        Standard errors of the shares from causes other than the roughness, shape (P,).
 
     Returns
     -------
     factor, lower, upper : float
-        Beyond the levels the factor is NaN and a limit 0 or +inf; where all levels are
-        contradicted, the other limit is their end.
+        The factor is NaN if it lies beyond the levels; a limit there is 0 or +inf. If no level is
+        compatible with the records, the finite limit is the nearest level.
 
     References
     ----------
-    R. W. M. Wedderburn, Quasi-likelihood functions, Biometrika 61 (1974) 439-447; K.-Y. Liang
-    and S. L. Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73
-    (1986) 13-22, for the standard error under correlation.
+    R. W. M. Wedderburn, Quasi-likelihood functions, generalized linear models, and the
+    Gauss-Newton method, Biometrika 61 (1974) 439-447; K.-Y. Liang and S. L. Zeger, Longitudinal
+    data analysis using generalized linear models, Biometrika 73 (1986) 13-22, for the standard
+    error under correlation.
+
+    Examples
+    --------
+    Two independent records, of which the model explains the shares if the factor is 1:
+
+    >>> log_factors = np.linspace(-1.0, 1.0, 201)
+    >>> logits = np.array([0.5, -0.5]) - 4.0 * log_factors[:, None]
+    >>> shares = scipy.special.expit(np.array([0.5, -0.5]))
+    >>> found = fit_factor(
+    ...     log_factors, logits, shares, np.full(2, 1e3), np.eye(2), 64, np.zeros(2)
+    ... )
+    >>> [f"{factor:.2f}" for factor in found]
+    ['1.00', '0.98', '1.02']
     """
     if not shares.size:
         return np.nan, 0.0, np.inf
     model = scipy.special.expit(logits)
-    pull = looks * np.gradient(logits, log_factors, axis=0)
-    errors = pull * np.sqrt(model * (1.0 - model) / looks)
+    weights = sample_size * np.gradient(logits, log_factors, axis=0)
+    errors = weights * np.sqrt(model * (1.0 - model) / sample_size)
     variance = np.einsum("fi,ij,fj->f", errors, covariance, errors, optimize=False)
-    variance += np.sum((pull * noise) ** 2, axis=1)
-    misfit = np.sum(pull * (shares - model), axis=1) / np.sqrt(variance)
+    variance += np.sum((weights * noise) ** 2, axis=1)
+    misfit = np.sum(weights * (shares - model), axis=1) / np.sqrt(variance)
     falling = np.minimum.accumulate(misfit)
     limit = quantile(realisations)
     first, last = log_factors[[0, -1]]

@@ -1,8 +1,8 @@
-"""A record folded by the revolution: what repeats each turn, and what does not.
+"""A record folded by the revolution: what repeats in each turn and what does not.
 
-Rollers show the same roughness again after a turn. Where both repeat themselves together (equal
-circumferences, no slip) so does the whole record, but for electrical noise. How well it repeats
-tells whether that holds, and the repetition itself tells the speed.
+A roller shows the same roughness again after each turn. If both rollers repeat together (equal
+circumferences, no slip), so does the whole record, except for electrical noise. The repeatability
+checks this assumption, and the period of the repetition measures the speed.
 """
 
 from dataclasses import dataclass
@@ -11,15 +11,16 @@ import numpy as np
 import scipy.fft
 
 PHASES = 512
-"""Phases of a revolution that a record is folded into, at most."""
+"""Largest number of phases of a revolution into which a record is folded."""
 SPAN = 0.05
-"""The period is looked for so far from the nominal one, relative."""
-LEAST_STRETCHES = 8
-"""Fewer stretches in a revolution than this do not show whether it repeats."""
+"""Relative distance from the nominal period within which the period is searched."""
+LEAST_BLOCKS = 8
+"""Fewer blocks in a revolution than this do not show whether it repeats."""
 ALIKE = 0.98
-"""Peaks of the autocorrelation this near the highest may be the turn; then the nearest is taken."""
+"""Of all peaks of the autocorrelation this close to the highest, the nearest to the nominal period
+is taken."""
 CLEAR = 0.5
-"""From this repeatability up, a record's own period is believed rather than a stated speed."""
+"""From this repeatability on, the period found in the record replaces the nominal one."""
 
 
 @dataclass(frozen=True)
@@ -29,19 +30,19 @@ class Fold:
     Attributes
     ----------
     period : float
-        Of a revolution, s: refined from the record if it repeats clearly, else the nominal one.
+        Period of a revolution, s: found in the record if it repeats clearly, else the nominal one.
     repeatability : float
-        Mean correlation between two revolutions: 1 if they are the same, 0 if they have nothing
-        in common; NaN of a record that holds no more than one, does not vary, or is cut into
-        stretches too long to tell.
+        Mean correlation between two revolutions: 1 if they are the same, 0 if they are
+        independent; NaN if the record holds at most one revolution, does not vary, or has too few
+        blocks in a revolution.
     profile : numpy.ndarray
-        Shape (PHASES,), share of time in contact at each phase of a revolution.
+        Shape (PHASES,), contact share at each phase of a revolution.
     deviation : numpy.ndarray
-        Shape (PHASES,), standard deviation between revolutions there; NaN where a phase is seen
-        once only.
+        Shape (PHASES,), standard deviation between revolutions; NaN where a phase occurs only
+        once.
     share_error : float
-        Standard error of the record's share by what differs between its whole revolutions;
-        0 if there are fewer than two.
+        Standard error of the record's contact share from the scatter between its whole
+        revolutions; 0 if there are fewer than two.
     """
 
     period: float
@@ -51,22 +52,31 @@ class Fold:
     share_error: float
 
 
-def fold(shares, interval, nominal_period):
+def fold(shares: np.ndarray, interval: float, nominal_period: float) -> Fold:
     """Fold a record by the revolution.
 
     Parameters
     ----------
     shares : numpy.ndarray
-        Shape (B,), share of time in contact in successive equal stretches of the record.
+        Shape (B,), contact share in successive equal blocks of the record.
     interval : float
-        Duration of a stretch, s.
+        Duration of a block, s.
     nominal_period : float
-        Duration of a revolution by the rig's speed, s.
+        Period of a revolution by the speed of the rig, s.
 
     Returns
     -------
     Fold
         The folded record.
+
+    Examples
+    --------
+    A record of ten equal revolutions, each of 64 blocks:
+
+    >>> turn = np.random.default_rng(1).random(64)
+    >>> folded = fold(np.tile(turn, 10), interval=0.01, nominal_period=0.64)
+    >>> f"{folded.period:.3f} s", f"{folded.repeatability:.3f}"
+    ('0.640 s', '1.000')
     """
     found = refined_period(shares, interval, nominal_period)
     period, repeatability = found, _repeatability(shares, interval, found)
@@ -78,11 +88,12 @@ def fold(shares, interval, nominal_period):
     return Fold(period, repeatability, profile, deviation, error)
 
 
-def refined_period(shares, interval, nominal_period):
-    """Period at which a record repeats itself, near a nominal one.
+def refined_period(shares: np.ndarray, interval: float, nominal_period: float) -> float:
+    """Find the period at which a record repeats, near a nominal one.
 
-    The autocorrelation has a peak at each multiple of the period. The first peak is looked for
-    within `SPAN` of the nominal period, the further ones, doubled each time, near where it says.
+    The autocorrelation has a peak at each multiple of the period. The first peak is searched
+    within `SPAN` of the nominal period; then the multiple is doubled again and again, and each
+    peak is searched near the position that follows from the one before.
 
     Parameters
     ----------
@@ -92,18 +103,24 @@ def refined_period(shares, interval, nominal_period):
     Returns
     -------
     float
-        The period, s; the nominal one if the record is shorter than that, does not vary, or is
-        cut into stretches too long to tell.
+        The period, s; the nominal one if the record is shorter than that, does not vary, or has
+        too few blocks in a revolution.
+
+    Examples
+    --------
+    >>> record = np.tile(np.random.default_rng(1).random(64), 10)
+    >>> f"{refined_period(record, interval=0.01, nominal_period=0.65):.3f}"
+    '0.640'
     """
     reach = SPAN * nominal_period / interval
     lag = nominal_period / interval
-    if shares.size < lag + reach + 2 or lag < LEAST_STRETCHES or np.ptp(shares) == 0.0:
+    if shares.size < lag + reach + 2 or lag < LEAST_BLOCKS or np.ptp(shares) == 0.0:
         return nominal_period
     correlation = _autocorrelation(shares)
     multiple = 1
     while multiple * (lag + reach) + 2 < shares.size:
         lag = _peak(correlation, multiple * lag, max(multiple * reach, 2.0)) / multiple
-        reach = 1.5 / multiple  # the peak is known to about a stretch
+        reach = 1.5 / multiple  # the position is accurate to about one block
         multiple *= 2
     return lag * interval
 
@@ -116,9 +133,9 @@ def _autocorrelation(shares):
 
 
 def _peak(correlation, middle, reach):
-    """Lag of the peak about some lag, by a parabola through its neighbours.
+    """Lag of the peak near a given lag, by a parabola through its neighbours.
 
-    What repeats itself more often than once a turn, such as a hum, has many equal peaks.
+    A signal that repeats several times in a turn, such as mains hum, has many equal peaks.
     """
     first = max(int(np.floor(middle - reach)), 1)
     last = min(int(np.ceil(middle + reach)), correlation.size - 2)
@@ -129,21 +146,21 @@ def _peak(correlation, middle, reach):
     tops = [top for top in tops if correlation[top] >= min(ALIKE * high, high)]
     top = min(tops, key=lambda lag: abs(lag - middle))
     before, here, after = correlation[top - 1 : top + 2]
-    if max(before, after) > here:  # the largest in reach is on a slope, not on a peak
+    if max(before, after) > here:  # the largest value in reach lies on a slope, not on a peak
         return float(top)
     bend = before - 2.0 * here + after
     return top + (0.5 * (before - after) / bend if bend < 0.0 else 0.0)
 
 
 def _phases(count, interval, period):
-    """Phase, as a whole number, and revolution of each stretch."""
+    """Phase, as a whole number, and revolution of each block."""
     turns = (np.arange(count) + 0.5) * interval / period
     phases = min(PHASES, max(int(period / interval), 1))
     return (turns % 1.0 * phases).astype(np.int64), turns.astype(np.int64), phases
 
 
 def _cells(shares, interval, period):
-    """Mean share, and phase, of each phase of each revolution that the record holds."""
+    """Mean share in each phase of each revolution in the record, and that phase."""
     phase, turn, phases = _phases(shares.size, interval, period)
     cell = turn * phases + phase
     counts = np.bincount(cell)
@@ -153,13 +170,13 @@ def _cells(shares, interval, period):
 
 def _repeatability(shares, interval, period):
     """Mean correlation between two revolutions."""
-    # Decided by the shares themselves: deviations of equal shares may not round to zero.
+    # By the shares themselves: deviations of equal shares need not round to zero.
     if np.ptp(shares) == 0.0:
         return np.nan
     values, phase, phases = _cells(shares - shares.mean(), interval, period)
     times = np.bincount(phase, minlength=phases)
     again = times > 1
-    if not again.any() or phases < LEAST_STRETCHES:
+    if not again.any() or phases < LEAST_BLOCKS:
         return np.nan
     sums, squares = (np.bincount(phase, each, phases)[again] for each in (values, values**2))
     times = times[again]
@@ -169,7 +186,7 @@ def _repeatability(shares, interval, period):
 
 
 def _profile(shares, interval, period):
-    """Mean over the revolutions at each of `PHASES` phases, and the deviation between them."""
+    """Mean over the revolutions at each of `PHASES` phases, and standard deviation."""
     values, phase, phases = _cells(shares, interval, period)
     times = np.bincount(phase, minlength=phases)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -181,7 +198,7 @@ def _profile(shares, interval, period):
 
 
 def _share_error(shares, interval, period):
-    """Take the standard error of the share from the scatter between whole revolutions."""
+    """Calculate the standard error of the share from the scatter between whole revolutions."""
     _, turn, _ = _phases(shares.size, interval, period)
     whole = int(shares.size * interval / period)
     if whole < 2:

@@ -1,36 +1,45 @@
-"""One pair of rollers: how far the share of its record may lie from the mean over all pairs.
+"""One pair of rollers: how far the contact share of its record scatters about the mean.
 
-An ensemble's interval is that of the mean over pairs. A record comes from one pair, and its
-share scatters about that mean with the variance s^2 between realisations, however long it is:
-equal rollers without slip show the same roughness each revolution. Only new alignments of the
-two lines, by slip or unequal circumferences, and a roughness that changes make it scatter less.
+The confidence interval of an ensemble is that of the mean over pairs. A record comes from one
+pair, and its share scatters about that mean with the variance s^2 between realisations, however
+long it is: equal rollers without slip show the same roughness in every revolution. It scatters
+less only if the two lines come into new alignments, by slip or unequal circumferences, or if the
+roughness changes.
 """
 
 import math
 
 import numpy as np
+import numpy.typing as npt
 import scipy.special
 
-CONFIDENCE = 0.95
+from lube.statistics.confidence import CONFIDENCE
 
 MOST_TURNS = 100_000
-"""Turns in which alignments are counted, and drift; longer records are taken as so long."""
+"""Turns over which alignments and drift are evaluated; longer records are taken as this long."""
 
 
-def quantile(realisations, among=1):
-    """Two-sided 95 % quantile for a scatter that so many realisations tell.
+def quantile(realisations: int, among: int = 1) -> float:
+    """Two-sided 95 % quantile for a scatter estimated from realisations.
 
     Parameters
     ----------
     realisations : int
-        Number R; with one there is no scatter, and the normal distribution stands in.
+        Number R of realisations. With one there is no scatter, and the quantile is that of the
+        normal distribution.
     among : int, optional
-        Values of which, 95 times out of 100, none is to exceed it (Bonferroni's bound).
+        Number of values, none of which exceeds the quantile in 95 of 100 cases (Bonferroni's
+        bound).
 
     Returns
     -------
     float
         Student's t of R - 1 degrees of freedom.
+
+    Examples
+    --------
+    >>> f"{quantile(8):.3f}", f"{quantile(1):.3f}"
+    ('2.365', '1.960')
     """
     level = 1.0 - (1.0 - CONFIDENCE) / 2.0 / among
     if realisations < 2:
@@ -38,66 +47,86 @@ def quantile(realisations, among=1):
     return scipy.special.stdtrit(realisations - 1, level)
 
 
-def repeat_factor(turns):
-    """Variance of a share over some turns of one line, over that of one whole turn.
+def repeat_factor(turns: npt.ArrayLike) -> npt.ArrayLike:
+    r"""Variance of a share over several turns of one line, over that of one whole turn.
 
-    Of T = k + f turns a fraction f of the line is seen k + 1 times and the rest k times, so
-    that the factor is ((k + 1)^2 f + k^2 (1 - f)) / T^2: 1/T below one turn, one for whole
-    turns, and nearly one for all longer records. Stretches of the line count as independent.
+    In :math:`T = k + f` turns a fraction :math:`f` of the line passes :math:`k + 1` times and the
+    rest :math:`k` times. Different sections of the line are taken as independent:
+
+    .. math:: \frac{(k + 1)^2 f + k^2 (1 - f)}{T^2}
+
+    This is 1/T below one turn, one for whole turns and nearly one for all longer records.
 
     Parameters
     ----------
     turns : float or numpy.ndarray
-        T, above 0.
+        Number of turns :math:`T`, above 0.
 
     Returns
     -------
     float or numpy.ndarray
         The factor.
+
+    Examples
+    --------
+    >>> repeat_factor(np.array([0.5, 1.0, 1.5, 7.0])).round(3)
+    array([2.   , 1.   , 1.111, 1.   ])
     """
     whole = np.floor(turns)
     part = turns - whole
     return ((whole + 1.0) ** 2 * part + whole**2 * (1.0 - part)) / turns**2
 
 
-def distinct_alignments(turns, shift, perimeter, reach):
-    """Count the alignments of two lines that share no roughness, within some turns.
+def distinct_alignments(turns: float, shift: int, perimeter: int, reach: float) -> int:
+    """Count the alignments of two lines that share no roughness.
 
     Parameters
     ----------
     turns : float
         Turns of the roller with the faster surface.
     shift : int
-        Points by which the other line moves past it in each turn.
+        Points by which the other surface advances in each of these turns.
     perimeter : int
         Points around the other roller.
     reach : float
-        Points that two alignments must be apart to share no roughness.
+        Distance of two alignments that share no roughness, points.
 
     Returns
     -------
     int
-        At least one: rollers that repeat themselves have one alignment for ever.
+        At least one; equal rollers without slip keep one alignment.
+
+    Examples
+    --------
+    Rollers of 1000 and 800 points meet again after four turns of the first:
+
+    >>> distinct_alignments(100, 1000, 800, 40.0)
+    4
     """
     offsets = np.arange(math.ceil(min(turns, MOST_TURNS))) * (shift % perimeter) % perimeter
-    # Bins about the multiples of the reach, so that a return to the start is in the first.
+    # Bins centred on the multiples of the reach, so that a return to the start is in the first.
     return np.unique((offsets + reach / 2.0) % perimeter // reach).size
 
 
-def drift_factor(turns, drift):
-    """Variance of a share over some turns of rollers whose roughness drifts, over one turn's.
+def drift_factor(turns: float, drift: float) -> float:
+    r"""Variance of a share over several turns while the roughness drifts, over that of one turn.
 
-    Each turn renews the share `drift` of the variance of the heights, so that heights k turns
-    apart have the correlation c^k with c^2 = 1 - drift. Shares are correlated no more than the
-    heights they follow from (Gebelein's inequality), which bounds the variance of their mean
-    by that of a first-order autoregressive series.
+    Each turn renews the fraction `drift` of the variance of the heights, so heights :math:`k`
+    turns apart have the correlation :math:`c^k`. Shares are correlated no more than the heights
+    from which they follow (Gebelein's inequality), so the variance of their mean is at most that
+    of a first-order autoregressive series:
+
+    .. math::
+
+        \frac{1}{T} \left( 1 + 2 \sum_{k=1}^{T-1} \left( 1 - \frac{k}{T} \right) c^k \right),
+        \qquad c^2 = 1 - \mathrm{drift}
 
     Parameters
     ----------
     turns : float
-        T, above 0.
+        Number of turns :math:`T`, above 0.
     drift : float
-        From 0 (the roughness stays) to 1 (another each turn).
+        From 0 (the roughness stays the same) to 1 (it is new in each turn).
 
     Returns
     -------
@@ -108,42 +137,65 @@ def drift_factor(turns, drift):
     ----------
     H. Gebelein, Das statistische Problem der Korrelation als Variations- und
     Eigenwertproblem, Z. Angew. Math. Mech. 21 (1941) 364-379.
+
+    Examples
+    --------
+    >>> [f"{drift_factor(4, drift):.3f}" for drift in (0.0, 0.1, 1.0)]
+    ['1.000', '0.937', '0.250']
     """
-    turns = min(max(turns, 1.0), MOST_TURNS)  # the variance does not grow with more of them
+    turns = min(max(turns, 1.0), MOST_TURNS)  # the variance does not grow with more turns
     lags = np.arange(1, math.ceil(turns))
     correlation = np.sqrt(1.0 - drift) ** lags
     return min((1.0 + 2.0 * np.sum((1.0 - lags / turns) * correlation)) / turns, 1.0)
 
 
-def scatter_ratio(turns, ratios, points, reach, persistent=0.0, drift=0.0):
-    """Variance of the share of one pair's record about the mean, over that of one revolution.
+def scatter_ratio(
+    turns: float,
+    ratios: tuple[float, float],
+    points: tuple[int, int],
+    reach: float,
+    persistent: float = 0.0,
+    drift: float = 0.0,
+) -> float:
+    r"""Variance of the share of one pair's record about the mean, over that of one revolution.
 
-    The share of one alignment varies from pair to pair by what either line alone does, which
-    no new alignment averages out, and by what the two do together, which each new one draws
-    again: s^2(M) = s_inf^2 + (s_1^2 - s_inf^2) / M for M alignments. Below one revolution both
-    grow as 1 / turns. Where the roughness drifts, an alignment that comes again is less and less
-    the same, and the scatter of its visits falls as `drift_factor` says.
+    The share of one alignment differs between pairs by an effect of either line alone, which new
+    alignments do not average out, and by an effect of the two together, which is drawn anew with
+    each alignment. For :math:`M` alignments:
+
+    .. math:: s_M^2 = s_\infty^2 + \frac{s_1^2 - s_\infty^2}{M}
+
+    Below one revolution both parts grow as 1 / turns. If the roughness drifts, a recurring
+    alignment is less and less the same, and the scatter of its recurrences falls by
+    `drift_factor`.
 
     Parameters
     ----------
     turns : float
         Revolutions of the roller with the faster surface in the record.
     ratios : tuple of float
-        Surface speeds over the faster one's, from `lube.grid.discretise.speed_ratios`.
+        Surface speeds over that of the faster surface, `lube.grid.discretise.speed_ratios`.
     points : tuple of int
         Points around either roller.
     reach : float
-        Points that two alignments must be apart to share no roughness.
+        Distance of two alignments that share no roughness, points.
     persistent : float, optional
-        s_inf^2 / s_1^2, what no alignment averages out; it does not matter for equal rollers
-        in rolling, which have one alignment.
+        :math:`s_\infty^2 / s_1^2`, the part that new alignments do not average out. It does not
+        matter for equal rollers in pure rolling, which keep one alignment.
     drift : float, optional
         As in `drift_factor`.
 
     Returns
     -------
     float
-        s^2 of the record over s_1^2.
+        :math:`s^2` of the record over :math:`s_1^2`.
+
+    Examples
+    --------
+    A slip of a tenth of the perimeter has ten alignments:
+
+    >>> f"{scatter_ratio(20, (1.0, 0.9), (10_000, 10_000), 40.0, persistent=0.2):.2f}"
+    '0.28'
     """
     if turns <= 1.0:
         return 1.0 / turns
@@ -152,9 +204,9 @@ def scatter_ratio(turns, ratios, points, reach, persistent=0.0, drift=0.0):
     weights = 1.0 / np.array(points) / np.sum(1.0 / np.array(points))
 
     def alone(turns):
-        """Scatter by either line alone; a roller at rest shows one place for ever."""
-        of_each = np.maximum(turns * travel, reach) / points
-        return np.sum(weights * repeat_factor(of_each))
+        """Scatter by either line alone; a roller at rest shows the same points all the time."""
+        turns_of_each = np.maximum(turns * travel, reach) / points
+        return np.sum(weights * repeat_factor(turns_of_each))
 
     shift = round(travel[1 - faster])
     alignments = min(distinct_alignments(turns, shift, points[1 - faster], reach), turns)
@@ -165,75 +217,112 @@ def scatter_ratio(turns, ratios, points, reach, persistent=0.0, drift=0.0):
     return by_either * later + (1.0 - by_either) * together
 
 
-def prediction_limits(mean, looks, ratio, realisations, noise=0.0):
-    """Limits within which the share of one pair's record lies, 95 times out of 100.
+def prediction_limits(
+    mean: np.ndarray,
+    sample_size: npt.ArrayLike,
+    ratio: npt.ArrayLike,
+    realisations: int,
+    noise: npt.ArrayLike = 0.0,
+) -> tuple[np.ndarray, np.ndarray]:
+    r"""95 % prediction limits of the contact share of one pair's record.
 
-    The share scatters about the mean over pairs with the variance s^2 v of one pair's record,
-    and that mean is known to s^2 / R from R realisations. The errors are taken as normal, with
-    Student's quantile for few realisations, and shares end at 0 and 1.
+    .. math:: p \pm t_{R-1} \sigma
+
+    with the standard error :math:`\sigma` of `standard_error` and Student's quantile. The errors
+    are taken as normal, and the limits are cut at 0 and 1.
 
     Parameters
     ----------
     mean : numpy.ndarray
-        Mean probability p over the realisations.
-    looks : numpy.ndarray
-        Effective sample size of one realisation, p (1 - p) / s^2.
-    ratio : numpy.ndarray
-        v, from `scatter_ratio`.
+        Mean probability :math:`p` over the realisations.
+    sample_size : float or numpy.ndarray
+        Effective sample size of one realisation, :math:`n = p (1 - p) / s^2`.
+    ratio : float or numpy.ndarray
+        :math:`v`, from `scatter_ratio`.
     realisations : int
-        R.
-    noise : numpy.ndarray, optional
-        Standard error of the record's share by what is not its roughness: electrical noise.
+        Number :math:`R` of realisations.
+    noise : float or numpy.ndarray, optional
+        Standard error of the record's share from causes other than the roughness, such as
+        electrical noise.
 
     Returns
     -------
     lower, upper : numpy.ndarray
-        Within 0 and 1. Where all realisations agree on 0 or 1, the mean is taken as far from
-        it as they allow, at 95 % one-sided.
+        Within 0 and 1. Where all realisations are 0, or all are 1, the mean is replaced by its
+        one-sided 95 % limit.
+
+    Examples
+    --------
+    >>> lower, upper = prediction_limits(np.array([0.0, 0.3]), 100.0, 1.0, 64)
+    >>> lower.round(4), upper.round(4)
+    (array([0.    , 0.2077]), array([0.0048, 0.3923]))
     """
-    never_met = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / (looks * realisations))
+    never_met = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / (sample_size * realisations))
     likely = np.clip(mean, never_met, 1.0 - never_met)
     likely = np.where((mean == 0.0) | (mean == 1.0), likely, mean)
-    half = quantile(realisations) * standard_error(likely, looks, ratio, realisations, noise)
+    half = quantile(realisations) * standard_error(likely, sample_size, ratio, realisations, noise)
     lower = np.where(mean == 0.0, 0.0, np.maximum(likely - half, 0.0))
     upper = np.where(mean == 1.0, 1.0, np.minimum(likely + half, 1.0))
     return lower, upper
 
 
-def standard_error(mean, looks, ratio, realisations, noise=0.0):
-    """Take the standard error of one pair's share about the ensemble's mean.
+def standard_error(
+    mean: npt.ArrayLike,
+    sample_size: npt.ArrayLike,
+    ratio: npt.ArrayLike,
+    realisations: int,
+    noise: npt.ArrayLike = 0.0,
+) -> np.ndarray:
+    r"""Calculate the standard error of one pair's share about the mean of the ensemble.
+
+    .. math:: \sigma^2 = p (1 - p) \left( \frac{v}{n} + \frac{1}{n R} \right) + \epsilon^2
+
+    The first term is the scatter of the record, the second that of the mean over the realisations.
 
     Parameters
     ----------
-    mean, looks, ratio, realisations, noise
-        As in `prediction_limits`.
+    mean, sample_size, ratio, realisations
+        :math:`p`, :math:`n`, :math:`v` and :math:`R`, as in `prediction_limits`.
+    noise : float or numpy.ndarray, optional
+        :math:`\epsilon`, as there.
 
     Returns
     -------
     numpy.ndarray
-        (p (1 - p) (v / n + 1 / (n R)) + noise^2)^(1/2).
+        :math:`\sigma`; a record counts as one trial at least, :math:`n / v \ge 1`.
+
+    Examples
+    --------
+    >>> float(standard_error(0.5, 25.0, 1.0, 10**9).round(6))
+    0.1
     """
-    here = np.maximum(looks / ratio, 1.0)  # a record is at least one look
-    variance = mean * (1.0 - mean) * (1.0 / here + 1.0 / (looks * realisations))
+    of_record = np.maximum(sample_size / ratio, 1.0)
+    variance = mean * (1.0 - mean) * (1.0 / of_record + 1.0 / (sample_size * realisations))
     return np.sqrt(variance + np.square(noise))
 
 
-def persistent_share(probabilities):
-    """Share of one alignment's scatter that no number of alignments averages out.
+def persistent_share(probabilities: np.ndarray) -> np.ndarray:
+    """Part of one alignment's scatter that new alignments do not average out.
 
-    It is what either line does whatever it meets. Each first line is paired with each second
-    one, so that both their parts follow from the analysis of variance of two crossed factors:
-    twice as many degrees of freedom as there are pairs of lines.
+    It is the effect of either line alone, whatever it is paired with. Each first line is paired
+    with each second line, and the effects follow from the analysis of variance of two crossed
+    factors.
 
     Parameters
     ----------
     probabilities : numpy.ndarray
-        Shape (R, K, P): of each of R first lines with each of K second ones, at each point.
+        Shape (R, K, P): of each of R first lines with each of K second lines, at each of P points.
 
     Returns
     -------
     numpy.ndarray
         Shape (P,), s_inf^2 / s_1^2, from 0 to 1; NaN where nothing scatters.
+
+    Examples
+    --------
+    >>> first, second = np.array([0.1, 0.2, 0.4]), np.array([0.0, 0.3, 0.1])
+    >>> persistent_share((first[:, None] + second)[..., None]).round(6)
+    array([1.])
     """
     firsts, seconds = probabilities.shape[:2]
     first, second = (probabilities.mean(axis=axis, keepdims=True) for axis in (1, 0))
@@ -243,47 +332,3 @@ def persistent_share(probabilities):
     alone += np.clip(second.var(axis=(0, 1), ddof=1) - together / firsts, 0.0, None)
     with np.errstate(invalid="ignore"):
         return alone / (alone + together)
-
-
-def sample_size(probabilities, windows):
-    """Effective sample size of one realisation, by the scatter between realisations.
-
-    Parameters
-    ----------
-    probabilities : numpy.ndarray
-        Shape (R, ...), of each realisation.
-    windows : numpy.ndarray or float
-        Windows of one realisation that share no roughness, which stand in where nothing
-        scatters; broadcastable to shape (...).
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (...), p (1 - p) / s^2.
-    """
-    windows = np.broadcast_to(windows, probabilities.shape[1:]).astype(float)
-    if probabilities.shape[0] == 1:
-        return windows
-    mean, variance = probabilities.mean(axis=0), probabilities.var(axis=0, ddof=1)
-    # Asked of the values themselves: the variance of equal ones need not round to zero.
-    scattered = np.ptp(probabilities, axis=0) > 0.0
-    return np.where(scattered, mean * (1.0 - mean) / np.where(scattered, variance, 1.0), windows)
-
-
-def independent_windows(dataset, width):
-    """Windows of one realisation that share no roughness: they are a longest wavelength apart.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        With the attributes ``travel`` and ``longest_wavelength``, m.
-    width : float or numpy.ndarray
-        Contact width, m.
-
-    Returns
-    -------
-    float or numpy.ndarray
-        At least one.
-    """
-    reach = width + dataset.attrs["longest_wavelength"]
-    return np.maximum(dataset.attrs["travel"] / reach, 1.0)

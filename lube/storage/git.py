@@ -1,76 +1,79 @@
-"""The code that runs: where it lies, at which commit, and which files it is made of."""
+"""The code that runs: its folder, its commit, and the files it consists of."""
 
 import functools
 import re
 import subprocess
+from collections.abc import Iterable
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 """Folder of the Snakefile, if the code runs from a clone or an unpacked archive."""
 
-# What lies among it besides is its user's: other studies, records, notes.
+# The user's own studies, records and notes may stand among these and do not belong to the code.
 _CODE = (
-    *("Snakefile", "pyproject.toml", "README.md", "LICENSE", "CITATION.cff"),
-    *("lube/**/*.py", "lube/study/lubricants/*", "notebooks/*.ipynb", "tests/benchmarks/*.py"),
+    *("Snakefile", "pyproject.toml", "LICENSE", "CITATION.cff"),
+    *("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/**/*", "lube/**/*"),
+    *("notebooks/*.ipynb", "tests/benchmarks/*.py", "profiles/*/config.yaml"),
     *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
     *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
-    *("workflow/report/*", "workflow/docs/probability.png", "profiles/*/config.yaml"),
+    "workflow/report/*",
 )
 
-_COMMIT = re.compile("[0-9a-f]{7,64}")
+_COMMIT = re.compile("HEAD|[0-9a-f]{7,64}")
 
 
-def code_files():
+def code_files() -> list[str]:
     """List the files of the repository that make and draw a study's results.
 
     Returns
     -------
     list of str
-        Their paths below `ROOT`, with slashes, as far as they are there.
+        Their paths below `ROOT`, with slashes.
     """
-    found = (file for pattern in _CODE for file in ROOT.glob(pattern) if file.is_file())
-    return sorted(file.relative_to(ROOT).as_posix() for file in found)
+    found = {file.relative_to(ROOT) for pattern in _CODE for file in ROOT.glob(pattern)}
+    return sorted(
+        file.as_posix()
+        for file in found
+        if (ROOT / file).is_file() and not any(_is_cache(part) for part in file.parts)
+    )
 
 
-def changed_code():
-    """List the files of `code_files` that are not as in the commit.
+def _is_cache(name):
+    return name == "__pycache__" or name.startswith(".")
+
+
+def changed_code() -> list[str]:
+    """List the files of `code_files` that differ from the commit, new files included.
 
     Returns
     -------
     list of str
-        Their paths below `ROOT`, new files included; empty if all are, or nobody knows.
+        Their paths below `ROOT`; empty outside a Git repository.
     """
-    if not (ROOT / ".git").exists():
-        return []
-    changed = _git("diff", "--name-only", "-z", "HEAD") or ""
-    new = _git("ls-files", "--others", "--exclude-standard", "-z") or ""
-    return sorted({*changed.split("\0"), *new.split("\0")} & set(code_files()))
+    return changed_since("HEAD", code_files()) or []
 
 
 @functools.cache
-def commit():
+def commit() -> str:
     """Commit of the code that runs.
 
     Returns
     -------
     str
-        Hexadecimal digits, with ``+changes`` behind them if what computes differs from the
-        commit, `lube` or the workflow's scripts; in an unpacked archive, what its file
-        ``COMMIT`` says; else ``unknown``.
+        Hexadecimal digits, followed by ``+changes`` if the code that computes (`lube` or the
+        workflow's scripts) differs from the commit. In an unpacked archive, the content of its
+        file ``COMMIT``; otherwise ``unknown``.
     """
-    try:
-        told = (ROOT / "COMMIT").read_text(encoding="utf-8").strip()
-    except OSError:
-        told = "unknown"
-    if not (ROOT / ".git").exists():
-        return told
     head = _git("rev-parse", "HEAD")
+    if head is None:
+        stated = ROOT / "COMMIT"
+        return stated.read_text(encoding="utf-8").strip() if stated.exists() else "unknown"
     changed = _git("status", "--porcelain", "--untracked-files=no", "lube", "workflow/scripts")
-    return told if head is None else head + ("+changes" if changed else "")
+    return head + ("+changes" if changed else "")
 
 
-def changed_since(name, files):
-    """List the files that are not as in a commit.
+def changed_since(name: str, files: Iterable[str]) -> list[str] | None:
+    """List the files that differ from a commit, new files included.
 
     Parameters
     ----------
@@ -81,46 +84,37 @@ def changed_since(name, files):
 
     Returns
     -------
-    list of str
-        Those that differ, new files included; None if nobody knows: there is no Git, or no such
-        commit.
+    list of str or None
+        None if there is no Git repository or no such commit.
     """
-    files = list(files)
-    if not _COMMIT.fullmatch(name) or not (ROOT / ".git").exists():
+    files = set(files)
+    changed = _git("diff", "--name-only", "-z", name, "--") if _COMMIT.fullmatch(name) else None
+    if changed is None:
         return None
-    if not files:  # Git would take it for all
-        return []
-    git = functools.partial(_git, "--literal-pathspecs")
-    changed = git("diff", "--name-only", "-z", name, "--", *files)
-    new = git("ls-files", "--others", "-z", "--", *files)
-    if changed is None or new is None:
-        return None
-    return sorted({*changed.split("\0"), *new.split("\0")} - {""})
+    new = _git("ls-files", "--others", "--exclude-standard", "-z")
+    return sorted(files & {*changed.split("\0"), *new.split("\0")})
 
 
-def text_in(name, file):
-    """Text of a file, told by its path below `ROOT`, in a commit; None if it is not there."""
+def text_in(name: str, file: str) -> str | None:
+    """Text of a file, given by its path below `ROOT`, in a commit; None if it has no such file."""
     return _git("show", f"{name}:{file}")
 
 
 @functools.cache
-def commit_date():
-    """Day of the commit of the code that runs, such as 2026-11-21, or None."""
-    return _git("show", "--no-patch", "--format=%cs", "HEAD") if (ROOT / ".git").exists() else None
+def commit_date() -> str | None:
+    """Date of the commit of the code that runs, such as 2026-11-21, if there is one."""
+    return _git("show", "--no-patch", "--format=%cs", "HEAD")
 
 
 def _git(*arguments):
-    """Ask Git; None where there is no Git, or it refuses."""
-    try:
-        said = subprocess.run(
-            ["git", "--no-optional-locks", *arguments],
-            cwd=ROOT,
-            capture_output=True,
-            encoding="utf-8",
-            errors="surrogateescape",
-            timeout=30,
-            check=True,
-        )
-    except (OSError, subprocess.SubprocessError):
+    """Output of a Git command; None if it fails or `ROOT` is not a Git repository."""
+    if not (ROOT / ".git").exists():  # Git would look for one in the folders above
         return None
-    return said.stdout.strip()
+    command = ["git", "--no-optional-locks", *arguments]
+    try:
+        finished = subprocess.run(
+            command, cwd=ROOT, capture_output=True, encoding="utf-8", check=True
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return finished.stdout.strip()

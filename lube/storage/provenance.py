@@ -1,38 +1,46 @@
-"""Where a result comes from, written so that a stranger can check it years later.
+"""The origin of a result, stored in its file so that others can check it years later.
 
-Every file says which values of the study it follows from and their fingerprint, what other files
-went into it and theirs, and the code and libraries that made it. No clock time is among it:
-the same study makes the same bytes.
+Every file states the values of the study that determine it, the SHA-256 sums of the files it was
+made from, and the code and libraries that made it. It holds no clock time: the same study gives
+the same bytes.
 """
 
-import contextlib
 import hashlib
 import json
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
 
 from lube.errors import DataError
 from lube.schema import SUMMARIES
 from lube.storage.git import commit
 from lube.study.metadata import LICENCES, PAPER
 
+if TYPE_CHECKING:
+    from lube.study.study import Study
+
 CONVENTIONS = "CF-1.11, ACDD-1.3"
 LIBRARIES = ("numpy", "scipy", "numba", "CoolProp", "xarray", "netCDF4")
 """Libraries whose version may change the numbers, or the bytes that hold them."""
 SHORT = 10
 """Digits of a fingerprint where people read it."""
-WAY_OUT = "; take it away and run snakemake again"
-"""What to do about a result of other values, at the end of its line."""
+REMEDY = "; delete it and run snakemake again"
+"""What to do about a result that does not belong to the study, at the end of the message."""
 
 
-def global_attributes(study, kind, inputs=()):
-    """Attributes of a file that tell where it comes from.
+def global_attributes(
+    study: "Study", kind: str, inputs: Iterable[str | Path] = ()
+) -> dict[str, Any]:
+    """Global attributes of a file, by the names of CF and ACDD where they have one.
 
     Parameters
     ----------
     study : Study
-        The study it belongs to.
+        The study.
     kind : str
         A key of `lube.schema.FILES`.
     inputs : iterable of str or Path, optional
@@ -41,46 +49,44 @@ def global_attributes(study, kind, inputs=()):
     Returns
     -------
     dict
-        Global attributes by CF's and ACDD's names, and the study's own beside them.
+        From attribute to value.
     """
-    stage = kind.removesuffix("_batch")
     config = config_text(study, kind)
-    hashes = fingerprints(inputs)
-    made_from = ", ".join(hashes) or "the study's values alone"
-    code = f"lube {version('lube')}, commit {commit()}"
+    sums = fingerprints(inputs)
+    made_from = ", ".join(sums) or "the study's values alone"
     return {
         "Conventions": CONVENTIONS,
-        **names_of(study, kind),
+        **descriptive_attributes(study, kind),
         "config": config,
         "config_sha256": digest(config),
-        "inputs_sha256": json.dumps(hashes, sort_keys=True),
-        "source": _source(study, stage),
+        "inputs_sha256": json.dumps(sums, sort_keys=True),
+        "source": _source(study, _stage(kind)),
         "code_commit": commit(),
         "software": ", ".join(f"{name} {version(name)}" for name in LIBRARIES),
-        "history": f"{code}: made from {made_from}",
+        "history": f"lube {version('lube')}, commit {commit()}: made from {made_from}",
         "references": f"The model is that of: {PAPER}",
     }
 
 
-def names_of(study, kind):
-    """Attributes of a file that say what it is and whose, whatever code made it.
+def descriptive_attributes(study: "Study", kind: str) -> dict[str, Any]:
+    """Global attributes that follow from the study alone, whatever code made the file.
 
     Parameters
     ----------
     study : Study
-        The study it belongs to.
+        The study.
     kind : str
         A key of `lube.schema.FILES`.
 
     Returns
     -------
     dict
-        Some of those of `global_attributes`.
+        Title, summary, study, licence and creators: a part of `global_attributes`.
     """
-    stage, about = kind.removesuffix("_batch"), study.about
+    about = study.about
     return {
-        "title": f"{title_of(study)}, {stage}",
-        "summary": f"{SUMMARIES[stage]} {about.summary}",
+        "title": f"{title_of(study)}, {_stage(kind)}",
+        "summary": f"{SUMMARIES[_stage(kind)]} {about.summary}",
         "keywords": ", ".join(about.keywords),
         "study": study.name,
         "study_seed": study.seed,
@@ -90,8 +96,13 @@ def names_of(study, kind):
     }
 
 
+def _stage(kind):
+    """Name of the stage of a kind of file: batches go by their stage's name."""
+    return kind.removesuffix("_batch")
+
+
 def _source(study, stage):
-    """Tell how a file's values came about: CF's word for it."""
+    """CF attribute `source`: how the values were produced."""
     by = f"by lube {version('lube')}"
     if study.experiment.manifest is None or stage not in ("experiment", "comparison", "gauge"):
         return f"simulation {by}"
@@ -99,13 +110,13 @@ def _source(study, stage):
     return evaluated if stage == "experiment" else f"{evaluated}; simulation {by}"
 
 
-def title_of(study):
-    """Title of a study's results."""
+def title_of(study: "Study") -> str:
+    """Title of a study's results: its own, or else one with the study's name."""
     return study.about.title or f"Mixed lubrication study {study.name}"
 
 
-def config_text(study, kind):
-    """Values of a study that a file follows from, in SI units (but rpm and degC).
+def config_text(study: "Study", kind: str) -> str:
+    """Values of a study that determine a file, as JSON.
 
     Parameters
     ----------
@@ -117,20 +128,21 @@ def config_text(study, kind):
     Returns
     -------
     str
-        JSON: from stage to its values, those of the stages before it included.
+        A mapping from stage to its values, in SI units (but rpm and degC); the stages before it
+        are included.
     """
-    return json.dumps(study.origin(kind.removesuffix("_batch")), sort_keys=True)
+    return json.dumps(study.origin(_stage(kind)), sort_keys=True)
 
 
-def check_config(dataset, study, kind, where):
-    """Refuse a file that follows from other values than the study's.
+def check_config(dataset: xr.Dataset, study: "Study", kind: str, where: str | Path) -> None:
+    """Check that a file follows from a study's values.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The opened file.
     study : Study
-        The study that wants to use it.
+        The study that is to use it.
     kind : str
         A key of `lube.schema.FILES`.
     where : str or Path
@@ -141,45 +153,17 @@ def check_config(dataset, study, kind, where):
     DataError
         With the first value that differs, and what to do.
     """
-    wanted = config_text(study, kind)
-    if dataset.attrs.get("config_sha256") != digest(wanted):
+    came = json_attribute(dataset, "config", where)
+    wanted = json.loads(config_text(study, kind))
+    if came != wanted:
         raise DataError(
             f"{where}: belongs to other values than this study's: "
-            f"{_difference(dataset.attrs.get('config'), wanted)}{WAY_OUT}"
+            f"{_difference(came, wanted)}{REMEDY}"
         )
 
 
-def check_origin(dataset, where):
-    """Refuse a file that does not say where it comes from, or has been given other values.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The opened file.
-    where : str or Path
-        The file's path, for the message.
-
-    Raises
-    ------
-    DataError
-        If an attribute is missing, or ``config`` is not what its fingerprint says.
-    """
-    for name in _NEEDED:
-        if name not in dataset.attrs:
-            raise DataError(f"{where}: its attribute {name!r} is missing, so its origin is unknown")
-    if digest(dataset.attrs["config"]) != dataset.attrs["config_sha256"]:
-        raise DataError(
-            f"{where}: damaged or changed by hand: its attribute 'config' is not the text whose "
-            "fingerprint is config_sha256"
-        )
-
-
-_NEEDED = ("title", "study", "config", "config_sha256", "inputs_sha256", "source", "code_commit")
-_NEEDED += ("software",)
-
-
-def merged_config(datasets):
-    """Values that some files of one study follow from together.
+def merged_config(datasets: Iterable[xr.Dataset]) -> str:
+    """Values that determine several files of one study together, as JSON.
 
     Parameters
     ----------
@@ -189,29 +173,29 @@ def merged_config(datasets):
     Returns
     -------
     str
-        JSON as from `config_text`; that of a single file is its own.
+        As from `config_text`; that of a single file is its own.
 
     Raises
     ------
     DataError
-        If two files disagree about a stage's values, so that they cannot be of one study, or
-        one of them tells no values.
+        If two files have different values for a stage, so that they are not of one study, or a
+        file does not state its values.
     """
     merged, first = {}, {}
     for dataset in datasets:
         title = dataset.attrs.get("title", "a dataset without a title")
-        for stage, values in told_by(dataset, "config", title).items():
+        for stage, values in json_attribute(dataset, "config", title).items():
             if merged.setdefault(stage, values) != values:
-                pair = [json.dumps({stage: one}) for one in (merged[stage], values)]
+                difference = _difference({stage: merged[stage]}, {stage: values})
                 raise DataError(
-                    f"{first[stage]!r} and {title!r} are not of one study: {_difference(*pair)}"
+                    f"{first[stage]!r} and {title!r} are not of one study: {difference}"
                 )
             first.setdefault(stage, title)
     return json.dumps(merged, sort_keys=True)
 
 
-def told_by(dataset, name, where):
-    """Read what a file says of its origin in JSON.
+def json_attribute(dataset: xr.Dataset, name: str, where: str | Path) -> dict[str, Any]:
+    """Read an attribute that holds a JSON mapping.
 
     Parameters
     ----------
@@ -225,63 +209,50 @@ def told_by(dataset, name, where):
     Returns
     -------
     dict
-        From stage to its values, or from file to its fingerprint.
+        From stage to its values, or from file name to SHA-256.
 
     Raises
     ------
     DataError
-        If it does not say.
+        If the attribute is missing or not JSON.
     """
-    with contextlib.suppress(KeyError, TypeError, ValueError, RecursionError):
-        told = json.loads(dataset.attrs[name])
-        if isinstance(told, dict):
-            return told
-    raise DataError(
-        f"{where}: its attribute {name!r} is missing or damaged, so its origin is unknown"
-    )
+    try:
+        return json.loads(dataset.attrs[name])
+    except (KeyError, ValueError):
+        raise DataError(
+            f"{where}: its attribute {name!r} is missing or damaged, so its origin is unknown"
+        ) from None
 
 
 def _difference(came, wanted):
     """First value by which two configurations differ, in words."""
-    if came is None:
-        return "it does not say which"
-    came, wanted = (dict(_leaves(json.loads(text))) for text in (came, wanted))
-    for key in sorted({*came, *wanted}):
-        if came.get(key) != wanted.get(key):
-            return f"{key} is {came.get(key, 'not there')}, need {wanted.get(key, 'no such value')}"
-    return "its fingerprint config_sha256 is not that of its values"
+    came, wanted = dict(_leaves(came)), dict(_leaves(wanted))
+    key = min(key for key in {*came, *wanted} if came.get(key) != wanted.get(key))
+    return f"{key} is {came.get(key, 'missing')}, need {wanted.get(key, 'no such value')}"
 
 
-def _leaves(content, path=""):
-    """Single values of nested mappings and lists, by their dotted keys."""
-    if isinstance(content, dict):
-        parts = content.items()
-    elif isinstance(content, list):
-        parts = enumerate(content)
-    else:
+def _leaves(content, path="") -> Iterator[tuple[str, Any]]:
+    """Yield the single values of nested mappings and lists with their dotted keys."""
+    if not isinstance(content, dict | list):
         yield path, content
         return
-    for name, value in parts:
+    for name, value in content.items() if isinstance(content, dict) else enumerate(content):
         yield from _leaves(value, f"{path}.{name}" if path else str(name))
 
 
-def digest(content):
-    """SHA-256 of a text or bytes, in hexadecimal digits."""
-    return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()
+def digest(text: str) -> str:
+    """SHA-256 of a text, in hexadecimal digits.
+
+    Examples
+    --------
+    >>> digest("film")[:10]
+    'd0607f7ad2'
+    """
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
-def fingerprint(path):
+def fingerprint(path: str | Path) -> str:
     """SHA-256 of a file, in hexadecimal digits.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file, of any size: it is streamed.
-
-    Returns
-    -------
-    str
-        64 digits.
 
     Raises
     ------
@@ -295,8 +266,8 @@ def fingerprint(path):
         raise DataError(f"{path}: cannot be read: {error.strerror}") from None
 
 
-def fingerprints(paths):
-    """SHA-256 of some files, by names that do not depend on where the study lies.
+def fingerprints(paths: Iterable[str | Path]) -> dict[str, str]:
+    """SHA-256 of several files, by names that do not depend on the folder of the study.
 
     Parameters
     ----------
@@ -306,18 +277,16 @@ def fingerprints(paths):
     Returns
     -------
     dict
-        From file name to digits, in the names' order. Different files of one name bear the
-        first digits behind it, as in ``run.csv#1f0c6a97bd``.
+        From file name to SHA-256, sorted by name. Different files of the same name are told
+        apart by the first digits, as in ``run.csv#1f0c6a97bd``.
     """
     found = sorted({(Path(path).name, fingerprint(path)) for path in paths})
-    times = Counter(name for name, _ in found)
-    return {
-        name if times[name] == 1 else f"{name}#{digits[:SHORT]}": digits for name, digits in found
-    }
+    count = Counter(name for name, _ in found)
+    return {name if count[name] == 1 else f"{name}#{sha[:SHORT]}": sha for name, sha in found}
 
 
-def told_inputs(dataset, where):
-    """Read what a file says of the files that it was made from.
+def input_sums(dataset: xr.Dataset, where: str | Path) -> dict[str, set[str]]:
+    """Read which files a file was made from.
 
     Parameters
     ----------
@@ -329,15 +298,14 @@ def told_inputs(dataset, where):
     Returns
     -------
     dict
-        From file name to a set of fingerprints: one for each file of that name.
+        From file name to the SHA-256 sums of all files of that name.
 
     Raises
     ------
     DataError
-        If it does not say.
+        If the file does not state it.
     """
-    told = {}
-    for name, digits in told_by(dataset, "inputs_sha256", where).items():
-        digits = str(digits)  # a forged file may say anything
-        told.setdefault(name.removesuffix(f"#{digits[:SHORT]}"), set()).add(digits)
-    return told
+    sums = {}
+    for name, sha in json_attribute(dataset, "inputs_sha256", where).items():
+        sums.setdefault(name.removesuffix(f"#{sha[:SHORT]}"), set()).add(sha)
+    return sums

@@ -1,11 +1,12 @@
-"""Lubricant records: one YAML file a lubricant, checked as a whole and frozen.
+"""Lubricant records: one YAML file per lubricant, checked as a whole and frozen.
 
-A record gives its viscosity in one of three ways: as points, as a CSV file of one's own
-measurements beside the record, or by naming a CoolProp fluid. Every section names its
-source, or says ``assumed: ...`` and why. This module only reads and checks; what follows
-from a record at a temperature is computed in `lube.stages.lubricant`.
+A lubricant record gives the viscosity in one of three ways: as points, as a CSV file of
+measurements beside the record, or by naming a CoolProp fluid. Every section names its source, or
+says ``assumed: ...`` and why. This module only reads and checks; the properties at a temperature
+are computed in `lube.stages.lubricant`.
 """
 
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
@@ -15,12 +16,13 @@ from pydantic import Field, PrivateAttr, StringConstraints, model_validator
 from lube.errors import RangeError, RecordError, shown
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_range
 from lube.physics.viscosity import GOLD_BASES, VISCOSITY_LAWS, ZERO_CELSIUS
-from lube.study.field_types import Slug, StrictModel, quantity, read_yaml, validate
+from lube.study.field_types import Slug, StrictModel, quantity, validate
 from lube.study.small_csv import HEADER_CELL, delimiter_of, numbered_lines, split_cells
+from lube.study.text_files import read_yaml
 
 SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
 
-# Numbers read as K or degF and turned into degC may miss a limit by rounding.
+# Temperatures converted from K or degF to degC may miss a limit by rounding.
 _ROUNDING = 1e-6
 
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
@@ -30,7 +32,7 @@ DynamicViscosity = quantity("Pa*s", above=0.0)
 
 
 class Sourced(StrictModel):
-    """A section of a record, which must say where its values come from."""
+    """A section of a lubricant record, which must name the source of its values."""
 
     source: Text = Field(description="where the values come from, or 'assumed: ...' and why")
 
@@ -103,8 +105,8 @@ class PressureViscosity(Sourced):
         return self
 
     @property
-    def definition_text(self):
-        """Definition of the coefficient in words, to be stored with its values."""
+    def definition_text(self) -> str:
+        """Definition of the coefficient in words, stored with its values."""
         if self.gold_base is not None:
             s, t = GOLD_BASES[self.gold_base]
             return f"Gold's form {s:g} nu^{t:g} 1/GPa, nu in mm2/s ({self.gold_base})"
@@ -125,7 +127,7 @@ class ThermalConductivity(Sourced):
 
 
 class TemperatureRange(Sourced):
-    """Temperatures at which the record may be used, if not those of its data."""
+    """Temperatures at which the lubricant record is valid, if not those of its data."""
 
     lowest: OilTemperature
     highest: OilTemperature
@@ -183,23 +185,23 @@ class LubricantRecord(StrictModel):
             )
 
     @property
-    def files(self):
-        """Files the record was read from, as paths: the YAML file, and its CSV file if any."""
+    def files(self) -> tuple[Path, ...]:
+        """Files it was read from: the YAML file, and its CSV file if any."""
         return self._files
 
     @property
-    def law_used(self):
-        """What gives the viscosity: ``coolprop``, or a key of `VISCOSITY_LAWS`."""
+    def law_used(self) -> str:
+        """Source of the viscosity between the data: ``coolprop``, or a key of `VISCOSITY_LAWS`."""
         if self.viscosity.coolprop_fluid is not None:
             return "coolprop"
         return self.viscosity_law or "astm-d341"
 
     @property
-    def valid_temperatures(self):
-        """Lowest and highest temperature at which the record holds, degC.
+    def valid_temperatures(self) -> tuple[float, float]:
+        """Lowest and highest temperature at which the lubricant record is valid, degC.
 
-        Those of `temperature_range` if it is written, else of the data, else of the liquid
-        in CoolProp, which then is imported.
+        From `temperature_range` if it is given, else from the data, else the liquid range of
+        CoolProp, which then is imported.
         """
         if self.temperature_range is not None:
             return self.temperature_range.lowest, self.temperature_range.highest
@@ -210,18 +212,28 @@ class LubricantRecord(StrictModel):
         return lowest - ZERO_CELSIUS, highest - ZERO_CELSIUS
 
 
-def shipped_records():
-    """Names of the records that come with the package.
+def shipped_records() -> tuple[str, ...]:
+    """Names of the lubricant records that come with the package.
 
     Returns
     -------
     tuple of str
         The names, sorted.
+
+    Examples
+    --------
+    >>> shipped_records()
+    ('mobilgear-shc-xmp-320', 'n-dodecane')
     """
     return tuple(sorted(path.stem for path in SHIPPED_FOLDER.glob("*.yaml")))
 
 
-def load_record(name_or_path, folder=None):
+def is_record_path(name: object) -> bool:
+    """Whether a study's lubricant is given as the path of a YAML file, not as a shipped name."""
+    return isinstance(name, str | Path) and Path(name).suffix in (".yaml", ".yml")
+
+
+def load_record(name_or_path: str | Path, folder: str | Path = ".") -> LubricantRecord:
     """Read and check a lubricant record.
 
     Parameters
@@ -229,17 +241,22 @@ def load_record(name_or_path, folder=None):
     name_or_path : str or Path
         Name of a shipped record, or path of a ``.yaml`` file.
     folder : str or Path, optional
-        Folder that a relative path starts from; else the working folder.
+        Folder that a relative path starts from.
 
     Returns
     -------
     LubricantRecord
-        The record, with the points of its CSV file if it names one.
+        The lubricant record, with the points of its CSV file if it names one.
 
     Raises
     ------
     RecordError
         Which key, what came, what is needed.
+
+    Examples
+    --------
+    >>> load_record("n-dodecane").viscosity.coolprop_fluid
+    'n-Dodecane'
     """
     path = _record_path(name_or_path, folder)
     record = validate(LubricantRecord, read_yaml(path, RecordError), path, RecordError)
@@ -257,23 +274,20 @@ def load_record(name_or_path, folder=None):
 
 
 def _record_path(name_or_path, folder):
-    if Path(name_or_path).suffix in (".yaml", ".yml"):
-        return Path(folder or ".") / name_or_path
-    if str(name_or_path) not in shipped_records():
+    if is_record_path(name_or_path):
+        return Path(folder) / name_or_path
+    if name_or_path not in shipped_records():
         raise RecordError(
-            f"lubricant: got {shown(str(name_or_path))}, need one of "
+            f"lubricant: got {shown(name_or_path)}, need one of "
             f"{', '.join(shipped_records())}, or the path of a .yaml file"
         )
     return SHIPPED_FOLDER / f"{name_or_path}.yaml"
 
 
 def _beside(record_path, name):
-    """Path of a data file, which must lie in its record's folder."""
+    """Path of a data file, which must lie in the folder of its lubricant record."""
     folder = record_path.parent
-    try:
-        inside = (folder / name).resolve().is_relative_to(folder.resolve())
-    except (OSError, RuntimeError, ValueError):  # no name of a file, or links in a ring
-        inside = False
+    inside = (folder / name).resolve().is_relative_to(folder.resolve())
     if Path(name).is_absolute() or not inside:
         raise RecordError(
             f"{record_path}: viscosity.csv: got {shown(name)}, need a file in the record's folder"
@@ -282,7 +296,7 @@ def _beside(record_path, name):
 
 
 def _check_points(points, where):
-    """Refuse data through which no viscosity law can go."""
+    """Refuse data that no viscosity law can fit."""
     if len({point.temperature for point in points}) < 2:
         raise RecordError(f"{where}: viscosity: need values at two temperatures or more")
     for kind in ("kinematic_viscosity", "dynamic_viscosity"):
@@ -296,13 +310,16 @@ def _check_points(points, where):
                 )
 
 
-def read_viscosity_csv(path):
+_COLUMNS = "temperature [degC] and kinematic_viscosity [mm^2/s] or dynamic_viscosity [mPa*s]"
+
+
+def read_viscosity_csv(path: str | Path) -> tuple[ViscosityPoint, ...]:
     """Read measured viscosities against temperature.
 
     The first line names the columns with their units: ``temperature [degC]`` and either
-    ``kinematic_viscosity [mm^2/s]`` or ``dynamic_viscosity [mPa*s]``. Columns are parted by
-    commas, or by semicolons or tabs, and then a decimal comma is understood. Empty lines and lines
-    that begin with ``#`` are passed over.
+    ``kinematic_viscosity [mm^2/s]`` or ``dynamic_viscosity [mPa*s]``. Columns are separated by
+    commas, or by semicolons or tabs; with the latter two a decimal comma is understood. Empty
+    lines and lines that begin with ``#`` are ignored.
 
     Parameters
     ----------
@@ -312,7 +329,7 @@ def read_viscosity_csv(path):
     Returns
     -------
     tuple of ViscosityPoint
-        One point a row.
+        One point per row.
 
     Raises
     ------
@@ -324,7 +341,7 @@ def read_viscosity_csv(path):
         raise RecordError(f"{path}: empty, need a line of column names and rows of values")
     (header_line, header), *rows = lines
     delimiter = delimiter_of(header)
-    columns = _csv_columns(header, delimiter, f"{path}: line {header_line}")
+    columns = _csv_columns(split_cells(header, delimiter), f"{path}: line {header_line}")
     decimal_comma = delimiter != "," and any("," in text for _, text in rows)
     points = []
     for number, text in rows:
@@ -333,8 +350,7 @@ def read_viscosity_csv(path):
         if len(cells) != len(columns):
             raise RecordError(f"{where}: got {len(cells)} values, need {len(columns)}")
         if decimal_comma:
-            _refuse_points(cells, where)
-            cells = [cell.replace(",", ".") for cell in cells]
+            cells = [_with_decimal_point(cell, where) for cell in cells]
         content = {
             name: f"{cell} {units}"
             for (name, units), cell in zip(columns.items(), cells, strict=True)
@@ -343,33 +359,32 @@ def read_viscosity_csv(path):
     return tuple(points)
 
 
-def _refuse_points(cells, where):
-    """Where numbers have a decimal comma, a point is one of thousands, or a mistake."""
-    for cell in cells:
-        if "." in cell:
-            raise RecordError(
-                f"{where}: got {shown(cell)} in a file with decimal commas, need no point"
-            )
+def _with_decimal_point(cell, where):
+    # Among decimal commas a point separates thousands, or is a mistake.
+    if "." in cell:
+        raise RecordError(
+            f"{where}: got {shown(cell)} in a file with decimal commas, need no point"
+        )
+    return cell.replace(",", ".")
 
 
-def _csv_columns(header, delimiter, where):
+def _csv_columns(cells, where):
     """Units by column name, in the order of the columns."""
     columns = {}
-    needed = "temperature [degC] and kinematic_viscosity [mm^2/s] or dynamic_viscosity [mPa*s]"
-    for cell in split_cells(header, delimiter):
+    for cell in cells:
         match = HEADER_CELL.fullmatch(cell)
         if not match or match[1] not in ViscosityPoint.model_fields or match[1] in columns:
-            raise RecordError(f"{where}: got the column {shown(cell)}, need {needed}")
+            raise RecordError(f"{where}: got the column {shown(cell)}, need {_COLUMNS}")
         columns[match[1]] = match[2]
     if "temperature" not in columns or len(columns) != 2:
-        raise RecordError(f"{where}: got the columns {', '.join(columns)}, need {needed}")
+        raise RecordError(f"{where}: got the columns {', '.join(columns)}, need {_COLUMNS}")
     return columns
 
 
-def check_temperatures(record, temperatures):
-    """Refuse temperatures at which a record does not hold.
+def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -> None:
+    """Refuse temperatures at which a lubricant record is not valid.
 
-    Cheap unless the record names a CoolProp fluid and no range: then CoolProp is asked.
+    Cheap, unless the record names a CoolProp fluid and no range, which then is CoolProp's.
 
     Parameters
     ----------
@@ -381,7 +396,7 @@ def check_temperatures(record, temperatures):
     Raises
     ------
     RangeError
-        At the first temperature outside, with the record's name and its range.
+        At the first temperature outside, with the lubricant's name and its range.
     """
     lowest, highest = record.valid_temperatures
     for temperature in temperatures:

@@ -1,6 +1,6 @@
-"""The rig that measures contact by electrical resistance, and how its records are judged.
+"""The rig that measures contact by electrical resistance, and the evaluation of its records.
 
-Every default but the threshold of 100 ohm is assumed: of its circuit the paper tells nothing.
+Every default except the threshold of 100 ohm is assumed: the paper says nothing of the circuit.
 Voltages far below a volt are usual, so that the film does not break down electrically.
 """
 
@@ -11,7 +11,7 @@ from pydantic import Field, StrictInt
 from lube.study.field_types import StrictModel, levels, pure_number, quantity
 
 RIG_REALISATIONS = 1_000_000
-"""First realisation of the rig's own rollers; a study's realisations end before it."""
+"""First realisation of the simulated rig's own rollers; those of a study are below it."""
 
 _Resistance = quantity("ohm", above=0.0)
 
@@ -58,18 +58,18 @@ class Rig(StrictModel, validate_default=True):
     drift: pure_number(least=0.0, most=1.0) = Field(
         0,
         description="share of the variance of the roughness that each revolution renews, of "
-        "the simulated rollers and, as an assumption, of measured ones; 0: rollers stay as they "
-        "are and repeat themselves",
+        "the simulated rollers and, as an assumption, of measured ones; 0: the roughness stays "
+        "and each revolution repeats the last",
     )
 
     @property
-    def resolved_voltage(self):
+    def resolved_voltage(self) -> float:
         """Voltage of one step of the converter, V."""
         return 2.0 * self.amplifier_range / 2**self.resolution
 
 
 class Experiment(StrictModel, validate_default=True):
-    """Where the rig's records come from, and when they are taken for contact."""
+    """Source of the rig's records, and the criterion of contact."""
 
     manifest: str | None = Field(
         None, description="CSV or YAML list of measured records; without it the rig is simulated"
@@ -79,21 +79,22 @@ class Experiment(StrictModel, validate_default=True):
         description="resistances below which a record shows contact",
     )
     threshold: _Resistance = Field(
-        "100 ohm", description="the one of them that is compared with the simulation (the paper's)"
+        "100 ohm",
+        description="the one of `thresholds` that is compared with the simulation (the paper's)",
     )
     force_tolerance: pure_number(above=0.0, most=1.0) = Field(
-        0.01, description="relative distance within which a record's force means a level's"
+        0.01, description="relative deviation of a record's force from a level of the grid, at most"
     )
     speed_tolerance: pure_number(above=0.0, most=1.0) = Field(
         0.01,
-        description="the same of its rotation speed; and how far the speed may be from the "
-        "one at which the record repeats itself",
+        description="the same for its rotation speed; also the largest deviation of that speed "
+        "from the one at which the record repeats itself",
     )
     temperature_tolerance: quantity("K", above=0.0) = Field(
-        "1 K", description="distance within which a record's temperature means a level's"
+        "1 K", description="deviation of a record's temperature from a level of the grid, at most"
     )
     release_ratio: pure_number(least=1.0) = Field(
-        1, description="contact ends at so many times the threshold; 1 is no hysteresis"
+        1, description="contact ends at this multiple of the threshold; 1 is no hysteresis"
     )
     debounce: quantity("s", least=0.0) = Field(
         "0 s", description="shortest time that a change must last to count"

@@ -1,21 +1,23 @@
-"""Rollers, their roughness and the layer on them: what a study's contact is made of.
+"""Rollers, their roughness and the boundary layer.
 
-Written in YAML with units, kept in SI. A notebook builds them by hand in the same words:
+Written in YAML with units, kept in SI. A notebook makes them in the same way:
 ``Roller(radius="50 mm", ...)``.
 """
 
 import math
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, StrictInt, WithJsonSchema
 
-from lube.errors import LubeError, StudyError
+from lube.errors import StudyError
 from lube.physics.hertz import contact_half_width, reduced_modulus, reduced_radius
 from lube.study.field_types import (
     Length,
     Pressure,
     StrictModel,
     bounded,
+    collected,
     pure_number,
     sensible_quantity,
 )
@@ -35,19 +37,19 @@ class Roller(StrictModel):
 
 
 class RollerPair(StrictModel):
-    """Two rollers pressed together along a line."""
+    """Two rollers in line contact."""
 
     length: Length = Field(description="length L' of the line contact")
     first: Roller
     second: Roller
 
     @property
-    def reduced_radius(self):
+    def reduced_radius(self) -> float:
         """Radius R* of the equivalent cylinder on a plane, m."""
         return reduced_radius(self.first.radius, self.second.radius)
 
     @property
-    def reduced_modulus(self):
+    def reduced_modulus(self) -> float:
         """Reduced modulus E*, Pa."""
         return reduced_modulus(
             self.first.young_modulus,
@@ -57,45 +59,36 @@ class RollerPair(StrictModel):
         )
 
     @property
-    def composite_rms_roughness(self):
-        """Rms height of the sum of the two independent lines, m."""
+    def composite_rms_roughness(self) -> float:
+        r"""Composite rms roughness :math:`\sqrt{h_1^2 + h_2^2}` of the independent lines, m."""
         return math.hypot(self.first.rms_roughness, self.second.rms_roughness)
 
-    def contact_half_width(self, force):
-        """Hertzian half-width a in m at a normal force in N (the paper's Eq. 2)."""
+    def contact_half_width(self, force: float | np.ndarray) -> float | np.ndarray:
+        """Hertzian half-width a, m, at a normal force, N (the paper's Eq. 2)."""
         return contact_half_width(force, self.length, self.reduced_radius, self.reduced_modulus)
 
 
-def _wavelength(value):
-    if value == AUTOMATIC_WAVELENGTH:
-        return value
-    try:
-        return sensible_quantity(value, "m", above=0.0)
-    except LubeError as error:
-        raise ValueError(f"{error}, or the words {AUTOMATIC_WAVELENGTH!r}") from None
+@collected(hint=f", or the words {AUTOMATIC_WAVELENGTH!r}")
+def _longest_wavelength(value):
+    return value if value == AUTOMATIC_WAVELENGTH else sensible_quantity(value, "m", above=0.0)
 
 
+@collected(hint=", or a number of grid points such as '10 points'")
 def _shortest_wavelength(value):
     if isinstance(value, str) and value.endswith(" points"):
         _points_of(value)
         return value
-    try:
-        return sensible_quantity(value, "m", above=0.0)
-    except LubeError as error:
-        raise ValueError(f"{error}, or a number of grid points such as '10 points'") from None
+    return sensible_quantity(value, "m", above=0.0)
 
 
 def _points_of(wavelength):
     """``"10 points"`` -> 10.0, at least the two that make a wave."""
-    try:
-        number = parse_number(wavelength.removesuffix(" points"))
-        return bounded(number, "points", least=2.0, most=MOST_POINTS)
-    except LubeError as error:
-        raise ValueError(str(error)) from None
+    number = parse_number(wavelength.removesuffix(" points"))
+    return bounded(number, "points", least=2.0, most=MOST_POINTS)
 
 
 class Roughness(StrictModel):
-    """How the roughness lines of both rollers are drawn."""
+    """Statistics and grid of the random roughness lines of both rollers."""
 
     points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)] = Field(
         description="points N around the first roller"
@@ -103,7 +96,7 @@ class Roughness(StrictModel):
     hurst_exponent: pure_number(above=0.0, below=1.0) = Field(description="Hurst exponent H")
     longest_wavelength: Annotated[
         float | Literal[AUTOMATIC_WAVELENGTH],
-        BeforeValidator(_wavelength),
+        BeforeValidator(_longest_wavelength),
         WithJsonSchema(
             {"type": "string", "format": f"quantity in m, or the words `{AUTOMATIC_WAVELENGTH}`"}
         ),
@@ -123,14 +116,14 @@ class Roughness(StrictModel):
 
 
 class BoundaryLayer(StrictModel):
-    """The adsorbed layer that a contact must break through (the paper's Eqs. 4 and 6)."""
+    """The adsorbed boundary layer, which breaks at metal contact (the paper's Eqs. 4 and 6)."""
 
     critical_thickness: Length = Field(description="critical thickness h_c")
     shear_strength: Pressure = Field(description="limiting shear stress tau0")
 
 
 class LineSpec(StrictModel):
-    """Everything that determines the roughness lines but the seed and the realisation.
+    """Everything that determines the roughness lines, except seed and realisation.
 
     Attributes
     ----------
@@ -143,9 +136,9 @@ class LineSpec(StrictModel):
     hurst_exponent : float
         Hurst exponent H of C1D ~ q^(-2H - 1).
     q_min, q_max : float
-        Smallest and largest wave vector, rad/m.
+        Smallest and largest wave number, rad/m.
     height_step : float
-        Length of one integer height step, m.
+        Height of one step of the whole-number heights, m.
     """
 
     points: tuple[int, int]
@@ -157,28 +150,28 @@ class LineSpec(StrictModel):
     height_step: float
 
 
-def line_spec(rollers, roughness, largest_force):
-    """Work out the roughness lines of a pair of rollers.
+def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -> LineSpec:
+    """Determine the roughness lines of a pair of rollers.
 
     Parameters
     ----------
     rollers : RollerPair
         The rollers.
     roughness : Roughness
-        How their lines are drawn.
+        Statistics and grid of their lines.
     largest_force : float
         Largest force of the study, N; its contact width may set the longest wavelength.
 
     Returns
     -------
     LineSpec
-        Everything that determines the lines but the seed and the realisation.
+        Everything that determines the lines, except seed and realisation.
 
     Raises
     ------
     StudyError
         If the grid is too coarse for the shortest wavelength, a perimeter too short for the
-        longest, or the height step out of proportion to the roughness.
+        longest, or the height step unsuitable for the roughness.
     """
     first, second = rollers.first, rollers.second
     spacing = 2.0 * math.pi * first.radius / roughness.points
@@ -234,7 +227,7 @@ def _check_waves(spec, roughness, longest, shortest):
 
 
 def _check_height_step(spec):
-    """Heights must be many steps high, and fit a 32-bit integer with room for their peaks."""
+    """Heights must be many steps high, and their peaks must fit a 32-bit integer."""
     for rms in spec.rms_height:
         if not 1e3 <= rms / spec.height_step <= 1e7:
             raise StudyError(

@@ -1,24 +1,30 @@
-"""How large the results of a study get, told before anything is computed."""
+"""Refuse a study whose results do not fit a workstation, before anything is computed."""
+
+from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from lube.errors import StudyError
 
+if TYPE_CHECKING:
+    from lube.study.study import Study
+
 MOST_NUMBERS = 10**9
-"""Numbers held at once, at most: 8 GB."""
+"""Largest array, in numbers: 8 GB."""
 
 MOST_POINTS = 2**24
-"""Points around a roller, at most: 19 nm apart on the paper's rollers."""
+"""Largest number of points around a roller: 19 nm apart on the paper's rollers."""
 
 MOST_BATCHES = 10_000
-"""Batches of realisations, at most: Snakemake plans four jobs for each."""
+"""Largest number of batches of realisations: Snakemake plans four jobs for each."""
 
 FOLDED_NUMBERS = 10_000
-"""Numbers kept of each record, about: its folded revolution and its trace."""
+"""Approximate length of what is kept of each record: its folded revolution and its trace."""
 
 
-def check_sizes(study):
-    """Refuse a study that no workstation can hold or plan.
+def check_sizes(study: Study) -> None:
+    """Refuse a study that a workstation cannot hold, or Snakemake not plan.
 
     Parameters
     ----------
@@ -28,7 +34,7 @@ def check_sizes(study):
     Raises
     ------
     StudyError
-        Which key, what it would take, what is allowed.
+        Which key, the size it leads to, the largest size allowed.
     """
     second = study.line_spec.points[1]
     if second > MOST_POINTS:
@@ -47,29 +53,22 @@ def check_sizes(study):
 
 
 def _arrays(study):
-    """Key that decides, name and length of the large arrays, the longest of each kind."""
-    rig, grid = study.rig, study.operating_grid
-    points = study.line_spec.points
-    pair, levels = 2 * max(points), (grid.force, grid.speed, grid.temperature, study.slips)
-    tables = math.prod(map(len, levels)) * len(study.lubricants)
+    """Key that decides, name and length of each large array."""
+    rig, grid, points = study.rig, study.operating_grid, study.line_spec.points
+    pair = 2 * max(points)
+    levels = (grid.force, grid.speed, grid.temperature, study.slips, study.lubricants)
+    tables = math.prod(map(len, levels))
     slowest_turn = 60.0 / min(grid.speed) * max(points) / points[0]
     samples = rig.sampling_rate * slowest_turn
     batch = min(study.batch_size, study.realisations)
+    combinations = tables * len(study.film_formulas) * study.realisations
+    rig_key = "rig.revolutions" if rig.drift > 0.0 else "rig.pairs"
     return [
         ("kept_realisations", "their lines", pair * len(study.kept_realisations)),
         ("batch_size", "the lines of a batch", pair * batch),
-        (
-            "rig.revolutions" if rig.drift > 0.0 else "rig.pairs",
-            "the lines of the rig",
-            pair * len(study.rig_realisations),
-        ),
+        (rig_key, "the lines of the rig", pair * len(study.rig_realisations)),
         ("traces", "the traces", max(points) * len(study.traces)),
         ("rig.sampling_rate", "its samples of the traces", samples * len(study.traces)),
-        ("experiment.debounce", "its samples", rig.sampling_rate * study.experiment.debounce),
-        (
-            "operating_grid",
-            "its combinations in all realisations",
-            tables * len(study.film_formulas) * study.realisations,
-        ),
+        ("operating_grid", "its combinations in all realisations", combinations),
         ("rig.pairs", "its folded records", tables * rig.pairs * FOLDED_NUMBERS),
     ]

@@ -1,64 +1,46 @@
-"""A study: one YAML file, checked as a whole before anything is computed.
+"""A study: its values, checked as a whole before anything is computed.
 
-The models below are the only description of the configuration. Their JSON schema makes the
-table in the README; their validators make the one-line errors; and `Study.stage_inputs`
-tells which values a stage depends on, so that a change re-runs that stage and no other.
+The models below are the only description of the configuration. The documented table of keys
+follows from their JSON schema and the one-line errors from their validators.
+`Study.stage_inputs` gives the values that a stage depends on, so that a change re-runs that stage
+and no other.
 """
 
 import math
-import os
-from collections import Counter
+from operator import attrgetter
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import (
-    Field,
-    StrictInt,
-    model_validator,
-)
+from pydantic import AfterValidator, Field, StrictInt, model_validator
+from pydantic_core import to_jsonable_python
 
 from lube.errors import LubeError, StudyError, shown
 from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.film_formulas import formula
+from lube.schema.stages import STAGES, forerunners
 from lube.study.field_types import (
     Resistivity,
     Slug,
     StrictModel,
     collected,
+    each_once,
     levels,
     pure_number,
     quantity,
-    read_yaml,
     validate,
 )
 from lube.study.lubricant_record import LubricantRecord, check_temperatures, load_record
 from lube.study.metadata import About
+from lube.study.resolve import resolved_content
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
-from lube.study.rollers import BoundaryLayer, RollerPair, Roughness, line_spec
+from lube.study.rollers import BoundaryLayer, LineSpec, RollerPair, Roughness, line_spec
 from lube.study.size_limits import check_sizes
 
-_FORERUNNERS = {
-    "lubricant": (),
-    "film": ("lubricant",),
-    "roughness": (),
-    "contact": ("lubricant", "film", "roughness"),
-    "master": ("lubricant", "film", "roughness"),
-    "trace": ("lubricant", "film", "roughness"),
-    "experiment": ("lubricant", "film", "roughness"),
-    "rig": ("lubricant", "film", "roughness", "experiment"),
-    "comparison": ("lubricant", "film", "roughness", "contact", "experiment"),
-    "gauge": (
-        *("lubricant", "film", "roughness", "contact", "master"),
-        *("experiment", "comparison"),
-    ),
-    "speed": ("lubricant", "film", "roughness", "contact"),
-    "reading": (),
-    "coverage": ("lubricant", "film", "roughness", "contact", "master", "experiment"),
-}
 
-
-MOST_LUBRICANTS = 100
+@collected()
+def _known_formula(name):
+    return formula(name).name
 
 
 class OperatingGrid(StrictModel):
@@ -77,7 +59,7 @@ class OperatingGrid(StrictModel):
 
 
 class TracePoint(StrictModel):
-    """An operating point whose contact is recorded at every time step."""
+    """An operating point at which the contact is kept at every time step."""
 
     force: quantity("N") = Field(description="a force of the grid")
     speed: quantity("rpm") = Field(description="a speed of the grid, the same for all traces")
@@ -90,15 +72,15 @@ class TracePoint(StrictModel):
 
 
 class Study(StrictModel):
-    """A whole study, checked and in SI units (but the rig's rpm and degC)."""
+    """A whole study, checked, in SI units (except rpm and degC)."""
 
     name: Slug = Field(description="results go to results/<name>")
-    about: About = Field(default_factory=About, description="whose results they are")
+    about: About = Field(default_factory=About, description="title, authors and licence")
     seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)] = Field(
         description="seed of all randomness"
     )
     realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
-        description="how many pairs of roughness lines"
+        description="number of pairs of roughness lines"
     )
     revolutions: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
         description="of the roller with the faster surface; equal rollers without slip repeat "
@@ -107,26 +89,23 @@ class Study(StrictModel):
     batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
         description="realisations per job; changes no result"
     )
-    kept_realisations: tuple[Annotated[StrictInt, Field(ge=0, le=RIG_REALISATIONS - 1)], ...] = (
-        Field(description="realisations whose lines stay in roughness.nc, 0 among them")
-    )
+    kept_realisations: Annotated[
+        tuple[Annotated[StrictInt, Field(ge=0)], ...], AfterValidator(each_once)
+    ] = Field(description="realisations whose lines stay in roughness.nc, 0 among them")
     rollers: RollerPair
     lubricants: tuple[LubricantRecord, ...] = Field(
         min_length=1,
-        max_length=MOST_LUBRICANTS,
         description="names of shipped records, or paths of your own YAML records",
     )
-    film_formulas: tuple[str, ...] = Field(
-        min_length=1, description="names from the registry of film formulas"
-    )
+    film_formulas: Annotated[
+        tuple[Annotated[str, AfterValidator(_known_formula)], ...], AfterValidator(each_once)
+    ] = Field(min_length=1, description="names from the registry of film formulas")
     operating_grid: OperatingGrid
     roughness: Roughness
     boundary_layer: BoundaryLayer
     resistivity: Resistivity = Field(description="resistivity of the rollers' material (Eq. 1)")
     traces: tuple[TracePoint, ...] = Field(
-        min_length=1,
-        max_length=1000,
-        description="operating points recorded over one revolution",
+        min_length=1, description="operating points recorded over one revolution"
     )
     rig: Rig = Field(default_factory=Rig, description="the rig, simulated or measured on")
     experiment: Experiment = Field(
@@ -134,40 +113,40 @@ class Study(StrictModel):
     )
 
     @property
-    def line_spec(self):
-        """The roughness lines that this study draws, a `LineSpec`."""
+    def line_spec(self) -> LineSpec:
+        """What determines the roughness lines of this study."""
         return line_spec(self.rollers, self.roughness, max(self.operating_grid.force))
 
     @property
-    def batches(self):
-        """Index of the first realisation of each batch, as a range."""
+    def batches(self) -> range:
+        """First realisation of each batch."""
         return range(0, self.realisations, self.batch_size)
 
-    def batch(self, first):
-        """Return the realisations of the batch that begins with `first`, as a range."""
+    def batch(self, first: int) -> range:
+        """Realisations of the batch that begins with `first`."""
         return range(first, min(first + self.batch_size, self.realisations))
 
     @property
-    def slips(self):
+    def slips(self) -> tuple[float, ...]:
         """Levels of the slide-to-roll ratio."""
         return self.operating_grid.slide_to_roll_ratio
 
     @property
-    def rig_slip(self):
+    def rig_slip(self) -> float:
         """Slide-to-roll ratio of the simulated rig: pure rolling if the study has it."""
         return 0.0 if 0.0 in self.slips else self.slips[0]
 
     @property
-    def rig_realisations(self):
-        """Realisations of the simulated rig's rollers, as a range.
+    def rig_realisations(self) -> range:
+        """Realisations of the simulated rig's rollers.
 
         One for each pair and, if the roughness drifts, one more for each further revolution.
         """
         drawn = math.ceil(self.rig.revolutions) if self.rig.drift > 0.0 else 1
         return range(RIG_REALISATIONS, RIG_REALISATIONS + self.rig.pairs * drawn)
 
-    def check_window(self, force):
-        """Refuse a force whose contact is finer than the grid, or wider than a roller is round.
+    def check_window(self, force: float) -> None:
+        """Refuse a force whose contact is finer than the grid or wider than a roller's perimeter.
 
         Parameters
         ----------
@@ -191,70 +170,33 @@ class Study(StrictModel):
                 f"need at least two grid spacings of {spec.spacing:.3g} m"
             )
 
-    def stage_inputs(self, stage):
+    @property
+    def evaluation(self) -> dict:
+        """Settings of the experiment; of the manifest only whether there is one.
+
+        A measured file is identified by its contents, wherever it lies.
+        """
+        return self.experiment.model_dump(mode="json") | {
+            "manifest": self.experiment.manifest is not None
+        }
+
+    def stage_inputs(self, stage: str) -> dict:
         """Return the values of the study that a stage depends on, as plain data.
 
         Parameters
         ----------
         stage : str
-            A kind of file of `lube.schema`, such as ``film``; batches go by their stage's name.
+            Its name in `lube.schema.STAGES`, such as ``film``.
 
         Returns
         -------
         dict
-            Plain values, fit for JSON. They are Snakemake's parameters of the stage: a
-            change re-runs the stages that name it.
+            Plain values, fit for JSON. They are parameters of the stage's Snakemake rules: a
+            change reruns the stages that use it.
         """
-        content = self.model_dump(mode="json")
-        grid, rollers = content["operating_grid"], content["rollers"]
-        lines = {"seed": self.seed, "lines": self.line_spec.model_dump(mode="json")}
-        layer = {
-            "reduced_modulus": self.rollers.reduced_modulus,
-            "boundary_layer": content["boundary_layer"],
-        }
-        mechanics = layer | {"slide_to_roll_ratio": grid["slide_to_roll_ratio"]}
-        inputs = {
-            "lubricant": {
-                "lubricants": content["lubricants"],
-                "temperature": grid["temperature"],
-            },
-            "film": {
-                "rollers": rollers,
-                "reduced_radius": self.rollers.reduced_radius,
-                "reduced_modulus": self.rollers.reduced_modulus,
-                "composite_rms_roughness": self.rollers.composite_rms_roughness,
-                "film_formulas": content["film_formulas"],
-                "force": grid["force"],
-                "speed": grid["speed"],
-            },
-            "roughness": lines,
-            "contact": lines | mechanics | {"revolutions": self.revolutions},
-            "master": lines | layer,
-            "trace": lines
-            | mechanics
-            | {"traces": content["traces"], "resistivity": content["resistivity"]},
-            "experiment": lines
-            | mechanics
-            | {
-                "resistivity": content["resistivity"],
-                "length": self.rollers.length,
-                "rig": content["rig"],
-                # The manifest is told by its contents, wherever it lies.
-                "experiment": content["experiment"]
-                | {"manifest": self.experiment.manifest is not None},
-                "grid": {name: grid[name] for name in ("force", "speed", "temperature")},
-            },
-            "rig": {"traces": content["traces"]},
-            # They follow from their forerunners alone.
-            "comparison": {},
-            "gauge": {},
-            "speed": {},
-            "reading": {},
-            "coverage": {"realisations": self.realisations},
-        }
-        return inputs[stage]
+        return _plain(self, STAGES[stage].values)
 
-    def origin(self, stage):
+    def origin(self, stage: str) -> dict:
         """Return all values that a stage's result follows from, its forerunners' included.
 
         Parameters
@@ -265,43 +207,36 @@ class Study(StrictModel):
         Returns
         -------
         dict
-            From stage to its inputs: the record of origin in the stage's file.
+            From stage to its values: the attribute ``config`` of the stage's file.
         """
-        return {name: self.stage_inputs(name) for name in (*_FORERUNNERS[stage], stage)}
+        return {name: self.stage_inputs(name) for name in (*forerunners(stage), stage)}
 
     @model_validator(mode="after")
-    def _check_names(self):
-        _refuse_repeats("lubricants", [record.name for record in self.lubricants])
-        _refuse_repeats("film_formulas", self.film_formulas)
-        for name in self.film_formulas:
-            with collected("film_formulas"):
-                formula(name)
-        for record in self.lubricants:
-            with collected("operating_grid.temperature"):
+    def _check_lubricants(self):
+        with collected("lubricants"):
+            each_once(tuple(record.name for record in self.lubricants))
+        with collected("operating_grid.temperature"):
+            for record in self.lubricants:
                 check_temperatures(record, self.operating_grid.temperature)
         return self
 
     @model_validator(mode="after")
     def _check_realisations(self):
-        _refuse_repeats("kept_realisations", self.kept_realisations)
-        for kept in self.kept_realisations:
-            if not 0 <= kept < self.realisations:
-                raise ValueError(
-                    f"kept_realisations: got {kept}, need realisations from 0 to "
-                    f"{self.realisations - 1}"
-                )
         if 0 not in self.kept_realisations:
             raise ValueError("kept_realisations: need 0 among them, the traces use it")
+        if max(self.kept_realisations) >= self.realisations:
+            raise ValueError(
+                f"kept_realisations: got {max(self.kept_realisations)}, need realisations from 0 "
+                f"to {self.realisations - 1}"
+            )
         return self
 
     @model_validator(mode="after")
     def _check_lines(self):
-        try:
+        with collected():
             for force in self.operating_grid.force:
                 self.check_window(force)
             check_sizes(self)
-        except LubeError as error:
-            raise ValueError(str(error)) from None
         return self
 
     @model_validator(mode="after")
@@ -318,27 +253,27 @@ class Study(StrictModel):
     @model_validator(mode="after")
     def _check_rig(self):
         if self.experiment.threshold not in self.experiment.thresholds:
-            told = ", ".join(f"{threshold:g}" for threshold in self.experiment.thresholds)
+            known = ", ".join(f"{threshold:g}" for threshold in self.experiment.thresholds)
             raise ValueError(
                 f"experiment.threshold: got {self.experiment.threshold:g} ohm, need one of "
-                f"experiment.thresholds: {told} ohm"
+                f"experiment.thresholds: {known} ohm"
             )
         largest = max(self.experiment.thresholds) * self.experiment.release_ratio
         voltage = divider_voltage(largest, self.rig)
         if voltage >= self.rig.amplifier_range:
             raise ValueError(
                 f"rig.amplifier_range: got {self.rig.amplifier_range:g} V, need more than the "
-                f"{voltage:.3g} V that {largest:g} ohm give in this circuit"
+                f"{voltage:.3g} V across {largest:g} ohm in this circuit"
             )
         return self
 
     @property
-    def trace_points(self):
+    def trace_points(self) -> list[dict]:
         """Operating points of the traces, a list of dicts from coordinate to level."""
         return [self._trace_point(number, point) for number, point in enumerate(self.traces)]
 
     def _trace_point(self, number, point):
-        """Find the levels of the study that a trace names, or by silence its first ones."""
+        """Levels of the study that a trace names, the first of those that it does not name."""
         levels_of = {
             "slide_to_roll_ratio": self.operating_grid.slide_to_roll_ratio,
             "lubricant": [record.name for record in self.lubricants],
@@ -360,19 +295,23 @@ class Study(StrictModel):
         return found
 
 
-def _refuse_repeats(key, values):
-    repeated = sorted(str(value) for value, times in Counter(values).items() if times > 1)
-    if repeated:
-        raise ValueError(f"{key}: {repeated[0]} is repeated, need each once")
+def _plain(study, values):
+    """Values at some dotted attributes of a study, as plain data."""
+    if isinstance(values, dict):
+        return {name: _plain(study, value) for name, value in values.items()}
+    return to_jsonable_python(attrgetter(values)(study))
 
 
-def load_study(path):
+def load_study(path: str | Path, changes: dict | None = None) -> Study:
     """Read and check a study.
 
     Parameters
     ----------
     path : str or Path
-        YAML file of the study.
+        YAML file of the study; it may be based on another, see `lube.study.resolve`.
+    changes : dict, optional
+        Values to change, nested as in the file, such as Snakemake's ``--config`` gives them.
+        They must contain a new ``name``.
 
     Returns
     -------
@@ -386,33 +325,31 @@ def load_study(path):
     RecordError
         If a lubricant record that the study names cannot be used.
     """
-    content = read_yaml(path, StudyError)
+    content = resolved_content(path, changes)
     if isinstance(content.get("lubricants"), list):
         content = content | {"lubricants": _records(content["lubricants"], path)}
     return _with_manifest_found(validate(Study, content, path, StudyError), path)
 
 
 def _with_manifest_found(study, path):
-    """Take the manifest's path from the study's folder."""
+    """Complete the manifest's path, which starts from the study's folder."""
     if study.experiment.manifest is None:
         return study
     manifest = Path(path).parent / study.experiment.manifest
-    if not os.path.isfile(manifest):  # whatever its name holds
-        raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that is there")
+    if not manifest.is_file():
+        raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that exists")
     experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
     return study.model_copy(update={"experiment": experiment})
 
 
 def _records(names, path):
-    """Load the records that a study names, by a shipped name or a path from the study's folder."""
-    if len(names) > MOST_LUBRICANTS:
-        raise StudyError(f"{path}: lubricants: got {len(names)}, need {MOST_LUBRICANTS} at most")
+    """Load the lubricant records of a study; their paths start from its folder."""
     for name in names:
         if not isinstance(name, str):
             raise StudyError(
                 f"{path}: lubricants: got {shown(name)}, need names or paths of records"
             )
     try:
-        return tuple(load_record(name, folder=Path(path).parent) for name in names)
+        return tuple(load_record(name, Path(path).parent) for name in names)
     except LubeError as error:
         raise type(error)(f"{path}: lubricants: {error}") from None

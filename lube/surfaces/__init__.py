@@ -1,1 +1,1 @@
-"""Rough surfaces as lines of heights: drawn from a spectrum."""
+"""Rough surfaces as lines of heights."""

@@ -1,44 +1,101 @@
-"""Roughness lines: periodic, self-affine, and the same wherever and whenever they are drawn.
+r"""Roughness lines drawn from a power spectrum: periodic, self-affine and reproducible.
 
-A line is a sum of waves with fixed amplitudes, set by the power spectrum C1D ~ q^(-2H - 1)
-between q_min and q_max, and random phases. Fixed amplitudes make the rms height of every
-line exactly that of the roller (up to the rounding to height steps); with random amplitudes
-it would be so on average only. The paper does not say which it used.
+A line is a sum of waves with random phases :math:`\varphi_k` and fixed amplitudes :math:`a_k`, set
+by the power spectrum (paper, section 2):
+
+.. math::
+
+    z(x) = \sum_k a_k \cos(q_k x + \varphi_k), \qquad
+    a_k^2 \propto C_{1D}(q_k) \propto q_k^{-2H - 1}, \qquad
+    q_{min} \le q_k = \frac{2 \pi k}{N \Delta x} \le q_{max}
+
+With fixed amplitudes the rms height of every line is exactly that of the roller, up to the
+rounding to height steps; with random amplitudes it would be so in expectation only. The paper does
+not say which of the two it used.
 """
 
 import functools
+from typing import Protocol
 
 import numpy as np
 import scipy.fft
 
-from lube.kernels.synthesis import random_directions, whole_steps
+from lube.kernels.synthesis import random_phasors, whole_steps
 
 ROLLERS = (1, 2)
 
 
-def wave_amplitudes(spec, roller):
-    """Amplitudes of the waves around one roller (paper, section 2).
+class LineSpecLike(Protocol):
+    """Parameters of a pair of roughness lines, such as `lube.study.rollers.LineSpec`; hashable.
+
+    Attributes
+    ----------
+    points : tuple of int
+        Points N around each roller.
+    spacing : float
+        Distance dx of neighbouring points, m.
+    rms_height : tuple of float
+        Rms height of each line, m.
+    hurst_exponent : float
+        Hurst exponent H.
+    q_min, q_max : float
+        Smallest and largest wave vector, rad/m.
+    height_step : float
+        Height step, m.
+    """
+
+    points: tuple[int, int]
+    spacing: float
+    rms_height: tuple[float, float]
+    hurst_exponent: float
+    q_min: float
+    q_max: float
+    height_step: float
+
+
+def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
+    r"""Amplitudes of the waves around one roller (paper, section 2).
+
+    .. math:: a_k \propto k^{-H - 1/2}, \qquad \frac12 \sum_k a_k^2 = h_{rms}^2
 
     Parameters
     ----------
-    spec : LineSpec
-        What determines the lines.
+    spec : LineSpecLike
+        Parameters of the lines.
     roller : int
         0 for the first roller, 1 for the second.
 
     Returns
     -------
     first_wave : int
-        Number of waves around the circumference that the first amplitude belongs to.
+        Number of waves around the circumference to which the first amplitude belongs.
     amplitudes : numpy.ndarray
-        Shape (modes,), m; half the sum of their squares is the mean square height.
+        Shape (modes,), m.
+
+    Examples
+    --------
+    >>> from lube import LineSpec
+    >>> spec = LineSpec(
+    ...     points=(1000, 1000),
+    ...     spacing=1e-6,
+    ...     rms_height=(2e-7, 2e-7),
+    ...     hurst_exponent=0.7,
+    ...     q_min=2 * np.pi / 1e-4,
+    ...     q_max=2 * np.pi / 1e-5,
+    ...     height_step=1e-12,
+    ... )
+    >>> first_wave, amplitudes = wave_amplitudes(spec, 0)
+    >>> first_wave, amplitudes.size
+    (10, 91)
+    >>> f"{np.sqrt(0.5 * np.sum(amplitudes**2)):.3g}"
+    '2e-07'
     """
     perimeter = spec.points[roller] * spec.spacing
     turn = perimeter / (2.0 * np.pi)
-    # Limits that fall on a whole number of waves belong to the band in spite of rounding.
+    # Limits that are a whole number of waves belong to the band in spite of rounding.
     first_wave = int(np.ceil(spec.q_min * turn * (1.0 - 1e-9)))
     last_wave = int(np.floor(spec.q_max * turn * (1.0 + 1e-9)))
-    # A wave of two points is no wave: its height on the grid would hang on its phase.
+    # Excludes the wave of two points, whose rms height on the grid would depend on its phase.
     last_wave = min(last_wave, (spec.points[roller] - 1) // 2)
     waves = np.arange(first_wave, last_wave + 1)
     shape = (waves / first_wave) ** (-spec.hurst_exponent - 0.5)
@@ -48,69 +105,87 @@ def wave_amplitudes(spec, roller):
 
 @functools.lru_cache(maxsize=4)
 def _spectrum(spec, roller):
-    """Amplitudes as an inverse real FFT wants them, in height steps, single precision."""
+    """Amplitudes in the form of an inverse real FFT, in height steps, single precision."""
     first_wave, amplitudes = wave_amplitudes(spec, roller)
     points = spec.points[roller]
     scaled = 0.5 * points / spec.height_step * amplitudes
     return first_wave, scaled.astype(np.float32)
 
 
-def draw_line(spec, roller, seed):
+def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> np.ndarray:
     """Draw one roughness line.
 
     Parameters
     ----------
-    spec : LineSpec
-        What determines the lines.
+    spec : LineSpecLike
+        Parameters of the lines.
     roller : int
         0 for the first roller, 1 for the second.
     seed : numpy.random.SeedSequence
-        Seed of this line alone.
+        Seed of this line.
 
     Returns
     -------
     numpy.ndarray
-        Shape (N,), int32: heights in steps of `spec.height_step`, positive towards the
-        other roller.
+        Shape (N,), int32: heights in height steps, positive towards the other roller.
     """
     first_wave, amplitudes = _spectrum(spec, roller)
     points = spec.points[roller]
     waves = np.zeros(points // 2 + 1, np.complex64)
-    directions = random_directions(np.random.default_rng(seed), amplitudes.size)
-    np.multiply(amplitudes, directions, out=waves[first_wave : first_wave + amplitudes.size])
+    phasors = random_phasors(np.random.default_rng(seed), amplitudes.size)
+    np.multiply(amplitudes, phasors, out=waves[first_wave : first_wave + amplitudes.size])
     return whole_steps(scipy.fft.irfft(waves, points, overwrite_x=True))
 
 
-def draw_realisation(spec, seed, realisation):
+def draw_realisation(
+    spec: LineSpecLike, seed: int, realisation: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Draw the two independent lines of one realisation.
 
     Parameters
     ----------
-    spec : LineSpec
-        What determines the lines.
+    spec : LineSpecLike
+        Parameters of the lines.
     seed : int
         Seed of the study.
     realisation : int
-        Number of the realisation; it alone, with the seed, decides what is drawn.
+        Number of the realisation. The lines depend on this and the seed only, not on the batch
+        or the order in which they are drawn.
 
     Returns
     -------
     tuple of numpy.ndarray
-        The lines of the first and second roller, shapes (N1,) and (N2,), int32 steps.
+        Lines of the first and the second roller, shapes (N1,) and (N2,), int32 height steps.
+
+    Examples
+    --------
+    >>> from lube import LineSpec
+    >>> spec = LineSpec(
+    ...     points=(1000, 800),
+    ...     spacing=1e-6,
+    ...     rms_height=(2e-7, 1e-7),
+    ...     hurst_exponent=0.7,
+    ...     q_min=2 * np.pi / 1e-4,
+    ...     q_max=2 * np.pi / 1e-5,
+    ...     height_step=1e-12,
+    ... )
+    >>> [f"{line.size}: {np.std(line) * 1e-12:.3g}" for line in draw_realisation(spec, 1, 0)]
+    ['1000: 2e-07', '800: 1e-07']
     """
     children = np.random.SeedSequence((seed, realisation)).spawn(len(ROLLERS))
     return tuple(draw_line(spec, roller, child) for roller, child in enumerate(children))
 
 
-def line_moments(line, spacing):
+def line_moments(line: np.ndarray, spacing: float) -> dict[str, float]:
     """Moments of one periodic line.
 
-    Slope and curvature are differences of neighbouring points, as the contact sees them.
+    Slope and curvature are differences of neighbouring points, the finest that the contact
+    model resolves.
 
     Parameters
     ----------
     line : numpy.ndarray
-        Heights, shape (N,), m.
+        Heights, shape (N,), m, of mean zero.
     spacing : float
         Distance dx of neighbouring points, m.
 
@@ -119,6 +194,12 @@ def line_moments(line, spacing):
     dict of str to float
         ``rms_height`` (m), ``rms_slope``, ``rms_curvature`` (1/m), ``skewness``, ``kurtosis``
         (3 for a Gaussian line).
+
+    Examples
+    --------
+    >>> moments = line_moments(np.sin(2 * np.pi * np.arange(1000) / 1000), 2 * np.pi / 1000)
+    >>> {name: f"{value:.2f}" for name, value in moments.items() if name != "skewness"}
+    {'rms_height': '0.71', 'rms_slope': '0.71', 'rms_curvature': '0.71', 'kurtosis': '1.50'}
     """
     before = np.roll(line, 1)
     slope = (line - before) / spacing
@@ -133,8 +214,10 @@ def line_moments(line, spacing):
     }
 
 
-def power_spectrum(line, spacing):
-    """One-sided power spectral density of a periodic line.
+def power_spectrum(line: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    r"""One-sided power spectral density of a periodic line.
+
+    .. math:: C_{1D}(q_k) = \frac{a_k^2}{2\, \Delta q}, \qquad \Delta q = \frac{2\pi}{N \Delta x}
 
     Parameters
     ----------
@@ -149,31 +232,40 @@ def power_spectrum(line, spacing):
         Shape (N // 2,), rad/m.
     density : numpy.ndarray
         Shape (N // 2,), m^3; its integral over the wave vector is the mean square height.
+
+    Examples
+    --------
+    >>> wave_vector, density = power_spectrum(np.sin(2 * np.pi * np.arange(100) / 20), 0.01)
+    >>> peak = np.argmax(density)
+    >>> f"{wave_vector[peak] / (2 * np.pi):.1f}", f"{density[peak] * wave_vector[0]:.1f}"
+    ('5.0', '0.5')
     """
     step = 2.0 * np.pi / (line.size * spacing)
     power = 2.0 * np.abs(scipy.fft.rfft(line)[1:] / line.size) ** 2
     if line.size % 2 == 0:
-        power[-1] /= 2.0  # the wave of two points stands for itself, all others for a pair
+        power[-1] /= 2.0  # the wave of two points has no partner of negative wave vector
     return step * np.arange(1, power.size + 1), power / step
 
 
-def spectrum_moments(spec, roller):
-    """Moments that the spectrum promises for the same differences of neighbouring points.
+def spectrum_moments(spec: LineSpecLike, roller: int) -> dict[str, float]:
+    r"""Moments of a line expected from its spectrum, for the same differences of neighbours.
 
-    A wave of wave vector q loses the factor (2 sin(q dx / 2) / dx)^2 q^-2 of its mean square
-    slope to the difference over dx, and its square for the curvature.
+    .. math::
+
+        m_{2n} = \frac12 \sum_k a_k^2 \left( \frac{2}{\Delta x}
+        \sin \frac{q_k \Delta x}{2} \right)^{2n}, \qquad n = 0, 1, 2
 
     Parameters
     ----------
-    spec : LineSpec
-        What determines the lines.
+    spec : LineSpecLike
+        Parameters of the lines.
     roller : int
         0 for the first roller, 1 for the second.
 
     Returns
     -------
     dict of str to float
-        ``rms_height`` (m), ``rms_slope``, ``rms_curvature`` (1/m).
+        The square roots: ``rms_height`` (m), ``rms_slope``, ``rms_curvature`` (1/m).
     """
     first_wave, amplitudes = wave_amplitudes(spec, roller)
     waves = np.arange(first_wave, first_wave + amplitudes.size)
@@ -185,13 +277,13 @@ def spectrum_moments(spec, roller):
     }
 
 
-def line_attributes(spec):
+def line_attributes(spec: LineSpecLike) -> dict[str, float | np.ndarray]:
     """Global attributes of a roughness file: the spectrum and the height step.
 
     Parameters
     ----------
-    spec : LineSpec
-        What determines the lines.
+    spec : LineSpecLike
+        Parameters of the lines.
 
     Returns
     -------

@@ -1,15 +1,16 @@
-"""What a notebook says by its cells, read without executing them."""
+"""The content of a notebook's cells, read without executing them."""
 
 import ast
 import json
 from pathlib import Path
+from typing import Any
 
 from lube.errors import LubeError
 from lube.schema import DATASETS, MEASURED
 
 
-def cells_of(notebook):
-    """Cells of a notebook, reduced to what decides on its figure.
+def cells_of(notebook: str | Path) -> list[dict[str, Any]]:
+    """Read the cells of a notebook, reduced to what determines its figure.
 
     Parameters
     ----------
@@ -24,57 +25,49 @@ def cells_of(notebook):
     Raises
     ------
     LubeError
-        If the file is not there, or no notebook.
+        If the file does not exist or is not a notebook.
     """
     try:
         return reduced(Path(notebook).read_text(encoding="utf-8"))
     except OSError as error:
         raise LubeError(f"{notebook}: cannot be read: {error.strerror}") from None
-    except ValueError:
-        raise LubeError(f"{notebook}: not a Jupyter notebook, damaged or foreign") from None
+    except (ValueError, KeyError, TypeError):
+        raise LubeError(f"{notebook}: not a Jupyter notebook, or a damaged one") from None
 
 
-def reduced(text):
-    """Reduce the text of a notebook's file to its cells' kinds, sources and tags.
+def reduced(text: str) -> list[dict[str, Any]]:
+    """Reduce a notebook to the type, source and tags of its cells.
 
-    Outputs, counts and other metadata are left out: they change when somebody runs and saves
-    the notebook.
+    Outputs, execution counts and other metadata change whenever somebody runs and saves the
+    notebook, so they are left out.
 
     Parameters
     ----------
     text : str
-        JSON.
+        Content of the notebook's file, JSON.
 
     Returns
     -------
     list of dict
         With the keys ``type``, ``source`` and ``tags``.
-
-    Raises
-    ------
-    ValueError
-        If it is no notebook.
     """
-    try:
-        return [
-            {
-                "type": cell["cell_type"],
-                "source": "".join(cell["source"]),
-                "tags": cell.get("metadata", {}).get("tags", []),
-            }
-            for cell in json.loads(text)["cells"]
-        ]
-    except (KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise ValueError("not a notebook") from error
+    return [
+        {
+            "type": cell["cell_type"],
+            "source": "".join(cell["source"]),
+            "tags": cell.get("metadata", {}).get("tags", []),
+        }
+        for cell in json.loads(text)["cells"]
+    ]
 
 
-def python_of(cell, notebook):
-    """Python of a code cell, without the lines that only Jupyter understands.
+def python_of(cell: dict[str, Any], notebook: str | Path) -> str:
+    """Return the Python code of a cell, without lines of IPython such as ``%matplotlib inline``.
 
     Parameters
     ----------
     cell : dict
-        A cell of `cells_of`.
+        A code cell of `cells_of`.
     notebook : str or Path
         Its notebook, for the message.
 
@@ -86,20 +79,20 @@ def python_of(cell, notebook):
     Raises
     ------
     LubeError
-        If it is not Python.
+        If it is not valid Python.
     """
     lines = cell["source"].splitlines()
     code = "\n".join(line for line in lines if not line.lstrip().startswith(("%", "!")))
     try:
         ast.parse(code)
-    except (SyntaxError, ValueError) as error:
-        came = repr((getattr(error, "text", None) or "").strip())
+    except SyntaxError as error:
+        came = repr((error.text or "").strip())
         raise LubeError(f"{notebook}: got {came}, which is not Python") from None
     return code
 
 
-def parameters_of(notebook):
-    """Variables that a notebook takes: those assigned in its cell tagged ``parameters``.
+def parameters_of(notebook: str | Path) -> dict[str, Any]:
+    """Read the parameters of a notebook: the variables of its cell tagged ``parameters``.
 
     Parameters
     ----------
@@ -109,12 +102,12 @@ def parameters_of(notebook):
     Returns
     -------
     dict
-        From name to value, as far as that is a plain text or number, else to None.
+        From name to value if that is a single text or number, else to None.
 
     Raises
     ------
     LubeError
-        If the file is not there or no notebook, or has no such cell of Python.
+        If the file does not exist, is not a notebook, or has no such cell of valid Python.
     """
     tagged = [cell for cell in cells_of(notebook) if "parameters" in cell["tags"]]
     if not tagged:
@@ -128,8 +121,8 @@ def parameters_of(notebook):
     return found
 
 
-def datasets_of(notebook):
-    """Variables of a notebook that name datasets, by their values, such as ``"../film.nc"``.
+def datasets_of(notebook: str | Path) -> dict[str, str]:
+    """Find the parameters of a notebook whose values are paths of datasets.
 
     Parameters
     ----------
@@ -139,7 +132,7 @@ def datasets_of(notebook):
     Returns
     -------
     dict
-        From name to kind: ``film`` for any path whose last part is ``film.nc``.
+        From parameter to kind: ``film`` for any path that ends in ``film.nc``.
 
     Raises
     ------
@@ -147,9 +140,9 @@ def datasets_of(notebook):
         As from `parameters_of`.
     """
     kinds = {f"{kind}.nc": kind for kind in (*DATASETS, *MEASURED)}
-    named = {
-        name: kinds.get(value.rsplit("/", 1)[-1])
-        for name, value in parameters_of(notebook).items()
+    names = {
+        parameter: value.rsplit("/", 1)[-1]
+        for parameter, value in parameters_of(notebook).items()
         if isinstance(value, str)
     }
-    return {name: kind for name, kind in named.items() if kind}
+    return {parameter: kinds[name] for parameter, name in names.items() if name in kinds}

@@ -1,26 +1,27 @@
-"""A figure of a study: how it is drawn, and the file that says of what it was drawn.
+"""A figure of a study: how it is drawn, and the file that states its origin.
 
-Beside the pictures of a figure lies its origin, such as ``figures/fig02_film.json``: the
-fingerprints of the datasets that it was drawn from and of the files that were made. By it the
-archive knows whether the files are still what the workflow made.
+Beside the pictures of a figure stands its origin, such as ``figures/fig02_film.json``: the SHA-256
+sums of the datasets that it was drawn from and of the files that were made. It shows whether the
+files are still as the workflow made them.
 """
 
 import json
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 
 from lube.errors import DataError, LubeError
 from lube.storage.files import written_whole
-from lube.storage.provenance import WAY_OUT, fingerprint
-from lube.storage.seals import holds
+from lube.storage.provenance import REMEDY, fingerprint
 from lube.workflow.cells import datasets_of
 from lube.workflow.notebooks import execute_notebook
 from lube.workflow.stamps import drawn_by
 
 
-def products(figure):
-    """Files that are made of a figure.
+def products(figure: str) -> list[str]:
+    """List the files of a figure: its pictures and its executed notebook.
 
     Parameters
     ----------
@@ -30,31 +31,35 @@ def products(figure):
     Returns
     -------
     list of str
-        Paths below the folder of a study's results, or below an archive: the pictures and the
-        executed notebook.
+        Paths below the folder of a study's results, or below an archive.
+
+    Examples
+    --------
+    >>> products("fig02_film")
+    ['figures/fig02_film.png', 'figures/fig02_film.pdf', 'notebooks/fig02_film.ipynb']
     """
     return [f"figures/{figure}.png", f"figures/{figure}.pdf", f"notebooks/{figure}.ipynb"]
 
 
-def origin(figure):
-    """Path of the file that says of what a figure was drawn, as in `products`."""
+def origin(figure: str) -> str:
+    """Path of the file that states the origin of a figure, below the same folder."""
     return f"figures/{figure}.json"
 
 
-def paths_for(notebook, datasets):
-    """Values for the variables of a notebook that name datasets.
+def paths_for(notebook: str | Path, datasets: Iterable[str | Path]) -> dict[str, str]:
+    """Assign datasets to the parameters of a notebook.
 
     Parameters
     ----------
     notebook : str or Path
         The notebook.
     datasets : iterable of str or Path
-        Files to take the place of those that its parameters cell names.
+        Datasets, each to replace the one of its kind that the parameters cell names.
 
     Returns
     -------
     dict
-        From variable to path.
+        From parameter to path.
 
     Raises
     ------
@@ -62,15 +67,20 @@ def paths_for(notebook, datasets):
         If there is no file of a kind that it names.
     """
     paths = {Path(path).stem: str(path) for path in datasets}
-    named = datasets_of(notebook)
-    for kind in named.values():
+    kinds = datasets_of(notebook)
+    for kind in kinds.values():
         if kind not in paths:
-            raise LubeError(f"{notebook}: needs {kind}.nc, which is not there")
-    return {variable: paths[kind] for variable, kind in named.items()}
+            raise LubeError(f"{notebook}: needs {kind}.nc, which is missing")
+    return {parameter: paths[kind] for parameter, kind in kinds.items()}
 
 
-def draw_figure(notebook, datasets, code, results):
-    """Execute a notebook on a study's datasets, and say of what its figure was drawn.
+def draw_figure(
+    notebook: str | Path,
+    datasets: Sequence[str | Path],
+    code: Sequence[str],
+    results: str | Path,
+) -> None:
+    """Execute a notebook on a study's datasets and write the origin of its figure.
 
     Parameters
     ----------
@@ -79,7 +89,7 @@ def draw_figure(notebook, datasets, code, results):
     datasets : sequence of str or Path
         The datasets that it names.
     code : sequence of str
-        Files of code behind the figure, below the folder of the Snakefile.
+        Files of code that the figure depends on, below the folder of the Snakefile.
     results : str or Path
         Folder of the study's results.
 
@@ -89,46 +99,40 @@ def draw_figure(notebook, datasets, code, results):
         If the notebook fails, or saves no figure.
     """
     results, figure = Path(results), Path(notebook).stem
-    stem, executed = results / "figures" / figure, results / "notebooks" / f"{figure}.ipynb"
-    told = drawn_by(_commits(datasets), code, notebook)
-    pictures = [stem.with_name(f"{figure}.{suffix}") for suffix in ("png", "pdf")]
-    before = [_state(picture) for picture in pictures]
-    execute_notebook(
-        notebook, executed, {**paths_for(notebook, datasets), "figure": str(stem)}, told
-    )
-    # Snakemake lets old ones stand.
-    if any(_state(picture) == old for picture, old in zip(pictures, before, strict=True)):
+    pictures = [results / name for name in products(figure)[:2]]
+    before = [_last_change(picture) for picture in pictures]
+    parameters = {**paths_for(notebook, datasets), "figure": str(results / "figures" / figure)}
+    changes = drawn_by(map(_commit_of, datasets), code, notebook)
+    execute_notebook(notebook, results / "notebooks" / f"{figure}.ipynb", parameters, changes)
+    # Snakemake keeps the old pictures until new ones replace them.
+    if any(_last_change(picture) == old for picture, old in zip(pictures, before, strict=True)):
         raise LubeError(
             f"{notebook}: saved no figure, need plots.save_figure(..., figure, ...) in its cells"
         )
     content = {
         "datasets": {Path(path).stem: fingerprint(path) for path in sorted(datasets)},
         "products": {name: fingerprint(results / name) for name in products(figure)},
-        "drawn_by": told,
+        "drawn_by": changes,
     }
     with written_whole(results / origin(figure)) as part:
         part.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
-def _commits(datasets):
-    """Yield the commits of the code that made some datasets; damage is for the notebook to tell."""
-    for path in datasets:
-        if holds(path):
-            with netCDF4.Dataset(path) as dataset:
-                yield dataset.getncattr("code_commit")
-
-
-def _state(path):
-    """State of a file that changes whenever it is written, even with the same content."""
+def _commit_of(path):
+    """Commit of the code that made a dataset."""
     try:
-        found = path.stat()
-    except OSError:
-        return None
-    return found.st_ino, found.st_mtime_ns
+        with netCDF4.Dataset(path) as dataset:
+            return dataset.code_commit
+    except (OSError, AttributeError) as error:
+        raise DataError(f"{path}: not a whole NetCDF file of lube ({error})") from None
 
 
-def read_origin(figure, folder):
-    """Read what a figure was drawn from.
+def _last_change(path):
+    return path.stat().st_mtime_ns if path.exists() else None
+
+
+def read_origin(figure: str, folder: str | Path) -> dict[str, Any]:
+    """Read the origin of a figure.
 
     Parameters
     ----------
@@ -140,27 +144,23 @@ def read_origin(figure, folder):
     Returns
     -------
     dict
-        ``datasets`` and ``products``, their fingerprints by kind and by name, and ``drawn_by``.
+        ``datasets`` and ``products``, their SHA-256 sums by kind and by path, and ``drawn_by``.
 
     Raises
     ------
     DataError
-        If it is not there or damaged.
+        If the file is missing or damaged.
     """
     path = Path(folder) / origin(figure)
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        return {
-            "datasets": dict(content["datasets"]),
-            "products": dict(content["products"]),
-            "drawn_by": str(content["drawn_by"]),
-        }
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return {name: content[name] for name in ("datasets", "products", "drawn_by")}
+    except (OSError, ValueError, KeyError):
         raise DataError(f"{path}: missing or damaged") from None
 
 
-def wrong_figures(figures, folder, data):
-    """Compare figures with what the workflow made, from the datasets that are there.
+def wrong_figures(figures: Iterable[str], folder: str | Path, data: str | Path) -> Iterator[str]:
+    """Check that figures are as the workflow drew them from the present datasets.
 
     Parameters
     ----------
@@ -174,18 +174,17 @@ def wrong_figures(figures, folder, data):
     Yields
     ------
     str
-        What is wrong and what to do, a line each.
+        What is wrong and what to do, one line each.
     """
     for figure in figures:
         try:
             made = read_origin(figure, folder)
-            for name in products(figure):
-                path = Path(folder) / name
-                if fingerprint(path) != made["products"].get(name):
-                    yield f"{path}: not as the workflow made it{WAY_OUT}"
-            for kind, digits in made["datasets"].items():
-                if fingerprint(Path(data) / f"{kind}.nc") != digits:
-                    path = Path(folder) / products(figure)[0]
-                    yield f"{path}: was drawn from another {kind}.nc{WAY_OUT}"
+            for name, expected in made["products"].items():
+                if fingerprint(Path(folder) / name) != expected:
+                    yield f"{Path(folder) / name}: not as the workflow made it{REMEDY}"
+            for kind, expected in made["datasets"].items():
+                if fingerprint(Path(data) / f"{kind}.nc") != expected:
+                    picture = Path(folder) / products(figure)[0]
+                    yield f"{picture}: was drawn from another {kind}.nc{REMEDY}"
         except DataError as error:
-            yield f"{error}{WAY_OUT}"
+            yield f"{error}{REMEDY}"

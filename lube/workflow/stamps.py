@@ -1,8 +1,11 @@
-"""Stamps: one short line on a figure that leads back to what it was drawn from."""
+"""Stamps: a short line on each figure that states its study, its values and the code."""
 
 import os
 import sys
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+
+import xarray as xr
 
 from lube.errors import DataError
 from lube.storage.git import ROOT, changed_since, commit, text_in
@@ -10,11 +13,11 @@ from lube.storage.provenance import SHORT, digest, merged_config
 from lube.workflow.cells import cells_of, reduced
 
 DRAWN_BY = "LUBE_DRAWN_BY"
-"""Variable of the environment that tells a notebook's stamps what `drawn_by` says."""
+"""Environment variable by which the workflow passes the text of `drawn_by` to a notebook."""
 
 
-def stamp(datasets):
-    """One short line that leads from a figure back to what it was made from.
+def stamp(datasets: Sequence[xr.Dataset]) -> str:
+    """Compose the stamp of a figure.
 
     Parameters
     ----------
@@ -24,14 +27,14 @@ def stamp(datasets):
     Returns
     -------
     str
-        For each study: its name, the fingerprint of its values behind the figure, and the
-        code's commit. Behind them, what `drawn_by` adds: of a notebook that the workflow
-        executes, as it was told; of one run by hand, whose file nobody knows, for the code.
+        For each study its name, the fingerprint of the values behind the figure, and the commit
+        of the code; then the text of `drawn_by`. In a notebook run by hand that text covers
+        the code only, because the notebook's file is unknown.
 
     Raises
     ------
     DataError
-        If there is none, or as `merged_config`.
+        If there is no dataset, or as from `merged_config`.
     """
     if not datasets:
         raise DataError("a figure needs the datasets that it shows, as loaded: got none")
@@ -39,46 +42,48 @@ def stamp(datasets):
     for dataset in datasets:
         studies.setdefault(dataset.attrs.get("study"), []).append(dataset)
     line = "; ".join(
-        f"study {name} · config {digest(merged_config(of))[:SHORT]} · "
-        f"commit {', '.join(sorted({_short_commit(dataset) for dataset in of}))}"
-        for name, of in studies.items()
+        f"study {name} · config {digest(merged_config(shown))[:SHORT]} · "
+        f"commit {', '.join(sorted({_short_commit(dataset) for dataset in shown}))}"
+        for name, shown in studies.items()
     )
-    told = os.environ.get(DRAWN_BY)
-    if told is None:
-        told = drawn_by([dataset.attrs["code_commit"] for dataset in datasets], _loaded_code())
-    return f"{line} · {told}" if told else line
+    changes = os.environ.get(DRAWN_BY)
+    if changes is None:
+        changes = drawn_by([dataset.attrs["code_commit"] for dataset in datasets], _loaded_code())
+    return f"{line} · {changes}" if changes else line
 
 
-def drawn_by(commits, code, notebook=None):
-    """Tell what a figure was drawn by, if not as in the commits of the code behind its datasets.
+def drawn_by(
+    commits: Iterable[str], code: Iterable[str], notebook: str | Path | None = None
+) -> str:
+    """State how the code that draws a figure differs from the commits that made its datasets.
 
     Parameters
     ----------
     commits : iterable of str
-        Those commits, as the datasets tell them.
+        Those commits, from the datasets' attributes.
     code : iterable of str
-        Files of code behind the figure, below the folder of the Snakefile.
+        Files of code that the figure depends on, below the folder of the Snakefile.
     notebook : str or Path, optional
-        Its notebook; what counts are its cells, not their outputs.
+        Its notebook; its cells are compared, not their outputs.
 
     Returns
     -------
     str
-        Such as ``drawn at commit 0123456789 · changed notebook``: the clone's commit, if another,
-        and what differs from it. Empty if notebook and code are as in one of the commits, or
-        nobody knows, as in an unpacked archive.
+        Such as ``drawn at commit 0123456789 · changed notebook``: the current commit, if another,
+        and what differs from it. Empty if notebook and code are as in one of the commits, or if
+        this is unknown, as in an unpacked archive.
     """
     code, head = list(code), commit().partition("+")[0]
     made_at = {name.partition("+")[0] for name in commits}
-    since = {name: _changes(name, code, notebook) for name in (*made_at, head)}
-    if since[head] is None or any(since[name] == [] for name in made_at):
+    changes = {name: _changes(name, code, notebook) for name in (*made_at, head)}
+    if changes[head] is None or any(changes[name] == [] for name in made_at):
         return ""
-    place = [] if head in made_at else [f"drawn at commit {head[:SHORT]}"]
-    return " · ".join([*place, *since[head]])
+    at = [] if head in made_at else [f"drawn at commit {head[:SHORT]}"]
+    return " · ".join([*at, *changes[head]])
 
 
 def _changes(name, code, notebook):
-    """Tell what is not as in a commit, in words; None if nobody knows."""
+    """List in words what differs from a commit; None if unknown."""
     changed = changed_since(name, code)
     if changed is None:
         return None

@@ -6,7 +6,7 @@ import shutil
 
 import pytest
 import yaml
-from studies import ROOT
+from studies import ROOT, SMOKE
 
 from lube.archive.build import VALUES, archive_contents, exact_versions, make_archive, written_files
 from lube.errors import DataError, StudyError
@@ -16,109 +16,104 @@ from lube.study.study import load_study
 
 @pytest.fixture
 def own(tmp_path):
-    """A study with a lubricant record and a list of measured records of its own."""
+    """A study based on another, with a lubricant record and a manifest of its own."""
     shipped = ROOT / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"
-    record = yaml.safe_load(shipped.read_text("utf-8")) | {"name": "mine"}
-    study = yaml.safe_load((ROOT / "workflow/config/smoke.yaml").read_text("utf-8"))
-    study["lubricants"] = ["mobilgear-shc-xmp-320", "../oils/mine.yaml"]
-    study["experiment"]["manifest"] = "records/list.csv"
     for name in ("oils", "studies/records"):
         (tmp_path / name).mkdir(parents=True)
-    (tmp_path / "oils/mine.yaml").write_text(yaml.safe_dump(record), encoding="utf-8")
+    shutil.copytree(ROOT / "workflow/config", tmp_path / "config")
+    text = shipped.read_text("utf-8").replace("name: mobilgear-shc-xmp-320", "name: mine")
+    (tmp_path / "oils/mine.yaml").write_text(text, encoding="utf-8")
     (tmp_path / "studies/records/list.csv").write_text("file, force [N]\n", encoding="utf-8")
-    (tmp_path / "studies/study.yaml").write_text(yaml.safe_dump(study), encoding="utf-8")
-    return tmp_path / "studies/study.yaml"
+    study = {
+        "based_on": "../config/smoke.yaml",
+        "name": "mine",
+        "lubricants": ["mobilgear-shc-xmp-320", "../oils/mine.yaml"],
+        "experiment": {"manifest": "records/list.csv"},
+    }
+    path = tmp_path / "studies/study.yaml"
+    path.write_text(yaml.safe_dump(study), encoding="utf-8")
+    return path
 
 
-def test_what_people_wrote_keeps_its_place_towards_one_another(own, tmp_path):
-    contents = archive_contents(load_study(own), own, tmp_path / "results", ["film"], [])
+def change(path, **values):
+    """Change some values of a study's file."""
+    content = yaml.safe_load(path.read_text("utf-8")) | values
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+
+
+def contents_of(path, results):
+    return archive_contents(load_study(path), path, results, ["film"], ["fig02_film"])
+
+
+def test_a_study_is_archived_with_all_its_files_and_loads_from_there(own, tmp_path):
+    contents = contents_of(own, tmp_path / "results")
     written = {name for name in contents if name.startswith(("study/", "lubricants/"))}
     assert written == {
         *("study/studies/study.yaml", "study/studies/records/list.csv", "study/oils/mine.yaml"),
+        *("study/config/smoke.yaml", "study/config/paper.yaml"),
         *("lubricants/mine.yaml", "lubricants/mobilgear-shc-xmp-320.yaml"),
     }
-    assert contents["study/oils/mine.yaml"].samefile(tmp_path / "oils/mine.yaml")
-    assert json.loads(contents[VALUES])["study_file"] == "studies/study.yaml"
+    for name in written:
+        (tmp_path / "archive" / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(contents[name], tmp_path / "archive" / name)
+    study_file = json.loads(contents[VALUES])["study_file"]
+    assert study_file == "studies/study.yaml"
+    archived = load_study(tmp_path / "archive/study" / study_file)
+    assert archived.stage_inputs("film") == load_study(own).stage_inputs("film")
 
 
-@pytest.mark.parametrize("place", ["lubricants", "manifest"])
-def test_an_absolute_path_is_refused(own, place):
-    study = yaml.safe_load(own.read_text("utf-8"))
-    if place == "manifest":
-        named = study["experiment"]["manifest"] = str(own.parent / "records/list.csv")
-    else:
-        named = study["lubricants"][1] = str(own.parent.parent / "oils/mine.yaml")
-    own.write_text(yaml.safe_dump(study), encoding="utf-8")
-    with pytest.raises(StudyError, match="need the straight path from the study's") as caught:
-        written_files(load_study(own), own)
-    assert named[:40] in str(caught.value)
+def test_results_and_values_are_archived(study, tmp_path):
+    contents = archive_contents(study, SMOKE, tmp_path, ["film", "contact"], ["fig02_film"])
+    assert contents["data/film.nc"] == tmp_path / "film.nc"
+    drawn = [f"figures/fig02_film.{suffix}" for suffix in ("png", "pdf", "json")]
+    for name in (*drawn, "notebooks/fig02_film.ipynb"):
+        assert contents[name] == tmp_path / name
+    values = json.loads(contents[VALUES])
+    assert set(values["values"]) == {"lubricant", "film", "roughness", "contact"}
+    assert values["config_sha256"] == {
+        kind: digest(config_text(study, kind)) for kind in ("film", "contact")
+    }
 
 
-@pytest.mark.parametrize("way", ["../studies/mine.yaml", "records/../mine.yaml"])
-def test_a_way_through_folders_that_are_not_archived_is_refused(own, tmp_path, way):
+def test_paths_that_would_not_resolve_in_an_archive_are_refused(own, tmp_path):
     shutil.copy(tmp_path / "oils/mine.yaml", own.with_name("mine.yaml"))
-    study = yaml.safe_load(own.read_text("utf-8"))
-    study["lubricants"][1] = way
-    own.write_text(yaml.safe_dump(study), encoding="utf-8")
-    told = f"got '{way}', need the straight path from the study's folder, 'mine.yaml'"
-    with pytest.raises(StudyError, match=re.escape(told)):
-        written_files(load_study(own), own)
+    oil, manifest = str(tmp_path / "oils/mine.yaml"), str(own.parent / "records/list.csv")
+    for changed, direct in (
+        ({"lubricants": [oil]}, "../oils/mine.yaml"),
+        ({"experiment": {"manifest": manifest}}, "records/list.csv"),
+        ({"lubricants": ["../studies/mine.yaml"]}, "mine.yaml"),
+        ({"lubricants": ["records/../mine.yaml"]}, "mine.yaml"),
+        ({"based_on": str(tmp_path / "config/smoke.yaml")}, "../config/smoke.yaml"),
+    ):
+        before = own.read_text("utf-8")
+        change(own, **changed)
+        expected = rf"got '.*, need the direct relative .* folder, '{re.escape(direct)}'"
+        with pytest.raises(StudyError, match=expected):
+            written_files(load_study(own), own)
+        own.write_text(before, encoding="utf-8")
 
 
-def test_a_study_may_have_the_name_of_any_file_of_the_archive(own, tmp_path):
-    own = own.rename(own.with_name(VALUES))
-    contents = archive_contents(load_study(own), own, tmp_path / "results", ["film"], [])
-    assert contents[f"study/studies/{VALUES}"].samefile(own)
-    assert json.loads(contents[VALUES])["study_file"] == f"studies/{VALUES}"
-
-
-def test_records_of_one_file_name_are_both_there(own, tmp_path):
-    oil = yaml.safe_load((tmp_path / "oils/mine.yaml").read_text("utf-8")) | {"name": "other"}
+def test_records_with_the_same_file_name_are_both_archived(own, tmp_path):
     same = own.parent / "mobilgear-shc-xmp-320.yaml"
-    same.write_text(yaml.safe_dump(oil), encoding="utf-8")
-    study = yaml.safe_load(own.read_text("utf-8"))
-    study["lubricants"].append(same.name)
-    own.write_text(yaml.safe_dump(study), encoding="utf-8")
-    contents = archive_contents(load_study(own), own, tmp_path / "results", ["film"], [])
-    assert contents["lubricants/other/mobilgear-shc-xmp-320.yaml"].samefile(same)
+    shutil.copy(tmp_path / "oils/mine.yaml", same)
+    change(own, lubricants=["mobilgear-shc-xmp-320", same.name])
+    contents = contents_of(own, tmp_path / "results")
+    assert contents["lubricants/mine/mobilgear-shc-xmp-320.yaml"].samefile(same)
     shipped = contents["lubricants/mobilgear-shc-xmp-320/mobilgear-shc-xmp-320.yaml"]
     assert shipped.is_relative_to(ROOT / "lube/study/lubricants")
     assert contents["study/studies/mobilgear-shc-xmp-320.yaml"].samefile(same)
 
 
-def test_a_record_behind_a_link_is_taken_where_the_study_looks_for_it(own, tmp_path):
+def test_a_record_is_archived_where_the_study_names_it(own, tmp_path):
     record = tmp_path / "oils/mine.yaml"
     record.rename(tmp_path / "elsewhere.yaml")
     record.symlink_to(tmp_path / "elsewhere.yaml")
     assert "oils/mine.yaml" in written_files(load_study(own), own)
-
-
-def test_a_shipped_record_named_by_its_path_stands_where_it_leads(own, tmp_path):
+    # Also one that comes with the package, if it is given by its path.
     shutil.copytree(ROOT / "lube/study/lubricants", tmp_path / "lube/study/lubricants")
-    study = yaml.safe_load(own.read_text("utf-8"))
-    study["lubricants"][0] = "../lube/study/lubricants/n-dodecane.yaml"
-    study["operating_grid"]["temperature"]["values"] = [40, 50]
-    study["traces"] = [{"force": "800 N", "speed": "100 rpm", "temperature": "40 degC"}]
-    own.write_text(yaml.safe_dump(study), encoding="utf-8")
-    assert "lube/study/lubricants/n-dodecane.yaml" in written_files(load_study(own), own)
-
-
-def test_the_values_are_those_behind_the_files(study, tmp_path):
-    file = ROOT / "workflow/config/smoke.yaml"
-    told = json.loads(archive_contents(study, file, tmp_path, ["film", "contact"], [])[VALUES])
-    assert told["config_sha256"] == {
-        kind: digest(config_text(study, kind)) for kind in ("film", "contact")
-    }
-    assert set(told["values"]) == {"lubricant", "film", "roughness", "contact"}
-
-
-def test_results_are_taken_as_datasets_pictures_and_notebooks(study, tmp_path):
-    file = ROOT / "workflow/config/smoke.yaml"
-    contents = archive_contents(study, file, tmp_path, ["film"], ["fig02_film"])
-    assert contents["data/film.nc"] == tmp_path / "film.nc"
-    drawn = [f"figures/fig02_film.{suffix}" for suffix in ("png", "pdf", "json")]
-    for name in (*drawn, "notebooks/fig02_film.ipynb"):
-        assert contents[name] == tmp_path / name
+    change(own, lubricants=["../lube/study/lubricants/mobilgear-shc-xmp-320.yaml"])
+    shipped = "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"
+    assert shipped in written_files(load_study(own), own)
 
 
 def test_versions_are_fit_for_pip():
@@ -128,23 +123,15 @@ def test_versions_are_fit_for_pip():
     assert not [line for line in lines if line.startswith("lube==")]
 
 
-def test_a_missing_result_is_named_and_the_old_archive_stays(study, tmp_path):
-    (tmp_path / "archive").mkdir()
-    (tmp_path / "archive/README.md").write_text("old")
-    file = ROOT / "workflow/config/smoke.yaml"
-    with pytest.raises(DataError, match=r"archive: cannot be archived: .*film.nc: No such file"):
-        make_archive(study, file, tmp_path, ["film"], [], tmp_path / "archive")
-    assert (tmp_path / "archive/README.md").read_text() == "old"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["archive"]
-
-
-def test_a_figure_that_the_workflow_did_not_make_is_refused_and_the_old_archive_stays(
-    study, tmp_path
-):
-    (tmp_path / "archive").mkdir()
-    (tmp_path / "archive/README.md").write_text("old")
-    file = ROOT / "workflow/config/smoke.yaml"
-    told = r"figures/fig02_film.json: missing or damaged; take it away and run snakemake again"
-    with pytest.raises(DataError, match=told):
-        make_archive(study, file, tmp_path, [], ["fig02_film"], tmp_path / "archive")
-    assert (tmp_path / "archive/README.md").read_text() == "old"
+def test_an_archive_that_cannot_be_made_leaves_the_old_one(study, tmp_path):
+    archive = tmp_path / "archive"
+    archive.mkdir()
+    (archive / "README.md").write_text("old")
+    for kinds, figures, expected in (
+        (["film"], [], "archive: cannot be archived: No such file"),
+        ([], ["fig02_film"], r"fig02_film.json: missing or damaged; delete it and run snakemake"),
+    ):
+        with pytest.raises(DataError, match=expected):
+            make_archive(study, SMOKE, tmp_path, kinds, figures, archive)
+        assert (archive / "README.md").read_text() == "old"
+        assert list(tmp_path.iterdir()) == [archive]

@@ -10,7 +10,7 @@ from lube.errors import StudyError
 from lube.study.metadata import PAPER, About
 
 
-def test_a_citation_names_makers_licence_day_and_paper(attributed_study):
+def test_a_citation_names_creators_licence_date_and_paper(attributed_study):
     cited = yaml.safe_load(citation_file(attributed_study))
     assert cited["cff-version"] == "1.2.0"
     assert cited["authors"] == [
@@ -29,25 +29,19 @@ def test_a_citation_names_makers_licence_day_and_paper(attributed_study):
 
 
 def test_zenodo_gets_what_it_asks_for(attributed_study):
-    told = json.loads(zenodo_metadata(attributed_study))
-    assert told["upload_type"] == "dataset"
-    assert told["title"] == "My <rollers> & oil"
-    assert "Rollers &amp; oil." in told["description"]  # which is HTML
-    assert told["creators"][0]["orcid"] == "0000-0002-1825-0097"
-    assert told["creators"][1] == {"name": "The authors of lube"}
-    assert told["license"] == "cc0-1.0"
+    deposit = json.loads(zenodo_metadata(attributed_study))
+    assert deposit["upload_type"] == "dataset"
+    assert deposit["title"] == "My <rollers> & oil"
+    assert "Rollers &amp; oil." in deposit["description"]  # HTML
+    assert deposit["creators"][0]["orcid"] == "0000-0002-1825-0097"
+    assert deposit["creators"][1] == {"name": "The authors of lube"}
+    assert deposit["license"] == "cc0-1.0"
 
 
-# What an archive needs to know
-
-
-def test_a_study_without_makers_makes_no_archive(study):
-    with pytest.raises(StudyError, match=r"about.creators: missing, an archive needs someone"):
-        check_about(study.model_copy(update={"about": About()}))
-
-
-def test_the_day_is_the_studys_or_that_of_the_commit(study, monkeypatch):
+def test_an_archive_needs_creators_and_a_date(study, monkeypatch):
     undated = study.model_copy(update={"about": About()})
+    with pytest.raises(StudyError, match=r"about.creators: missing, an archive needs at least one"):
+        check_about(undated)
     monkeypatch.setattr("lube.archive.citation.commit_date", lambda: "2026-05-06")
     assert publication_date(undated).isoformat() == "2026-05-06"
     assert publication_date(study) == study.about.date

@@ -1,14 +1,14 @@
-"""How often the study's intervals hold the truth, for rollers that no ensemble has seen.
+"""How often the study's intervals contain the true value, for rollers that are in no ensemble.
 
     snakemake benchmark                                              # measures, saves and draws
-    python tests/benchmarks/bench_coverage.py [STUDY [COVERAGE.NC]]  # measures and tells
+    python tests/benchmarks/bench_coverage.py [STUDY [COVERAGE.NC]]  # measures and prints
 
-Each pair of rollers makes a record at several operating points, its shares of contact straight
-from the kernels. What reads real records judges them: prediction of the share, film, factor of
-the pressure-viscosity coefficient, strength of the boundary layer. The truth is known, so that
-each interval is right or wrong; and its width is held against the spread between pairs, so that
-none is right by being wide. In another part fewer pairs go the whole way, through circuit, files
-and manifest.
+Each held-out pair of rollers makes a record at several operating points; its contact shares come
+directly from the kernels. The study's own stages judge them: prediction of the share, film
+thickness, factor of the pressure-viscosity coefficient, strength of the boundary layer. The true
+values are known, so each interval is right or wrong. Its width is compared with the spread between
+pairs, so that no interval is right merely by being wide. In one scenario fewer pairs go through the
+circuit, recorded files and a manifest.
 
 With slip a pair takes seconds, so `PAIRS` has fewer of them there; ``--all`` takes as many.
 """
@@ -21,21 +21,20 @@ import multiprocessing
 import os
 import tempfile
 import time
+from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 import xarray as xr
 
-from lube.grid.discretise import layer_factor_of, revolution, speed_ratios, whole_numbers
+from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.operating_points import operating_points
-from lube.kernels.motion import surface_position
-from lube.kernels.strips import strip_statistics
 from lube.recordings.manifest import Entry, Manifest, read_manifest
 from lube.rig.at_records import model_at_records
+from lube.rig.ensemble_runs import EnsembleRuns
 from lube.rig.fits import ALPHA_FACTORS, alpha_logits, fit_records, strength_logits, study_strength
 from lube.rig.simulator import SimulatedRig
 from lube.schema import LIMITS, label
@@ -49,36 +48,34 @@ from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch
 from lube.storage.netcdf import save
 from lube.study.study import load_study
-from lube.surfaces.synthetic import draw_realisation, line_attributes
 
 TURNS = (0.01, 0.3, 1.0, 10.4, 100.4)
 SLIP = 2.0 * (1.0 - 0.9) / (1.0 + 0.9)
-"""One surface 0.9 times as fast as the other: equal rollers are back where they began in 10 turns,
-and so any number of turns follows from these."""
+"""One surface 0.9 times as fast as the other: the alignments of equal rollers repeat after 10
+turns, so that records of any length follow from these."""
 MOTIONS = {"rolling": 0.0, "slipping": SLIP}
 SMALLER = 0.8
-"""Radius of the second of two unequal rollers over the first's: they are back in 4 turns."""
-SCENARIOS = [(rollers, motion) for motion in MOTIONS for rollers in ("equal", "unequal")]
+"""Radius of the second of two unequal rollers over the first's: they repeat after 4 turns."""
 SLIP_LAMBDAS = np.geomspace(1.3, 3.8, 7)
 """Operating points with slip are those with the nearest lambda ratios."""
 
 HELD_OUT = 100_000
-"""First realisation of the pairs that no ensemble has seen."""
+"""First realisation of the held-out pairs."""
 PAIRS = {"rolling": 1000, "slipping": 200}
 ENSEMBLES, ENSEMBLE_PAIRS = 4, 200
-"""Ensembles that share no realisation. Each judges its part of a scenario's pairs, so that no
-figure is the luck of one ensemble; and all judge these pairs, for equal rollers in rolling."""
+"""Ensembles without common realisations. Each judges its part of a scenario's pairs, so that no
+figure depends on one ensemble only; and all judge these pairs, for equal rollers in rolling."""
 FILES, FILE_TURNS = 30, 10.4
 TOY = 8
-"""Pairs of the smoke study, whose figures mean nothing."""
+"""Pairs of the smoke study, whose figures have no meaning."""
 
 LEAST = 1e-3
-"""Probability above which the figures for all points together are taken."""
+"""Lowest probability of the operating points in the figures for all points together."""
 
 
 @dataclass(frozen=True)
 class Ensemble:
-    """What a study knows of its rollers: films, contact and master map."""
+    """Films, contact and master map of a study with one seed."""
 
     seed: int
     film: xr.Dataset
@@ -88,8 +85,7 @@ class Ensemble:
 
 def variant(study, rollers, motion="rolling"):
     """The study with equal or unequal rollers, one film formula and one slip."""
-    first = study.rollers.first
-    radius = first.radius * (SMALLER if rollers == "unequal" else 1.0)
+    radius = study.rollers.first.radius * (SMALLER if rollers == "unequal" else 1.0)
     second = study.rollers.second.model_copy(update={"radius": radius})
     grid = study.operating_grid.model_copy(update={"slide_to_roll_ratio": (MOTIONS[motion],)})
     changed = {
@@ -100,7 +96,7 @@ def variant(study, rollers, motion="rolling"):
     return study.model_copy(update=changed)
 
 
-# What the study knows
+# The ensembles
 
 
 def film_of(study):
@@ -111,30 +107,28 @@ def film_of(study):
 
 
 def make_ensembles(study, count, pool):
-    """Ensembles of the study's rollers by as many seeds, which share no realisation."""
-    return [make_ensemble(study, study.seed + number, pool) for number in range(count)]
-
-
-def make_ensemble(study, seed, pool):
-    """Contact and master map of the study's realisations by one seed."""
+    """Contact and master map of the study's rollers by several seeds."""
     film = film_of(study)
-    wanted = [(study, film, seed, number) for number in range(study.realisations)]
-    runs, maps = zip(*pool(_realisation, wanted), strict=True)
-    return Ensemble(seed, film, gather(runs, film), gather_map(maps))
+    ensembles = []
+    for seed in range(study.seed, study.seed + count):
+        runs, maps = zip(
+            *pool(partial(_realisation, study, film, seed), range(study.realisations)), strict=True
+        )
+        ensembles.append(Ensemble(seed, film, gather(runs, film), gather_map(maps)))
+    return ensembles
 
 
-def _realisation(job):
-    study, film, seed, number = job
+def _realisation(study, film, seed, number):
     lines = roughness_batch(study.line_spec, seed, [number])
     layer = study.boundary_layer
     return contact_statistics(lines, film, layer), contact_map(lines, film, layer)
 
 
-# What single pairs show
+# The shares of single pairs
 
 
 def operating_table(film, motion):
-    """Levels, films and widths of the operating points, a column each."""
+    """Levels, films and widths of the operating points, one column each."""
     table = film.isel(film_formula=0, lubricant=0, drop=True)
     names = ["film_thickness", "contact_half_width", "lambda_ratio"]
     frame = table[names].to_dataframe().reset_index().sort_values("lambda_ratio")
@@ -148,17 +142,22 @@ def operating_table(film, motion):
 def record_shares(study, table, slip, turns, realisation):
     """Shares of a pair's records of so many turns, shape (turns, points).
 
-    A pair that is back where it began shows the same again, so that its longest records follow
-    from one such cycle.
+    After a cycle of alignments a pair shows the same again, so that the longest records follow
+    from one cycle.
     """
-    pair = draw_realisation(study.line_spec, study.seed, realisation)
-    ratios = speed_ratios(slip)
-    turn = revolution(pair, ratios)
+    runs = EnsembleRuns(study)
+    pair = runs.pair(realisation)
+    turn = revolution(pair, speed_ratios(slip))
     ends = np.maximum(np.round(np.array(turns) * turn).astype(np.int64), 1)
-    cycle = _cycle(pair, ratios) * turn
+    cycle = _cycle(pair, speed_ratios(slip)) * turn
     whole, rest = ends // cycle, ends % cycle
     marks = np.unique([0, *rest, *(cycle * (whole > 0))])
-    counts = counts_up_to(study, pair, ratios, table, marks)
+    points = runs.points(table["film_thickness"], table["contact_half_width"])
+    between = [
+        runs.breakthroughs(pair, slip, points, begin, end)
+        for begin, end in itertools.pairwise(marks)
+    ]
+    counts = np.cumsum([np.zeros(len(table), np.int64), *between], axis=0)
     # The last mark is the cycle's end where there is a whole one.
     return (whole[:, None] * counts[-1] + counts[np.searchsorted(marks, rest)]) / ends[:, None]
 
@@ -170,78 +169,54 @@ def _cycle(pair, ratios):
     return other // math.gcd(round(pair[faster].size * ratios[1 - faster]), other)
 
 
-def counts_up_to(study, pair, ratios, table, marks):
-    """Steps in contact up to each of some marks, the first of them 0, shape (marks, points)."""
-    lines = xr.Dataset(attrs=line_attributes(study.line_spec))
-    factor = layer_factor_of(lines, study.rollers.reduced_modulus, study.boundary_layer)
-    points = whole_numbers(table["film_thickness"], table["contact_half_width"], lines)
-    counts = np.zeros((marks.size, len(table)), np.int64)
-    for number, (begin, end) in enumerate(itertools.pairwise(marks), start=1):
-        begun = [
-            np.roll(line, -surface_position(begin, ratio))
-            for line, ratio in zip(pair, ratios, strict=True)
-        ]
-        run = strip_statistics(*begun, ratios, end - begin, *points, factor)
-        counts[number] = counts[number - 1] + run[:, 1]
-    return counts
-
-
 def held_out_shares(study, table, motion, pairs, pool):
-    """Shares of the records of pairs that no ensemble has seen, shape (pairs, TURNS, points)."""
+    """Shares of the records of held-out pairs, shape (pairs, TURNS, points)."""
     run = partial(record_shares, study, table, MOTIONS[motion], TURNS)
     return np.array(list(pool(run, range(HELD_OUT, HELD_OUT + pairs))))
 
 
-# What the study makes of them
+# The judgement by the study
 
 
 def experiment_of(study, table, motion, turns):
-    """Records of one pair at all operating points, each of so many turns; their shares follow."""
-    unset = dict.fromkeys(Entry.__dataclass_fields__)
-    entries = [
-        Entry(
-            **unset
-            | {
-                "where": f"{turns:g} turns, point {number}",
-                "probability": 0.5,
-                "slide_to_roll_ratio": MOTIONS[motion],
-                **{name: float(row[name]) for name in ("force", "speed", "temperature")},
-            }
-        )
-        for number, row in enumerate(table.to_dict("records"))
-    ]
+    """Records of one pair at all operating points, for each number of turns in turn."""
+    entries = []
+    for length, row in itertools.product(turns, table.to_dict("records")):
+        levels = {name: float(row[name]) for name in ("force", "speed", "temperature")}
+        where = f"record {len(entries)}, {length:g} turns"
+        # The shares of the pairs replace this probability later.
+        given = {"where": where, "probability": 0.5, "slide_to_roll_ratio": MOTIONS[motion]}
+        entries.append(Entry.model_construct(**given | levels))
     experiment = measured_experiment(Manifest("simulated", tuple(entries), ()), study)
-    experiment["turns"] = experiment["turns"].copy(data=np.full(len(entries), turns))
-    return experiment
+    lengths = np.repeat(np.array(turns, float), len(table))
+    return experiment.assign(turns=experiment["turns"].copy(data=lengths))
 
 
 def comparisons(study, ensemble, table, motion, turns=TURNS):
     """One comparison for each number of turns; the model is made for all of them at once."""
-    experiments = [experiment_of(study, table, motion, each) for each in turns]
-    joined = xr.concat(experiments, "record", data_vars="minimal", join="exact")
-    own = study.model_copy(update={"seed": ensemble.seed})
-    model = model_of(joined, ensemble, own)
-    parts = np.split(np.arange(joined.sizes["record"]), len(turns))
+    experiment = experiment_of(study, table, motion, turns)
+    model = model_of(experiment, ensemble, study.model_copy(update={"seed": ensemble.seed}))
+    parts = np.split(np.arange(experiment.sizes["record"]), len(turns))
     return [
-        compare(model.isel(record=part), joined.isel(record=part), ensemble.contact)
+        compare(model.isel(record=part), experiment.isel(record=part), ensemble.contact)
         for part in parts
     ]
 
 
 def model_of(experiment, ensemble, study):
-    """What an ensemble knows of some records."""
+    """The model at the records, by one ensemble."""
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     films = film_at_records(experiment, oils, study.rollers, study.film_formulas)
     return model_at_records(films, experiment, ensemble.film, ensemble.contact, study)
 
 
 def judge(ensemble, comparison, shares):
-    """What the study makes of each pair's records of one length.
+    """Judge each pair's records of one length.
 
     Parameters
     ----------
     ensemble : Ensemble
-        What it knows.
+        It judges.
     comparison : xarray.Dataset
         The model at these records.
     shares : numpy.ndarray
@@ -293,7 +268,7 @@ def _films(ensemble, comparison, shares):
 
 
 def judge_all(ensembles, compared, shares, pool):
-    """As `judge`: each ensemble judges its part of the pairs, shared out among processes."""
+    """As `judge`: each ensemble judges its part of the pairs, in several processes."""
     jobs = [
         (ensemble, comparison, part)
         for ensemble, comparison, own in zip(
@@ -305,12 +280,12 @@ def judge_all(ensembles, compared, shares, pool):
 
 
 def join(judged):
-    """Join what `judge` says of several parts of the pairs."""
+    """Join the results of `judge` for several parts of the pairs."""
     judged = list(judged)
     return {name: np.concatenate([part[name] for part in judged]) for name in judged[0]}
 
 
-# How often it is right
+# Coverage and widths
 
 
 def figures(comparison, shares, judged):
@@ -321,114 +296,95 @@ def figures(comparison, shares, judged):
     dict of str to float or numpy.ndarray
         Variables of the ``coverage`` file; those over points as arrays.
     """
-    one = comparison.isel(film_formula=0)
-    probability = judged["probability"]
+    probability, film, inside = (judged[name] for name in ("probability", "film", "inside"))
     counted = probability.mean(axis=0) > LEAST
-    film, inside = judged["film"], judged["inside"]
-    held = _holds(film, np.log(one["lambda_ratio"].values))
+    held = _holds(film, np.log(comparison["lambda_ratio"].isel(film_formula=0).values))
     closed = np.isfinite(film[..., 1:]).all(axis=-1)
     beyond = np.where(shares < probability, np.inf, -np.inf)
     gauged = np.where(np.isnan(film[..., 0]), beyond, film[..., 0])
     predicted = np.median(judged["predicted"], axis=0)
-    return {
+    found = {
         "film_coverage": _mean(held[:, counted]),
         "closed_coverage": _mean(held[closed]),
         "one_sided_coverage": _mean(held[~closed]),
         "closed_share": _mean(closed),
-        "film_width_ratio": _middle(_width_ratio(film, gauged)[counted]),
+        "film_width_ratio": _median(_width_ratio(film, gauged)[counted]),
         "agreement": _mean(inside[:, counted]),
-        "prediction_width_ratio": _middle((predicted / _spread(shares))[counted]),
-        **{
-            name: value
-            for fit in ("alpha", "layer")
-            for name, value in (
-                (f"{fit}_coverage", _mean(_holds(judged[fit], 0.0))),
-                (f"{fit}_width_ratio", float(_width_ratio(judged[fit], judged[fit][:, 0]))),
-            )
-        },
+        "prediction_width_ratio": _median((predicted / _spread(shares))[counted]),
         "point_film_coverage": held.mean(axis=0),
         "point_agreement": inside.mean(axis=0),
     }
+    for fit in ("alpha", "layer"):
+        found[f"{fit}_coverage"] = _mean(_holds(judged[fit], 0.0))
+        found[f"{fit}_width_ratio"] = float(_width_ratio(judged[fit], judged[fit][:, 0]))
+    return found
 
 
-def _holds(limited, truth):
-    return (limited[..., 1] <= truth) & (truth <= limited[..., 2])
+def _holds(interval, truth):
+    return (interval[..., 1] <= truth) & (truth <= interval[..., 2])
 
 
 def _mean(values):
     return np.mean(values) if values.size else np.nan
 
 
-def _middle(ratios):
-    """Median of those that are numbers: there is none where most intervals have one limit."""
+def _median(ratios):
+    """Median of the finite values: a ratio is infinite where most intervals have one limit."""
     known = ratios[np.isfinite(ratios)]
     return np.median(known) if known.size else np.nan
 
 
 def _spread(values):
-    """Width of what holds 95 % of the pairs in its middle; infinite where it has no end."""
+    """Width of the central 95 % of the pairs; infinite where it has no end."""
     beyond = np.where(np.isnan(values), np.inf, values)
     lower, upper = np.quantile(beyond, [0.025, 0.975], axis=0, method="nearest")
     with np.errstate(invalid="ignore"):
         return np.where(upper > lower, upper - lower, np.nan)
 
 
-def _width_ratio(limited, found):
-    """Median width of the pairs' intervals over the spread of what they found."""
+def _width_ratio(interval, found):
+    """Median width of the pairs' intervals over the spread of the values found."""
     with np.errstate(invalid="ignore"):
-        return np.median(limited[..., 2] - limited[..., 1], axis=0) / _spread(found)
+        return np.median(interval[..., 2] - interval[..., 1], axis=0) / _spread(found)
 
 
 # Through circuit and files
 
 
-def records_on_file(study, table, folder):
-    """Let the simulated rig write its records, and a manifest that names them."""
-    points = [
-        point
-        for row in table.to_dict("records")
-        for point in operating_points(_film_of(study, row), 0.0)
-    ]
+def records_on_file(study, table, film, folder):
+    """Write the records of the simulated rig, and a manifest of them."""
+    film, names = film.isel(film_formula=0), ("force", "speed", "temperature")
+    levels = [{name: [row[name]] for name in names} for row in table.to_dict("records")]
+    points = [operating_points(film.sel(level), 0.0)[0] for level in levels]
     lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     rows = ["file,force [N],speed [rpm],temperature [degC],pair,origin"]
+    parts = defaultdict(list)
     for pair, number, part in SimulatedRig(lines, study, points).revolutions():
-        name = f"{pair}_{number}.nc"
-        if not (folder / name).exists():
-            level = [
-                f"{points[number].levels[each]!r}" for each in ("force", "speed", "temperature")
-            ]
-            rows.append(",".join([name, *level, f"{pair}", "simulated"]))
-        _append(folder / name, part.voltage(study.rig), study.rig)
+        parts[pair, number].append(part.voltage(study.rig))
+        if len(parts[pair, number]) == math.ceil(study.rig.revolutions):
+            _write(folder / f"{pair}_{number}.nc", parts.pop((pair, number)), study.rig)
+            level = [repr(points[number].levels[name]) for name in names]
+            rows.append(",".join([f"{pair}_{number}.nc", *level, f"{pair}", "simulated"]))
     (folder / "manifest.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     return folder / "manifest.csv"
 
 
-def _film_of(study, row):
-    oil = lubricant_table(study.lubricants[:1], [row["temperature"]])
-    levels = [row["force"]], [row["speed"]]
-    return film_table(oil, study.rollers, *levels, study.film_formulas).isel(film_formula=0)
-
-
-def _append(path, voltage, rig):
-    """Append whole steps of the converter to a record."""
-    with netCDF4.Dataset(path, "a" if path.exists() else "w") as file:
-        if "voltage" not in file.variables:
-            file.createDimension("time", None)
-            variable = file.createVariable("voltage", "i2", ("time",), chunksizes=(2**16,))
-            told = {"units": "V", "scale_factor": rig.resolved_voltage}
-            variable.setncatts(told | {"sampling_interval": f"{1.0 / rig.sampling_rate!r} s"})
-        variable = file["voltage"]
-        variable.set_auto_maskandscale(False)
-        begin = variable.size
-        steps = np.rint(voltage / rig.resolved_voltage).astype(np.int16)
-        variable[begin : begin + steps.size] = steps
+def _write(path, parts, rig):
+    """Write a voltage record in whole steps of the converter."""
+    steps = np.rint(np.concatenate(parts) / rig.resolved_voltage).astype(np.int16)
+    attributes = {
+        "units": "V",
+        "scale_factor": rig.resolved_voltage,
+        "sampling_interval": f"{1.0 / rig.sampling_rate!r} s",
+    }
+    xr.Dataset({"voltage": ("time", steps, attributes)}).to_netcdf(path)
 
 
 def through_files(study, ensemble, table, pairs, folder):
     """Figures of some pairs whose records went through circuit, files and manifest."""
     rig = study.rig.model_copy(update={"pairs": pairs, "revolutions": FILE_TURNS, "drift": 0.0})
     study = study.model_copy(update={"rig": rig})
-    manifest = read_manifest(records_on_file(study, table, folder))
+    manifest = read_manifest(records_on_file(study, table, ensemble.film, folder))
     experiment = measured_experiment(manifest, study)
     model = model_of(experiment, ensemble, study)
     comparison = compare(model, experiment, ensemble.contact)
@@ -441,56 +397,37 @@ def through_files(study, ensemble, table, pairs, folder):
     return own, figures(own, np.array(shares), join(judged))
 
 
-# The whole
+# All scenarios
 
 
-def scenario_name(rollers, motion):
-    """Name of a scenario, as a reader takes it."""
-    return f"{rollers} rollers, {motion}"
-
-
-def measure_scenario(study, ensembles, rollers, motion, pairs, pool):
-    """Figures of one scenario, one row for each number of turns, and its points."""
-    begin = time.perf_counter()
-    study = variant(study, rollers, motion)
+def measure_scenario(study, ensembles, motion, pairs, pool):
+    """Figures of one scenario for each number of turns, with a comparison and all shares."""
     table = operating_table(ensembles[0].film, motion)
     shares = held_out_shares(study, table, motion, pairs, pool)
-    ran = time.perf_counter()
     rows = []
     made = [comparisons(study, ensemble, table, motion) for ensemble in ensembles]
     for number, compared in enumerate(zip(*made, strict=True)):
         judged = judge_all(ensembles, compared, shares[:, number], pool)
         rows.append(figures(compared[0], shares[:, number], judged))
-        tell(f"{scenario_name(rollers, motion)}, {TURNS[number]:g} turns", pairs, rows[-1])
-    now = time.perf_counter()
-    print(f"{scenario_name(rollers, motion)}: runs {ran - begin:.0f} s, judged {now - ran:.0f} s")
+        show(f"{TURNS[number]:g} turns", rows[-1])
     return rows, compared[0], shares
 
 
 def measure_ensembles(study, shares, ensembles, pool):
     """Figures of the same pairs by each ensemble."""
-    study = variant(study, "equal")
-    at, rows = TURNS.index(FILE_TURNS), []
+    own, rows = shares[:ENSEMBLE_PAIRS, TURNS.index(FILE_TURNS)], []
     for number, ensemble in enumerate(ensembles):
         table = operating_table(ensemble.film, "rolling")
         compared = comparisons(study, ensemble, table, "rolling", [FILE_TURNS])
-        judged = judge_all([ensemble], compared, shares[:ENSEMBLE_PAIRS, at], pool)
-        rows.append(figures(compared[0], shares[:ENSEMBLE_PAIRS, at], judged))
-        tell(f"ensemble {number}", len(shares[:ENSEMBLE_PAIRS]), rows[-1])
+        rows.append(figures(compared[0], own, judge_all([ensemble], compared, own, pool)))
+        show(f"ensemble {number}", rows[-1])
     return rows
 
 
-def tell(where, pairs, row):
+def show(where, row):
     """Print the figures of one scenario and length."""
-    print(
-        f"{where}, {pairs} pairs: film {row['film_coverage']:.3f} "
-        f"(closed {row['closed_coverage']:.3f}, {row['closed_share']:.0%} of all, one-sided "
-        f"{row['one_sided_coverage']:.3f}), width {row['film_width_ratio']:.2f}; agreement "
-        f"{row['agreement']:.3f}, width {row['prediction_width_ratio']:.2f}; alpha "
-        f"{row['alpha_coverage']:.3f}, width {row['alpha_width_ratio']:.2f}; layer "
-        f"{row['layer_coverage']:.3f}, width {row['layer_width_ratio']:.2f}",
-        flush=True,
-    )
+    numbers = (f"{name} {value:.3f}" for name, value in row.items() if np.ndim(value) == 0)
+    print(f"  {where}: {', '.join(numbers)}", flush=True)
 
 
 def measure(study, pairs, files, pool, folder):
@@ -499,18 +436,18 @@ def measure(study, pairs, files, pool, folder):
     for rollers in ("equal", "unequal"):
         ensembles = make_ensembles(variant(study, rollers), ENSEMBLES, pool)
         for motion in MOTIONS:
-            rows, comparison, shares = measure_scenario(
-                study, ensembles, rollers, motion, pairs[motion], pool
-            )
-            found[scenario_name(rollers, motion)] = pairs[motion], TURNS, rows, comparison
+            begin, name = time.perf_counter(), f"{rollers} rollers, {motion}"
+            print(f"{name}, {pairs[motion]} pairs:", flush=True)
+            own = variant(study, rollers, motion)
+            rows, comparison, shares = measure_scenario(own, ensembles, motion, pairs[motion], pool)
+            found[name] = pairs[motion], TURNS, rows, comparison
+            print(f"  {time.perf_counter() - begin:.0f} s")
             if of_ensembles is None:
-                of_ensembles = measure_ensembles(study, shares, ensembles, pool)
-                first, equal = ensembles[0], variant(study, "equal")
-                table = operating_table(first.film, "slipping")  # the fewer points
-                own, row = through_files(equal, first, table, files, folder)
-                name = f"{scenario_name(rollers, motion)}, through files"
-                tell(name, files, row)
-                found[name] = files, (FILE_TURNS,), [row], own
+                of_ensembles = measure_ensembles(own, shares, ensembles, pool)
+                table = operating_table(ensembles[0].film, "slipping")  # the fewer points
+                comparison, row = through_files(own, ensembles[0], table, files, folder)
+                show(f"through files, {files} pairs", row)
+                found[f"{name}, through files"] = files, (FILE_TURNS,), [row], comparison
     return label(_dataset(study, found, of_ensembles), "coverage")
 
 
@@ -519,35 +456,38 @@ def _dataset(study, found, of_ensembles):
     points = max(comparison.sizes["record"] for _, _, _, comparison in found.values())
     scenarios = []
     for count, turns, rows, comparison in found.values():
-        one = comparison.isel(film_formula=0).drop_vars("record").rename(record="point")
-        one = one.reset_coords(drop=True).assign_coords(point=range(one.sizes["point"]))
+        one = comparison.isel(film_formula=0)
         rows = [
             xr.Dataset({n: (("point",) * np.ndim(v), v) for n, v in row.items()}) for row in rows
         ]
         rows = xr.concat(rows, xr.DataArray(list(turns), dims="record_turns", name="record_turns"))
-        rows["point_lambda_ratio"] = one["lambda_ratio"]
-        rows["point_probability"] = one["simulated_probability"]
-        rows["pairs"] = count
-        scenarios.append(rows.drop_attrs().reindex(record_turns=list(TURNS), point=range(points)))
+        rows = rows.assign(
+            point_lambda_ratio=("point", one["lambda_ratio"].values),
+            point_probability=("point", one["simulated_probability"].values),
+            pairs=count,
+        ).assign_coords(point=range(one.sizes["record"]))
+        scenarios.append(rows.reindex(record_turns=list(TURNS), point=range(points)))
     names = xr.DataArray(list(found), dims="scenario", name="scenario")
-    dataset = xr.concat(scenarios, names).assign_attrs({})
+    dataset = xr.concat(scenarios, names)
     dataset = dataset.transpose("scenario", "record_turns", "point", missing_dims="ignore")
     for name in ("film_coverage", "agreement", "alpha_coverage", "layer_coverage"):
         dataset[f"ensemble_{name}"] = "ensemble", [row[name] for row in of_ensembles]
-    dataset["ensemble_turns"] = FILE_TURNS
-    dataset["ensemble_pairs"] = min(ENSEMBLE_PAIRS, int(dataset["pairs"].max()))
-    dataset["ensemble_realisations"], dataset["least_probability"] = study.realisations, LEAST
-    return dataset.assign_coords(ensemble=range(ENSEMBLES), point=range(points))
+    return dataset.assign(
+        ensemble_turns=FILE_TURNS,
+        ensemble_pairs=min(ENSEMBLE_PAIRS, int(dataset["pairs"].max())),
+        ensemble_realisations=study.realisations,
+        least_probability=LEAST,
+    ).assign_coords(ensemble=range(ENSEMBLES))
 
 
 def main():
-    """Measure, tell and, if asked to, save."""
+    """Measure, print and, if a file is given, save."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("study", nargs="?", default="workflow/config/paper.yaml")
     parser.add_argument("output", nargs="?")
     parser.add_argument("--all", action="store_true", help="as many pairs with slip as without")
     options = parser.parse_args()
-    # Records stand at chosen points only, and no warning is needed of the others.
+    # Most points of the grid have no record here, and need no warning.
     logging.getLogger("lube").setLevel(logging.ERROR)
     study = load_study(options.study)
     pairs, files = dict(PAIRS), FILES

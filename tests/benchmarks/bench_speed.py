@@ -1,12 +1,13 @@
-"""How fast the study is, beside the plain versions of the same work in the same run.
+"""Speed of the study beside plain versions of the same work, in the same run.
 
     snakemake benchmark                                        # measures, saves and draws
-    python tests/benchmarks/bench_speed.py [STUDY [SPEED.NC]]  # measures and tells
+    python tests/benchmarks/bench_speed.py [STUDY [SPEED.NC]]  # measures and prints
 
-Times of a shared machine mean little by themselves; the ratios do. Each time is the shortest of
-several runs, the sides of a ratio taking turns.
+On a shared machine only the ratios of times are meaningful. Each time is the shortest of several
+runs; the sides of a ratio run alternately.
 """
 
+import functools
 import multiprocessing
 import os
 import resource
@@ -42,7 +43,7 @@ REALISATIONS = (125, 250, 500, 1000)
 
 
 def best_times(*sides, runs):
-    """Shortest time of each function, taking turns."""
+    """Shortest time of each function, run alternately."""
     times = np.empty((runs, len(sides)))
     for run in range(runs):
         for number, side in enumerate(sides):
@@ -106,7 +107,7 @@ def measure_slip(study):
 
 
 def measure_synthesis(study):
-    """Measure the drawing of a line against the least there is: its FFT, and to read it once."""
+    """Measure the drawing of a line against its FFT alone, and against reading it once."""
     spec = study.line_spec
     points, seed = spec.points[0], np.random.SeedSequence(1)
     waves = np.zeros(points // 2 + 1, np.complex64)
@@ -125,7 +126,7 @@ def measure_synthesis(study):
 
 
 def measure_realisation(study, spec, films, half_windows, factor, realisation=0):
-    """Draw one realisation and run all operating points in pure rolling."""
+    """Draw one realisation, and run all operating points in pure rolling."""
     pair = draw_realisation(spec, study.seed, realisation)
     ratios = speed_ratios(0.0)
     return strip_statistics(*pair, ratios, pair[0].size, films, half_windows, factor)
@@ -150,9 +151,9 @@ def measure_operating_points(study):
     films, half_windows, factor = points_of(study, study.line_spec)
     times = []
     for count in OPERATING_POINTS:
-        # Spread over the study's own films; between two of them where there are more.
-        places = (np.arange(count) + 0.5) / count * films.size - 0.5
-        chosen = [np.interp(places, range(films.size), of) for of in (films, half_windows)]
+        # Spread evenly over the study's own films, interpolated between them.
+        index = (np.arange(count) + 0.5) / count * films.size - 0.5
+        chosen = [np.interp(index, range(films.size), of) for of in (films, half_windows)]
         chosen = [np.rint(values).astype(np.int64) for values in chosen]
         steps = pair[0].size
         run = partial(strip_statistics, *pair, speed_ratios(0.0), steps, *chosen, factor)
@@ -162,27 +163,29 @@ def measure_operating_points(study):
     return {"operating_points_time": ("operating_points", times), "operating_points": counts}
 
 
-def _run_one(job):
-    """Run one realisation in a process of a pool; tell that process's peak memory, bytes."""
-    study, realisation = job
-    points = points_of(study, study.line_spec) if _run_one.points is None else _run_one.points
-    _run_one.points = points
+@functools.cache
+def _prepared(study_file):
+    """Load the study and its operating points, once in each process."""
+    study = load_study(study_file)
+    return study, points_of(study, study.line_spec)
+
+
+def _run_one(study_file, realisation):
+    """Run one realisation in a process of a pool; return that process's peak memory, bytes."""
+    study, points = _prepared(study_file)
     measure_realisation(study, study.line_spec, *points, realisation)
     return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
-_run_one.points = None
-
-
-def measure_ensemble(study):
+def measure_ensemble(study_file):
     """Measure synthesis and contact of up to a thousand realisations, on all cores."""
     cores, times, memory = os.cpu_count(), [], 0
     with ProcessPoolExecutor(cores, multiprocessing.get_context("spawn")) as pool:
-        list(pool.map(_run_one, [(study, 0)] * 4 * cores))  # processes begun, kernels loaded
+        run = partial(_run_one, study_file)
+        list(pool.map(run, [0] * 4 * cores))  # starts the processes and loads the kernels
         for count in REALISATIONS:
             begin = time.perf_counter()
-            jobs = [(study, realisation) for realisation in range(count)]
-            memory = max(memory, *pool.map(_run_one, jobs, chunksize=5))
+            memory = max(memory, *pool.map(run, range(count), chunksize=5))
             times.append(time.perf_counter() - begin)
             print(f"{count:4d} realisations on {cores} cores: {times[-1]:.1f} s", flush=True)
     print(f"peak memory of a process: {memory / 2**20:.0f} MiB")
@@ -194,10 +197,10 @@ def measure_ensemble(study):
     }
 
 
-def measure(study):
+def measure(study_file):
     """Measure everything, as the ``speed`` file of `lube.schema`."""
-    films, half_windows, factor = points_of(study, study.line_spec)
-    # Compiled, or loaded, before anything is timed.
+    study, (films, half_windows, factor) = _prepared(study_file)
+    # Compiled, or loaded, before any measurement.
     pair = draw_realisation(study.line_spec, study.seed, 0)
     for kernel in (strip_statistics, scan_statistics):
         for slip in (0.0, 1.0):
@@ -207,7 +210,7 @@ def measure(study):
         measure_slip(study),
         measure_grids(study),
         measure_operating_points(study),
-        measure_ensemble(study),
+        measure_ensemble(study_file),
     )
     dataset = xr.Dataset({name: values for part in parts for name, values in part.items()})
     coords = list(dataset.dims)
@@ -216,7 +219,6 @@ def measure(study):
 
 if __name__ == "__main__":
     study_file, *output = sys.argv[1:] or ["workflow/config/paper.yaml"]
-    the_study = load_study(study_file)
-    speed = measure(the_study)
+    speed = measure(study_file)
     if output:
-        save(speed, output[0], "speed", the_study)
+        save(speed, output[0], "speed", load_study(study_file))

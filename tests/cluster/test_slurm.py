@@ -1,6 +1,5 @@
-"""The smoke study through a Slurm of its own, where there is one to start."""
+"""The smoke study through a Slurm of its own, where one can be started."""
 
-import importlib.util
 import os
 import shutil
 import subprocess
@@ -11,23 +10,17 @@ import pytest
 from run_slurm import CONF, OURS
 
 SCRIPT = Path(__file__).with_name("run_slurm.py")
-ASKED = "LUBE_TEST_SLURM"
 
 
 def reason_to_skip():
-    if os.environ.get(ASKED):
-        return ""
-    if not shutil.which("slurmctld"):
-        return f"Slurm is not installed; with {ASKED}=1 in the environment, this test installs it"
-    if not importlib.util.find_spec("snakemake_executor_plugin_slurm"):
-        return "the Slurm plugin is not installed: pip install -e '.[slurm]'"
-    if os.geteuid() != 0:
-        return "only root can start a Slurm"
+    if not shutil.which("slurmctld") and not os.environ.get("LUBE_TEST_SLURM"):
+        return "Slurm is not installed; with LUBE_TEST_SLURM=1 this test installs it"
     if CONF.exists() and not CONF.read_text("utf-8").startswith(OURS):
         return "this machine has a Slurm of its own, left as it is"
     return ""
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(bool(reason_to_skip()), reason=reason_to_skip())
 def test_the_smoke_study_through_slurm_makes_the_same_bytes():
     finished = subprocess.run(

@@ -1,4 +1,4 @@
-"""Runs of points above a film, and the blocks that are passed over in search of them."""
+"""Runs of points above a film, and the blocks that are skipped in the search for them."""
 
 import numpy as np
 from hypothesis import example, given
@@ -42,9 +42,7 @@ def sparse_line(random, size):
     st.booleans(),
     st.randoms(use_true_random=False),
 )
-def test_points_that_are_passed_over_lie_below_the_film(
-    points_1, points_2, size, film, slips, random
-):
+def test_points_that_are_skipped_lie_below_the_film(points_1, points_2, size, film, slips, random):
     line_1, line_2 = sparse_line(random, points_1), sparse_line(random, points_2)
     first_1, first_2 = random.randrange(points_1), random.randrange(points_2)
     indices = np.arange(size)
@@ -56,15 +54,15 @@ def test_points_that_are_passed_over_lie_below_the_film(
     count = fill_high_stretches(
         line_1, line_2, *maxima, first_1, first_2, film, line, starts, stops
     )
-    looked_at = np.zeros(size, bool)
+    searched = np.zeros(size, bool)
     for start, stop in zip(starts[:count], stops[:count], strict=True):
         assert 0 <= start < stop <= size
-        assert not looked_at[max(start - 1, 0) : stop].any()  # neighbours are one stretch
-        looked_at[start:stop] = True
+        assert not searched[max(start - 1, 0) : stop].any()  # neighbours are one stretch
+        searched[start:stop] = True
         np.testing.assert_array_equal(line[start:stop], whole[start:stop])
         if not slips:
             assert whole[start:stop].max() > film
-    assert not (whole > film)[~looked_at].any()
+    assert not (whole > film)[~searched].any()
     if film >= line_1.max() + line_2.max():
         assert count == 0
 

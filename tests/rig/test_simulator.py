@@ -1,4 +1,4 @@
-"""The simulated rig: its contacts, and the right voltages, in whole steps, with their noise."""
+"""The simulated rig: its contacts, and its voltages in whole steps, with their noise."""
 
 from dataclasses import replace
 
@@ -22,17 +22,11 @@ def logged(contact, rig, seed=1, capacitance=CAPACITANCE):
     return logged_voltage(np.array(contact, np.int32), TIME_STEP, SPOT, capacitance, rig, rng)
 
 
-@pytest.mark.parametrize("points", [1, 5, 200])
-def test_a_steady_contact_is_logged_with_its_resistance(points):
+def test_a_steady_contact_is_logged_with_its_resistance_and_none_as_the_leak():
     rig = Rig(**QUIET)
-    resistance = resistance_from_voltage(logged(np.full(20_000, points), rig), rig)
-    np.testing.assert_allclose(resistance, SPOT / points, rtol=1e-3, atol=1e-6)
-
-
-def test_no_contact_is_logged_as_the_leak():
-    rig = Rig(**QUIET)
-    resistance = resistance_from_voltage(logged(np.zeros(20_000), rig), rig)
-    np.testing.assert_allclose(resistance, rig.leak_resistance, rtol=1e-3)
+    for points, expected in ((0, rig.leak_resistance), (1, SPOT), (5, SPOT / 5), (200, SPOT / 200)):
+        resistance = resistance_from_voltage(logged(np.full(20_000, points), rig), rig)
+        np.testing.assert_allclose(resistance, expected, rtol=1e-3, atol=1e-6)
 
 
 def test_a_revolution_has_as_many_samples_as_fit_into_it():
@@ -153,7 +147,7 @@ def test_rollers_repeat_themselves_in_rolling_but_not_with_slip(
         assert np.array_equal(*contacts) == alike
 
 
-def test_pairs_are_not_alike_and_do_not_hang_on_their_number(lines_of, study, with_rig, points):
+def test_pairs_differ_and_do_not_depend_on_how_many_there_are(lines_of, study, with_rig, points):
     one, two = (with_rig(study, pairs=pairs, revolutions=1) for pairs in (1, 2))
     alone, both = (run(lines_of(each), each, points) for each in (one, two))
     for (_, _, here), (_, _, there) in zip(alone, both, strict=False):
@@ -186,7 +180,7 @@ def test_the_faster_surface_passes_one_grid_point_each_time_step(
     assert revolution.contact.size * revolution.time_step == pytest.approx(turn)
 
 
-def test_noise_is_of_its_pair_point_and_turn_and_no_other(lines_of, study, with_rig, points):
+def test_noise_differs_between_pairs_points_and_turns(lines_of, study, with_rig, points):
     two = with_rig(study, pairs=2, revolutions=2)
     passed = {}
     for pair, number, revolution in run(lines_of(two), two, points):

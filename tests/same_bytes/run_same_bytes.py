@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "workflow"))
 from repository import RESULTS, Repository, copy_of_the_repository
 from test_cluster_generic import SUBMIT
 
-from lube.workflow.processors import AVX512
+from lube.workflow.environment import AVX512
 
 BATCH_SIZES = (1, 2, 3, 4)
 

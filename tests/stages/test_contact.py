@@ -1,8 +1,8 @@
-"""The contact stage: every label in its place, exact identities, then magnitudes on record."""
+"""The contact stage: every label in its place, exact identities, then known magnitudes."""
 
 import math
 from fractions import Fraction
-from itertools import groupby
+from itertools import groupby, product
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ import xarray as xr
 
 from lube import BoundaryLayer, contact_map, contact_statistics, gather_map, roughness_lines
 from lube.errors import DataError
-from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
+from lube.grid.discretise import line_pair, speed_ratios
 from lube.kernels.layer import layer_factor
 from lube.kernels.scan import scan_statistics
 from lube.kernels.strips import strip_statistics
@@ -46,57 +46,52 @@ def contact(lines, film, layer):
 
 @pytest.fixture(scope="module")
 def slipping(coarse_lines, film, weak_layer):
-    """Rolling and slip either way, on a coarse grid and few operating points."""
+    """Rolling and slip either way, on a coarse grid and at few operating points."""
     few = film.isel(temperature=[0, 3], speed=[0, 1], force=[1, 4])
     return few, contact_statistics(coarse_lines, few, weak_layer, [-0.3, 0.0, 0.3])
 
 
 def same(left, right):
-    """Whether two results hold the same numbers, whatever is behind them."""
+    """Whether two results hold the same numbers."""
     return all(np.array_equal(left[name].values, right[name].values) for name in MEANS)
 
 
-def expected_at(counts, steps, lines, modulus):
-    """Labelled means, from sums over time of the kernels' whole numbers."""
-    touching, breaking, points, overlap = (int(count) / steps for count in counts)
-    spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
-    force = modulus * spacing * overlap * height_step
-    return dict(zip(MEANS, (touching, breaking, points * spacing, force), strict=True))
+def points_of(film):
+    return [
+        dict(zip(OPERATING_DIMS, levels, strict=True))
+        for levels in product(*(film[name].values for name in OPERATING_DIMS))
+    ]
 
 
-def kernel_arguments(film, place, lines, layer):
-    """Film and half-window of one operating point, and the layer's factor."""
+def kernel_means(kernel, lines, realisation, point, layer, modulus, ratio=0.0, revolutions=1):
+    """Means of one operating point (film thickness and half-width), from a kernel's counts."""
     spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
-    film_steps = round(film["film_thickness"].sel(place).item() / height_step)
-    half_width = film["contact_half_width"].sel(force=place["force"]).item()
+    film, half_width = point
+    pair, ratios = line_pair(lines, realisation), speed_ratios(ratio)
+    steps = revolutions * pair[0].size
     factor = layer_factor(
-        film["reduced_modulus"].item(),
-        layer.critical_thickness,
-        layer.shear_strength,
-        spacing,
-        height_step,
+        modulus, layer.critical_thickness, layer.shear_strength, spacing, height_step
     )
-    return np.array([film_steps]), np.array([math.floor(half_width / spacing)]), factor
+    films = np.array([round(film / height_step)])
+    half_windows = np.array([math.floor(half_width / spacing)])
+    counts = kernel(*pair, ratios, steps, films, half_windows, factor)[0]
+    touching, breaking, points, overlap = (int(count) / steps for count in counts)
+    return [touching, breaking, points * spacing, modulus * spacing * overlap * height_step]
 
 
-def places(film):
-    stacked = film["film_thickness"].stack(place=OPERATING_DIMS)
-    return [dict(zip(OPERATING_DIMS, place, strict=True)) for place in stacked["place"].values]
+def point_at(film, point):
+    half_width = film["contact_half_width"].sel(force=point["force"])
+    return film["film_thickness"].sel(point).item(), half_width.item()
 
 
 def test_every_value_is_the_kernels_at_the_labelled_point(lines, film, layer, contact):
-    distinct = set()
-    for realisation in (0, 1):
-        pair = line_pair(lines, realisation)
-        for place in places(film):
-            films, half_windows, factor = kernel_arguments(film, place, lines, layer)
-            steps = pair[0].size
-            counts = strip_statistics(*pair, (1.0, 1.0), steps, films, half_windows, factor)[0]
-            expected = expected_at(counts, pair[0].size, lines, film["reduced_modulus"].item())
-            found = contact.sel(realisation=realisation, slide_to_roll_ratio=0.0, **place)
-            for name in MEANS:
-                assert found[name].item() == pytest.approx(expected[name], rel=1e-13)
-            distinct.add(tuple(expected.values()))
+    modulus, distinct = film["reduced_modulus"].item(), set()
+    for realisation, point in product((0, 1), points_of(film)):
+        here = point_at(film, point)
+        expected = kernel_means(strip_statistics, lines, realisation, here, layer, modulus)
+        found = contact.sel(realisation=realisation, slide_to_roll_ratio=0.0, **point)
+        assert [found[name].item() for name in MEANS] == pytest.approx(expected, rel=1e-13)
+        distinct.add(tuple(expected))
     assert len(distinct) > 150  # of 240: mixed-up points would show
 
 
@@ -104,25 +99,18 @@ def test_every_value_with_slip_is_the_scans_at_the_labelled_point(
     coarse_lines, weak_layer, slipping
 ):
     film, contact = slipping
-    pair = line_pair(coarse_lines, 0)
-    steps = pair[0].size
-    for ratio, speeds in [(-0.3, (0.85 / 1.15, 1.0)), (0.3, (1.0, 0.85 / 1.15))]:
-        for place in places(film):
-            arguments = kernel_arguments(film, place, coarse_lines, weak_layer)
-            counts = scan_statistics(*pair, speeds, steps, *arguments)[0]
-            expected = expected_at(counts, steps, coarse_lines, film["reduced_modulus"].item())
-            found = contact.sel(realisation=0, slide_to_roll_ratio=ratio, **place)
-            for name in MEANS:
-                assert found[name].item() == pytest.approx(expected[name], rel=1e-13)
-
-
-def test_order_of_the_film_tables_dimensions_does_not_matter(lines, film, layer, contact):
-    turned = film.transpose("force", "speed", "film_formula", "temperature", "lubricant")
-    assert same(contact_statistics(lines, turned, layer), contact)
+    modulus = film["reduced_modulus"].item()
+    twice = contact_statistics(coarse_lines, film, weak_layer, (0.3,), revolutions=2)
+    for results, ratio, revolutions in [(contact, -0.3, 1), (contact, 0.3, 1), (twice, 0.3, 2)]:
+        for point in points_of(film):
+            run = (coarse_lines, 0, point_at(film, point), weak_layer, modulus)
+            expected = kernel_means(scan_statistics, *run, ratio, revolutions)
+            found = results.sel(realisation=0, slide_to_roll_ratio=ratio, **point)
+            assert [found[name].item() for name in MEANS] == pytest.approx(expected, rel=1e-13)
 
 
 def naive_means(pair, ratio, film, half_width, modulus, layer, spacing, height_step):
-    """The model as physics.md tells it (section 5), in metres, newtons and exact fractions."""
+    """The model of physics.md (section 5), in metres, newtons and exact fractions."""
     z1, z2 = ([Fraction(height_step) * int(z) for z in line] for line in pair)
     dx, modulus = Fraction(spacing), Fraction(modulus)
     v1, v2 = 1 + Fraction(ratio) / 2, 1 - Fraction(ratio) / 2
@@ -146,63 +134,53 @@ def naive_means(pair, ratio, film, half_width, modulus, layer, spacing, height_s
     return [float(Fraction(total) / steps) for total in (touching, breaking, length, force)]
 
 
+def table_of(film, films, half_widths):
+    """Film table of one oil with every combination of film and half-width, by speed and force."""
+    table = film.isel(
+        temperature=[0], film_formula=[0], speed=[0] * len(films), force=[0] * len(half_widths)
+    ).assign_coords(speed=np.arange(len(films)) + 1.0, force=np.arange(len(half_widths)) + 1.0)
+    thickness = np.broadcast_to(np.reshape(films, (1, 1, 1, -1, 1)), table["film_thickness"].shape)
+    return table.assign(
+        film_thickness=table["film_thickness"].copy(data=thickness),
+        contact_half_width=table["contact_half_width"].copy(data=half_widths),
+    )
+
+
 @pytest.mark.parametrize("ratio", [0.0, 0.25, -0.25, 2.0])
 def test_contact_equals_a_naive_model_in_metres_and_newtons(make_spec, film, ratio):
     spec = make_spec(150, second_radius=0.04, longest_wavelength=0.1)
     lines = roughness_lines(spec, 3, [0])
-    place = film.isel(temperature=[3], speed=[0], force=[0, 4], film_formula=[0])
-    films = [0.1e-6, 0.35e-6]
-    widths = 2.7 * spec.spacing, 5.2 * spec.spacing
-    place["film_thickness"] = place["film_thickness"].copy(data=np.reshape(films, (1, 1, 1, 1, 2)))
-    place["contact_half_width"] = place["contact_half_width"].copy(data=list(widths))
+    films, widths = [0.1e-6, 0.35e-6], [2.7 * spec.spacing, 5.2 * spec.spacing]
     modulus = film["reduced_modulus"].item()
     weak = BoundaryLayer.model_construct(critical_thickness=5e-9, shear_strength=3.0)
-    found = contact_statistics(lines, place, weak, [ratio])
-    for force, (h0, half_width) in enumerate(zip(films, widths, strict=True)):
+    found = contact_statistics(lines, table_of(film, films, widths), weak, [ratio])
+    for number, (h0, half_width) in enumerate(zip(films, widths, strict=True)):
         whole = Fraction(round(h0 / spec.height_step)) * Fraction(spec.height_step)
-        expected = naive_means(
-            line_pair(lines, 0),
-            ratio,
-            whole,
-            half_width,
-            modulus,
-            weak,
-            spec.spacing,
-            spec.height_step,
-        )
-        values = [found[name].isel(force=force).item() for name in MEANS]
+        scale = (modulus, weak, spec.spacing, spec.height_step)
+        expected = naive_means(line_pair(lines, 0), ratio, whole, half_width, *scale)
+        values = [found[name].isel(speed=number, force=number).item() for name in MEANS]
         assert values == pytest.approx(expected, rel=1e-12)
         assert ratio == 2.0 or 0.0 < expected[1] < expected[0] < 1.0
 
 
-def test_only_film_and_half_width_matter(lines, film, layer):
-    """Equal (h0, 2a) give equal results, whatever force, speed and temperature are behind."""
+# Identities
+
+
+def test_only_film_and_half_width_matter(lines, film, layer, contact):
+    """Equal (h0, 2a) give equal results at any force, speed and temperature."""
     few = film.isel(force=[0, 1, 4])
-    few["film_thickness"] = few["film_thickness"] * 0.0 + xr.DataArray(
-        [0.3e-6, 0.6e-6, 0.3e-6], dims="force"
-    )
+    films = xr.DataArray([0.3e-6, 0.6e-6, 0.3e-6], dims="force")
+    few["film_thickness"] = few["film_thickness"] * 0.0 + films
     few["contact_half_width"] = few["contact_half_width"].copy(data=[2e-4, 2e-4, 2e-4])
-    contact = contact_statistics(lines, few, layer)
+    results = contact_statistics(lines, few, layer)
     for name in MEANS:
-        values = contact[name].transpose("force", "realisation", ...).values
+        values = results[name].transpose("force", "realisation", ...).values
         assert (values[0] == values[2]).all()
         assert (values[0] > values[1]).all()
         assert (values == values[:, :, :1, :1, :1, :1, :1]).all()
         assert (values[:, 0] != values[:, 1]).all()
-
-
-def table_of(film, films, half_widths):
-    """Film table of one oil with every combination of film and half-width, by speed and force."""
-    place = film.isel(
-        temperature=[0], film_formula=[0], speed=[0] * len(films), force=[0] * len(half_widths)
-    )
-    place = place.assign_coords(
-        speed=np.arange(1.0, 1.0 + len(films)), force=np.arange(1.0, 1.0 + len(half_widths))
-    )
-    thickness = np.broadcast_to(np.reshape(films, (1, 1, 1, -1, 1)), place["film_thickness"].shape)
-    place["film_thickness"] = place["film_thickness"].copy(data=thickness)
-    place["contact_half_width"] = place["contact_half_width"].copy(data=half_widths)
-    return place
+    turned = film.transpose("force", "speed", "film_formula", "temperature", "lubricant")
+    assert same(contact_statistics(lines, turned, layer), contact)
 
 
 def test_contact_falls_with_the_film_and_rises_with_the_width(lines, film, layer):
@@ -213,7 +191,7 @@ def test_contact_falls_with_the_film_and_rises_with_the_width(lines, film, layer
         assert (contact[name].diff("speed") <= 0.0).all()
         assert (contact[name].diff("force") >= 0.0).all()
         assert contact[name].isel(speed=0).min() > contact[name].isel(speed=-1).max()
-    # A thicker film can part a segment in two that break, so here only on the whole.
+    # A thicker film can part one segment into two that break, so breakthrough falls on average.
     breaking = contact["breakthrough_probability"].mean("realisation").isel(speed=slice(2, None, 3))
     assert (breaking.isel(force=slice(1, None)).diff("speed") < 0.0).all()
     assert (breaking.isel(force=slice(1, None), speed=[0, 1, 2]).diff("force") > 0.0).all()
@@ -221,49 +199,19 @@ def test_contact_falls_with_the_film_and_rises_with_the_width(lines, film, layer
 
 def test_breakthrough_is_never_more_than_geometric_contact(contact, slipping):
     for results in (contact, slipping[1]):
-        breaking, touching = (
-            results["breakthrough_probability"],
-            results["geometric_contact_probability"],
-        )
+        breaking, touching = (results[name] for name in MEANS[1::-1])
         assert (breaking <= touching).all()
         assert ((touching >= 0.0) & (touching <= 1.0)).all()
         assert ((breaking > 0.0) & (breaking < touching)).any()
 
 
-def test_broken_length_is_at_most_the_window_while_broken(lines, film, contact):
-    half_points = np.floor(film["contact_half_width"] / lines.attrs["spacing"])
-    width = (2.0 * half_points + 1.0) * lines.attrs["spacing"]
-    breaking = contact["breakthrough_probability"]
-    assert (contact["mean_contact_length"] <= width * breaking * (1.0 + 1e-12)).all()
-    assert (contact["mean_contact_length"] >= lines.attrs["spacing"] * breaking).all()
-
-
-def test_mean_force_is_the_windows_share_of_the_whole_circumference(lines, film, contact):
-    """In pure rolling every point is in the window for as many steps as the window has points."""
-    spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
-    for realisation in (0, 1):
-        heights = lines["height"].sel(realisation=realisation).sum("roller").values
-        for place in places(film)[::7]:
-            h0 = height_step * round(film["film_thickness"].sel(place).item() / height_step)
-            half_width = film["contact_half_width"].sel(force=place["force"]).item()
-            width = 2 * math.floor(half_width / spacing) + 1
-            overlap = np.maximum(heights - h0, 0.0).mean()
-            force = film["reduced_modulus"].item() * spacing * width * overlap
-            found = contact["mean_contact_force"].sel(realisation=realisation, **place)
-            assert found.item() == pytest.approx(force, rel=1e-6, abs=1e-12)
-
-
-def test_load_share_is_the_force_over_the_load_of_a_patch_as_long_as_wide(contact, film, study):
-    """F_N 2a/L', with force, length and Eq. 2 themselves."""
+def test_load_share_is_the_force_over_the_load_of_a_patch(lines, contact, film, study, layer):
+    """F_N 2a/L'; rollers twice as long under twice the force have the same share."""
     width = 2.0 * study.rollers.contact_half_width(film["force"])
     load = film["force"] * width / study.rollers.length
-    expected = contact["mean_contact_force"] / load
     assert (contact["contact_load_share"] > 0.0).any()
+    expected = contact["mean_contact_force"] / load
     np.testing.assert_allclose(contact["contact_load_share"], expected, rtol=1e-12)
-
-
-def test_load_share_of_rollers_side_by_side_is_that_of_one(lines, study, layer):
-    """Twice the length under twice the force: the same pressure, the same patch."""
     oil = lubricant_table(study.lubricants, [80.0])
     twice = study.rollers.model_copy(update={"length": 2.0 * study.rollers.length})
     one, both = (
@@ -293,37 +241,24 @@ def test_springs_pressed_flat_carry_what_their_stiffness_says(film, layer):
     np.testing.assert_allclose(share, force / load, rtol=1e-9)
 
 
-def test_next_to_no_slip_is_pure_rolling(lines, film, layer):
-    """The scan and the fast method meet: 1e-9 of slip is less than a point in a revolution."""
+def test_slip_changes_which_asperities_meet_and_next_to_none_changes_nothing(
+    lines, film, layer, slipping
+):
+    """In one revolution 1e-9 of slip is less than a grid point."""
     few = film.isel(temperature=[2], speed=[0, 1], force=[2, 4])
     contact = contact_statistics(lines, few, layer, [-1e-9, 0.0, 1e-9])
-    rolling = contact.isel(slide_to_roll_ratio=1)
-    assert same(contact.isel(slide_to_roll_ratio=0), rolling)
-    assert same(contact.isel(slide_to_roll_ratio=2), rolling)
-
-
-def test_slip_changes_which_asperities_meet(slipping):
+    back, rolling, forth = (contact.isel(slide_to_roll_ratio=number) for number in range(3))
+    assert same(back, rolling) and same(forth, rolling)
     _, contact = slipping
-    rolling = contact.sel(slide_to_roll_ratio=0.0)
-    assert not same(contact.sel(slide_to_roll_ratio=0.3), rolling)
+    rolling, slip = (contact.sel(slide_to_roll_ratio=ratio) for ratio in (0.0, 0.3))
+    assert not same(slip, rolling)
 
 
-@pytest.mark.parametrize("second_radius", [0.05, 0.041])
-def test_swapping_rollers_and_the_sign_of_slip_changes_nothing(
-    make_spec, film, weak_layer, second_radius
-):
-    spec = make_spec(6000, second_radius, shortest_wavelength="4.0 points")
-    lines = roughness_lines(spec, 3, [0])
-    swapped = lines.isel(roller=[1, 0]).assign_attrs(points=lines.attrs["points"][::-1])
-    few = film.isel(temperature=[3], speed=[0], force=[2, 4])
-    results = contact_statistics(lines, few, weak_layer, [-0.4, 0.2])
-    mirrored = contact_statistics(swapped, few, weak_layer, [0.4, -0.2])
-    assert same(results, mirrored)
-    assert not same(results, contact_statistics(lines, few, weak_layer, [0.4, -0.2]))
+def test_equal_rollers_without_slip_repeat_themselves(lines, film, layer, contact):
+    assert same(contact, contact_statistics(lines, film, layer, (0.0,), revolutions=3))
 
 
-def test_independent_looks_are_counted_on_the_shorter_line(make_spec, film, layer):
-    """A revolution is never claimed to be longer than either roller's."""
+def test_the_travel_is_the_circumference_of_the_smaller_roller(make_spec, film, layer):
     few = film.isel(temperature=[0], speed=[0], force=[0])
     for second_radius in (0.02, 0.05, 0.08):
         spec = make_spec(6000, second_radius, shortest_wavelength="4.0 points")
@@ -349,47 +284,24 @@ def ensemble(make_spec, study, film):
     return spec, half_window, films, np.array(statistics) / 1e6
 
 
-# physics.md, section 6: 40 seeds of another implementation, mean and seed SD.
-RECORD = [(0.832, 0.011), (0.290, 0.014), (0.0625, 0.0081), (0.0071, 0.0032)]
+def test_breakthrough_probability_is_that_of_another_implementation(ensemble):
+    """physics.md, section 6: mean and standard deviation over 40 seeds."""
+    found = ensemble[-1][:, :, 1]
+    mean, scatter = np.array([(0.832, 0.290, 0.0625, 0.0071), (0.011, 0.014, 0.0081, 0.0032)])
+    error = np.hypot(found.std(axis=0, ddof=1) / math.sqrt(len(found)), scatter / math.sqrt(40))
+    assert (np.abs(found.mean(axis=0) - mean) < 4.0 * error).all()
 
 
-@pytest.mark.parametrize("row", range(4))
-def test_breakthrough_probability_is_that_on_record(ensemble, row):
-    *_, statistics = ensemble
-    found = statistics[:, row, 1]
-    mean, scatter = RECORD[row]
-    error = math.hypot(found.std(ddof=1) / math.sqrt(found.size), scatter / math.sqrt(40))
-    assert found.mean() == pytest.approx(mean, abs=4.0 * error)
-
-
-@pytest.mark.parametrize("row", range(4))
-def test_mean_overlap_is_that_of_a_gaussian_line(ensemble, row):
+def test_mean_overlap_is_that_of_a_gaussian_line(ensemble):
     """W sigma (phi(x) - x Q(x)) with x = h0 / sigma, the mean of a Gaussian's excess."""
     spec, half_window, films, statistics = ensemble
-    overlap = statistics[:, row, 3]
+    overlap = statistics[:, :, 3]
     sigma = math.hypot(*spec.rms_height) / spec.height_step
-    x = films[row] / sigma
+    x = films / sigma
     excess = scipy.stats.norm.pdf(x) - x * scipy.stats.norm.sf(x)
-    error = overlap.std(ddof=1) / math.sqrt(overlap.size)
-    assert overlap.mean() == pytest.approx((2 * half_window + 1) * sigma * excess, abs=4 * error)
-
-
-def test_equal_rollers_without_slip_repeat_themselves(lines, film, layer):
-    once, thrice = (contact_statistics(lines, film, layer, (0.0,), n) for n in (1, 3))
-    assert same(once, thrice)
-
-
-def test_with_slip_further_revolutions_are_the_scans(coarse_lines, weak_layer, slipping):
-    film, _ = slipping
-    contact = contact_statistics(coarse_lines, film, weak_layer, (0.3,), revolutions=2)
-    place = next(iter(places(film)))
-    films, half_windows, factor = kernel_arguments(film, place, coarse_lines, weak_layer)
-    pair, ratios = line_pair(coarse_lines, 0), speed_ratios(0.3)
-    steps = 2 * pair[0].size
-    counts = scan_statistics(*pair, ratios, steps, films, half_windows, factor)[0]
-    found = contact.sel(realisation=0, slide_to_roll_ratio=0.3, **place)
-    assert found["geometric_contact_probability"].item() == counts[0] / steps
-    assert found["breakthrough_probability"].item() == counts[1] / steps
+    error = overlap.std(axis=0, ddof=1) / math.sqrt(len(overlap))
+    expected = (2 * half_window + 1) * sigma * excess
+    assert (np.abs(overlap.mean(axis=0) - expected) < 4.0 * error).all()
 
 
 # The master map
@@ -400,88 +312,66 @@ def mapped(lines, film, layer):
     return contact_map(lines, film, layer, lambda_levels=6, width_levels=4)
 
 
-def test_the_map_spans_all_films_and_windows_of_the_study(mapped, film):
+def test_the_map_spans_all_films_and_windows_of_the_study_and_thinner_films(mapped, film):
     for prefix in ("", "layer_"):
         for name, values in (
             ("lambda_ratio", film["lambda_ratio"]),
             ("contact_width", 2.0 * film["contact_half_width"]),
         ):
             levels = mapped[prefix + name].values
-            least, greatest = values.min().item(), values.max().item()
             assert (np.diff(levels) > 0).all()
-            assert levels[-1] == pytest.approx(greatest)
-            assert np.isclose(levels, least).any()
+            assert levels[-1] == pytest.approx(values.max().item())
+            assert np.isclose(levels, values.min().item()).any()
     assert mapped.sizes["lambda_ratio"] == 4 + 6
     assert mapped.sizes["contact_width"] == 4
-
-
-def test_the_map_reaches_films_thinner_than_the_studys(mapped, film):
     least = film["lambda_ratio"].min().item()
-    thinner = mapped["lambda_ratio"].values[:5]
-    assert thinner[[0, -1]] == pytest.approx([0.3 * least, least])
+    assert mapped["lambda_ratio"].values[[0, 4]] == pytest.approx([0.3 * least, least])
+
+
+def test_every_value_of_the_map_is_the_kernels(mapped, lines, film, layer):
+    roughness, modulus = (
+        film[name].item() for name in ("composite_rms_roughness", "reduced_modulus")
+    )
+    for ratio, width in product(mapped["lambda_ratio"].values, mapped["contact_width"].values):
+        point = ratio * roughness, width / 2.0
+        expected = kernel_means(strip_statistics, lines, 1, point, layer, modulus)
+        found = mapped.sel(realisation=1, lambda_ratio=ratio, contact_width=width)
+        assert [found[name].item() for name in MEANS[:2]] == expected[:2]
 
 
 def test_every_layer_of_the_map_is_run_as_a_layer_of_its_own(mapped, lines, film, layer):
+    roughness, modulus = (
+        film[name].item() for name in ("composite_rms_roughness", "reduced_modulus")
+    )
     strengths = mapped["layer_strength"].values
     study = layer.shear_strength / layer.critical_thickness
     np.testing.assert_allclose(strengths / study, [1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8])
-    pair = line_pair(lines, 1)
-    for strength in strengths[[0, 3, 6]]:
+    for number, level in product((0, 3, 6), (0, 4)):
         # The thinner layer of the same shear strength, rather than the weaker one.
         other = BoundaryLayer.model_construct(
             shear_strength=layer.shear_strength,
-            critical_thickness=layer.shear_strength / strength,
+            critical_thickness=layer.shear_strength / strengths[number],
         )
-        factor = layer_factor_of(lines, film["reduced_modulus"].item(), other)
-        for place in (0, 4):
-            here = mapped.isel(layer_lambda_ratio=place, layer_contact_width=-1)
-            thickness = here["layer_lambda_ratio"] * film["composite_rms_roughness"]
-            half_width = here["layer_contact_width"] / 2.0
-            point = whole_numbers([thickness.item()], [half_width.item()], lines)
-            counts = strip_statistics(*pair, (1.0, 1.0), pair[0].size, *point, factor)[0]
-            found = here["layer_breakthrough_probability"].sel(
-                realisation=1, layer_strength=strength
-            )
-            assert found == pytest.approx(counts[1] / pair[0].size, abs=2e-5)
-
-
-def test_the_stronger_layer_breaks_less(mapped):
+        here = mapped.isel(layer_strength=number, layer_lambda_ratio=level, layer_contact_width=-1)
+        thickness = here["layer_lambda_ratio"].item() * roughness
+        point = thickness, here["layer_contact_width"].item() / 2.0
+        expected = kernel_means(strip_statistics, lines, 1, point, other, modulus)[1]
+        found = here["layer_breakthrough_probability"].sel(realisation=1)
+        assert found == pytest.approx(expected, abs=2e-5)
     breaking = mapped["layer_breakthrough_probability"]
     assert (breaking.diff("layer_strength") <= 0.0).all()
     assert breaking.isel(layer_strength=0).max() > 2.0 * breaking.isel(layer_strength=-1).max()
 
 
-def test_every_value_of_the_map_is_the_kernels(mapped, lines, film, layer):
-    factor = layer_factor_of(lines, film["reduced_modulus"].item(), layer)
-    pair = line_pair(lines, 1)
-    for ratio in mapped["lambda_ratio"].values:
-        for width in mapped["contact_width"].values:
-            thickness = ratio * film["composite_rms_roughness"].item()
-            point = whole_numbers([thickness], [width / 2.0], lines)
-            counts = strip_statistics(*pair, (1.0, 1.0), pair[0].size, *point, factor)[0]
-            found = mapped.sel(realisation=1, lambda_ratio=ratio, contact_width=width)
-            assert found["geometric_contact_probability"] == counts[0] / pair[0].size
-            assert found["breakthrough_probability"] == counts[1] / pair[0].size
-
-
-def test_the_map_falls_with_the_film_and_rises_with_the_window(mapped):
-    geometric = mapped["geometric_contact_probability"].transpose(..., "lambda_ratio").values
-    assert (np.diff(geometric, axis=-1) <= 0).all()
-    wider = mapped["geometric_contact_probability"].transpose(..., "contact_width").values
-    assert (np.diff(wider, axis=-1) >= 0).all()
-    assert geometric.max() > 0.9 and geometric.min() < 0.1
-
-
 def test_one_film_and_one_window_make_a_map_of_one_width(lines, film, layer):
-    place = {name: [0] for name in ("lubricant", "film_formula", "temperature", "speed", "force")}
-    mapped = contact_map(lines, film.isel(place), layer)
+    mapped = contact_map(lines, film.isel({name: [0] for name in OPERATING_DIMS}), layer)
     assert mapped.sizes["lambda_ratio"] == 4 + 1  # thinner films than the study's are added
     assert mapped.sizes["layer_lambda_ratio"] == mapped.sizes["contact_width"] == 1
 
 
 def test_the_map_gets_its_intervals(mapped):
     gathered = gather_map([mapped.isel(realisation=[1]), mapped.isel(realisation=[0])])
-    for name in ("breakthrough_probability", "geometric_contact_probability"):
+    for name in MEANS[:2]:
         np.testing.assert_allclose(gathered[f"{name}_mean"], mapped[name].mean("realisation"))
         assert (gathered[f"{name}_lower"] <= gathered[f"{name}_mean"]).all()
         assert (gathered[f"{name}_upper"] > 0).all()

@@ -1,17 +1,17 @@
-"""The rig's records: simulated ones against the truth they were made of, measured ones as told."""
+"""Simulated records against the contact they were made of; measured ones as stated."""
 
 import numpy as np
 import pytest
 
 from lube.errors import DataError
 from lube.recordings.manifest import read_manifest
+from lube.rig.record import LEVELS, TRACE_SAMPLES
 from lube.schema import POINT_DIMS, check
 from lube.stages.contact import contact_statistics
-from lube.stages.experiment import TRACE_SAMPLES, measured_experiment, simulated_experiment
+from lube.stages.experiment import measured_experiment, simulated_experiment
 from lube.stages.roughness import roughness_batch
 
 FAST = {"bandwidth": "50 MHz", "sampling_rate": "2 MHz", "noise": "0 V", "lead_resistance": "0 ohm"}
-LEVELS = ("force", "speed", "temperature")
 
 
 def at_100_ohm(dataset):
@@ -133,7 +133,7 @@ def test_the_error_of_the_share_is_electrical_noise_alone(simulated):
     assert (drifting["share_error"] == 0.0).all()
 
 
-def test_less_than_a_turn_tells_no_repetition(simulated):
+def test_less_than_a_turn_has_no_repeatability(simulated):
     part = simulated(revolutions=0.4)
     np.testing.assert_allclose(part["turns"], 0.4, rtol=1e-3)
     assert part["repeatability"].isnull().all()
@@ -200,37 +200,27 @@ def test_measured_records_stand_at_their_own_conditions(measured):
     assert np.isnan(half["true_contact_share"])
 
 
-@pytest.mark.parametrize(
-    ("row", "levels"),
-    [
-        ("792.5,100.9,40.9", (800.0, 100.0, 40.0)),
-        ("791,100,40", (np.nan, 100.0, 40.0)),
-        ("800,98.9,40", (800.0, np.nan, 40.0)),
-        ("800,100,41.1", (800.0, 100.0, np.nan)),
-    ],
-)
-def test_a_level_is_meant_within_a_per_cent_or_a_kelvin(measured, row, levels):
-    result = measured(f"half.csv,{row}")
-    np.testing.assert_array_equal([result[f"{name}_level"].item() for name in LEVELS], levels)
-    # Near a level or not, the record is evaluated where it is.
-    assert [result[name].item() for name in LEVELS] == [float(each) for each in row.split(",")]
-    assert at_100_ohm(result)["contact_share"] == 0.5
-
-
-def test_the_tolerance_of_the_manifest_wins(measured):
-    columns = ",force_tolerance [N],speed_tolerance [1/min],temperature_tolerance [degC]"
-    wide = measured("half.csv,780,105,44,25,6,5", header=COLUMNS + columns)
-    tight = measured("half.csv,801,100.1,40.1,0.5,0.05,0.05", header=COLUMNS + columns)
-    partly = measured("half.csv,801,100.1,40.1,,,0.05", header=COLUMNS + columns)
-    for result, levels in (
-        (wide, [800.0, 100.0, 40.0]),
-        (tight, [np.nan] * 3),
-        (partly, [800.0, 100.0, np.nan]),
+def test_a_level_is_near_within_the_tolerance_of_the_study_or_the_manifest(measured):
+    of_study = ",,,"
+    for row, tolerances, levels in (
+        # A per cent, or a kelvin.
+        ("792.5,100.9,40.9", of_study, (800.0, 100.0, 40.0)),
+        ("791,100,40", of_study, (np.nan, 100.0, 40.0)),
+        ("800,98.9,40", of_study, (800.0, np.nan, 40.0)),
+        ("800,100,41.1", of_study, (800.0, 100.0, np.nan)),
+        ("780,105,44", ",25,6,5", (800.0, 100.0, 40.0)),
+        ("801,100.1,40.1", ",0.5,0.05,0.05", (np.nan, np.nan, np.nan)),
+        ("801,100.1,40.1", ",,,0.05", (800.0, 100.0, np.nan)),
     ):
+        columns = ",force_tolerance [N],speed_tolerance [1/min],temperature_tolerance [degC]"
+        result = measured(f"half.csv,{row}{tolerances}", header=COLUMNS + columns)
         np.testing.assert_array_equal([result[f"{name}_level"].item() for name in LEVELS], levels)
+        # Near a level or not, the record is evaluated at its own conditions.
+        assert [result[name].item() for name in LEVELS] == [float(each) for each in row.split(",")]
+        assert at_100_ohm(result)["contact_share"] == 0.5
 
 
-def test_pairs_are_told_by_their_labels(measured):
+def test_pairs_are_counted_by_their_labels(measured):
     rows = "half.csv,800,100,40,A", "half.csv,800,100,40,B", "open.csv,800,100,80,A"
     result = measured(*rows, header=f"{COLUMNS},pair")
     assert result["pair"].values.tolist() == ["A", "B", "A"]
@@ -240,7 +230,7 @@ def test_pairs_are_told_by_their_labels(measured):
 # The speed
 
 
-def test_a_speed_that_the_repetition_contradicts_is_corrected_and_told(measured, tmp_path, caplog):
+def test_a_speed_that_the_repetition_contradicts_is_corrected(measured, tmp_path, caplog):
     written(tmp_path / "slow.csv", turning(97.0, 20.0), 1e-3)
     result = measured("slow.csv,800,100,40")
     assert result["speed"].item() == pytest.approx(97.0, rel=1e-4)
@@ -249,8 +239,8 @@ def test_a_speed_that_the_repetition_contradicts_is_corrected_and_told(measured,
     assert result["repeatability"] > 0.9
     (line,) = result.remarks.splitlines()
     assert line.startswith("slow.csv (manifest.csv: line 2): its speed is stated as 100 rpm, but")
-    believed = float(line.split("repeats itself at ")[1].split(" rpm")[0])
-    assert believed == pytest.approx(97.0, rel=1e-4) and line in caplog.text
+    used = float(line.split("repeats itself at ")[1].split(" rpm")[0])
+    assert used == pytest.approx(97.0, rel=1e-4) and line in caplog.text
 
 
 def test_a_speed_within_its_tolerance_is_left_as_stated(measured, tmp_path):
@@ -263,40 +253,32 @@ def test_a_speed_within_its_tolerance_is_left_as_stated(measured, tmp_path):
     np.testing.assert_allclose(result["revolution_period"], [60.0 / 99.6, 60.0 / 97.0], rtol=1e-4)
 
 
-def test_a_record_that_does_not_repeat_says_nothing_of_its_speed(measured, tmp_path):
+def test_a_record_that_does_not_repeat_by_the_turn_keeps_its_speed(measured, tmp_path):
     rng = np.random.default_rng(2)
     written(tmp_path / "random.csv", np.where(rng.random(12_000) < 0.3, 5.0, 5e4), 1e-3)
-    result = measured("random.csv,800,100,40")
-    assert result["speed"] == 100.0 and result.remarks == ""
-    assert result["revolution_period"] == pytest.approx(0.6)
-    assert result["repeatability"] == pytest.approx(0.0, abs=0.05)
+    result = measured("random.csv,800,100,40", "wave.csv,800,100,40")
+    assert (result["speed"] == 100.0).all() and result.remarks == ""
+    random = result.isel(record=0)
+    assert random["revolution_period"] == pytest.approx(0.6)
+    assert random["repeatability"] == pytest.approx(0.0, abs=0.05)
 
 
-def test_a_wave_shorter_than_a_turn_says_nothing_of_the_speed(measured):
-    result = measured("wave.csv,800,100,40")
-    assert result["speed"] == 100.0 and result.remarks == ""
-    assert at_100_ohm(result)["contact_share"] == 0.5
-
-
-@pytest.mark.parametrize(
-    ("slip", "period", "turns"),
-    [
+def test_turns_are_those_of_the_faster_surface(measured, tmp_path):
+    rng = np.random.default_rng(2)
+    written(tmp_path / "random.csv", np.where(rng.random(6000) < 0.3, 5.0, 5e4), 1e-3)
+    for slip, period, turns in (
         (0.0, 0.6, 10.0),
         (0.1, 0.6 / 1.05, 10.5),
         (-0.1, 0.6 / 0.95, 10.5),  # now the second has the faster surface
         (2.0, 0.3, 20.0),  # the second is at rest
         (-2.0, 0.3, 20.0),  # the first is
-    ],
-)
-def test_turns_are_those_of_the_faster_surface(measured, tmp_path, slip, period, turns):
-    rng = np.random.default_rng(2)
-    written(tmp_path / "random.csv", np.where(rng.random(6000) < 0.3, 5.0, 5e4), 1e-3)
-    row = f"random.csv,800,100,40,{slip}"
-    result = measured(row, header=f"{COLUMNS},slide_to_roll_ratio")
-    assert result["revolution_period"].item() == pytest.approx(period)
-    assert result["turns"].item() == pytest.approx(turns)
-    # With slip the turns differ by their roughness, not by noise alone.
-    assert (result["share_error"] == 0.0) == (slip != 0.0)
+    ):
+        row = f"random.csv,800,100,40,{slip}"
+        result = measured(row, header=f"{COLUMNS},slide_to_roll_ratio")
+        assert result["revolution_period"].item() == pytest.approx(period)
+        assert result["turns"].item() == pytest.approx(turns)
+        # With slip the turns differ by their roughness, not by noise alone.
+        assert (result["share_error"] == 0.0) == (slip != 0.0)
 
 
 # Short records
@@ -320,18 +302,18 @@ def test_the_shorter_the_record_the_wider_is_its_interval(measured, tmp_path):
     assert widths[0] > 0.75 and widths[-1] < 0.15
 
 
-@pytest.mark.parametrize("samples", [2, 5])
-def test_less_than_a_window_without_contact_rules_nothing_out(measured, tmp_path, samples):
-    """One look without contact: anything up to 95 % may be."""
-    written(tmp_path / "some.csv", np.full(samples, 1e5), 1e-4)
-    here = at_100_ohm(measured("some.csv,800,100,40"))
-    assert here["contact_share"] == here["contact_share_lower"] == 0.0
-    assert here["contact_share_upper"].item() == pytest.approx(0.95)
-    assert np.isnan(here["repeatability"])
+def test_less_than_a_window_without_contact_excludes_little(measured, tmp_path):
+    """One window without contact: the share may be anything up to 95 %."""
+    for samples in (2, 5):
+        written(tmp_path / "some.csv", np.full(samples, 1e5), 1e-4)
+        here = at_100_ohm(measured("some.csv,800,100,40"))
+        assert here["contact_share"] == here["contact_share_lower"] == 0.0
+        assert here["contact_share_upper"].item() == pytest.approx(0.95)
+        assert np.isnan(here["repeatability"])
 
 
-def test_without_contact_many_turns_of_equal_rollers_rule_out_no_more_than_one(measured, tmp_path):
-    """New windows come with slip alone."""
+def test_many_turns_of_equal_rollers_without_contact_exclude_no_more_than_one(measured, tmp_path):
+    """Only slip brings new windows."""
     uppers = {}
     for turns in (1, 30):
         written(tmp_path / "some.csv", np.full(600 * turns, 1e5), 1e-3)
@@ -362,36 +344,20 @@ def test_a_bad_record_is_refused_by_name_and_the_good_ones_stay(measured, caplog
     assert len(lines) == 2 and all(line in caplog.text for line in lines)
 
 
-@pytest.mark.parametrize(
-    ("column", "row", "told"),
-    [
-        ("lubricant", "half.csv,800,100,40,butter", "lubricant: got butter, need one of the study"),
-        ("", "half.csv,0.001,100,40", "need at least two grid spacings of "),
-        ("gain", "half.csv,800,100,40,0", "gain: got 0"),
-        ("channel", "half.csv,800,100,40,CH7", "got the channel 'CH7', need one that is there"),
-        ("unit", "half.csv,800,100,40,furlong", "unit: got the unit 'furlong'"),
-        ("", "half.csv,0,100,40", "force: got 0, need a value above 0 N"),
-        ("", "half.csv,800,-5,40", "speed: got -5, need a value above 0 rpm"),
-    ],
-)
-def test_what_cannot_be_used_is_one_clear_line(measured, column, row, told):
-    header = f"{COLUMNS},{column}" if column else COLUMNS
-    (line,) = refusals(measured, row, header=header)
-    assert told in line
-    assert line.startswith("manifest.csv: line 2: ") or "half.csv" in line
-
-
-def test_a_temperature_beyond_the_oils_range_is_told_with_both(measured):
-    (line,) = refusals(measured, "half.csv,800,100,400")
-    assert line.startswith("manifest.csv: line 2: ")
-    assert "400" in line and "mobilgear-shc-xmp-320" in line
-
-
-def test_a_saturated_record_is_refused(measured, tmp_path):
+def test_what_cannot_be_used_is_refused_in_one_line(measured, tmp_path):
     volts = np.where(np.arange(1000) % 2, 0.12, 0.001)
     written(tmp_path / "volts.csv", volts, head="U [V]")
-    (line,) = refusals(measured, "volts.csv,800,100,40")
-    assert "50.0% of its samples are at or beyond 0.1 V" in line
+    for column, row, reason in (
+        ("lubricant", "half.csv,800,100,40,butter", "lubricant: got butter, need one of the study"),
+        ("", "half.csv,0.001,100,40", "need at least two grid spacings of "),
+        ("channel", "half.csv,800,100,40,CH7", "no channel 'CH7', need one of: 'time [s]'"),
+        ("", "half.csv,800,100,400", "mobilgear-shc-xmp-320"),
+        ("", "volts.csv,800,100,40", "saturated, 50.0% of its samples are at or beyond 0.1 V"),
+    ):
+        header = f"{COLUMNS},{column}" if column else COLUMNS
+        (line,) = refusals(measured, row, header=header)
+        assert reason in line
+        assert line.startswith("manifest.csv: line 2: ") or row.split(",")[0] in line
 
 
 def test_no_record_at_all_is_an_error(measured):
@@ -415,21 +381,15 @@ def test_a_share_evaluated_elsewhere_stands_at_the_compared_threshold_alone(meas
     assert np.isnan(here["repeatability"]) and np.isnan(here["duration"])
 
 
-def test_a_voltage_is_judged_by_the_rigs_circuit(measured, tmp_path):
-    # 100 ohm are 25.02 mV of the 50 mV, with 0.2 ohm of leads.
-    voltage = np.where(np.arange(5000) // 50 % 4 == 0, 25.0e-3, 25.1e-3)
-    rows = [f"{1e-4 * number!r};{value!r}" for number, value in enumerate(voltage.tolist())]
-    text = "\n".join(["t [s];U [V]", *rows]).replace(".", ",") + "\n"
-    (tmp_path / "volts.csv").write_text(text, encoding="utf-8")
-    assert at_100_ohm(measured("volts.csv,800,100,40"))["contact_share"] == 0.25
+def test_a_voltage_is_converted_by_the_rigs_circuit(measured, tmp_path):
+    """100 ohm are 25.02 mV of the 50 mV, with 0.2 ohm of leads.
 
-
-def test_a_voltage_behind_an_amplifier_is_judged_at_the_rig(measured, tmp_path):
-    """Recorded are 0.253 and 0.254 V, beyond the amplifier's 0.1 V, of 25.0 and 25.1 mV."""
-    true = np.where(np.arange(5000) // 50 % 4 == 0, 25.0e-3, 25.1e-3)
-    recorded = 10.0 * true + 3e-3
-    rows = [f"{1e-4 * number!r},5,{value!r}" for number, value in enumerate(recorded.tolist())]
-    (tmp_path / "log.csv").write_text("\n".join(["t [s],CH1 [V],CH2", *rows]), encoding="utf-8")
+    Behind an amplifier, 0.253 and 0.254 V are recorded, beyond the 0.1 V of the rig's amplifier.
+    """
+    volts = np.where(np.arange(5000) // 50 % 4 == 0, 25.0e-3, 25.1e-3)
+    written(tmp_path / "plain.csv", volts, head="CH2 [V]")
+    written(tmp_path / "amplified.csv", 10.0 * volts + 3e-3, head="CH2")
     header = "file,channel,unit,gain,offset [mV],force [N],speed [rpm],temperature [degC]"
-    result = measured("log.csv,CH2,V,10,3,800,100,40", header=header)
-    assert at_100_ohm(result)["contact_share"] == 0.25
+    rows = "plain.csv,,,,,800,100,40", "amplified.csv,CH2,V,10,3,800,100,40"
+    shares = at_100_ohm(measured(*rows, header=header))["contact_share"]
+    assert shares.values.tolist() == [0.25, 0.25]

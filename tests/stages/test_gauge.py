@@ -3,50 +3,16 @@
 import numpy as np
 import pytest
 import xarray as xr
-from experiments import experiment_at, experiment_of, model_of_records
+from experiments import experiment_at, experiment_of
 
 from lube import contact_statistics, film_table
 from lube.rig.fits import ALPHA_FACTORS, fit_alpha, fit_layer_strength
-from lube.schema import LIMITS, check
-from lube.stages.comparison import compare
+from lube.rig.map_curves import curve_at
+from lube.schema import LIMITS, check, label
 from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
 from lube.stages.lubricant import lubricant_table
-from lube.statistics.map_curves import curve_at
-from lube.statistics.one_pair import prediction_limits
 
 FORMULA = {"film_formula": "paper"}
-POINT = {"force": 400.0, "speed": 100.0, "temperature": 60.0}
-
-
-@pytest.fixture(scope="module")
-def compared(busy):
-    """Compare an experiment with the busy study."""
-
-    def run(experiment):
-        model = model_of_records(experiment, busy.film, busy.contact, busy.study)
-        return compare(model, experiment, busy.contact)
-
-    return run
-
-
-@pytest.fixture(scope="module")
-def at_grid(compared, busy):
-    """Compare shares at the 12 points of the grid, the force changing fastest."""
-    grid = busy.study.operating_grid.model_dump()
-    return lambda shares, **values: compared(experiment_at(grid, shares, **values))
-
-
-@pytest.fixture(scope="module")
-def at_point(compared):
-    """Compare several records of one point."""
-    return lambda shares, **values: compared(experiment_of(shares, **(POINT | values)))
-
-
-@pytest.fixture(scope="module")
-def mean(busy):
-    """Mean probability at the 12 points of the grid by one formula."""
-    found = busy.contact["breakthrough_probability_mean"].sel(FORMULA).squeeze()
-    return found.transpose("temperature", "speed", "force").values.ravel()
 
 
 @pytest.fixture(scope="module")
@@ -82,19 +48,7 @@ def test_the_ensembles_own_mean_is_gauged_to_the_film_of_the_formula(busy, own):
     np.testing.assert_allclose(ratio, 1.0, atol=0.02)
 
 
-def test_the_limits_are_films_whose_single_pairs_just_reach_the_share(busy, at_point):
-    share = 0.1
-    gauged = gauge_film(busy.master, at_point([share])).squeeze()
-    curve = curve_at(busy.master, 2.0 * busy.study.rollers.contact_half_width(POINT["force"]))
-    for limit, side in (("_lower", 0), ("_upper", 1)):
-        film = np.log(gauged[f"gauged_lambda_ratio{limit}"].item())
-        probability = 1.0 / (1.0 + np.exp(-curve.logit_at(film)))
-        looks = np.interp(film, curve.films, curve.looks)
-        touched = prediction_limits(probability, looks, 1.0, 32)[side]
-        assert touched == pytest.approx(share, abs=2e-3)
-
-
-def test_no_longer_record_of_one_pair_tells_the_film_better_but_a_shorter_or_noisy_one_worse(
+def test_a_film_is_known_worse_from_short_and_noisy_records_but_not_better_from_long(
     busy, at_point
 ):
     comparison = at_point(
@@ -117,35 +71,26 @@ def of_force(gauged, force):
     return gauged.isel(record=gauged["force"].values == force)
 
 
-def test_no_contact_leaves_the_film_open_above(extremes):
-    never = of_force(extremes, 100.0)
+def test_shares_beyond_the_map_leave_one_limit_open(extremes, busy):
+    never, always = of_force(extremes, 100.0), of_force(extremes, 1600.0)
     assert never["gauged_lambda_ratio"].isnull().all()
     assert (never["gauged_film_thickness_upper"] == np.inf).all()
     assert (never["gauged_lambda_ratio_lower"] > 1.0).all()
-
-
-def test_nothing_but_contact_leaves_the_film_open_below(extremes, busy):
-    always = of_force(extremes, 1600.0)
     assert always["gauged_lambda_ratio"].isnull().all()
     assert (always["gauged_film_thickness_lower"] == 0.0).all()
-    # The map goes below the films of the study, so even this says something.
+    # The map includes films thinner than the study's, so there is an upper limit.
     upper = always["gauged_lambda_ratio_upper"]
     assert (upper > 0.0).all() and (upper < busy.film["lambda_ratio"].min()).all()
 
 
-def test_records_without_a_share_stay_empty_and_are_not_fitted(extremes):
+def test_records_without_a_share_stay_empty_and_are_not_fitted(extremes, own):
     missing = of_force(extremes, 400.0)
     for limit in LIMITS:
         assert missing[f"gauged_film_thickness{limit}"].isnull().all()
     assert extremes["fitted_records"].item() == 8
-
-
-def test_the_gauge_fits_its_schema_and_stands_beside_the_film_of_the_formula(extremes, own):
     assert check(extremes, "gauge") is extremes
-    assert extremes["gauged_film_thickness"].isel(record=0)["origin"] == "simulated"
-    for name in ("film_thickness", "lambda_ratio", "contact_half_width"):
+    for name in ("film_thickness", "lambda_ratio", "contact_half_width", "record"):
         np.testing.assert_array_equal(extremes[name], own[name])
-    assert extremes["record"].values.tolist() == own["record"].values.tolist()
 
 
 def test_records_with_slip_are_gauged_too_and_better(busy, at_point):
@@ -164,12 +109,15 @@ def test_records_with_slip_are_gauged_too_and_better(busy, at_point):
 
 
 def test_what_the_study_assumes_is_found_in_its_own_results(busy, own):
-    gauged = gauge_records(busy.master, busy.contact, own).sel(FORMULA)
+    gauged = gauge_records(busy.master, busy.contact, own)
+    for name in ("alpha_factor", "fitted_layer_strength"):
+        assert (gauged[f"{name}_coverage"] >= 0.84).all()  # 27 of 32 at least
+        assert (gauged[f"{name}_lower"] < gauged[name]).sel(FORMULA).all()
+        assert (gauged[name] < gauged[f"{name}_upper"]).sel(FORMULA).all()
+    gauged = gauged.sel(FORMULA)
     strength = gauged["fitted_layer_strength"] / gauged["study_layer_strength"]
     assert gauged["alpha_factor"].item() == pytest.approx(1.0, abs=0.02)
     assert strength.item() == pytest.approx(1.0, abs=0.03)
-    for name in ("alpha_factor", "fitted_layer_strength"):
-        assert gauged[f"{name}_lower"] < gauged[name] < gauged[f"{name}_upper"]
     assert gauged["fitted_records"].item() == 12
 
 
@@ -180,26 +128,26 @@ def shares_of(busy, film, layer):
     return found.transpose("temperature", "speed", "force").values.ravel()
 
 
-@pytest.mark.parametrize("factor", [0.5, 1.4])
-def test_a_changed_alpha_is_found(busy, at_grid, factor):
-    """The oil of the rig is another one than the study's; its films are run by themselves."""
+def test_a_changed_alpha_is_found(busy, at_grid):
+    """The oil of the rig differs from the study's; its films are run by themselves."""
     study, grid = busy.study, busy.study.operating_grid
-    oil = lubricant_table(study.lubricants, grid.temperature)
-    oil["pressure_viscosity_coefficient"] = factor * oil["pressure_viscosity_coefficient"]
-    other = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
-    comparison = at_grid(shares_of(busy, other, study.boundary_layer))
-    found = fit_alpha(busy.master, busy.contact, comparison).sel(FORMULA)
-    assert found["alpha_factor"].item() == pytest.approx(factor, rel=0.02)
+    for factor in (0.5, 1.4):
+        oil = lubricant_table(study.lubricants, grid.temperature)
+        oil["pressure_viscosity_coefficient"] = factor * oil["pressure_viscosity_coefficient"]
+        other = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+        comparison = at_grid(shares_of(busy, other, study.boundary_layer))
+        found = fit_alpha(busy.master, busy.contact, comparison).sel(FORMULA)
+        assert found["alpha_factor"].item() == pytest.approx(factor, rel=0.02)
 
 
-@pytest.mark.parametrize("factor", [0.3, 1.0, 4.0])
-def test_a_changed_layer_is_found(busy, at_grid, factor):
+def test_a_changed_layer_is_found(busy, at_grid):
     layer = busy.study.boundary_layer
-    changed = layer.model_copy(update={"shear_strength": factor * layer.shear_strength})
-    comparison = at_grid(shares_of(busy, busy.film, changed))
-    found = fit_layer_strength(busy.master, busy.contact, comparison).sel(FORMULA)
-    strength = factor * layer.shear_strength / layer.critical_thickness
-    assert found["fitted_layer_strength"].item() == pytest.approx(strength, rel=0.06)
+    for factor in (0.3, 4.0):
+        changed = layer.model_copy(update={"shear_strength": factor * layer.shear_strength})
+        comparison = at_grid(shares_of(busy, busy.film, changed))
+        found = fit_layer_strength(busy.master, busy.contact, comparison).sel(FORMULA)
+        strength = factor * layer.shear_strength / layer.critical_thickness
+        assert found["fitted_layer_strength"].item() == pytest.approx(strength, rel=0.06)
 
 
 def test_shares_read_off_the_map_at_a_factor_give_the_factor_back(busy, own):
@@ -217,17 +165,16 @@ def test_shares_read_off_the_map_at_a_factor_give_the_factor_back(busy, own):
 
 
 def repeated(experiment, pairs):
-    """The same records so many times, of the given pairs of rollers."""
+    """The same records once for each of the given pairs of rollers."""
     count = experiment.sizes["record"]
     labels = np.repeat(pairs, count)
     every = experiment.isel(record=np.arange(labels.size) % count)
     names = [f"record {number}" for number in range(labels.size)]
     every = every.assign_coords(record=names, pair=("record", labels))
-    every["pair"].attrs = experiment["pair"].attrs
-    return every
+    return label(every, "experiment")
 
 
-def test_more_pairs_of_rollers_tell_a_factor_better_but_more_records_of_one_do_not(
+def test_a_factor_is_known_better_from_more_pairs_but_not_from_more_records_of_one(
     busy, compared, mean
 ):
     """The error of the map itself, of 32 realisations, stays however many pairs there are."""
@@ -299,13 +246,7 @@ def test_the_coverage_is_that_of_gauging_every_realisation(busy, own, compared):
     assert found["closed_share"].min() < 1.0 == found["closed_share"].max()
 
 
-def test_fits_hold_the_truth_about_95_times_of_100(busy, own):
-    gauged = gauge_records(busy.master, busy.contact, own)
-    for name in ("alpha_factor", "fitted_layer_strength"):
-        assert (gauged[f"{name}_coverage"] >= 0.84).all()  # 27 of 32 at least
-
-
-def test_two_realisations_tell_no_coverage(busy, own):
+def test_two_realisations_give_no_coverage(busy, own):
     few = own.isel(realisation=slice(2))
     master = busy.master.isel(realisation=slice(2))
     assert gauge_coverage(master, few)["interval_coverage"].isnull().all()

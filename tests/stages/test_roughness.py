@@ -1,29 +1,14 @@
-"""Roughness lines: what theory demands of the spectrum, then independence, then stored numbers."""
+"""Roughness lines as datasets: the same lines in any batch, labelled with their moments."""
 
 import numpy as np
 import pytest
-import scipy.special
-import scipy.stats
 
 from lube import roughness_lines
 from lube.grid.discretise import line_pair
-from lube.kernels.runs import find_runs
 from lube.stages.roughness import PADDING, roughness_batch
-from lube.surfaces.synthetic import (
-    draw_line,
-    draw_realisation,
-    power_spectrum,
-    spectrum_moments,
-    wave_amplitudes,
-)
+from lube.surfaces.synthetic import draw_realisation, line_moments, spectrum_moments
 
 SEED = 20181109
-REALISATIONS = 40
-
-
-@pytest.fixture(scope="module")
-def spec(make_spec):
-    return make_spec(100_000)
 
 
 @pytest.fixture(scope="module")
@@ -32,174 +17,7 @@ def unequal(make_spec):
     return make_spec(50_000, second_radius=0.037, second_roughness=0.31e-6)
 
 
-@pytest.fixture(scope="module")
-def pairs(spec):
-    """Many realisations, in height steps, shape (realisation, roller, N)."""
-    return np.array([draw_realisation(spec, SEED, r) for r in range(REALISATIONS)])
-
-
-def measured_amplitudes(line, height_step):
-    """Amplitude of every whole number of waves around a line, m."""
-    return 2.0 / line.size * height_step * np.abs(np.fft.rfft(line))
-
-
-def band(spec, roller):
-    """Whole numbers of waves k around the roller with q_min <= k / R <= q_max, from the paper."""
-    radius = spec.points[roller] * spec.spacing / (2.0 * np.pi)
-    k = np.arange(spec.points[roller] // 2 + 1)
-    slack = 1e-9 * spec.q_max  # q_max itself is a whole number of waves
-    return k[(k / radius >= spec.q_min) & (k / radius <= spec.q_max + slack)], radius
-
-
-@pytest.mark.parametrize("roller", [0, 1])
-@pytest.mark.parametrize("which", ["spec", "unequal"])
-def test_rms_height_is_the_rollers_exactly(which, roller, request):
-    spec = request.getfixturevalue(which)
-    for realisation in range(5):
-        line = draw_realisation(spec, SEED, realisation)[roller].astype(float)
-        rms = np.sqrt(np.mean(line**2)) * spec.height_step
-        assert rms == pytest.approx(spec.rms_height[roller], rel=1e-6)
-
-
-def test_mean_height_is_zero_but_for_the_rounding(pairs):
-    points = pairs.shape[-1]
-    rounding = np.sqrt(1.0 / 12.0 / points)  # of a mean of independent roundings, in steps
-    assert np.abs(pairs.mean(axis=-1)).max() < 5.0 * rounding
-
-
-@pytest.mark.parametrize("roller", [0, 1])
-@pytest.mark.parametrize("which", ["spec", "unequal"])
-def test_every_wave_of_the_band_has_its_amplitude_and_no_other_wave_any(which, roller, request):
-    spec = request.getfixturevalue(which)
-    inside, radius = band(spec, roller)
-    power_law = (inside / radius) ** (-2.0 * spec.hurst_exponent - 1.0)  # C1D
-    variance = spec.rms_height[roller] ** 2 * power_law / power_law.sum()
-    expected = np.zeros(spec.points[roller] // 2 + 1)
-    expected[inside] = np.sqrt(2.0 * variance)
-    line = draw_realisation(spec, SEED, 2)[roller]
-    # Rounding is white noise of 1/12 step^2, shared out among N/2 waves.
-    noise = spec.height_step * np.sqrt(2.0 / 12.0 * 2.0 / line.size)
-    found = measured_amplitudes(line, spec.height_step)
-    np.testing.assert_allclose(found, expected, rtol=2e-6, atol=6.0 * noise)
-    assert expected[inside].min() > 100.0 * noise  # so the band stands out
-
-
-@pytest.mark.parametrize("hurst_exponent", [0.3, 0.7, 1.0 - 1e-9])
-def test_spectrum_falls_with_the_power_2h_plus_1(make_spec, hurst_exponent):
-    spec = make_spec(100_000, hurst_exponent=hurst_exponent)
-    inside, radius = band(spec, 0)
-    line = draw_realisation(spec, SEED, 0)[0]
-    power = measured_amplitudes(line, spec.height_step)[inside] ** 2
-    slope, _ = np.polyfit(np.log(inside / radius), np.log(power), 1)
-    assert slope == pytest.approx(-2.0 * hurst_exponent - 1.0, abs=1e-3)
-
-
-def test_power_spectrum_is_the_papers_and_holds_the_mean_square_height(unequal):
-    for roller, line in enumerate(draw_realisation(unequal, SEED, 0)):
-        heights = line * unequal.height_step
-        wave_vector, density = power_spectrum(heights, unequal.spacing)
-        steps = np.diff(wave_vector)
-        np.testing.assert_allclose(steps, wave_vector[0], rtol=1e-9)
-        power = np.sum(density) * wave_vector[0]  # Parseval
-        assert power == pytest.approx(np.mean(heights**2), rel=1e-9)
-        inside, radius = band(unequal, roller)
-        found, q = density[inside - 1], inside / radius
-        np.testing.assert_allclose(wave_vector[inside - 1], q, rtol=1e-9)
-        scale = found[0] * q[0] ** 2.4  # H = 0.7
-        np.testing.assert_allclose(found, scale * q**-2.4, rtol=1e-3)
-
-
-def test_band_is_the_papers(spec, study):
-    first, amplitudes = wave_amplitudes(spec, 0)
-    perimeter = 2.0 * np.pi * study.rollers.first.radius
-    width = 2.0 * study.rollers.contact_half_width(1600.0)
-    last = first + amplitudes.size - 1
-    assert perimeter / first <= width < perimeter / (first - 1)
-    assert last == 100_000 // 10
-
-
-def test_limits_that_are_whole_numbers_of_waves_belong_to_the_band(make_spec):
-    perimeter = 2.0 * np.pi * 0.05
-    for waves in range(700, 800):
-        spec = make_spec(50_000, longest_wavelength=perimeter / waves)
-        first, amplitudes = wave_amplitudes(spec, 0)
-        assert (first, first + amplitudes.size - 1) == (waves, 5000)
-
-
-def test_finest_wave_has_more_than_two_points(make_spec):
-    """A wave of two points would have a height that hangs on its phase, and the rms with it."""
-    spec = make_spec(4096, shortest_wavelength="2.0 points")
-    first, amplitudes = wave_amplitudes(spec, 0)
-    assert first + amplitudes.size - 1 == 2047
-    rms = [np.sqrt(np.mean(draw_realisation(spec, SEED, r)[0] ** 2.0)) for r in range(5)]
-    np.testing.assert_allclose(np.array(rms) * spec.height_step, spec.rms_height[0], rtol=1e-6)
-
-
-def test_realised_moments_are_the_spectrums(unequal):
-    dataset = roughness_lines(unequal, SEED, [0, 7])
-    for name in ("rms_height", "rms_slope", "rms_curvature"):
-        promised = dataset[f"spectrum_{name}"].broadcast_like(dataset[name])
-        np.testing.assert_allclose(dataset[name], promised.transpose(*dataset[name].dims), 1e-5)
-        assert dataset[f"spectrum_{name}"].values.tolist() == [
-            pytest.approx(spectrum_moments(unequal, roller)[name]) for roller in (0, 1)
-        ]
-
-
-def test_realised_moments_are_those_of_the_heights(unequal):
-    dataset = roughness_lines(unequal, SEED, [3])
-    dx = unequal.spacing
-    for roller, points in enumerate(unequal.points):
-        z = dataset["height"].values[0, roller, :points]
-        place = {"realisation": 0, "roller": roller}
-        slope = (np.append(z[1:], z[0]) - z) / dx
-        curvature = (np.append(z[1:], z[0]) - 2.0 * z + np.append(z[-1], z[:-1])) / dx**2
-        moments = {
-            "rms_height": np.std(z),
-            "rms_slope": np.std(slope),
-            "rms_curvature": np.std(curvature),
-            "skewness": scipy.stats.skew(z),
-            "kurtosis": scipy.stats.kurtosis(z, fisher=False),
-        }
-        for name, value in moments.items():
-            assert dataset[name].isel(place).item() == pytest.approx(value, rel=1e-6, abs=1e-6)
-
-
-def four_standard_errors(values):
-    return 4.0 * np.std(values, ddof=1) / np.sqrt(len(values))
-
-
-def test_heights_are_as_gaussian_as_so_many_waves_allow(spec, pairs):
-    # The fourth cumulant of a cos(phase) is -3/8 a^4, and cumulants of independent waves add.
-    _, amplitudes = wave_amplitudes(spec, 0)
-    expected = 3.0 - 0.375 * np.sum(amplitudes**4) / spec.rms_height[0] ** 4
-    z = pairs.reshape(-1, pairs.shape[-1]) * spec.height_step / spec.rms_height[0]
-    kurtosis, skewness = np.mean(z**4, axis=-1), np.mean(z**3, axis=-1)
-    assert np.mean(kurtosis) == pytest.approx(expected, abs=four_standard_errors(kurtosis))
-    assert np.mean(skewness) == pytest.approx(0.0, abs=four_standard_errors(skewness))
-
-
-def correlations(first, second):
-    first, second = first.astype(float), second.astype(float)
-    return np.sum(first * second, axis=-1) / np.sqrt(
-        np.sum(first**2, axis=-1) * np.sum(second**2, axis=-1)
-    )
-
-
-def test_rollers_and_realisations_are_independent(spec, pairs):
-    # Of two lines with phases apart by p_k: sum a_k^2 cos(p_k) / sum a_k^2.
-    _, amplitudes = wave_amplitudes(spec, 0)
-    scatter = np.sqrt(0.5 * np.sum(amplitudes**4)) / np.sum(amplitudes**2)
-    for found in (
-        correlations(pairs[:, 0], pairs[:, 1]),
-        correlations(pairs[:-1, 0], pairs[1:, 0]),
-        correlations(pairs[:-1, 0], pairs[1:, 1]),
-        correlations(pairs[:-1, 1], pairs[1:, 0]),
-    ):
-        assert abs(found.mean()) < 4.0 * scatter / np.sqrt(found.size)
-        assert found.std() == pytest.approx(scatter, rel=4.0 / np.sqrt(2.0 * found.size))
-
-
-def test_realisation_is_the_same_whatever_the_batch_and_the_order(make_spec):
+def test_realisation_is_the_same_in_any_batch_and_any_order(make_spec):
     spec = make_spec(5000, shortest_wavelength="3.0 points")
     alone = np.array(draw_realisation(spec, SEED, 5))
     for realisations in ([5], [5, 0], [0, 1, 2, 3, 4, 5], range(3, 7)):
@@ -207,24 +25,7 @@ def test_realisation_is_the_same_whatever_the_batch_and_the_order(make_spec):
         np.testing.assert_array_equal(batch["height"], alone)
 
 
-def test_realisation_hangs_on_nothing_but_the_pair_of_seeds(make_spec):
-    spec = make_spec(5000, shortest_wavelength="3.0 points")
-    children = np.random.SeedSequence((SEED, 5)).spawn(2)
-    for roller, line in enumerate(draw_realisation(spec, SEED, 5)):
-        np.testing.assert_array_equal(line, draw_line(spec, roller, children[roller]))
-    drawn = [draw_realisation(spec, *pair)[0] for pair in [(0, 1), (1, 0), (1, 1), (0, 0)]]
-    assert len({line.tobytes() for line in drawn}) == 4
-
-
-def test_realisation_on_record(make_spec):
-    # Drawn when the tests were written: should it differ, so do the results of every study.
-    spec = make_spec(20_000)
-    first, second = draw_realisation(spec, SEED, 0)
-    np.testing.assert_allclose(first[:4], [-113239, -60932, -200, 50661], rtol=0, atol=2)
-    np.testing.assert_allclose(second[:4], [-205523, -128052, -17898, 106735], rtol=0, atol=2)
-
-
-def test_lean_batches_hold_the_same_heights(unequal):
+def test_both_datasets_hold_the_lines_drawn(unequal):
     lines = roughness_lines(unequal, SEED, [4, 2])
     batch = roughness_batch(unequal, SEED, [4, 2])
     assert batch["height"].attrs["scale_factor"] == unequal.height_step
@@ -236,6 +37,17 @@ def test_lean_batches_hold_the_same_heights(unequal):
                 np.testing.assert_array_equal(line, expected)
 
 
+def test_moments_are_those_of_each_line_and_of_the_spectrum(unequal):
+    dataset = roughness_lines(unequal, SEED, [0, 7])
+    for number, realisation in enumerate((0, 7)):
+        for roller, line in enumerate(draw_realisation(unequal, SEED, realisation)):
+            moments = line_moments(line * unequal.height_step, unequal.spacing)
+            for name, value in moments.items():
+                assert dataset[name][number, roller] == pytest.approx(value)
+            for name, value in spectrum_moments(unequal, roller).items():
+                assert dataset[f"spectrum_{name}"][roller] == pytest.approx(value)
+
+
 def test_shorter_line_is_padded_and_marked(unequal):
     assert unequal.points == (50_000, 37_000)
     lines = roughness_lines(unequal, SEED, [0])["height"].values[0]
@@ -244,73 +56,3 @@ def test_shorter_line_is_padded_and_marked(unequal):
     assert np.isnan(lines[1, 37_000:]).all() and not np.isnan(lines[1, :37_000]).any()
     assert (batch[1, 37_000:] == PADDING).all() and (batch[1, :37_000] != PADDING).all()
     np.testing.assert_allclose(lines[1, :37_000], batch[1, :37_000] * unequal.height_step, 1e-15)
-
-
-def test_lines_close_around_the_roller_without_a_step(pairs, spec):
-    limit = 6.0 * spectrum_moments(spec, 0)["rms_slope"] * spec.spacing / spec.height_step
-    assert np.abs(pairs[..., 0] - pairs[..., -1]).max() < limit
-
-
-@pytest.fixture(scope="module")
-def composites(make_spec):
-    """Sums of both lines as fine as the paper's, and their spectrum."""
-    spec = make_spec(1_000_000)
-    drawn = (draw_realisation(spec, SEED, r) for r in range(12))
-    return spec, [first + second for first, second in drawn]
-
-
-def upcrossings_per_step(spec, film):
-    """Exact for a Gaussian line on a grid: P(z_i <= h < z_i+1) = 2 T(h, sqrt((1-r)/(1+r)))."""
-    first, amplitudes = wave_amplitudes(spec, 0)
-    waves = np.arange(first, first + amplitudes.size)
-    weights = amplitudes**2 / np.sum(amplitudes**2)
-    lag_one = np.sum(weights * np.cos(2.0 * np.pi * waves / spec.points[0]))
-    sigma = np.hypot(*spec.rms_height)
-    return 2.0 * scipy.special.owens_t(film / sigma, np.sqrt((1.0 - lag_one) / (1.0 + lag_one)))
-
-
-def rice_rate(spec, film):
-    """Rice's up-crossings of a Gaussian line per length, nu+ (physics.md, section 6)."""
-    heights, slopes = (
-        np.hypot(*(spectrum_moments(spec, roller)[name] for roller in (0, 1)))
-        for name in ("rms_height", "rms_slope")
-    )
-    return slopes / heights / (2.0 * np.pi) * np.exp(-0.5 * (film / heights) ** 2)
-
-
-def count_runs(line, film):
-    starts, stops = np.zeros(1, np.int64), np.full(1, line.size)
-    capacity = line.size // 2 + 1
-    return find_runs(line, film, starts, stops, 1, *np.empty((2, capacity), np.int64))
-
-
-@pytest.mark.parametrize("film", [0.0, 0.3e-6, 0.6e-6, 0.8e-6])
-def test_segments_are_as_many_as_theory_and_their_points_too(composites, film):
-    spec, lines = composites
-    film_steps = round(film / spec.height_step)
-    segments = np.array([count_runs(line, film_steps) for line in lines])
-    expected = spec.points[0] * upcrossings_per_step(spec, film)
-    assert segments.mean() == pytest.approx(expected, abs=four_standard_errors(segments))
-    assert expected == pytest.approx(rice_rate(spec, film) * spec.points[0] * spec.spacing, 0.02)
-    share = np.array([np.mean(line > film_steps) for line in lines])  # of a window's points
-    above = scipy.stats.norm.sf(film / np.hypot(*spec.rms_height))
-    assert share.mean() == pytest.approx(above, abs=four_standard_errors(share) + 1e-12)
-    excess = share * spec.points[0] - above * spec.points[0] / expected * segments
-    assert excess.mean() == pytest.approx(0.0, abs=four_standard_errors(excess))  # mean length
-
-
-@pytest.mark.parametrize(
-    ("film", "measured", "predicted"),
-    [(300_000, 2741, 2753), (600_000, 506, 509), (800_000, 87, 88)],
-)
-def test_segments_per_revolution_on_record(composites, film, measured, predicted):
-    # physics.md, section 6: 40 seeds of another implementation, and Rice's formula.
-    spec, lines = composites
-    segments = np.array([count_runs(line, film) for line in lines])
-    # The record's own standard error is at most about this one's.
-    error = np.sqrt(2.0) * four_standard_errors(segments)
-    assert segments.mean() == pytest.approx(measured, abs=error)
-    perimeter = spec.points[0] * spec.spacing
-    assert rice_rate(spec, film * spec.height_step) * perimeter == pytest.approx(
-        predicted, abs=0.006 * predicted
-    )

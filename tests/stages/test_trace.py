@@ -48,12 +48,6 @@ def test_time_means_are_the_contact_statistics(case, film):
         assert length.mean().item() == pytest.approx(mean, rel=1e-12, abs=1e-300)
 
 
-def test_traces_show_contact_and_none(case):
-    touches = (case[1]["contact_length"] > 0.0).mean("time").values
-    assert 0.0 < touches[0] < 1.0
-    assert touches[2] == 0.0
-
-
 def test_resistance_is_equation_1(case):
     _, trace, _ = case
     length, resistance = trace["contact_length"].values, trace["contact_resistance"].values
@@ -61,6 +55,8 @@ def test_resistance_is_equation_1(case):
     assert (np.isinf(resistance) == (length == 0.0)).all()
     touches = length > 0.0
     np.testing.assert_allclose(resistance[touches] * length[touches], RESISTIVITY, rtol=1e-12)
+    touched = touches.mean(axis=1)
+    assert 0.0 < touched[0] < 1.0 and touched[2] == 0.0
 
 
 def test_time_goes_by_the_faster_surface(case):
@@ -87,22 +83,18 @@ def test_operating_points_carry_their_coordinates(case, film):
             assert here[name].item() == there[name].item()
 
 
-def steps_to_look_at(length):
-    """First and last steps, every change of state, and some between."""
-    changes = np.flatnonzero(np.diff((length > 0.0).astype(int)))
-    near = np.concatenate([changes, changes + 1])[::10][:40]
-    regular = np.arange(0, length.size, length.size // 60)
-    return np.unique(np.concatenate([[0, 1, length.size - 1], near, regular]))
-
-
-@pytest.mark.parametrize("operating_point", [0, 1])
-def test_window_explains_the_trace_at_every_step(case, operating_point):
+def test_window_explains_the_trace_at_every_step(case):
+    """First and last steps, changes of state, and some between."""
     lines, trace, _ = case
-    length = trace["contact_length"].isel(operating_point=operating_point).values
-    for step in steps_to_look_at(length):
-        window = contact_window(lines, trace, operating_point, step)
-        broken = window["contact_length"].values[window["broken"].values].sum()
-        assert broken == pytest.approx(length[step], rel=1e-12, abs=1e-300)
+    for operating_point in (0, 1):
+        length = trace["contact_length"].isel(operating_point=operating_point).values
+        changes = np.flatnonzero(np.diff((length > 0.0).astype(int)))
+        near = np.concatenate([changes, changes + 1])[::10][:40]
+        regular = np.arange(0, length.size, length.size // 60)
+        for step in np.unique(np.concatenate([[0, 1, length.size - 1], near, regular])):
+            window = contact_window(lines, trace, operating_point, step)
+            broken = window["contact_length"].values[window["broken"].values].sum()
+            assert broken == pytest.approx(length[step], rel=1e-12, abs=1e-300)
 
 
 def test_window_lies_within_the_half_width_and_holds_the_heights(case):
@@ -143,8 +135,4 @@ def test_segments_of_the_window_are_equations_5_and_6(case):
         assert this["layer_thickness"].item() == pytest.approx(layer)
         assert this["broken"].item() == (layer < trace["critical_thickness"].item())
     assert (inside == (overlap > 0.0)).all()
-
-
-def test_window_without_contact_has_no_segments(case):
-    lines, trace, _ = case
     assert contact_window(lines, trace, 2, 5).sizes["segment"] == 0

@@ -1,4 +1,4 @@
-"""Limits of a probability: exact cases, and what the looks, the degrees and the windows do."""
+"""Limits of a probability: exact cases, and the effect of sample size, degrees and windows."""
 
 import functools
 import operator
@@ -27,21 +27,21 @@ def test_a_mean_adds_its_terms_one_after_the_other(rows):
 
 
 @given(probabilities, counts, st.floats(0.5, 20.0))
-def test_score_limits_are_where_the_mean_is_so_many_errors_off(mean, looks, quantile):
-    lower, upper = score_interval(np.array(mean), looks, quantile)
+def test_score_limits_are_where_the_mean_is_so_many_errors_off(mean, sample_size, quantile):
+    lower, upper = score_interval(np.array(mean), sample_size, quantile)
     assert 0.0 <= lower <= mean + 1e-12
     assert mean - 1e-12 <= upper <= 1.0
     for limit in (lower, upper):
-        error = np.sqrt(limit * (1.0 - limit) / looks)
+        error = np.sqrt(limit * (1.0 - limit) / sample_size)
         assert abs(limit - mean) == pytest.approx(quantile * error, rel=1e-6, abs=1e-7)
 
 
 @given(probabilities, counts, st.integers(1, 100), counts)
-def test_limits_enclose_the_mean_and_mirror_each_other(mean, looks, degrees, windows):
-    lower, upper = probability_limits(np.array(mean), looks, degrees, windows)
+def test_limits_enclose_the_mean_and_mirror_each_other(mean, sample_size, degrees, windows):
+    lower, upper = probability_limits(np.array(mean), sample_size, degrees, windows)
     assert 0.0 <= lower <= mean + 1e-12
     assert mean - 1e-12 <= upper <= 1.0
-    mirrored = probability_limits(np.array(1.0 - mean), looks, degrees, windows)
+    mirrored = probability_limits(np.array(1.0 - mean), sample_size, degrees, windows)
     np.testing.assert_allclose([1.0 - upper, 1.0 - lower], mirrored, atol=1e-9)
 
 
@@ -57,32 +57,29 @@ def test_few_degrees_widen_as_student_says():
     assert (0.5 - lower, upper - 0.5) == pytest.approx((half, half), rel=1e-3)
 
 
-def test_without_looks_the_windows_stand_in():
+def test_without_a_sample_size_the_windows_take_its_place():
     mean = np.array([0.3, 0.3])
     lower, upper = probability_limits(mean, np.array([np.nan, 50.0]), 10**9, 50.0)
     assert lower[0] == pytest.approx(lower[1])
     assert upper[0] == pytest.approx(upper[1])
-
-
-@pytest.mark.parametrize("windows", [1.0, 7.5, 1e5])
-def test_never_seen_and_always_seen_have_the_exact_one_sided_limits(windows):
-    lower, upper = probability_limits(np.array([0.0, 1.0]), np.nan, 1, windows)
-    assert (1.0 - upper[0]) ** windows == pytest.approx(0.05)
-    assert (lower[0], upper[1]) == (0.0, 1.0)
-    assert lower[1] == pytest.approx(1.0 - upper[0])
-
-
-def test_no_limit_is_tighter_than_of_what_was_never_met():
-    hair = np.array([1e-9, 1.0 - 1e-9])
-    never = 1.0 - 0.05 ** (1.0 / 100.0)
-    lower, upper = probability_limits(hair, np.array([1e12, 1e12]), 10, 100.0)
-    assert upper[0] == pytest.approx(never)
-    assert lower[1] == pytest.approx(1.0 - never)
-
-
-def test_windows_may_differ_from_value_to_value():
     means = np.array([[0.0, 0.2], [1.0, 0.4]])
     together = probability_limits(means, np.full((2, 2), np.nan), 1, np.array([10.0, 300.0]))
     for row, column in np.ndindex(2, 2):
         alone = probability_limits(means[row, column], np.nan, 1, [10.0, 300.0][column])
         np.testing.assert_allclose(np.array(together)[:, row, column], alone)
+
+
+def test_never_seen_and_always_seen_have_the_exact_one_sided_limits():
+    for windows in (1.0, 7.5, 1e5):
+        lower, upper = probability_limits(np.array([0.0, 1.0]), np.nan, 1, windows)
+        assert (1.0 - upper[0]) ** windows == pytest.approx(0.05)
+        assert (lower[0], upper[1]) == (0.0, 1.0)
+        assert lower[1] == pytest.approx(1.0 - upper[0])
+
+
+def test_no_limit_is_tighter_than_that_of_contact_never_seen():
+    rare = np.array([1e-9, 1.0 - 1e-9])
+    never = 1.0 - 0.05 ** (1.0 / 100.0)
+    lower, upper = probability_limits(rare, np.array([1e12, 1e12]), 10, 100.0)
+    assert upper[0] == pytest.approx(never)
+    assert lower[1] == pytest.approx(1.0 - never)

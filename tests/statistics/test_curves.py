@@ -26,8 +26,8 @@ def steep(films):
     return 0.9 * expit(-3.0 * films**3 - 2.0 * films)
 
 
-LOOKS = np.geomspace(30.0, 300.0, FILMS.size)
-CURVE = falling_curve(FILMS, steep(FILMS), LOOKS, 1e-5)
+SIZES = np.geomspace(30.0, 300.0, FILMS.size)
+CURVE = falling_curve(FILMS, steep(FILMS), SIZES, 1e-5)
 
 
 @given(SHARES)
@@ -44,27 +44,30 @@ def test_beyond_its_ends_the_curve_goes_straight_on_but_knows_no_film():
     assert CURVE.film_at(1.0) == CURVE.film_at(0.95) == -np.inf
 
 
-@pytest.mark.parametrize("probability", [0.0, 1.0])
-def test_a_curve_that_resolves_nothing_is_empty_and_tells_no_film(probability):
-    empty = falling_curve(FILMS, np.full(FILMS.size, probability), LOOKS, 1e-5)
-    assert empty.films.size == 0
-    assert np.isnan(empty.film_at(0.3)) and np.isnan(empty.logit_at(0.3))
-    assert np.isnan(film_interval(empty, 0.3, 1.0, REALISATIONS)).all()
+def test_a_curve_without_resolved_levels_is_empty_and_gives_no_film():
+    for probability in (0.0, 1.0):
+        empty = falling_curve(FILMS, np.full(FILMS.size, probability), SIZES, 1e-5)
+        assert empty.films.size == 0
+        assert np.isnan(empty.film_at(0.3)) and np.isnan(empty.logit_at(0.3))
+        assert np.isnan(film_interval(empty, 0.3, 1.0, REALISATIONS)).all()
+    single = Curve(*np.ones((3, 1)))
+    for share, curve in ((np.nan, CURVE), (0.3, single)):
+        assert np.isnan(film_interval(curve, share, 1.0, REALISATIONS)).all()
 
 
 @given(st.lists(st.floats(0.0, 1.0), min_size=2, max_size=30))
-def test_whatever_the_scatter_a_curve_falls(probabilities):
+def test_a_curve_falls_with_any_scatter(probabilities):
     films = np.arange(len(probabilities), dtype=float)
     curve = falling_curve(films, np.array(probabilities), np.ones(films.size), 1e-6)
     assert (np.diff(curve.films) > 0.0).all() and (np.diff(curve.logits) < 0.0).all()
 
 
 def test_levels_out_of_order_get_their_common_mean():
-    looks = np.array([10.0, 20.0, 40.0, 80.0])
-    curve = falling_curve(np.arange(4.0), np.array([0.8, 0.3, 0.5, 0.1]), looks, 1e-6)
+    sizes = np.array([10.0, 20.0, 40.0, 80.0])
+    curve = falling_curve(np.arange(4.0), np.array([0.8, 0.3, 0.5, 0.1]), sizes, 1e-6)
     np.testing.assert_allclose(curve.films, [0.0, 1.5, 3.0])
     np.testing.assert_allclose(expit(curve.logits), [0.8, 0.4, 0.1])
-    np.testing.assert_allclose(curve.looks, [10.0, 30.0, 80.0])
+    np.testing.assert_allclose(curve.sample_size, [10.0, 30.0, 80.0])
 
 
 # A film and its interval
@@ -76,8 +79,8 @@ def test_the_limits_are_where_the_prediction_touches_the_share(share, ratio, noi
     for film, side in ((lower, 0), (upper, 1)):
         if CURVE.films[0] < film < CURVE.films[-1]:
             model = expit(CURVE.logit_at(film))
-            looks = np.interp(film, CURVE.films, CURVE.looks)
-            touched = prediction_limits(model, looks, ratio, REALISATIONS, noise)[side]
+            sizes = np.interp(film, CURVE.films, CURVE.sample_size)
+            touched = prediction_limits(model, sizes, ratio, REALISATIONS, noise)[side]
             assert touched == pytest.approx(share, abs=2e-3)
 
 
@@ -85,8 +88,8 @@ def test_the_limits_are_the_roots_of_the_misfit():
     share, ratio = 0.2, 0.7
 
     def distance(film, side):
-        model, looks = expit(CURVE.logit_at(film)), np.interp(film, CURVE.films, CURVE.looks)
-        error = standard_error(model, looks, ratio, REALISATIONS)
+        model, sizes = expit(CURVE.logit_at(film)), np.interp(film, CURVE.films, CURVE.sample_size)
+        error = standard_error(model, sizes, ratio, REALISATIONS)
         return (share - model) / error - side * quantile(REALISATIONS)
 
     film, *limits = film_interval(CURVE, share, ratio, REALISATIONS)
@@ -104,54 +107,40 @@ def test_the_larger_share_has_the_thinner_film(one, other):
         assert thick >= thin
 
 
-@pytest.mark.parametrize("change", [{"ratio": 4.0}, {"noise": 0.05}, {"realisations": 4}])
-def test_what_scatters_more_leaves_more_films_possible(change):
+def test_more_scatter_leaves_more_films_possible():
     usual = {"ratio": 1.0, "realisations": REALISATIONS, "noise": 0.0}
     film, lower, upper = film_interval(CURVE, 0.3, **usual)
-    same, lower_here, upper_here = film_interval(CURVE, 0.3, **(usual | change))
-    assert lower_here < lower < film == same < upper < upper_here
+    for change in ({"ratio": 4.0}, {"noise": 0.05}, {"realisations": 4}):
+        same, lower_here, upper_here = film_interval(CURVE, 0.3, **(usual | change))
+        assert lower_here < lower < film == same < upper < upper_here
 
 
-def test_an_exact_record_of_a_sure_curve_leaves_no_interval():
-    sure = Curve(CURVE.films, CURVE.logits, np.full(CURVE.films.size, 1e12))
-    film, lower, upper = film_interval(sure, 0.3, 1.0, REALISATIONS)
+def test_an_exact_record_of_an_exact_curve_leaves_no_interval():
+    exact = Curve(CURVE.films, CURVE.logits, np.full(CURVE.films.size, 1e12))
+    film, lower, upper = film_interval(exact, 0.3, 1.0, REALISATIONS)
     assert lower == pytest.approx(film, abs=1e-3) and upper == pytest.approx(film, abs=1e-3)
 
 
-def test_no_contact_gives_a_lower_limit_only():
+def test_shares_beyond_the_curve_have_one_limit_only():
     film, lower, upper = film_interval(CURVE, 0.0, 1.0, REALISATIONS)
     assert film == upper == np.inf
     assert CURVE.films[0] < lower < CURVE.films[-1]
-
-
-@pytest.mark.parametrize("share", [0.9, 0.95])
-def test_contact_above_the_whole_curve_gives_an_upper_limit_only(share):
-    film, lower, upper = film_interval(CURVE, share, 1.0, REALISATIONS)
-    assert film == lower == -np.inf
-    assert CURVE.films[0] < upper < CURVE.films[-1]
-
-
-def test_a_share_that_contradicts_the_whole_curve_lies_beyond_its_end():
-    sure = Curve(CURVE.films[5:-5], CURVE.logits[5:-5], np.full(CURVE.films.size - 10, 1e9))
-    assert film_interval(sure, 0.99, 1.0, 64) == (-np.inf, -np.inf, sure.films[0])
-    assert film_interval(sure, 0.0, 1.0, 64) == (np.inf, sure.films[-1], np.inf)
-
-
-@pytest.mark.parametrize(("share", "curve"), [(np.nan, CURVE), (0.3, Curve(*np.ones((3, 1))))])
-def test_without_a_share_or_a_curve_nothing_is_told(share, curve):
-    assert np.isnan(film_interval(curve, share, 1.0, REALISATIONS)).all()
+    for share in (0.9, 0.95):
+        film, lower, upper = film_interval(CURVE, share, 1.0, REALISATIONS)
+        assert film == lower == -np.inf
+        assert CURVE.films[0] < upper < CURVE.films[-1]
+    exact = Curve(CURVE.films[5:-5], CURVE.logits[5:-5], np.full(CURVE.films.size - 10, 1e9))
+    assert film_interval(exact, 0.99, 1.0, 64) == (-np.inf, -np.inf, exact.films[0])
+    assert film_interval(exact, 0.0, 1.0, 64) == (np.inf, exact.films[-1], np.inf)
 
 
 # Correlation
 
 
-def test_correlation_is_pearsons():
+def test_correlation_is_pearsons_without_scatter_0_and_of_one_realisation_1():
     shares = np.random.default_rng(3).random((20, 4)) @ np.random.default_rng(4).random((4, 5))
     found = realisation_correlation(shares)
     np.testing.assert_allclose(found, np.corrcoef(shares.T), atol=1e-12)
-
-
-def test_points_without_scatter_stand_alone_and_one_realisation_ties_all():
     shares = np.array([[0.1, 0.0], [0.3, 0.0], [0.2, 0.0]])
     np.testing.assert_array_equal(realisation_correlation(shares), np.eye(2))
     np.testing.assert_array_equal(realisation_correlation(shares[:1]), np.ones((2, 2)))
@@ -161,69 +150,65 @@ def test_points_without_scatter_stand_alone_and_one_realisation_ties_all():
 
 
 LOG_FACTORS = np.log(np.geomspace(0.25, 4.0, 161))
-PLACES = np.linspace(-3.0, 2.0, 12)
+OFFSETS = np.linspace(-3.0, 2.0, 12)
 SLOPES = np.linspace(1.0, 8.0, 12)
-LOGITS = PLACES - SLOPES * LOG_FACTORS[:, None]
+LOGITS = OFFSETS - SLOPES * LOG_FACTORS[:, None]
 
 
-def fitted(shares, looks, correlation, noise=0.0, realisations=10_000):
-    looks, noise = np.full(PLACES.size, looks), np.full(PLACES.size, noise)
-    return fit_factor(LOG_FACTORS, LOGITS, shares, looks, correlation, realisations, noise)
+def fitted(shares, sizes, correlation, noise=0.0, realisations=10_000):
+    sizes, noise = np.full(OFFSETS.size, sizes), np.full(OFFSETS.size, noise)
+    return fit_factor(LOG_FACTORS, LOGITS, shares, sizes, correlation, realisations, noise)
 
 
-@pytest.mark.parametrize("factor", [0.4, 1.0, 2.3])
-def test_the_factor_behind_exact_shares_is_found(factor):
-    shares = expit(PLACES - SLOPES * np.log(factor))
-    found, lower, upper = fitted(shares, 400.0, np.eye(PLACES.size))
-    assert found == pytest.approx(factor, rel=1e-3)
-    assert lower < found < upper
+def test_the_factor_behind_exact_shares_is_found():
+    for factor in (0.4, 1.0, 2.3):
+        shares = expit(OFFSETS - SLOPES * np.log(factor))
+        found, lower, upper = fitted(shares, 400.0, np.eye(OFFSETS.size))
+        assert found == pytest.approx(factor, rel=1e-3)
+        assert lower < found < upper
 
 
-def test_records_that_err_together_tell_less_and_so_do_noise_and_few_realisations():
-    alone, together = np.eye(PLACES.size), np.ones((PLACES.size,) * 2)
+def test_correlated_errors_noise_and_few_realisations_widen_the_interval():
+    alone, together = np.eye(OFFSETS.size), np.ones((OFFSETS.size,) * 2)
     cases = [(together, 0.0, 10_000), (alone, 0.05, 10_000), (alone, 0.0, 3)]
-    _, lower, upper = fitted(expit(PLACES), 400.0, alone)
+    _, lower, upper = fitted(expit(OFFSETS), 400.0, alone)
     for correlation, noise, realisations in cases:
-        found = fitted(expit(PLACES), 400.0, correlation, noise, realisations)
+        found = fitted(expit(OFFSETS), 400.0, correlation, noise, realisations)
         assert found[1] < lower < 1.0 < upper < found[2]
 
 
-def test_the_misfit_is_contradicted_where_its_quantile_is():
+def test_the_limits_are_where_the_misfit_reaches_its_quantile():
     """One record: the interval is where its share lies within the prediction."""
-    logits, looks = LOGITS[:, :1], 400.0
+    logits, sizes = LOGITS[:, :1], 400.0
     found = fit_factor(
-        LOG_FACTORS, logits, expit(PLACES[:1]), np.array([looks]), np.eye(1), 64, np.zeros(1)
+        LOG_FACTORS, logits, expit(OFFSETS[:1]), np.array([sizes]), np.eye(1), 64, np.zeros(1)
     )
     for limit, side in zip(found[1:], (1.0, -1.0), strict=True):
-        model = expit(PLACES[0] - SLOPES[0] * np.log(limit))
-        error = np.sqrt(model * (1.0 - model) / looks)
-        distance = (model - expit(PLACES[0])) / error
+        model = expit(OFFSETS[0] - SLOPES[0] * np.log(limit))
+        error = np.sqrt(model * (1.0 - model) / sizes)
+        distance = (model - expit(OFFSETS[0])) / error
         assert distance == pytest.approx(side * quantile(64), rel=1e-2)
 
 
-def test_a_factor_beyond_the_levels_is_not_guessed():
-    found, lower, upper = fitted(np.zeros(PLACES.size), 1e6, np.eye(PLACES.size))
+def test_a_factor_beyond_the_levels_or_without_records_is_nan():
+    found, lower, upper = fitted(np.zeros(OFFSETS.size), 1e6, np.eye(OFFSETS.size))
     assert np.isnan(found) and lower == pytest.approx(4.0) and upper == np.inf
-    found, lower, upper = fitted(np.ones(PLACES.size), 1e6, np.eye(PLACES.size))
+    found, lower, upper = fitted(np.ones(OFFSETS.size), 1e6, np.eye(OFFSETS.size))
     assert np.isnan(found) and lower == 0.0 and upper == pytest.approx(0.25)
-    found, lower, upper = fitted(np.zeros(PLACES.size), 0.1, np.eye(PLACES.size))
+    found, lower, upper = fitted(np.zeros(OFFSETS.size), 0.1, np.eye(OFFSETS.size))
     assert np.isnan(found) and 0.0 <= lower < upper == np.inf
-
-
-def test_no_record_no_factor():
-    nothing = fit_factor(
-        LOG_FACTORS, LOGITS[:, :0], *[np.empty(0)] * 2, np.empty((0, 0)), 8, np.empty(0)
-    )
+    none = np.empty(0)
+    nothing = fit_factor(LOG_FACTORS, LOGITS[:, :0], none, none, np.empty((0, 0)), 8, none)
     assert np.isnan(nothing[0]) and nothing[1:] == (0.0, np.inf)
 
 
 @pytest.mark.parametrize("tie", [0.0, 0.9])
 def test_the_interval_of_the_factor_covers_it(tie):
-    """Records of many looks, independent or nearly all alike."""
+    """Records of a large sample size, independent or nearly all alike."""
     rng = np.random.default_rng(8)
-    records = PLACES.size
+    records = OFFSETS.size
     correlation = tie * np.ones((records, records)) + (1.0 - tie) * np.eye(records)
-    truth = expit(PLACES)
+    truth = expit(OFFSETS)
     scale = np.sqrt(truth * (1.0 - truth) / 200.0)
     errors = rng.multivariate_normal(np.zeros(records), correlation, 600) * scale
     covered = 0

@@ -8,22 +8,23 @@ from lube.statistics.folding import CLEAR, PHASES, fold, refined_period
 INTERVAL = 1e-3
 
 
-def periodic(period, turns, noise=0.0, seed=1, stretches=16):
+def periodic(period, turns, noise=0.0, seed=1, blocks=16):
     """A record that repeats itself, and noise that does not, of given shares of the variance."""
     rng = np.random.default_rng(seed)
-    levels = rng.normal(size=stretches)
+    levels = rng.normal(size=blocks)
     time = (np.arange(int(turns * period / INTERVAL)) + 0.5) * INTERVAL
-    repeated = levels[(time / period % 1.0 * stretches).astype(int)]
+    repeated = levels[(time / period % 1.0 * blocks).astype(int)]
     repeated = (repeated - repeated.mean()) / repeated.std()
     return np.sqrt(1.0 - noise) * repeated + np.sqrt(noise) * rng.normal(size=time.size)
 
 
-@pytest.mark.parametrize("off", [-0.01, 0.0, 0.01, 0.04])
-@pytest.mark.parametrize("noise", [0.0, 0.3])
-def test_a_period_that_is_not_quite_the_nominal_one_is_found(off, noise):
+def test_a_period_that_is_not_quite_the_nominal_one_is_found():
     period = 0.4003
-    record = periodic(period, 30.5, noise)
-    assert refined_period(record, INTERVAL, period * (1.0 + off)) == pytest.approx(period, rel=1e-4)
+    for noise in (0.0, 0.3):
+        record = periodic(period, 30.5, noise)
+        for off in (-0.01, 0.0, 0.01, 0.04):
+            found = refined_period(record, INTERVAL, period * (1.0 + off))
+            assert found == pytest.approx(period, rel=1e-4)
 
 
 def test_the_longer_the_record_the_better_is_its_period_known():
@@ -35,16 +36,16 @@ def test_the_longer_the_record_the_better_is_its_period_known():
     assert errors[1] < 1e-5 < errors[0] < 5e-3
 
 
-def test_a_period_far_from_the_nominal_one_is_not_believed():
+def test_a_period_far_from_the_nominal_one_is_not_taken():
     folded = fold(periodic(0.4, 20), INTERVAL, 0.48)
     assert folded.repeatability < CLEAR
     assert folded.period == 0.48
 
 
-@pytest.mark.parametrize("waves", [2, 7, 60])
-def test_what_repeats_several_times_a_turn_says_nothing_against_the_nominal_period(waves):
-    record = np.where(np.arange(12_000) * waves // 300 % 2, 1.0, 0.0)  # a turn is 600 long
-    assert fold(record, INTERVAL, 0.6).period == pytest.approx(0.6, rel=1e-3)
+def test_several_repetitions_in_a_turn_leave_the_nominal_period():
+    for waves in (2, 7, 60):
+        record = np.where(np.arange(12_000) * waves // 300 % 2, 1.0, 0.0)  # a turn is 600 long
+        assert fold(record, INTERVAL, 0.6).period == pytest.approx(0.6, rel=1e-3)
 
 
 def test_a_record_that_repeats_itself_exactly_does_so_wholly():
@@ -54,10 +55,10 @@ def test_a_record_that_repeats_itself_exactly_does_so_wholly():
     assert folded.period == pytest.approx(0.4, rel=1e-4)
 
 
-@pytest.mark.parametrize("noise", [0.2, 0.4])
-def test_the_repeatability_is_the_share_of_the_variance_that_repeats(noise):
-    folded = fold(periodic(0.4, 50, noise), INTERVAL, 0.4)
-    assert folded.repeatability == pytest.approx(1.0 - noise, abs=0.02)
+def test_the_repeatability_is_the_share_of_the_variance_that_repeats():
+    for noise in (0.2, 0.4):
+        folded = fold(periodic(0.4, 50, noise), INTERVAL, 0.4)
+        assert folded.repeatability == pytest.approx(1.0 - noise, abs=0.02)
 
 
 def test_independent_revolutions_have_nothing_in_common():
@@ -79,32 +80,30 @@ def test_the_profile_is_the_known_one_and_the_deviation_that_between_turns():
     np.testing.assert_allclose(folded.deviation, 0.1, rtol=1e-9)
 
 
-@pytest.mark.parametrize("stretches", [1, 2, 4, 7, 8, 16])
-def test_few_stretches_a_turn_fill_all_phases_in_their_order(stretches):
-    shape = np.arange(stretches) ** 2.0
-    folded = fold(np.tile(shape, 12), 1.0, float(stretches))
-    assert folded.period == pytest.approx(stretches, rel=0.03)
-    # Of a turn in fewer stretches the repetition is not told.
-    assert np.isnan(folded.repeatability) == (stretches < 8)
-    np.testing.assert_allclose(folded.profile, shape[np.arange(PHASES) * stretches // PHASES])
+def test_few_blocks_in_a_turn_fill_all_phases_in_their_order():
+    for blocks in (1, 2, 4, 7, 8, 16):
+        shape = np.arange(blocks) ** 2.0
+        folded = fold(np.tile(shape, 12), 1.0, float(blocks))
+        assert folded.period == pytest.approx(blocks, rel=0.03)
+        assert np.isnan(folded.repeatability) == (blocks < 8)
+        np.testing.assert_allclose(folded.profile, shape[np.arange(PHASES) * blocks // PHASES])
 
 
-@pytest.mark.parametrize("turns", [0.3, 0.99])
-def test_a_record_shorter_than_a_turn_tells_no_repetition(turns):
-    folded = fold(periodic(0.4, turns), INTERVAL, 0.4)
-    assert np.isnan(folded.repeatability)
-    assert (folded.period, folded.share_error) == (0.4, 0.0)
-    seen = np.isfinite(folded.profile).mean()
-    assert seen == pytest.approx(turns, abs=0.01)
-    assert np.isnan(folded.deviation).all()
+def test_a_record_shorter_than_a_turn_shows_no_repetition():
+    for turns in (0.3, 0.99):
+        folded = fold(periodic(0.4, turns), INTERVAL, 0.4)
+        assert np.isnan(folded.repeatability)
+        assert (folded.period, folded.share_error) == (0.4, 0.0)
+        assert np.isfinite(folded.profile).mean() == pytest.approx(turns, abs=0.01)
+        assert np.isnan(folded.deviation).all()
 
 
-@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
-def test_a_constant_record_has_no_period_of_its_own(share):
-    folded = fold(np.full(4000, share), INTERVAL, 0.4)
-    assert np.isnan(folded.repeatability)
-    assert (folded.period, folded.share_error) == (0.4, 0.0)
-    np.testing.assert_allclose(folded.profile, share)
+def test_a_constant_record_has_no_period_of_its_own():
+    for share in (0.0, 0.3, 1.0):
+        folded = fold(np.full(4000, share), INTERVAL, 0.4)
+        assert np.isnan(folded.repeatability)
+        assert (folded.period, folded.share_error) == (0.4, 0.0)
+        np.testing.assert_allclose(folded.profile, share)
 
 
 def test_the_error_of_the_share_is_the_scatter_of_whole_turns():
@@ -112,7 +111,5 @@ def test_the_error_of_the_share_is_the_scatter_of_whole_turns():
     turns = record[:1000].reshape(10, 100).mean(axis=1)
     expected = turns.std(ddof=1) / np.sqrt(10.0)
     assert fold(record, 1.0, 100.0).share_error == pytest.approx(expected)
-
-
-def test_one_whole_turn_has_no_scatter_to_tell_an_error():
+    # One whole turn has no scatter.
     assert fold(np.random.default_rng(5).random(199), 1.0, 100.0).share_error == 0.0

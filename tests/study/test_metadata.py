@@ -1,4 +1,4 @@
-"""What a study says of itself: read as catalogues need it, or told."""
+"""Title, authors and licence of a study: read as catalogues need them, or refused."""
 
 import datetime
 
@@ -8,53 +8,41 @@ from lube.errors import StudyError
 from lube.study.field_types import validate
 from lube.study.metadata import About
 
-
-@pytest.mark.parametrize("doi", ["10.5281/zenodo.1234567", "10.1000.10/123", "10.1016/a(b)[c];d_e"])
-def test_dois_of_many_forms(doi):
-    assert About(doi=doi).doi == doi
+ORCID = "0000-0002-1825-0097"
 
 
-@pytest.mark.parametrize("orcid", ["0000-0002-1825-0097", "0000-0002-9079-593X"])
-def test_orcids_with_the_right_last_digit(orcid):
-    assert About(creators=[{"name": "A", "orcid": orcid}]).creators[0].orcid == orcid
+def test_dois_orcids_and_days_are_accepted():
+    for doi in ("10.5281/zenodo.1234567", "10.1000.10/123", "10.1016/a(b)[c];d_e"):
+        assert About(doi=doi).doi == doi
+    for orcid in (ORCID, "0000-0002-9079-593X"):
+        assert About(creators=[{"name": "A", "orcid": orcid}]).creators[0].orcid == orcid
+    assert About(date="2026-11-21").date == datetime.date(2026, 11, 21)
 
 
-@pytest.mark.parametrize(
-    ("key", "value", "told"),
-    [
+def test_what_a_catalogue_would_not_accept_is_refused():
+    for key, value, message in [
         ("title", "", "title: got '', need one line of text"),
         ("title", "two\nlines", r"title: got 'two\nlines', need one line of text"),
+        ("summary", "two\u2028lines", "summary: got 'two\\u2028lines', need one line of text"),
         ("licence", "none", "licence: got 'none', need 'CC-BY-4.0'"),
-        ("creators", [{"name": "A", "orcid": "12"}], "creators.0.orcid: got '12', need an ORCID"),
         ("creators", [{}], "creators.0.name: missing"),
         ("creators", [{"name": "Popova,"}], "creators.0.name: got 'Popova,', need 'Family, Given'"),
         ("creators", [{"name": ", Elena"}], "creators.0.name: got ', Elena', need 'Family, Given'"),
         ("creators", [{"name": "Popova", "Elena": None}], "got 'Elena' without a value, need"),
-        (
-            "creators",
-            [{"name": name, "orcid": "0000-0002-1825-0097"} for name in "AB"],
-            "creators: got an ORCID iD twice, need each once",
-        ),
-        (
-            "creators",
-            [{"name": "A"}, {"name": "A"}],
-            "creators: got somebody twice, need each once",
-        ),
-        ("creators", [{"name": "A", "orcid": "0000-0000-0000-0000"}], "whose last digit fits"),
+        ("creators", [{"name": name, "orcid": ORCID} for name in "AB"], f"{ORCID} is repeated"),
+        ("creators", [{"name": "A"}, {"name": "A"}], "is repeated, need each once"),
+        ("creators", [{"name": "A", "orcid": "12"}], "creators.0.orcid: got '12', need an ORCID"),
+        ("creators", [{"name": "A", "orcid": "0000-0000-0000-0000"}], "need an ORCID iD such as"),
         ("creators", [{"name": "A", "orcid": "٠٠٠٠-0002-1825-0097"}], "need an ORCID iD such as"),
-        ("summary", "two\u2028lines", "summary: got 'two\\u2028lines', need one line of text"),
-        ("keywords", [], "keywords: got [], need one or more, each once"),
-        ("keywords", ["oil", "oil"], "keywords: got ['oil', 'oil'], need one or more, each once"),
+        ("keywords", [], "keywords: got [], need at least 1"),
+        ("keywords", ["oil", "oil"], "keywords: oil is repeated, need each once"),
         ("doi", "doi.org/10.5281/1", "doi: got 'doi.org/10.5281/1', need a DOI such as 10."),
         ("doi", '10.5281/zenodo.1"<>&x', "need a DOI such as 10."),
-        ("doi", "10.٥٢٨١/zenodo.1", "need a DOI such as 10."),
         ("date", "yesterday", "date: got 'yesterday', need a day such as 2026-11-21"),
-        ("date", -1, "date: got -1, need a day"),
-        ("date", 2026, "date: got 2026, need a day"),  # no seconds since 1970
-        ("date", datetime.datetime(2026, 11, 21, 12), "date: got 2026-11-21 12:00:00, need a day"),
-    ],
-)
-def test_what_a_study_says_of_itself_is_checked(key, value, told):
-    with pytest.raises(StudyError) as caught:
-        validate(About, {key: value}, "study.yaml: about", StudyError)
-    assert told in str(caught.value)
+        ("date", "2026-02-30", "date: got '2026-02-30', need a day"),
+        ("date", 2026, "date: got 2026, need a day"),
+        ("date", "2026-11-21 12:00:00", "date: got '2026-11-21 12:00:00', need a day"),
+    ]:
+        with pytest.raises(StudyError) as caught:
+            validate(About, {key: value}, "study.yaml: about", StudyError)
+        assert message in str(caught.value)

@@ -1,21 +1,17 @@
 """The smoke study, run once by the real Snakemake in a copy of the repository."""
 
-import os
+import fcntl
 import shutil
-import time
 
 import pytest
 from repository import Repository, copy_of_the_repository
-
-PATIENCE = 900.0
-"""Seconds that one test process waits for the other to make the smoke study."""
 
 WITHOUT_CACHES = shutil.ignore_patterns("__pycache__")
 
 
 @pytest.fixture(scope="session")
 def smoke(tmp_path_factory, worker_id):
-    """A repository with the smoke study done; not to be changed. What was said is in `said`.
+    """A repository with the smoke study done; not to be changed. Its output is in `said`.
 
     Of several test processes the first to need it makes it, and the others copy it.
     """
@@ -23,34 +19,19 @@ def smoke(tmp_path_factory, worker_id):
     if worker_id == "master":
         return made(folder)
     shared = tmp_path_factory.getbasetemp().parent / "smoke"
-    try:
-        shared.mkdir()
-    except FileExistsError:
-        return copied(shared / "repository", folder)
-    try:
+    with shared.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if shared.exists():
+            return Repository(shutil.copytree(shared, folder, symlinks=True))
         repository = made(folder)
-    except BaseException:
-        (shared / "failed").touch()
-        raise
-    shutil.copytree(folder, shared / "part", symlinks=True, ignore=WITHOUT_CACHES)
-    os.rename(shared / "part", shared / "repository")
-    return repository
+        shutil.copytree(folder, shared, symlinks=True, ignore=WITHOUT_CACHES)
+        return repository
 
 
 def made(folder):
     repository = copy_of_the_repository(folder)
-    said = repository.run()
-    (repository / "said").write_text(said, encoding="utf-8")
+    (repository / "said").write_text(repository.run(), encoding="utf-8")
     return repository
-
-
-def copied(whole, folder):
-    deadline = time.monotonic() + PATIENCE
-    while not whole.exists():
-        failed = whole.with_name("failed").exists() or time.monotonic() > deadline
-        assert not failed, "the other test process did not make the smoke study"
-        time.sleep(0.5)
-    return Repository(shutil.copytree(whole, folder, symlinks=True))
 
 
 @pytest.fixture(scope="session")
@@ -69,15 +50,9 @@ def archive(archived):
     return archived.results / "archive/smoke"
 
 
-@pytest.fixture
-def spoilt(archive, tmp_path):
-    """A copy of the archive, free to be changed."""
-    return shutil.copytree(archive, tmp_path / "archive")
-
-
 @pytest.fixture(scope="session")
 def spare_folder(tmp_path_factory):
-    """Where all spare repositories lie, one after the other: compiled kernels hang on the path."""
+    """Folder of all spare repositories in turn: compiled kernels depend on the path."""
     return tmp_path_factory.mktemp("spare") / "repository"
 
 

@@ -1,4 +1,4 @@
-"""Killing the smoke study at some moment, and taking it up again as the README says."""
+"""Killing the smoke study at some moment, and taking it up again as the documentation says."""
 
 import os
 import random
@@ -16,53 +16,23 @@ from repository import RESULTS, ROOT, environment, products_of
 
 VICTIMS = ("snakemake", "all", "job")
 """Snakemake alone, so that its jobs are orphans; its process group; one job or its kernel."""
-
 PATIENCE = 600.0
+"""Longest wait for a process, s."""
 
 
 @dataclass(frozen=True)
 class Kill:
     """One `kill -9` of a run.
 
-    Attributes
-    ----------
-    victim : str
-        One of `VICTIMS`.
-    begin : str
-        What is there when the run begins: `nothing`; a share of the `datasets`, and then those
-        and one figure are asked for; or all but some `figures`.
-    share : float
-        Share of the datasets that are there, or of the figures that are not.
-    delay : float
-        Time from the run's first job to the kill, s; less if it ends before.
+    The run begins with `nothing`; with a share of the `datasets`, and is asked for those and one
+    figure; or with all but a share of the `figures`. The kill comes `delay` seconds after its
+    first job, sooner if it ends before.
     """
 
     victim: str
     begin: str
     share: float
     delay: float
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What came of a kill.
-
-    Attributes
-    ----------
-    at_work : list of str
-        Jobs that were at work in the moment of the kill.
-    after : float
-        Time from the run's first job to the kill, s.
-    recovery : float
-        How long it took to take the run up again, s.
-    faults : list of str
-        What was not as it should be, one line each.
-    """
-
-    at_work: list
-    after: float
-    recovery: float
-    faults: list
 
 
 @dataclass(frozen=True)
@@ -82,8 +52,8 @@ def finished(repository, folder):
 
 
 def recovery_commands():
-    """Arguments of each `snakemake` that the README tells after a crash."""
-    section = (ROOT / "README.md").read_text("utf-8").split("## When something goes wrong")[1]
+    """Arguments of each `snakemake` that the documentation names after a crash."""
+    section = (ROOT / "docs/troubleshooting.md").read_text("utf-8").split("## After a crash")[1]
     block = re.search(r"```bash\n(.*?)```", section, re.DOTALL)[1]
     return [line.split("#")[0].split()[1:] for line in block.replace("&&", "\n").splitlines()]
 
@@ -91,41 +61,19 @@ def recovery_commands():
 def survive(repository, whole, kill, seed=0):
     """Begin the study, kill it, recover, and compare with an undisturbed run.
 
-    Parameters
-    ----------
-    repository : Repository
-        A copy of the repository, whose results are replaced.
-    whole : Finished
-        The undisturbed run, made in the same folder.
-    kill : Kill
-        When and whom.
-    seed : int, optional
-        Of the choice of figures, and among several jobs.
-
-    Returns
-    -------
-    Outcome
-        What came of it.
+    Returns the names of the jobs that were running at the kill, and the faults, one line each.
     """
-    at_work, delay, chance = [], kill.delay, random.Random(seed)
-    while not at_work:
+    jobs, delay, chance = [], kill.delay, random.Random(seed)
+    while not jobs:
         targets = begin_with(repository, whole, kill, chance)
-        at_work = run_and_kill(repository, targets, kill.victim, delay, chance)
-        after, delay = delay, delay / 2.0
-    began = time.monotonic()
+        jobs = run_and_kill(repository, targets, kill.victim, delay, chance)
+        delay /= 2.0
     faults = []
     for arguments in recovery_commands():
-        targets_too = [] if arguments else targets
-        said = repository.snakemake(*arguments, *targets_too)
+        said = repository.snakemake(*arguments, *([] if arguments else targets))
         if said.returncode != 0:
             faults.append(f"snakemake {' '.join(arguments)} failed: {said.stdout[-2000:]}")
-    seconds = time.monotonic() - began
-    faults += differences(repository, whole, targets)
-    if kill.victim == "snakemake":  # whose orphans may have been late
-        again = repository.snakemake(*targets)
-        if "Nothing to be done" not in again.stdout:
-            faults.append(f"not up to date: {again.stdout[-2000:]}")
-    return Outcome(at_work, after, seconds, faults)
+    return jobs, [*faults, *differences(repository, whole, targets)]
 
 
 def begin_with(repository, whole, kill, chance):
@@ -136,17 +84,11 @@ def begin_with(repository, whole, kill, chance):
             shutil.copytree(whole.folder / name, repository / name)
     if kill.begin == "nothing":
         return []
-    figures = repository.notebooks
+    figures, targets = repository.notebooks, []
     chance.shuffle(figures)
-    if kill.begin == "figures":
-        gone = [
-            name
-            for figure in figures[: int(kill.share * len(figures))]
-            for name in products_of(figure)
-        ]
-        targets = []
-    else:
-        gone = [name for figure in figures for name in products_of(figure)]
+    gone = figures[: int(kill.share * len(figures))] if kill.begin == "figures" else figures
+    gone = [name for figure in gone for name in products_of(figure)]
+    if kill.begin == "datasets":
         datasets = [name for name in whole.products if name.endswith(".nc")]
         made = [*datasets, *(name for name in whole.files if name.startswith("batches/"))]
         made.sort(key=lambda name: (whole.folder / RESULTS / name).stat().st_mtime_ns)
@@ -158,7 +100,7 @@ def begin_with(repository, whole, kill, chance):
 
 
 def run_and_kill(repository, targets, victim, delay, chance):
-    """Run Snakemake, kill a while after its first job, and return the names of the jobs at work.
+    """Run Snakemake, kill a while after its first job, and return the names of the running jobs.
 
     There are none if the run ended before.
     """
@@ -179,6 +121,7 @@ def run_and_kill(repository, targets, victim, delay, chance):
             os.killpg(running.pid, signal.SIGKILL)
         elif jobs and victim == "snakemake":
             running.kill()
+            psutil.wait_procs(jobs, PATIENCE)
         elif jobs:
             chance.choice(jobs).kill()
         running.wait(PATIENCE)
@@ -189,7 +132,7 @@ def run_and_kill(repository, targets, victim, delay, chance):
 
 
 def jobs_of(running):
-    """Processes of the jobs at work, and of their notebooks' kernels; none if the run is over."""
+    """Processes of the running jobs, and of their notebooks' kernels; none if the run is over."""
     deadline = time.monotonic() + PATIENCE
     while running.poll() is None and time.monotonic() < deadline:
         with suppress(psutil.NoSuchProcess):
@@ -221,15 +164,6 @@ def differences(repository, whole, targets):
     for name in ("locks", "incomplete"):
         if any((repository / f".snakemake/{name}").glob("*")):
             yield f".snakemake/{name} is not empty"
-    yield from (f"still at work: {name}" for name in stray_jobs(repository))
-
-
-def stray_jobs(repository):
-    """Names of jobs that still run in a repository, with no Snakemake over them."""
-    for process in psutil.process_iter():
-        with suppress(psutil.Error):
-            if process.cwd() == str(repository.folder) and name_of(process):
-                yield name_of(process)
 
 
 def files_of(repository):

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import yaml
 
+from lube.study.resolve import resolved_content
 from lube.workflow.cells import datasets_of
 
 ROOT = Path(__file__).parents[2]
@@ -19,6 +20,7 @@ COPIED = (
     "README.md",
     "pyproject.toml",
     "workflow",
+    "docs",
     "lube",
     "notebooks",
     "profiles",
@@ -85,13 +87,13 @@ class Repository:
 
     def with_values(self, **changes):
         """Write a copy of the smoke study with some values changed, and return its name."""
-        content = yaml.safe_load((self / SMOKE).read_text(encoding="utf-8"))
+        content = resolved_content(self / SMOKE, folder=self.folder)
         for key, value in changes.items():
             *path, last = key.split("__")
-            place = content
+            inner = content
             for part in path:
-                place = place[part]
-            place[last] = value
+                inner = inner[part]
+            inner[last] = value
         (self / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
         return "mine.yaml"
 
@@ -113,7 +115,7 @@ class Repository:
 
     @contextlib.contextmanager
     def clean_slate(self):
-        """Take away all results for a while; compiled kernels stay, which hang on the path."""
+        """Remove all results for a while; compiled kernels, which depend on the path, stay."""
         kept = self.folder.with_name("kept")
         kept.mkdir()
         for name in ("results", ".snakemake"):

@@ -1,11 +1,14 @@
 """Jobs sent away by a submit command, as a cluster's own tool would: the same bytes come back."""
 
+import pytest
+
 SUBMIT = """#!/bin/sh
 sh "$1" > "$1.said" 2>&1 &
 echo $!
 """
 
 
+@pytest.mark.slow
 def test_jobs_submitted_by_a_script_make_the_same_bytes(smoke):
     first = smoke.products()
     submit = smoke / "submit"
@@ -18,6 +21,6 @@ def test_jobs_submitted_by_a_script_make_the_same_bytes(smoke):
             *("results/smoke/contact.nc", "results/smoke/trace.nc"),
         )
         away = smoke.products()
-    assert said.count("Submitted job") == 9
+    assert said.count("Submitted job") == 7
     assert {"contact.nc", "film.nc", "lubricant.nc", "roughness.nc", "trace.nc"} == set(away)
     assert away == {name: first[name] for name in away}

@@ -3,10 +3,10 @@
 import base64
 import json
 import re
-import shutil
+from html import unescape
 
 import pytest
-from repository import products_of
+from repository import SMOKE
 
 from lube.report.markdown import plain, title_and_text, to_html
 
@@ -99,11 +99,11 @@ def test_the_start_page_tells_the_study_and_leads_to_every_figure(smoke, held):
 
 def test_the_pages_tell_configuration_assumptions_and_run_times(smoke, held):
     configuration = page(held, "configuration")
-    assert "# A toy with the keys of paper.yaml" in configuration
+    written = (smoke / SMOKE).read_text("utf-8")
+    assert written.splitlines()[0].strip("# ") in unescape(configuration)
     assert "<code>rollers.first.young_modulus</code></td><td>210 GPa</td>" in configuration
-    readme = (smoke / "README.md").read_text("utf-8")
-    table = readme.split("## What the paper leaves open")[1].split("\n\n")[1]
-    cells = [row.split("|")[1].strip() for row in table.splitlines()[2:]]
+    text = (smoke / "docs/assumptions.md").read_text("utf-8")
+    cells = [row.split("|")[1].strip() for row in text.splitlines() if row.startswith("|")][2:]
     assert len(cells) > 15
     for cell in cells:
         assert f"<td>{to_html(cell)[3:-4]}</td>" in page(held, "assumptions")
@@ -113,27 +113,11 @@ def test_the_pages_tell_configuration_assumptions_and_run_times(smoke, held):
         assert f"<code>{job}</code>" in times
 
 
-def test_the_readme_makes_the_pages_and_nothing_else(spare):
-    spare.append("README.md", "changed")
+def test_the_documentation_makes_the_pages_and_nothing_else(spare):
+    spare.append("docs/limits.md", "changed")
     assert spare.planned_pages() == {
         f"report/{name}.html"
         for name in ("facts", "findings", "limits", "files", "pipeline", "configuration",
                      "assumptions")
     }  # fmt: skip
     assert spare.planned() == set()
-
-
-def test_a_notebook_without_words_or_chapter_is_shown_all_the_same(spare):
-    path = spare / "notebooks/fig99_mine.ipynb"
-    notebook = json.loads((spare / f"notebooks/{spare.notebooks[0]}.ipynb").read_text("utf-8"))
-    notebook["cells"] = notebook["cells"][1:]
-    path.write_text(json.dumps(notebook), encoding="utf-8")
-    target = "results/smoke/figures/fig99_mine.png"
-    for name in products_of(spare.notebooks[0]):
-        mine = name.replace(spare.notebooks[0], "fig99_mine")
-        shutil.copy(spare.results / name, spare.results / mine)
-    spare.run("--touch", target)  # instead of a run of the notebook, which takes long
-    spare.run(target, "--report", "mine.html")
-    report = (spare / "mine.html").read_text("utf-8")
-    assert data(report, "results")[target]["labels"]["Shows"] == "fig99_mine"
-    assert list(data(report, "categories")) == ["5 Further figures"]

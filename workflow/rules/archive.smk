@@ -1,13 +1,16 @@
+from lube.archive.inputs import archived_texts, code_state
+
+
 rule archive:
     input:
-        written=lambda wildcards: archived_texts(),
+        written=lambda wildcards: archived_texts(FILES),
         datasets=[result(f"{kind}.nc") for kind in DATASETS],
         products=products(ARCHIVED),
     output:
-        # Replaced when the new ones are whole, not taken away before.
+        # An old archive stays until the new one is complete.
         zip=update(result(f"archive/{STUDY.name}.zip")),
         sums=update(result(f"archive/{STUDY.name}/SHA256SUMS")),
-        # This one goes first: an archive that stays of a failed job would pass for new without it.
+        # Snakemake removes this one before the job: without it an old archive is not up to date.
         zip_sum=result(f"archive/{STUDY.name}.zip.sha256"),
     log:
         result("logs/archive.log"),
@@ -15,7 +18,7 @@ rule archive:
         result("benchmarks/archive.tsv")
     params:
         about=digest(STUDY.about.model_dump(mode="json")),
-        code=lambda wildcards: state_of_code(),
+        code=lambda wildcards: code_state(),
         kinds=DATASETS,
         figures=ARCHIVED,
     message:
@@ -25,8 +28,7 @@ rule archive:
 
 
 rule verify:
-    # Nothing is made anew for it: what is there is checked as it is. Nor is anything kept of it
-    # but a log, so that it is done each time.
+    # Without inputs: it checks the archive as it is. Without outputs: it is repeated each time.
     log:
         result("logs/verify.log"),
     params:

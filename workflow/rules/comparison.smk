@@ -1,8 +1,6 @@
 rule comparison:
     input:
-        film=result("film.nc"),
-        contact=result("contact.nc"),
-        experiment=result("experiment.nc"),
+        **stage_files("comparison"),
         records=record_files(),
         sources=script_sources("comparison"),
     output:

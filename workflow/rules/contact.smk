@@ -1,7 +1,7 @@
 rule contact:
     input:
         film=result("film.nc"),
-        batches=[result(f"batches/contact_{first}.nc") for first in STUDY.batches],
+        batches=batches_of("contact"),
         sources=script_sources("contact"),
     output:
         result("contact.nc"),
@@ -17,8 +17,7 @@ rule contact:
 
 rule trace:
     input:
-        film=result("film.nc"),
-        lines=result("roughness.nc"),
+        **stage_files("trace"),
         sources=script_sources("trace"),
     output:
         result("trace.nc"),

@@ -1,21 +1,21 @@
 rule coverage:
     input:
         script="tests/benchmarks/bench_coverage.py",
+        study=ancient(result("study.yaml")),
         records=record_files(),
-        sources=sources(Path("tests/benchmarks/bench_coverage.py").read_text(encoding="utf-8")),
+        sources=script_sources("tests/benchmarks/bench_coverage.py"),
     output:
         result("coverage.nc"),
     log:
         result("logs/coverage.log"),
     benchmark:
         result("benchmarks/coverage.tsv")
-    # It shares its pairs of rollers out among them.
+    # It uses all cores itself.
     threads: workflow.cores
     params:
-        study=digest(STUDY.origin("coverage")),
-        file=config["study_file"],
+        study=stage_inputs("coverage"),
         python=sys.executable,
     message:
         "Coverage: how often intervals hold the truth for rollers never seen, some 30 minutes"
     shell:
-        "{params.python:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"

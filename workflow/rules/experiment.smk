@@ -1,6 +1,6 @@
 rule rig:
     input:
-        film=result("film.nc"),
+        **stage_files("rig"),
         sources=script_sources("rig"),
     output:
         result("rig.nc"),
@@ -9,7 +9,7 @@ rule rig:
     benchmark:
         result("benchmarks/rig.tsv")
     params:
-        study=stage_inputs("experiment", "rig"),
+        study=stage_inputs("rig"),
     message:
         "Rig: voltage and resistance at the trace points, and what narrower bands would show"
     script:
@@ -18,7 +18,7 @@ rule rig:
 
 rule experiment:
     input:
-        film=result("film.nc"),
+        **stage_files("experiment"),
         records=measured_files(),
         sources=script_sources("experiment"),
     output:
@@ -27,7 +27,7 @@ rule experiment:
         result("logs/experiment.log"),
     benchmark:
         result("benchmarks/experiment.tsv")
-    # The longest job of all: begun early, it runs beside the others.
+    # The longest job: started early, it runs beside the others.
     priority: 2
     params:
         study=stage_inputs("experiment"),

@@ -2,8 +2,10 @@ rule figure:
     input:
         # Saving a notebook with its outputs must not make the figure again; its cells must.
         notebook=ancient("notebooks/{figure}.ipynb"),
-        datasets=lambda wildcards: FIGURE_DATASETS[wildcards.figure],
-        sources=lambda wildcards: FIGURE_SOURCES[wildcards.figure],
+        datasets=lambda wildcards: [
+            result(f"{kind}.nc") for kind in FIGURES[wildcards.figure].datasets
+        ],
+        sources=lambda wildcards: FIGURES[wildcards.figure].sources,
     output:
         # The old figure stays until the new one is whole.
         in_report(update(result("figures/{figure}.png"))),
@@ -18,7 +20,7 @@ rule figure:
     wildcard_constraints:
         figure="|".join(FIGURES),
     params:
-        cells=lambda wildcards: FIGURE_CELLS[wildcards.figure],
+        cells=lambda wildcards: digest(FIGURES[wildcards.figure].cells),
     message:
         "Figure: {wildcards.figure}"
     script:

@@ -1,6 +1,6 @@
 rule film:
     input:
-        lubricant=result("lubricant.nc"),
+        **stage_files("film"),
         sources=script_sources("film"),
     output:
         result("film.nc"),

@@ -1,8 +1,6 @@
 rule gauge:
     input:
-        master=result("master.nc"),
-        contact=result("contact.nc"),
-        comparison=result("comparison.nc"),
+        **stage_files("gauge"),
         sources=script_sources("gauge"),
     output:
         result("gauge.nc"),

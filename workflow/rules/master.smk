@@ -1,7 +1,7 @@
 rule master:
     input:
         film=result("film.nc"),
-        batches=[result(f"batches/master_{first}.nc") for first in STUDY.batches],
+        batches=batches_of("master"),
         sources=script_sources("master"),
     output:
         result("master.nc"),

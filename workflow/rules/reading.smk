@@ -1,21 +1,21 @@
 rule reading:
     input:
         script="tests/benchmarks/bench_records.py",
+        study=ancient(result("study.yaml")),
         records=record_files(),
-        sources=sources(Path("tests/benchmarks/bench_records.py").read_text(encoding="utf-8")),
+        sources=script_sources("tests/benchmarks/bench_records.py"),
     output:
         result("reading.nc"),
     log:
         result("logs/reading.log"),
     benchmark:
         result("benchmarks/reading.tsv")
-    # With nothing beside it.
+    # All cores, so that no other job disturbs the measurement.
     threads: workflow.cores
     params:
-        study=digest(STUDY.origin("reading")),
-        file=config["study_file"],
+        study=stage_inputs("reading"),
         python=sys.executable,
     message:
         "Reading: records of the rig beside other readers of the same files, a few minutes"
     shell:
-        "{params.python:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"

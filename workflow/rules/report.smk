@@ -1,13 +1,17 @@
+# Where the report has its pages, apart from the figures.
+ABOUT_THE_STUDY = "About the study"
+TEMPLATES = sorted(map(str, Path("lube/report/templates").iterdir()))
+
+
 rule pages:
     input:
         film=result("film.nc"),
         contact=result("contact.nc"),
         experiment=result("experiment.nc"),
         comparison=result("comparison.nc"),
-        # Told from here, so that the tree can be moved.
-        study=os.path.relpath(config["study_file"]),
-        readme="README.md",
-        style="workflow/report/page.css",
+        study=FILES.study_file,
+        docs=[f"docs/{page}.md" for page in ("limits", "assumptions", "architecture")],
+        templates=TEMPLATES,
         sources=script_sources("pages"),
     output:
         facts=result("report/facts.html"),
@@ -50,7 +54,7 @@ rule times:
         # When all else is done.
         [result(f"{kind}.nc") for kind in DATASETS],
         products(ARCHIVED),
-        style="workflow/report/page.css",
+        templates=TEMPLATES,
         sources=script_sources("times"),
     output:
         report(
@@ -64,7 +68,7 @@ rule times:
     benchmark:
         result("benchmarks/times.tsv")
     params:
-        jobs=benchmarks_of_steps(),
+        jobs=FILES.benchmarks(ARCHIVED),
     message:
         "Report: run times and memory of all jobs"
     script:

@@ -1,21 +1,21 @@
 rule speed:
     input:
         script="tests/benchmarks/bench_speed.py",
+        study=ancient(result("study.yaml")),
         records=record_files(),
-        sources=sources(Path("tests/benchmarks/bench_speed.py").read_text(encoding="utf-8")),
+        sources=script_sources("tests/benchmarks/bench_speed.py"),
     output:
         result("speed.nc"),
     log:
         result("logs/speed.log"),
     benchmark:
         result("benchmarks/speed.tsv")
-    # With nothing beside it.
+    # All cores, so that no other job disturbs the measurement.
     threads: workflow.cores
     params:
-        study=digest(STUDY.origin("speed")),
-        file=config["study_file"],
+        study=stage_inputs("speed"),
         python=sys.executable,
     message:
         "Speed: the study's kernels beside plain versions of the same work, a few minutes"
     shell:
-        "{params.python:q} {input.script} {params.file:q} {output} 2>&1 | tee {log}"
+        "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"

@@ -7,7 +7,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study_file, sums = snakemake.config["study_file"], Path(snakemake.output.sums)
+study, study_file = load_study(**snakemake.config["study"]), snakemake.config["study"]["path"]
 kinds, figures = snakemake.params.kinds, snakemake.params.figures
-study, results = load_study(study_file), sums.parents[2]
-make_archive(study, study_file, results, kinds, figures, sums.parent)
+sums = Path(snakemake.output.sums)
+make_archive(study, study_file, sums.parents[2], kinds, figures, sums.parent)

@@ -10,7 +10,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 film = load(snakemake.input.film, "film", study)
 batch = study.batch(int(snakemake.wildcards.first))
 lines = roughness_batch(study.line_spec, study.seed, batch)

@@ -11,7 +11,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 inputs = {kind: snakemake.input[kind] for kind in ("film", "contact", "experiment")}
 film, contact, experiment = (load(path, kind, study) for kind, path in inputs.items())
 oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))

@@ -6,7 +6,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 batches = [load(path, "contact_batch", study) for path in snakemake.input.batches]
 contact = gather(batches, load(snakemake.input.film, "film", study))
 # The batches are left out: how many there are changes nothing.

@@ -8,7 +8,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 if study.experiment.manifest:
     experiment = measured_experiment(read_manifest(study.experiment.manifest), study)
 else:

@@ -6,7 +6,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 grid = study.operating_grid
 lubricant = load(snakemake.input.lubricant, "lubricant", study)
 table = film_table(lubricant, study.rollers, grid.force, grid.speed, study.film_formulas)

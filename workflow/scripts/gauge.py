@@ -6,7 +6,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 inputs = {kind: snakemake.input[kind] for kind in ("master", "contact", "comparison")}
 datasets = (load(path, kind, study) for kind, path in inputs.items())
 save(gauge_records(*datasets), snakemake.output[0], "gauge", study, inputs.values())

@@ -6,6 +6,6 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 table = lubricant_table(study.lubricants, study.operating_grid.temperature)
 save(table, snakemake.output[0], "lubricant", study, snakemake.input.records)

@@ -1,9 +1,10 @@
-"""Write what the report says of the study: its start page's parts, and pages of their own."""
+"""Write the report's text: parts of its start page, and pages of their own."""
 
 from pathlib import Path
 
 from lube.report.configuration import configuration
-from lube.report.excerpts import excerpts
+from lube.report.key_tables import file_table
+from lube.report.markdown import title_and_text, to_html
 from lube.report.pages import html_page
 from lube.report.summary import facts, findings, notes
 from lube.storage.files import written_whole
@@ -12,18 +13,21 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 kinds = ("film", "contact", "experiment", "comparison")
 film, contact, experiment, comparison = (load(snakemake.input[kind], kind, study) for kind in kinds)
-written, readme, style = (
-    Path(snakemake.input[name]).read_text(encoding="utf-8") for name in ("study", "readme", "style")
-)
-parts = excerpts(readme)
-parts |= {
+written = Path(snakemake.input.study).read_text(encoding="utf-8")
+docs = {Path(file).stem: Path(file).read_text(encoding="utf-8") for file in snakemake.input.docs}
+title, assumptions = title_and_text(docs["assumptions"])
+drawing = docs["architecture"].split("```")[1]
+parts = {
     "facts": facts(study),
     "findings": findings(study, film, contact, comparison) + notes(experiment, comparison),
-    "configuration": html_page("Configuration", configuration(study, written), style),
-    "assumptions": html_page("What the paper leaves open", parts["assumptions"], style),
+    "limits": to_html(title_and_text(docs["limits"])[1]),
+    "files": to_html(file_table()),
+    "pipeline": to_html(f"```{drawing}```"),
+    "configuration": html_page("Configuration", configuration(study, written)),
+    "assumptions": html_page(title, to_html(assumptions)),
 }
 for name, html in parts.items():
     with written_whole(snakemake.output[name]) as part:

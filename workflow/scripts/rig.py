@@ -7,7 +7,7 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
 records = rig_records(lines, load(snakemake.input.film, "film", study), study)
 save(records, snakemake.output[0], "rig", study, [snakemake.input.film])

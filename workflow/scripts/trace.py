@@ -6,12 +6,12 @@ from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(snakemake.config["study_file"])
+study = load_study(**snakemake.config["study"])
 trace = contact_trace(
-    load(snakemake.input.lines, "roughness", study),
+    load(snakemake.input.roughness, "roughness", study),
     load(snakemake.input.film, "film", study),
     study.trace_points,
     study.boundary_layer,
     study.resistivity,
 )
-save(trace, snakemake.output[0], "trace", study, [snakemake.input.lines, snakemake.input.film])
+save(trace, snakemake.output[0], "trace", study, [snakemake.input.roughness, snakemake.input.film])

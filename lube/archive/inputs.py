@@ -1,0 +1,40 @@
+"""The inputs of the Snakemake rule `archive`, imported lightly because each start needs them."""
+
+from lube.errors import LubeError
+from lube.workflow.study_files import StudyFiles, input_paths, one_line_errors
+
+
+@one_line_errors()
+def archived_texts(files: StudyFiles) -> list[str]:
+    """List what people wrote and an archive holds: study files, lubricant records, code.
+
+    Parameters
+    ----------
+    files : StudyFiles
+        The study. Snakemake ends with one line if it cannot be archived: it has no makers, or
+        no file of its own because ``--config`` changes it.
+
+    Returns
+    -------
+    list of str
+        Paths.
+    """
+    from lube.archive.build import written_files
+    from lube.archive.citation import check_about
+    from lube.storage.git import code_files
+
+    if files.changes:
+        raise LubeError(
+            "--config: an archive needs the study as a file: write the changes into one that "
+            f"begins with `based_on: {files.path}`"
+        )
+    check_about(files.study)
+    written = written_files(files.study, files.path).values()
+    return [*input_paths(written), *files.record_files(), *code_files()]
+
+
+def code_state() -> tuple:
+    """Return what an archive says about its code: commit, its date, files changed since."""
+    from lube.storage.git import changed_code, commit, commit_date
+
+    return commit(), commit_date(), changed_code()

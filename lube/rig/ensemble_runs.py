@@ -1,0 +1,79 @@
+"""Runs of the contact model with the realisations of a study, at any film and contact width."""
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from lube.grid.discretise import layer_factor_of, revolution, speed_ratios, whole_numbers
+from lube.kernels.motion import surface_position
+from lube.kernels.strips import strip_statistics
+from lube.study.study import Study
+from lube.surfaces.synthetic import draw_realisation, line_attributes
+
+Pair = tuple[np.ndarray, np.ndarray]
+"""The lines of two rollers, in height steps."""
+
+
+class EnsembleRuns:
+    """The roughness, the elasticity and the boundary layer of a study, ready to run.
+
+    Parameters
+    ----------
+    study : Study
+        Its rollers, roughness lines, boundary layer and seed are used.
+    """
+
+    def __init__(self, study: Study):
+        self._study = study
+        self._lines = xr.Dataset(attrs=line_attributes(study.line_spec))
+        modulus = study.rollers.reduced_modulus
+        self._factor = layer_factor_of(self._lines, modulus, study.boundary_layer)
+
+    def pair(self, realisation: int) -> Pair:
+        """Draw the two lines of a realisation."""
+        return draw_realisation(self._study.line_spec, self._study.seed, realisation)
+
+    def points(self, film_thickness: npt.ArrayLike, half_width: npt.ArrayLike) -> np.ndarray:
+        """Convert films and half-widths (m) to height steps and grid points, shape (2, P)."""
+        thickness, widths = np.broadcast_arrays(film_thickness, half_width)
+        return np.stack(whole_numbers(thickness.ravel(), widths.ravel(), self._lines))
+
+    def share(
+        self, pair: Pair, slip: float, points: np.ndarray, turns: float = 1.0, begin: int = 0
+    ) -> np.ndarray:
+        """Share of time steps with breakthrough in some revolutions, shape (P,).
+
+        Parameters
+        ----------
+        pair : tuple of numpy.ndarray
+            From `pair`.
+        slip : float
+            Slide-to-roll ratio.
+        points : numpy.ndarray
+            From `points`, shape (2, P).
+        turns : float, optional
+            Revolutions of the roller with the faster surface; a single time step at least.
+        begin : int, optional
+            First time step.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (P,).
+        """
+        steps = max(round(turns * revolution(pair, speed_ratios(slip))), 1)
+        return self.breakthroughs(pair, slip, points, begin, begin + steps) / steps
+
+    def breakthroughs(
+        self, pair: Pair, slip: float, points: np.ndarray, begin: int, end: int
+    ) -> np.ndarray:
+        """Count the time steps from `begin` to `end` with breakthrough, shape (P,)."""
+        ratios = speed_ratios(slip)
+        if begin:
+            pair = [
+                np.roll(line, -surface_position(begin, ratio))
+                for line, ratio in zip(pair, ratios, strict=True)
+            ]
+        films, half_windows = np.ascontiguousarray(points)
+        counts = strip_statistics(*pair, ratios, end - begin, films, half_windows, self._factor)
+        return counts[:, 1]

@@ -1,0 +1,246 @@
+r"""The scatter of a record's contact share between pairs of rollers.
+
+The probability is a mean over all pairs of rollers; a record comes from one pair, and its share
+deviates from that mean. The variance of the deviation depends on how the pair is seen:
+
+- *One alignment.* Equal rollers in pure rolling repeat themselves in each revolution. The variance
+  is that between the realisations of the ensemble, and longer records do not reduce it.
+- *Several alignments.* With slip, or rollers of different size, the two lines meet in a new
+  alignment in each revolution. What the lines do together is then averaged out; what each line
+  does alone, against any other line, persists.
+- *Short records.* Less than one revolution shows only a part of the lines, and the parts differ
+  more than the whole lines.
+"""
+
+import logging
+
+import numpy as np
+import xarray as xr
+
+from lube.grid.discretise import revolution, speed_ratios
+from lube.rig.ensemble_runs import EnsembleRuns
+from lube.statistics.one_pair import persistent_share, scatter_ratio
+from lube.study.study import Study
+
+log = logging.getLogger(__name__)
+
+MOST_PAIRS = 64
+"""Largest number of pairs of lines that are run to estimate a scatter."""
+LINES_IN_MEMORY = 16
+"""Number of first lines kept in memory while all second lines are drawn."""
+MOST_STRETCHES = 8
+"""Largest number of stretches of one realisation that serve as short records."""
+ALIGNMENT_RATIOS = np.linspace(1.0, 3.5, 6)
+"""Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare."""
+
+
+def record_scatter(
+    model: xr.Dataset, experiment: xr.Dataset, probability: np.ndarray, study: Study
+) -> tuple[np.ndarray, np.ndarray]:
+    """Scatter of the contact share of each record between pairs of rollers.
+
+    Parameters
+    ----------
+    model : xarray.Dataset
+        Films at the records, from `lube.stages.film.film_at_records`.
+    experiment : xarray.Dataset
+        With the slide-to-roll ratio and the number of revolutions of each record.
+    probability : numpy.ndarray
+        Of each realisation in one revolution of pure rolling, shape (R, P); the P operating
+        points are all records by the first film formula, by the second, and so on.
+    study : Study
+        Its rollers, roughness lines, boundary layer and drift.
+
+    Returns
+    -------
+    ratio : numpy.ndarray
+        Variance of the record's share over that of one revolution of pure rolling, shape (P,).
+    deviation : numpy.ndarray
+        Deviation of each realisation in such a record, shape (R, P). They give the correlation
+        between records of one pair; their size has no meaning. NaN for realisations beyond
+        `MOST_PAIRS` where they were not run.
+    """
+    runs = EnsembleRuns(study)
+    points = runs.points(model["film_thickness"], model["contact_half_width"])
+    formulas = points.shape[1] // model.sizes["record"]
+    slips, turns = (
+        np.tile(experiment[name].values, formulas) for name in ("slide_to_roll_ratio", "turns")
+    )
+    variance = _variance(probability)
+    persistent, line_effects = _line_effects(runs, model, study, slips, turns, len(probability))
+    ratio, deviation = 1.0 / turns, probability - probability.mean(axis=0)
+    for slip in np.unique(slips):
+        here = np.flatnonzero((slips == slip) & (turns >= 1.0))
+        shares = _one_revolution(runs, points[:, here], slip, probability[:, here])
+        by_slip = _variance_ratio(_variance(shares), variance[here])
+        alone, together = _components(
+            study, slip, turns[here], np.minimum(persistent[here] / by_slip, 1.0)
+        )
+        ratio[here] = by_slip * (alone + together)
+        if line_effects is not None:
+            shares = combined_deviations(alone, together, line_effects[:, here], shares)
+        deviation[: len(shares), here] = shares - shares.mean(axis=0)
+        deviation[len(shares) :, here] = np.nan
+    short = (turns < 1.0) & (variance > 0.0)
+    scatter = _short_variance(runs, points[:, short], slips[short], turns[short], len(probability))
+    ratio[short] = np.where(scatter > 0.0, scatter / variance[short], ratio[short])
+    return ratio, deviation
+
+
+def _variance(shares):
+    """Variance between realisations, shape (P,); none with a single realisation."""
+    return shares.var(axis=0, ddof=1) if len(shares) > 1 else np.zeros(shares.shape[1])
+
+
+# One alignment
+
+
+def _one_revolution(runs, points, slip, rolling):
+    """Share of every realisation in one revolution with slip, shape (R, P)."""
+    if slip == 0.0 or not points.size:
+        return rolling
+    shares = np.empty((min(len(rolling), MOST_PAIRS), points.shape[1]))
+    for realisation, row in enumerate(shares):
+        row[:] = runs.share(runs.pair(realisation), slip, points)
+        log.info("records with slip %g: realisation %d: done", slip, realisation)
+    return shares
+
+
+def _variance_ratio(slipping, rolling):
+    """Variance in one revolution with slip over that in rolling, 1 where one of them is 0.
+
+    Slip changes the alignment during the passage of a contact. So there are more and shorter
+    contacts, and their share of time scatters less.
+    """
+    known = (rolling > 0.0) & (slipping > 0.0)
+    return np.where(known, slipping / np.where(known, rolling, 1.0), 1.0)
+
+
+# Several alignments
+
+
+def _components(study, slip, turns, persistent):
+    """Scatter ratios due to each line alone, and due to both together, two of shape (P,)."""
+    spec = study.line_spec
+    reach = 2.0 * np.pi / spec.q_min / spec.spacing  # a longest wavelength, in grid points
+    motion = speed_ratios(slip), spec.points, reach
+    alone, together = np.empty((2, turns.size))
+    for point, (length, part) in enumerate(zip(turns, persistent, strict=True)):
+        whole, renewed = (
+            scatter_ratio(length, *motion, share, study.rig.drift) for share in (part, 0.0)
+        )
+        together[point] = min((1.0 - part) * renewed, whole)
+        alone[point] = whole - together[point]
+    return alone, together
+
+
+def combined_deviations(
+    alone: np.ndarray, together: np.ndarray, line_effects: np.ndarray, shares: np.ndarray
+) -> np.ndarray:
+    """Deviations of each realisation in records of several alignments, shape (R, P).
+
+    The effect of each line alone is more alike at neighbouring films than the effect of both
+    lines together. So the correlation between records depends on the size of the two parts: they
+    are added here, each with its variance in such a record.
+
+    Parameters
+    ----------
+    alone, together : numpy.ndarray
+        Variance due to each line alone, and due to both together, shape (P,).
+    line_effects : numpy.ndarray
+        Effect of the lines alone, shape (R, P).
+    shares : numpy.ndarray
+        Shares in one revolution, which have both effects, shape (R, P) or more realisations.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (R, P).
+    """
+    effects, shares = _standardised(line_effects), _standardised(shares[: len(line_effects)])
+    rest = _standardised(shares - effects * np.mean(effects * shares, axis=0))
+    return np.sqrt(alone) * effects + np.sqrt(together) * rest
+
+
+def _standardised(values):
+    """Values with mean 0 and variance 1 over the realisations, or all 0."""
+    offsets = values - values.mean(axis=0)
+    scale = offsets.std(axis=0)
+    return offsets / np.where(scale > 0.0, scale, 1.0)
+
+
+def _line_effects(runs, model, study, slips, turns, realisations):
+    """Part of the scatter that is due to each line alone, and persists in all alignments.
+
+    It is estimated from the ensemble's own lines, paired crosswise, if any record has several
+    alignments.
+
+    Returns
+    -------
+    share : numpy.ndarray
+        Its share of the variance in pure rolling, shape (P,).
+    effects : numpy.ndarray or None
+        Of each realisation, up to `MOST_PAIRS`, shape (R, P); None if none were run.
+    """
+    ratio = model["lambda_ratio"].values.ravel()
+    equal = study.line_spec.points[0] == study.line_spec.points[1]
+    one_alignment = equal and not slips.any()
+    if one_alignment or not (turns > 1.0).any() or realisations < 2:
+        return (np.zeros if one_alignment else np.ones)(ratio.size), None
+    thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
+    levels = runs.points(thickness, model["contact_half_width"].mean().item())
+    shares = _crosswise(runs, min(realisations, MOST_PAIRS), levels)
+    persistent = persistent_share(shares)
+    known = np.isfinite(persistent)
+    if not known.any():
+        return np.ones(ratio.size), None
+    effects = _standardised(shares.mean(axis=1) + shares.mean(axis=0))
+    *effects, persistent = (
+        np.interp(ratio, ALIGNMENT_RATIOS[known], row[known]) for row in (*effects, persistent)
+    )
+    return persistent, np.array(effects)
+
+
+def _crosswise(runs, count, levels):
+    """Share of each first line with each second line, shape (count, count, levels)."""
+    shares = np.empty((count, count, levels.shape[1]))
+    for begin in range(0, count, LINES_IN_MEMORY):
+        numbers = range(begin, min(begin + LINES_IN_MEMORY, count))
+        firsts = [runs.pair(number)[0] for number in numbers]
+        for other in range(count):
+            _, second = runs.pair(other)
+            for number, first in zip(numbers, firsts, strict=True):
+                shares[number, other] = runs.share((first, second), 0.0, levels)
+        log.info("lines %d to %d, paired with all others: done", begin, numbers[-1])
+    return shares
+
+
+# Short records
+
+
+def _short_variance(runs, points, slips, turns, realisations):
+    """Variance between the shares of records of less than one revolution, shape (P,).
+
+    It is not in proportion to 1 / turns: the waves of a whole line have the amplitudes of the
+    study's spectrum, those of a part of the line have not, so the parts differ more. Therefore
+    stretches of the ensemble's own lines serve as records.
+    """
+    motions = sorted(set(zip(slips.tolist(), turns.tolist(), strict=True)))
+    shares = {motion: [] for motion in motions}
+    at = {motion: (slips == motion[0]) & (turns == motion[1]) for motion in motions}
+    for realisation in range(min(realisations, MOST_PAIRS)) if motions else ():
+        pair = runs.pair(realisation)
+        for motion in motions:
+            shares[motion] += _stretches(runs, pair, *motion, points[:, at[motion]])
+        log.info("short records: realisation %d: done", realisation)
+    variance = np.zeros(turns.size)
+    for motion in motions:
+        variance[at[motion]] = np.var(shares[motion], axis=0, ddof=1)
+    return variance
+
+
+def _stretches(runs, pair, slip, turns, points):
+    """Shares of one pair in separate stretches of its lines, a list of arrays of shape (P,)."""
+    count = min(int(1.0 / turns), MOST_STRETCHES)
+    begins = np.arange(count) * revolution(pair, speed_ratios(slip)) // count
+    return [runs.share(pair, slip, points, turns, begin) for begin in begins]

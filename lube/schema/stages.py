@@ -1,0 +1,135 @@
+"""The registry of stages: the one place that says what each of them depends on.
+
+A stage makes one kind of file. Its row names the stages whose files it reads and the values of
+the study that it uses. From the rows follow the inputs and parameters of the Snakemake rules,
+the values recorded in every file, and the list of datasets.
+
+To add a stage `name`, add a row here, the variables of its file in `lube.schema`, the script
+``workflow/scripts/name.py`` and the rule ``workflow/rules/name.smk``.
+"""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One row of the registry.
+
+    Attributes
+    ----------
+    name : str
+        Name of the stage, and of its rule, script, schema table and file (``film.nc``).
+    inputs : tuple of str
+        Stages whose files it reads.
+    values : dict
+        Values of the study that it uses: from the name of each value in the file's attribute
+        ``config`` to the dotted attribute of `lube.study.study.Study` that holds it.
+    same_values : tuple of str
+        Stages whose values it uses too, without reading their files.
+    measured : bool
+        True for files that `snakemake benchmark` makes. They are not results of the study.
+    """
+
+    name: str
+    inputs: tuple[str, ...] = ()
+    values: dict = field(default_factory=dict)
+    same_values: tuple[str, ...] = ()
+    measured: bool = False
+
+
+_LINES = {"seed": "seed", "lines": "line_spec"}
+_LAYER = {"reduced_modulus": "rollers.reduced_modulus", "boundary_layer": "boundary_layer"}
+_CONTACT = _LAYER | {"slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"}
+
+_ROWS = (
+    Stage(
+        "lubricant",
+        values={"lubricants": "lubricants", "temperature": "operating_grid.temperature"},
+    ),
+    Stage(
+        "film",
+        inputs=("lubricant",),
+        values={
+            "rollers": "rollers",
+            "reduced_radius": "rollers.reduced_radius",
+            "reduced_modulus": "rollers.reduced_modulus",
+            "composite_rms_roughness": "rollers.composite_rms_roughness",
+            "film_formulas": "film_formulas",
+            "force": "operating_grid.force",
+            "speed": "operating_grid.speed",
+        },
+    ),
+    Stage("roughness", values=_LINES),
+    Stage(
+        "contact",
+        inputs=("film", "roughness"),
+        values=_LINES | _CONTACT | {"revolutions": "revolutions"},
+    ),
+    Stage("master", inputs=("film", "roughness"), values=_LINES | _LAYER),
+    Stage(
+        "trace",
+        inputs=("film", "roughness"),
+        values=_LINES | _CONTACT | {"traces": "traces", "resistivity": "resistivity"},
+    ),
+    Stage(
+        "experiment",
+        inputs=("film",),
+        values={
+            **_LINES,
+            **_CONTACT,
+            "resistivity": "resistivity",
+            "length": "rollers.length",
+            "rig": "rig",
+            "experiment": "evaluation",
+            "grid": {
+                "force": "operating_grid.force",
+                "speed": "operating_grid.speed",
+                "temperature": "operating_grid.temperature",
+            },
+        },
+        same_values=("roughness",),  # it draws the lines of the rig's own rollers
+    ),
+    Stage("rig", inputs=("film",), values={"traces": "traces"}, same_values=("experiment",)),
+    Stage("comparison", inputs=("film", "contact", "experiment")),
+    Stage("gauge", inputs=("master", "contact", "comparison")),
+    Stage(
+        "coverage",
+        values={"realisations": "realisations"},
+        same_values=("contact", "master", "experiment"),
+        measured=True,
+    ),
+    Stage("speed", same_values=("contact",), measured=True),
+    Stage("reading", measured=True),
+)
+
+STAGES = {row.name: row for row in _ROWS}
+"""The registry: from name to `Stage`, each after those it depends on."""
+
+DATASETS = tuple(row.name for row in _ROWS if not row.measured)
+"""The results of a study, one file each."""
+
+MEASURED = tuple(row.name for row in _ROWS if row.measured)
+"""Files that `snakemake benchmark` makes; they are not among the results of a study."""
+
+
+def forerunners(stage: str) -> tuple[str, ...]:
+    """Return all stages whose values a stage depends on, directly or through others.
+
+    Parameters
+    ----------
+    stage : str
+        Name of the stage.
+
+    Returns
+    -------
+    tuple of str
+        Their names, in the order of the registry.
+
+    Examples
+    --------
+    >>> forerunners("trace")
+    ('lubricant', 'film', 'roughness')
+    """
+    direct = {*STAGES[stage].inputs, *STAGES[stage].same_values}
+    found = direct.union(*(forerunners(name) for name in direct))
+    return tuple(name for name in STAGES if name in found)

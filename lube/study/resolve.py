@@ -1,0 +1,159 @@
+"""Resolve a study: its file, the files that it is based on, and changes on top.
+
+A study's file may name another with the key ``based_on`` and then holds only what differs. The
+contents are merged from the last base up: mappings key by key; lists and single values are
+replaced. Each study needs a name of its own, so that the results of different values are not
+mixed in one folder.
+"""
+
+import io
+import os
+from pathlib import Path
+
+from ruamel.yaml import YAML
+
+from lube.errors import StudyError, shown
+from lube.study.lubricant_record import is_record_path
+from lube.study.text_files import read_yaml
+
+
+def study_files(path: str | Path) -> list[Path]:
+    """List the file of a study and all files that it is based on.
+
+    Parameters
+    ----------
+    path : str or Path
+        YAML file of the study.
+
+    Returns
+    -------
+    list of Path
+        The study's own file first, the last base last.
+
+    Raises
+    ------
+    StudyError
+        If one of them cannot be read, or they are based on each other in a circle.
+    """
+    return [file for file, _ in _chain(path)]
+
+
+def resolved_content(
+    path: str | Path, changes: dict | None = None, folder: str | Path | None = None
+) -> dict:
+    """Merge a study's file with the files that it is based on, and with changes.
+
+    Parameters
+    ----------
+    path : str or Path
+        YAML file of the study.
+    changes : dict, optional
+        Values to change, nested as in the file, such as Snakemake's ``--config`` gives them.
+        They must contain a new ``name``. Paths in them start from the study's folder.
+    folder : str or Path, optional
+        Folder that the relative paths in the result start from; else the study's folder.
+
+    Returns
+    -------
+    dict
+        The content of the whole study, not yet checked.
+
+    Raises
+    ------
+    StudyError
+        If a file cannot be read, the files are based on each other in a circle, or the changes,
+        or a file that is based on another, have no new name.
+    """
+    here = Path(path).parent
+    folder = here if folder is None else Path(folder)
+    content = {}
+    for file, own in reversed(_chain(path)):
+        content = _on_top(content, _with_paths_from(own, file.parent, folder), f"{file}")
+    if changes:
+        content = _on_top(content, _with_paths_from(changes, here, folder), f"{path}: --config")
+    return content
+
+
+def resolved_text(
+    path: str | Path, changes: dict | None = None, folder: str | Path | None = None
+) -> str:
+    """Write a study as a single file, which is based on no other.
+
+    Parameters
+    ----------
+    path, changes, folder
+        As in `resolved_content`; `folder` is where the text will be saved.
+
+    Returns
+    -------
+    str
+        YAML, which `load_study` reads to the same study.
+
+    Raises
+    ------
+    StudyError
+        As in `resolved_content`.
+    """
+    names = " based on ".join(file.name for file in study_files(path))
+    text = io.StringIO(f"# Resolved: {names}{', changed by --config' if changes else ''}.\n")
+    text.seek(0, io.SEEK_END)
+    yaml = YAML()
+    yaml.width = 200  # no text is broken
+    yaml.representer.ignore_aliases = lambda _: True
+    yaml.dump(resolved_content(path, changes, folder), text)
+    return text.getvalue()
+
+
+def _chain(path):
+    """Files from the study's own to the last base, each with its content."""
+    chain, file = [], Path(path)
+    while file is not None:
+        names = [known.name for known, _ in chain]
+        if file.resolve() in [known.resolve() for known, _ in chain]:
+            circle = " -> ".join([*names, file.name])
+            raise StudyError(f"{path}: based_on: got the circle {circle}, need a last file")
+        content = read_yaml(file, StudyError)
+        base = content.pop("based_on", None)
+        chain.append((file, content))
+        file = None if base is None else _base_file(file, base)
+    return chain
+
+
+def _base_file(file, base):
+    if not isinstance(base, str) or not (file.parent / base).is_file():
+        raise StudyError(f"{file}: based_on: got {shown(base)}, need the path of a study's file")
+    return file.parent / base
+
+
+def _on_top(base, changes, where):
+    """Merge changes into the study below, if there is one and they have a new name."""
+    if base and changes.get("name") in (None, base.get("name")):
+        raise StudyError(
+            f"{where}: name: got {shown(changes.get('name'))}, need one other than "
+            f"{base.get('name')!r}, or results of different values would be mixed"
+        )
+    return _merged(base, changes)
+
+
+def _merged(base, changes):
+    if not (isinstance(base, dict) and isinstance(changes, dict)):
+        return changes
+    return base | {key: _merged(base.get(key), value) for key, value in changes.items()}
+
+
+def _with_paths_from(content, here, there):
+    """Rewrite the relative paths of a content from one folder to another."""
+    if here.resolve() == there.resolve():
+        return content
+
+    def moved(name):
+        return name if Path(name).is_absolute() else os.path.relpath(here / name, there)
+
+    match content:
+        case {"lubricants": list(names)}:
+            moved_names = [moved(name) if is_record_path(name) else name for name in names]
+            content = content | {"lubricants": moved_names}
+    match content:
+        case {"experiment": {"manifest": str(manifest)} as experiment}:
+            content = content | {"experiment": experiment | {"manifest": moved(manifest)}}
+    return content

@@ -1,0 +1,110 @@
+"""The study that a Snakemake command asks for: ``--configfile`` and ``--config``."""
+
+import argparse
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from lube.errors import LubeError, StudyError
+from lube.study.resolve import study_files
+from lube.study.study import Study, load_study
+
+PAPER = "workflow/config/paper.yaml"
+"""Study file of a command without ``--configfile``."""
+
+_WORDS = {"true": True, "false": False, "null": None}
+
+
+def check_command_line(arguments: Sequence[str]) -> None:
+    """End Snakemake with one line if it would fail to read the study's options.
+
+    Snakemake reads ``--configfile`` and ``--config`` before the Snakefile, and answers a missing
+    file or a misplaced target with a traceback. The profiles call this function first.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Arguments of the command ``snakemake``.
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--configfile", "--configfiles", nargs="+", default=[])
+    parser.add_argument("--config", "-C", nargs="*", default=[])
+    options, _ = parser.parse_known_args(arguments)
+    try:
+        _check_number(options.configfile)
+        for file in options.configfile:
+            study_files(file)  # refuses what it cannot read
+        for entry in options.config:
+            _check_entry(entry)
+    except LubeError as error:
+        sys.exit(f"The study cannot start. {error}")
+
+
+def _check_number(files):
+    if len(files) > 1:
+        study, *others = files
+        advice = f"put targets before it, as in `snakemake {' '.join(others)} --configfile {study}`"
+        if others[0].endswith((".yaml", ".yml")):
+            advice = f"a study that changes another begins with `based_on: {study}`"
+        raise StudyError(f"--configfile takes one study, got {' '.join(files)}: {advice}")
+
+
+def _check_entry(entry):
+    key, equals, value = entry.partition("=")
+    if not equals:
+        raise StudyError(
+            f"--config: got {entry}, need key=value; put targets before it, as in "
+            f"`snakemake {entry} --config key=value`"
+        )
+    if "." in key:
+        outer, *inner = key.split(".")
+        for name in reversed(inner):
+            value = f"{{{name}: {value}}}"
+        raise StudyError(f"--config: got {entry}, need '{outer}={value}' for a nested key")
+
+
+def study_of_command(
+    files: Sequence[str | Path], config: Mapping[str, Any]
+) -> tuple[Study, dict[str, Any]]:
+    """Load the study that a Snakemake command asks for.
+
+    Parameters
+    ----------
+    files : sequence of str or Path
+        Files of ``--configfile``: one, or none for the paper's study.
+    config : mapping
+        Values of ``--config``, as Snakemake parsed them.
+
+    Returns
+    -------
+    study : Study
+        The study.
+    arguments : dict
+        Arguments of `load_study` for the same study: ``path`` and ``changes``.
+
+    Raises
+    ------
+    LubeError
+        If the study cannot be loaded, or ``--config`` changes it without a new name.
+    """
+    _check_number([str(file) for file in files])
+    path = os.path.relpath(files[0]) if files else PAPER
+    changes = {key: _typed(value) for key, value in config.items()}
+    return load_study(path, changes), {"path": path, "changes": changes}
+
+
+def _typed(value):
+    """Give numbers in a nested value their type: Snakemake leaves all of them as text."""
+    if isinstance(value, Mapping):
+        return {key: _typed(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_typed(one) for one in value]
+    if isinstance(value, str):
+        for number in (int, float):
+            with suppress(ValueError):
+                return number(value)
+        return _WORDS.get(value, value)
+    return value

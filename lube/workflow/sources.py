@@ -1,0 +1,116 @@
+"""Which files of the lube package a script or notebook depends on, found by its imports.
+
+Snakemake does not notice a change of an imported package. So every rule has these files among
+its inputs, and an edited module reruns the jobs that use it.
+"""
+
+import ast
+import functools
+from pathlib import Path
+
+import lube
+
+ROOT = Path(lube.__file__).parents[1]
+"""Folder of the Snakefile that this package belongs to."""
+
+_BY_VALUE = {"lube.study.study", "lube.schema.stages"}
+"""Modules that reach a stage by the values they give it, which are parameters of its rule."""
+
+
+def imported_modules(code: str) -> tuple[str, ...]:
+    """List the modules that some Python code imports, at its top or inside functions.
+
+    Parameters
+    ----------
+    code : str
+        Python.
+
+    Returns
+    -------
+    tuple of str
+        Full names of all that may be modules: for ``from lube.stages import film`` both
+        ``lube.stages`` and ``lube.stages.film``. For a public name of the package, such as
+        ``from lube import load``, the module that defines it.
+
+    Examples
+    --------
+    >>> imported_modules("import numpy as np")
+    ('numpy',)
+    """
+    found = []
+    for node in ast.walk(ast.parse(code)):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names = [alias.name for alias in node.names]
+            found += [node.module, *(f"{node.module}.{name}" for name in names)]
+            if node.module == "lube":
+                found += [lube._HOME_OF[name] for name in names if name in lube._HOME_OF]
+        elif isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names]
+            if "lube" in found:  # any public name may follow
+                found += lube._HOMES
+    return tuple(found)
+
+
+def sources(code: str, root: Path = ROOT) -> list[str]:
+    """List the files of the lube package that some Python code depends on.
+
+    Parameters
+    ----------
+    code : str
+        Python.
+    root : Path, optional
+        Folder that the package lies in.
+
+    Returns
+    -------
+    list of str
+        Paths relative to `root`, sorted. Two modules are left out, with what only they import:
+        the study, whose values are parameters of the rules, and the package's ``__init__``,
+        which computes nothing.
+
+    Examples
+    --------
+    >>> sources("from lube.errors import LubeError")
+    ['lube/errors.py']
+    """
+    found, waiting = set(), list(imported_modules(code))
+    while waiting:
+        file = _file_of(waiting.pop(), root)
+        if file is not None and file not in found:
+            found.add(file)
+            waiting += _imports_of(file)
+    return sorted(file.relative_to(root).as_posix() for file in found)
+
+
+@functools.cache
+def _file_of(module, root):
+    """File of a module of the package, if it is one and counts."""
+    if not module.startswith("lube.") or module in _BY_VALUE:
+        return None
+    path = root / Path(*module.split("."))
+    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    return path if path.is_file() else None
+
+
+@functools.cache
+def _imports_of(file):
+    return imported_modules(file.read_text(encoding="utf-8"))
+
+
+def script_sources(name: str, root: Path = ROOT) -> list[str]:
+    """List the files of the lube package that a script of the workflow depends on.
+
+    Parameters
+    ----------
+    name : str
+        Name of the script in ``workflow/scripts``, or its path below `root`.
+    root : Path, optional
+        As for `sources`.
+
+    Returns
+    -------
+    list of str
+        As from `sources`.
+    """
+    path = root / (name if name.endswith(".py") else f"workflow/scripts/{name}.py")
+    return sources(path.read_text(encoding="utf-8"), root)

@@ -1,0 +1,176 @@
+"""The files of one study as the Snakemake rules name them: results, inputs and fingerprints."""
+
+import contextlib
+import hashlib
+import json
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from lube.errors import LubeError
+from lube.schema import DATASETS, STAGES, forerunners
+from lube.study.resolve import study_files
+from lube.study.study import Study
+
+
+@contextlib.contextmanager
+def one_line_errors() -> Iterator[None]:
+    """End Snakemake with one line if the study cannot start; also a decorator."""
+    try:
+        yield
+    except LubeError as error:
+        sys.exit(f"The study cannot start. {error}")
+
+
+def digest(content: object) -> str:
+    """Return a fingerprint of plain data; as a parameter of a rule, its change reruns the rule."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def input_paths(files: Iterable[str | Path]) -> list[str]:
+    """List files relative to the working folder, so that the repository can be moved.
+
+    Parameters
+    ----------
+    files : iterable of str or Path
+        Files that a study names.
+
+    Returns
+    -------
+    list of str
+        Their paths, sorted, each once.
+
+    Raises
+    ------
+    LubeError
+        If a name has braces, which Snakemake takes for a wildcard.
+    """
+    paths = sorted({os.path.relpath(file) for file in files})
+    for path in paths:
+        if "{" in path or "}" in path:
+            raise LubeError(f"{path}: got a name with braces, need one without")
+    return paths
+
+
+class StudyFiles:
+    """Paths and fingerprints of one study, for the rules.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    path : str or Path
+        Its YAML file.
+    changes : dict
+        Values that ``--config`` changes.
+    """
+
+    def __init__(self, study: Study, path: str | Path, changes: dict):
+        self.study, self.path, self.changes = study, path, changes
+        self.folder = f"results/{study.name}"
+
+    @property
+    def study_file(self) -> str:
+        """The study as a file: as written or, with changes by ``--config``, as resolved."""
+        return self.result("study.yaml") if self.changes else str(self.path)
+
+    @one_line_errors()
+    def study_files(self) -> list[str]:
+        """List the file of the study and those it is based on."""
+        return input_paths(study_files(self.path))
+
+    def result(self, name: str) -> str:
+        """Return the path of a result, such as ``film.nc``."""
+        return f"{self.folder}/{name}"
+
+    def stage_files(self, stage: str) -> dict[str, str]:
+        """Return the files that a stage reads, from each stage's name to its dataset."""
+        return {name: self.result(f"{name}.nc") for name in STAGES[stage].inputs}
+
+    def stage_inputs(self, *stages: str) -> str:
+        """Return a fingerprint of all that a job takes from the study itself.
+
+        Parameters
+        ----------
+        *stages : str
+            Names in `lube.schema.STAGES` of the stages that the job computes.
+
+        Returns
+        -------
+        str
+            Of the values that the stages use, and of what a file says about its makers.
+        """
+        names = set(stages)
+        for name in (name for stage in stages for name in STAGES[stage].same_values):
+            # Their files are not read, so that their forerunners' values do not come with them.
+            names |= {*forerunners(name), name}
+        values = [self.study.stage_inputs(name) for name in STAGES if name in names]
+        return digest([*values, self.study.about.in_files])
+
+    def batches_of(self, stage: str) -> list[str]:
+        """Return the files of a stage's batches, such as ``batches/contact_0.nc``."""
+        return [self.result(f"batches/{stage}_{first}.nc") for first in self.study.batches]
+
+    def batch_limits(self, wildcards: object) -> tuple[int, int]:
+        """Return the first and last realisation of the batch that begins with a wildcard."""
+        batch = self.study.batch(int(wildcards.first))
+        return batch[0], batch[-1]
+
+    @one_line_errors()
+    def record_files(self) -> list[str]:
+        """List the files of the study's lubricant records."""
+        return input_paths(file for record in self.study.lubricants for file in record.files)
+
+    @one_line_errors()
+    def measured_files(self) -> list[str]:
+        """List the manifest and those measured records that exist; none for a simulated rig."""
+        manifest = self.study.experiment.manifest
+        if manifest is None:
+            return []
+        from lube.recordings.manifest import read_manifest
+
+        entries = read_manifest(manifest).entries
+        return input_paths([manifest, *(entry.file for entry in entries if entry.file)])
+
+    def products(self, figures: Iterable[str]) -> list[str]:
+        """List the files that the jobs of some figures make: pictures, origin, notebook."""
+        return [
+            self.result(name)
+            for figure in figures
+            for name in (
+                *(f"figures/{figure}.{suffix}" for suffix in ("png", "pdf", "json")),
+                f"notebooks/{figure}.ipynb",
+            )
+        ]
+
+    def benchmarks(self, figures: Iterable[str]) -> dict[str, list[str]]:
+        """List the benchmark files of all jobs, by the steps of the study.
+
+        Parameters
+        ----------
+        figures : iterable of str
+            Names of the study's figures.
+
+        Returns
+        -------
+        dict of str to list of str
+            From the step's name in the report to its files.
+        """
+        steps = {"batches of realisations": [f"batch_{first}" for first in self.study.batches]}
+        steps |= {stage: [stage] for stage in DATASETS}
+        steps["figures"] = list(figures)
+        return {
+            step: [self.result(f"benchmarks/{job}.tsv") for job in jobs]
+            for step, jobs in steps.items()
+        }
+
+    def refused_records(self) -> str | None:
+        """Say in one line which measured records were refused, and why; None if none was."""
+        experiment = Path(self.result("experiment.nc"))
+        if self.study.experiment.manifest is None or not experiment.exists():
+            return None
+        from lube.rig.study_shares import refused_in_one_line
+        from lube.storage.netcdf import load
+
+        return refused_in_one_line(load(experiment, "experiment"))

@@ -1,0 +1,74 @@
+"""Curves of a master map whose contacts come independently along the line: there all is exact."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.special import expit, logit
+
+from lube.rig.map_curves import curve_at, layer_curve_at, logits_on
+
+WIDTHS = np.array([0.5e-3, 1e-3, 2e-3])
+RATIOS = np.geomspace(0.5, 2.0, 9)
+DIMS = ("lambda_ratio", "contact_width")
+
+
+def chance(ratio, width):
+    """Probability of a contact within a width, if they come independently."""
+    return -np.expm1(-width / 1e-3 * ratio**-2.0)
+
+
+@pytest.fixture
+def master():
+    """A map of such contacts, from two realisations that differ by a tenth."""
+    mean = chance(RATIOS[:, None], WIDTHS)
+    values = np.stack([0.95 * mean, 1.05 * mean])
+    coords = {"realisation": [0, 1], "lambda_ratio": RATIOS, "contact_width": WIDTHS}
+    variables = {
+        "breakthrough_probability": (("realisation", *DIMS), values),
+        "breakthrough_probability_mean": (DIMS, mean),
+    }
+    return xr.Dataset(variables, coords, {"travel": 1e6, "longest_wavelength": 1e-3})
+
+
+def test_a_curve_is_right_at_any_width_between_and_beyond_the_maps(master):
+    for width in (*WIDTHS, 0.7e-3, 1.9e-3, 0.3e-3, 3e-3):
+        found = expit(curve_at(master, width).logit_at(np.log(RATIOS)))
+        np.testing.assert_allclose(found, chance(RATIOS, width), rtol=1e-9)
+    curve = curve_at(master.isel(contact_width=[1]), 0.6e-3)  # a map of one width
+    np.testing.assert_allclose(curve.logit_at(np.log(RATIOS)), logit(chance(RATIOS, 0.6e-3)))
+
+
+def test_the_sample_size_is_that_of_the_scatter_between_realisations(master):
+    curve = curve_at(master, WIDTHS[1])
+    mean = chance(RATIOS, WIDTHS[1])
+    variance = 2.0 * (0.05 * mean) ** 2  # of two values, on either side of their mean
+    np.testing.assert_allclose(curve.sample_size, mean * (1.0 - mean) / variance)
+    # Beyond the map's widths it is that of the nearest.
+    wide, widest = curve_at(master, WIDTHS[-1]), curve_at(master, 2.0 * WIDTHS[-1])
+    np.testing.assert_allclose(widest.sample_size, wide.sample_size[: widest.sample_size.size])
+
+
+def test_another_layers_curve_has_no_known_scatter(master):
+    layer = master["breakthrough_probability_mean"].rename(
+        lambda_ratio="layer_lambda_ratio", contact_width="layer_contact_width"
+    )
+    curve = layer_curve_at(layer, master, 0.7e-3)
+    np.testing.assert_array_equal(curve.logits, curve_at(master, 0.7e-3).logits)
+    assert np.isnan(curve.sample_size).all()
+
+
+def test_what_was_not_seen_in_all_windows_is_not_known(master):
+    rare = master.assign_attrs(travel=0.003)  # two windows of each realisation
+    assert curve_at(rare, WIDTHS[0]).films.max() < curve_at(master, WIDTHS[0]).films.max()
+
+
+def test_each_record_is_read_off_at_its_own_width(master):
+    widths = xr.DataArray([1e-3, 0.7e-3, 1e-3], dims="record")
+    ratios = xr.DataArray(
+        np.array([[0.8, 0.9, 1.0], [1.3, 1.4, 1.5]]), dims=("film_formula", "record")
+    )
+    logits = logits_on(lambda width: curve_at(master, width), widths, ratios.T)
+    assert logits.dims == ("film_formula", "record")
+    for number, width in enumerate(widths.values):
+        expected = curve_at(master, width).logit_at(np.log(ratios.values[:, number]))
+        np.testing.assert_array_equal(logits.values[:, number], expected)

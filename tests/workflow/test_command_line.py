@@ -1,0 +1,105 @@
+"""The study that a Snakemake command asks for, and mistakes in it: one line before any job."""
+
+import pytest
+from refusals import one_line
+from studies import PAPER, SMOKE
+
+from lube.errors import StudyError
+from lube.study.study import load_study
+from lube.workflow.command_line import check_command_line, study_of_command
+
+
+@pytest.fixture(autouse=True)
+def from_the_repository(monkeypatch):
+    monkeypatch.chdir(PAPER.parents[2])
+
+
+def refusal(*arguments):
+    """The line that a command is refused with."""
+    with pytest.raises(SystemExit) as refused:
+        check_command_line(arguments)
+    line = refused.value.code
+    assert line.startswith("The study cannot start. ") and "\n" not in line
+    return line
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        ("-n", "archive"),
+        ("archive", "--configfile", str(SMOKE), "--cores", "2"),
+        ("--configfile", str(SMOKE), "--", "archive"),
+        ("--config", "name=mine", "rig={revolutions: 3}", "--forcerun", "film"),
+        ("--summary",),
+    ],
+)
+def test_a_command_that_snakemake_understands_passes(arguments):
+    check_command_line(arguments)
+
+
+def test_a_target_after_an_option_is_to_be_put_first():
+    assert "put targets before it, as in `snakemake archive --configfile mine.yaml`" in refusal(
+        "--configfile", "mine.yaml", "archive"
+    )
+    assert "begins with `based_on: a.yaml`" in refusal("--configfile", "a.yaml", "b.yaml")
+    assert "`snakemake archive --config key=value`" in refusal("--config", "seed=3", "archive")
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (None, "No such file or directory"),
+        (b"name: [1\n", "not valid YAML at line 2"),
+        (b"- name\n", "need a mapping of keys to values"),
+        (b"\xff\xfe", "it is not UTF-8 text"),
+    ],
+    ids=["absent", "torn", "list", "binary"],
+)
+def test_a_file_that_cannot_be_read_is_named(tmp_path, content, reason):
+    path = tmp_path / "mine.yaml"
+    if content is not None:
+        path.write_bytes(content)
+    line = refusal("-n", "--configfile", str(path))
+    assert f"{path}: " in line and reason in line
+
+
+def test_a_nested_key_is_to_be_written_as_snakemake_reads_it():
+    line = refusal("--config", "rollers.first.radius=40 mm", "name=mine")
+    assert "need 'rollers={first: {radius: 40 mm}}' for a nested key" in line
+
+
+def test_without_options_it_is_the_papers_study():
+    study, arguments = study_of_command([], {})
+    assert study.name == "paper"
+    assert load_study(**arguments) == study
+
+
+def test_a_file_is_named_from_the_working_folder():
+    study, arguments = study_of_command([SMOKE], {})
+    assert study.name == "smoke"
+    assert arguments == {"path": "workflow/config/smoke.yaml", "changes": {}}
+
+
+def test_config_changes_values_whose_numbers_snakemake_leaves_as_text():
+    # As `--config name=mine seed=3 'rig={revolutions: 3}' 'kept_realisations=[0,1]' ...`.
+    config = {
+        "name": "mine",
+        "seed": 3,
+        "rig": {"revolutions": "3", "drift": "0.1"},
+        "kept_realisations": ["0", "1"],
+        "experiment": {"manifest": "null"},
+    }
+    study, arguments = study_of_command([SMOKE], config)
+    assert (study.name, study.seed, study.kept_realisations) == ("mine", 3, (0, 1))
+    assert (study.rig.revolutions, study.rig.drift) == (3, 0.1)
+    assert load_study(**arguments) == study
+
+
+def test_mistakes_in_config_are_refused_as_those_in_a_file():
+    assert "seeed: unknown key" in one_line(
+        StudyError, study_of_command, [SMOKE], {"name": "mine", "seeed": 3}
+    )
+    assert "name: got None, need one other than 'smoke'" in one_line(
+        StudyError, study_of_command, [SMOKE], {"seed": 3}
+    )

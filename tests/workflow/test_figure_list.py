@@ -1,0 +1,81 @@
+"""The figures of a study, from their notebooks: what each needs, and what it says."""
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from lube.errors import LubeError
+from lube.workflow.figure_list import chapters, study_figures
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Write a notebook; `tags` are those of its first cell."""
+
+    def write_notebook(name, code="film = '../film.nc'", words="# Film\n\nSome *words*.", tags=()):
+        cells = [
+            new_markdown_cell(words, metadata={"tags": list(tags)}),
+            new_code_cell(code, metadata={"tags": ["parameters"]}),
+        ]
+        nbformat.write(new_notebook(cells=cells), tmp_path / f"{name}.ipynb")
+        return tmp_path
+
+    return write_notebook
+
+
+def test_a_figure_says_what_it_needs(write, study):
+    code = "%matplotlib inline\nfrom lube import gather\nfilm = '../film.nc'\nx = 'contact.nc'"
+    figure = study_figures(study, write("fig01_mine", code))["fig01_mine"]
+    assert figure.datasets == ["contact", "film"]
+    assert {"lube/stages/ensemble.py", "lube/workflow/notebooks.py"} <= set(figure.sources)
+    assert not figure.measured
+    assert (figure.title, figure.text) == ("Film", "Some *words*.")
+
+
+def test_without_words_and_chapter_a_figure_has_its_name_and_the_last_chapter(write, study):
+    figure = study_figures(study, write("fig99_mine", words=""))["fig99_mine"]
+    assert (figure.title, figure.text) == ("fig99_mine", "")
+    assert figure.chapter == "Further figures"
+
+
+def test_a_figure_that_compares_levels_asks_for_several(write, study):
+    folder = write("fig01_forces", tags=["several-force"])
+    write("fig02_slips", tags=["several-slide_to_roll_ratio"])
+    one_slip = {"slide_to_roll_ratio": (0.0,)}
+    grid = study.operating_grid.model_copy(update=one_slip)
+    assert list(study_figures(study.model_copy(update={"operating_grid": grid}), folder)) == [
+        "fig01_forces"
+    ]
+
+
+def test_chapters_are_numbered_by_their_figures_measured_times_last(write, study):
+    write("bench01_speed", "clocks = '../speed.nc'", tags=["chapter-measured-times"])
+    write("fig02_b", tags=["chapter-oil-and-film"])
+    figures = study_figures(study, write("fig01_a", tags=["chapter-oil-and-film"]))
+    assert figures["bench01_speed"].measured
+    assert chapters(figures) == {
+        "bench01_speed": "2 Measured times",
+        "fig01_a": "1 Oil and film",
+        "fig02_b": "1 Oil and film",
+    }
+
+
+@pytest.mark.parametrize(
+    ("code", "message"),
+    [
+        ("plot this nicely", "fig99_mine.ipynb: got 'plot this nicely', which is not Python"),
+        (None, "fig99_mine.ipynb: no cell is tagged 'parameters'"),
+        ("{", "fig99_mine.ipynb: not a Jupyter notebook"),
+    ],
+    ids=["not Python", "no parameters", "damaged"],
+)
+def test_a_notebook_that_is_no_figure_is_refused_in_one_line(write, study, code, message):
+    folder = write("fig99_mine", code if code and len(code) > 1 else "x = 1")
+    path = folder / "fig99_mine.ipynb"
+    if code is None:
+        path.write_text(path.read_text("utf-8").replace("parameters", "other"), "utf-8")
+    elif code == "{":
+        path.write_text(code, "utf-8")
+    with pytest.raises(LubeError) as refused:
+        study_figures(study, folder)
+    assert message in str(refused.value)

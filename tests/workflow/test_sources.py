@@ -1,0 +1,80 @@
+"""Which files of the package a script depends on, by following its imports."""
+
+import pytest
+
+from lube.workflow.sources import ROOT, imported_modules, script_sources, sources
+
+SCRIPTS = sorted(path.stem for path in (ROOT / "workflow/scripts").glob("*.py"))
+
+
+@pytest.fixture
+def package(tmp_path):
+    """Write a package `lube` of some modules, and return the folder it lies in."""
+
+    def write(modules):
+        for name, code in modules.items():
+            path = tmp_path / "lube" / f"{name}.py"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(code, encoding="utf-8")
+        return tmp_path
+
+    return write
+
+
+def test_imports_are_found_wherever_they_are():
+    code = "import ast\ndef f():\n    from lube.stages import film\n"
+    assert imported_modules(code) == ("ast", "lube.stages", "lube.stages.film")
+
+
+def test_a_public_name_means_the_module_that_defines_it():
+    assert "lube/stages/ensemble.py" in sources("from lube import gather")
+    assert "lube/stages/ensemble.py" in sources("import lube\nlube.gather([])")
+
+
+def test_imports_are_followed_through_modules_and_packages(package):
+    root = package(
+        {
+            "a": "import lube.b.c",
+            "b/__init__": "from lube.d import x",
+            "b/c": "import numpy",
+            "d": "",
+            "e": "",
+        }
+    )
+    assert sources("import lube.a", root) == ["lube/a.py", "lube/b/c.py"]
+    expected = ["lube/b/__init__.py", "lube/b/c.py", "lube/d.py"]
+    assert sources("from lube.b import c", root) == expected
+
+
+def test_circles_of_imports_end(package):
+    root = package({"a": "import lube.b", "b": "import lube.a"})
+    assert sources("import lube.a", root) == ["lube/a.py", "lube/b.py"]
+
+
+def test_the_study_and_the_registry_are_left_out_because_their_values_are_parameters(package):
+    root = package(
+        {
+            "study/study": "import lube.units",
+            "schema/stages": "",
+            "units": "",
+            "a": "import lube.study.study",
+        }
+    )
+    assert sources("import lube.a, lube.schema.stages", root) == ["lube/a.py"]
+    for script in SCRIPTS:
+        assert not {"lube/study/study.py", "lube/__init__.py"} & set(script_sources(script))
+
+
+def test_a_module_is_a_source_of_the_scripts_that_use_it():
+    def users(module):
+        return {name for name in SCRIPTS if f"lube/{module}.py" in script_sources(name)}
+
+    assert users("stages/trace") == {"trace"}
+    assert users("plots") == set()
+    assert {"batch", "trace", "rig", "experiment"} <= users("kernels/layer")
+    assert "figure" in users("workflow/notebooks")
+
+
+def test_what_every_job_imports_is_a_source_of_all():
+    for name in SCRIPTS:
+        assert "lube/workflow/jobs.py" in script_sources(name)

@@ -1,0 +1,14 @@
+"""Write the whole study as a single file, based on no other."""
+
+from pathlib import Path
+
+from lube.storage.files import written_whole
+from lube.study.resolve import resolved_text
+from lube.workflow.jobs import begin_job
+
+begin_job(snakemake.log[0])
+output = Path(snakemake.output[0])
+with written_whole(output) as part:
+    part.write_text(
+        resolved_text(**snakemake.config["study"], folder=output.parent), encoding="utf-8"
+    )
