@@ -14,6 +14,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
+import matplotlib
 import nbformat
 import papermill
 from ipykernel.inprocess import InProcessKernelManager
@@ -33,15 +34,6 @@ _CELL_FAILED = 3
 
 _ADDED = {"injected-parameters", "papermill-error-cell-tag"}
 """Tags of the cells that papermill adds."""
-
-_ENVIRONMENT = {
-    # Pictures below the cells, as in Jupyter.
-    "MPLBACKEND": "module://matplotlib_inline.backend_inline",
-    # The figures are the same whatever style the user has set up for their own.
-    "MATPLOTLIBRC": os.devnull,
-    # Jupyter's debugger, not used here, would print a warning.
-    "PYDEVD_DISABLE_FILE_VALIDATION": "1",
-}
 
 # Parts of IPython's tracebacks.
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
@@ -113,7 +105,9 @@ def _execute_apart(*arguments):
 
 def _execute(notebook, output, parameters, drawn_by, code):
     """Execute a notebook with papermill; its output is written even if a cell fails."""
-    os.environ.update({**_ENVIRONMENT, DRAWN_BY: drawn_by})
+    os.environ[DRAWN_BY] = drawn_by
+    # Jupyter's debugger, not used here, would print a warning.
+    os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"
     if code is not None:
         _use_package_in(code)
     try:
@@ -149,6 +143,9 @@ class _InProcess(Engine):
         config = Config({"HistoryManager": {"enabled": False}})
         manager = InProcessKernelManager(config=config)
         manager.start_kernel()
+        # Pictures appear below the cells, whatever style the user has set up for their own.
+        manager.kernel.shell.enable_matplotlib("inline")
+        matplotlib.rcdefaults()
         client = manager.client()
         client.start_channels()
         nb_man.nb.metadata.language_info = manager.kernel.language_info
