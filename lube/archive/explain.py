@@ -4,7 +4,6 @@ The file states the values of the study that determine it. With the film table b
 suffice to draw the roughness again and run the contact model on it.
 """
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,7 @@ from lube.stages.roughness import roughness_batch
 from lube.storage.netcdf import load
 from lube.storage.provenance import fingerprint, input_sums, json_attribute
 from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.types import File
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Explanation:
         ]
 
 
-def explain(path: str | Path, realisation: int | None = 0, **levels: float | str) -> Explanation:
+def explain(path: File, realisation: int | None = 0, **levels: float | str) -> Explanation:
     """Trace an operating point of contact.nc and compute it again.
 
     Parameters
@@ -82,8 +82,6 @@ def explain(path: str | Path, realisation: int | None = 0, **levels: float | str
         operating point or realisation.
     """
     path = Path(path)
-    if path.is_dir():
-        raise DataError(f"{path}: got a folder, need a contact.nc; an archive's is in its data")
     contact = load(path, "contact")
     film = _input_of(contact, path, "film")
     lubricant = _input_of(film, path.with_name("film.nc"), "lubricant")
@@ -98,11 +96,7 @@ def explain(path: str | Path, realisation: int | None = 0, **levels: float | str
         for table in (film, lubricant)
     )
     values = json_attribute(contact, "config", path)
-    # Of the stored dataset only the levels are used, never a result.
-    realisations, ratios = (
-        stored[name].values.tolist() for name in ("realisation", "slide_to_roll_ratio")
-    )
-    again = _computed_again(realisations, ratios, point, values["contact"])
+    again = _computed_again(stored, point, values["contact"])
     if realisation is None:
         again = with_intervals(again, point)
     return Explanation(stored, properties, point, values, again)
@@ -138,19 +132,16 @@ def _level(coordinate, path, wanted):
     return index
 
 
-def _computed_again(
-    realisations: Sequence[int], ratios: Sequence[float], film: xr.Dataset, run: dict[str, Any]
-) -> xr.Dataset:
-    """Draw the roughness of some realisations again and run the contact model on it."""
+def _computed_again(stored, film, run):
+    """Draw the roughness again and run the contact model on it; of `stored`, use levels only."""
     spec = LineSpec(**run["lines"])
     layer = BoundaryLayer.model_construct(**run["boundary_layer"])
-    parts = []
-    for realisation in realisations:
+    ratios, parts = stored["slide_to_roll_ratio"].values.tolist(), []
+    for realisation in stored["realisation"].values.tolist():
         lines = roughness_batch(spec, run["seed"], [realisation])
         parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"]))
-    return xr.concat(
-        parts, "realisation", join="exact", data_vars="minimal", combine_attrs="override"
-    )
+    options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
+    return xr.concat(parts, "realisation", **options)
 
 
 def in_words(explanation: Explanation) -> str:
@@ -167,30 +158,29 @@ def in_words(explanation: Explanation) -> str:
         Several lines.
     """
     contact, run = explanation.contact, explanation.values["contact"]
+    layer = run["boundary_layer"]
     sections = {
-        contact.attrs["title"]: [
-            (name, contact.attrs[name])
-            for name in ("study", "config_sha256", "source", "code_commit", "software")
-        ],
+        contact.attrs["title"]: [(name, contact.attrs[name]) for name in _ORIGIN],
         "Operating point": [_row(contact, name) for name in CONTACT_DIMS],
         "Lubricant": [_row(explanation.lubricant, name) for name in _LUBRICANT],
         "Film": [_row(explanation.film, name) for name in _FILM],
-        "Roughness": list(_roughness_rows(contact, run)),
+        "Roughness": _roughness_rows(contact, run),
         "Contact": [
-            ("critical thickness of the layer", f"{run['boundary_layer']['critical_thickness']} m"),
-            ("limiting shear stress", f"{run['boundary_layer']['shear_strength']} Pa"),
+            ("critical thickness of the layer", f"{layer['critical_thickness']} m"),
+            ("limiting shear stress", f"{layer['shear_strength']} Pa"),
             ("reduced modulus E*", f"{run['reduced_modulus']} Pa"),
             ("revolutions", run["revolutions"]),
         ],
         "Stored value, and whether it came out again": list(_result_rows(explanation)),
     }
     width = max(len(name) for rows in sections.values() for name, _ in rows)
-    return "\n\n".join(
-        "\n".join([title, *(f"  {name:{width}}  {value}" for name, value in rows)])
-        for title, rows in sections.items()
-    )
+    text = ""
+    for title, rows in sections.items():
+        text += f"\n{title}\n" + "".join(f"  {name:{width}}  {value}\n" for name, value in rows)
+    return text.strip()
 
 
+_ORIGIN = ("study", "config_sha256", "source", "code_commit", "software")
 _LUBRICANT = (
     *("kinematic_viscosity", "density", "dynamic_viscosity", "pressure_viscosity_coefficient"),
 )
@@ -214,20 +204,21 @@ def _with_units(value, array):
     return f"{value}" if units == "1" else f"{value} {units}"
 
 
-def _roughness_rows(contact, run) -> Iterator[tuple[str, Any]]:
-    realisations, spec = contact["realisation"].values.tolist(), run["lines"]
-    last = realisations[-1]
-    which, each = (last, last) if len(realisations) == 1 else (f"r = 0 to {last}", "r")
-    yield "realisation", which
-    yield "seeds of the two lines", f"numpy.random.SeedSequence(({run['seed']}, {each})).spawn(2)"
-    yield "points of each line", ", ".join(str(points) for points in spec["points"])
-    yield "spacing", f"{spec['spacing']} m"
-    yield "rms heights", ", ".join(f"{height} m" for height in spec["rms_height"])
-    yield "Hurst exponent", spec["hurst_exponent"]
-    yield "wave vectors", f"{spec['q_min']} to {spec['q_max']} rad/m"
+def _roughness_rows(contact, run):
+    spec, last = run["lines"], contact["realisation"].values[-1].item()
+    which, each = (last, last) if contact.sizes["realisation"] == 1 else (f"r = 0 to {last}", "r")
+    return [
+        ("realisation", which),
+        ("seeds of the two lines", f"numpy.random.SeedSequence(({run['seed']}, {each})).spawn(2)"),
+        ("points of each line", ", ".join(str(points) for points in spec["points"])),
+        ("spacing", f"{spec['spacing']} m"),
+        ("rms heights", ", ".join(f"{height} m" for height in spec["rms_height"])),
+        ("Hurst exponent", spec["hurst_exponent"]),
+        ("wave vectors", f"{spec['q_min']} to {spec['q_max']} rad/m"),
+    ]
 
 
-def _result_rows(explanation) -> Iterator[tuple[str, str]]:
+def _result_rows(explanation):
     differing = set(explanation.differing)
     for name, again in explanation.again.data_vars.items():
         if again.size == 1 and again.dims:  # not the many realisations behind a mean

@@ -19,7 +19,6 @@ rule archive:
     params:
         about=digest(STUDY.about.model_dump(mode="json")),
         code=lambda wildcards: code_state(),
-        kinds=DATASETS,
         figures=ARCHIVED,
     message:
         "Archive: {output.zip}, and the same as a folder beside it"
