@@ -190,18 +190,14 @@ def values_text(study: Study, study_file: str) -> str:
     str
         JSON.
     """
-    texts = {kind: config_text(study, kind) for kind in DATASETS}
-    values = {}
-    for text in texts.values():
-        values |= json.loads(text)
     content = {
         "study": study.name,
         "study_file": study_file,
         "seed": study.seed,
         "realisations": study.realisations,
         "about": study.about.in_files,
-        "config_sha256": {kind: digest(text) for kind, text in texts.items()},
-        "values": values,
+        "config_sha256": {kind: digest(config_text(study, kind)) for kind in DATASETS},
+        "values": {kind: study.stage_inputs(kind) for kind in DATASETS},
     }
     return json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 

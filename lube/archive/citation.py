@@ -35,7 +35,7 @@ def publication_date(study: Study) -> datetime.date:
     date = study.about.date or commit_date()
     if date is None:
         raise StudyError(
-            "about.date: missing, and the code has no commit; need a day of publication"
+            "about.date: missing, and the code has no commit whose date could be taken"
         )
     return datetime.date.fromisoformat(str(date))
 

@@ -12,6 +12,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.grid.levels import format_levels, level_index
+from lube.report.pages import render
 from lube.schema import CONTACT_DIMS
 from lube.stages.contact import contact_statistics
 from lube.stages.ensemble import with_intervals
@@ -157,75 +158,20 @@ def in_words(explanation: Explanation) -> str:
     str
         Several lines.
     """
-    contact, run = explanation.contact, explanation.values["contact"]
-    layer = run["boundary_layer"]
-    sections = {
-        contact.attrs["title"]: [(name, contact.attrs[name]) for name in _ORIGIN],
-        "Operating point": [_row(contact, name) for name in CONTACT_DIMS],
-        "Lubricant": [_row(explanation.lubricant, name) for name in _LUBRICANT],
-        "Film": [_row(explanation.film, name) for name in _FILM],
-        "Roughness": _roughness_rows(contact, run),
-        "Contact": [
-            ("critical thickness of the layer", f"{layer['critical_thickness']} m"),
-            ("limiting shear stress", f"{layer['shear_strength']} Pa"),
-            ("reduced modulus E*", f"{run['reduced_modulus']} Pa"),
-            ("revolutions", run["revolutions"]),
-        ],
-        "Stored value, and whether it came out again": list(_result_rows(explanation)),
-    }
-    width = max(len(name) for rows in sections.values() for name, _ in rows)
-    text = ""
-    for title, rows in sections.items():
-        text += f"\n{title}\n" + "".join(f"  {name:{width}}  {value}\n" for name, value in rows)
-    return text.strip()
+    again = explanation.again
+    return render(
+        "explanation.txt",
+        **vars(explanation),
+        dims=CONTACT_DIMS,
+        differing=explanation.differing,
+        realised=[name for name in again if "realisation" in again[name].dims],
+        stated=_stated,
+    ).strip()
 
 
-_ORIGIN = ("study", "config_sha256", "source", "code_commit", "software")
-_LUBRICANT = (
-    *("kinematic_viscosity", "density", "dynamic_viscosity", "pressure_viscosity_coefficient"),
-)
-_FILM = (
-    *("film_thickness", "lambda_ratio", "contact_half_width", "hertz_pressure"),
-    *("entrainment_speed", "moes_load", "moes_material", "in_validity_range", "formula_source"),
-)
-
-
-def _row(dataset, name):
-    """Long name and value of a variable with a single value."""
-    array = dataset[name]
-    value = array.values.item()
+def _stated(array):
+    """Value of a variable with a single one, in words or with its unit."""
+    value, unit = array.values.item(), array.attrs.get("units", "1")
     if "flag_meanings" in array.attrs:
         value = array.attrs["flag_meanings"].split()[int(value)]
-    return array.attrs["long_name"], _with_units(value, array)
-
-
-def _with_units(value, array):
-    units = array.attrs.get("units", "1")
-    return f"{value}" if units == "1" else f"{value} {units}"
-
-
-def _roughness_rows(contact, run):
-    spec, last = run["lines"], contact["realisation"].values[-1].item()
-    which, each = (last, last) if contact.sizes["realisation"] == 1 else (f"r = 0 to {last}", "r")
-    return [
-        ("realisation", which),
-        ("seeds of the two lines", f"numpy.random.SeedSequence(({run['seed']}, {each})).spawn(2)"),
-        ("points of each line", ", ".join(str(points) for points in spec["points"])),
-        ("spacing", f"{spec['spacing']} m"),
-        ("rms heights", ", ".join(f"{height} m" for height in spec["rms_height"])),
-        ("Hurst exponent", spec["hurst_exponent"]),
-        ("wave vectors", f"{spec['q_min']} to {spec['q_max']} rad/m"),
-    ]
-
-
-def _result_rows(explanation):
-    differing = set(explanation.differing)
-    for name, again in explanation.again.data_vars.items():
-        if again.size == 1 and again.dims:  # not the many realisations behind a mean
-            stored = _with_units(explanation.contact[name].values.item(), again)
-            verdict = f"NOT THE SAME: {again.item()}" if name in differing else "the same bits"
-            yield again.attrs["long_name"], f"{stored}: {verdict}"
-    count = explanation.contact.sizes["realisation"]
-    if count > 1:
-        wrong = any("realisation" in explanation.again[name].dims for name in differing)
-        yield f"all {count} realisations", "NOT THE SAME" if wrong else "the same bits"
+    return f"{value}" if unit == "1" else f"{value} {unit}"

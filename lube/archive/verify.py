@@ -54,10 +54,12 @@ def unpacked(path: File) -> Iterator[Path]:
         try:
             shutil.unpack_archive(path, scratch, "zip")
         except (OSError, zipfile.BadZipFile, zlib.error) as error:
-            raise DataError(f"{path}: no archive's folder, nor its zip, whole ({error})") from None
+            raise DataError(f"{path}: neither a folder nor a whole zip ({error})") from None
         # Whoever packed it, with its folder or without.
         roots = sorted(Path(scratch).rglob(SUMS), key=lambda sums: len(sums.parts))
-        yield roots[0].parent if roots else Path(scratch)
+        if not roots:
+            raise DataError(f"{path}: not an archive: {SUMS} is missing")
+        yield roots[0].parent
 
 
 def verify_archive(folder: File) -> list[str]:

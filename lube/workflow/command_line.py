@@ -3,14 +3,14 @@
 import argparse
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 from lube.errors import LubeError, StudyError
 from lube.study.resolve import study_files
 from lube.study.study import Study, load_study
+from lube.types import File
 
 PAPER = "workflow/config/paper.yaml"
 """Study file of a command without ``--configfile``."""
@@ -66,16 +66,14 @@ def _check_entry(entry):
         raise StudyError(f"--config: got {entry}, need '{outer}={value}' for a nested key")
 
 
-def study_of_command(
-    files: Sequence[str | Path], config: Mapping[str, Any]
-) -> tuple[Study, dict[str, Any]]:
+def study_of_command(files: Sequence[File], config: dict) -> tuple[Study, dict[str, Any]]:
     """Load the study that a Snakemake command asks for.
 
     Parameters
     ----------
     files : sequence of str or Path
         Files of ``--configfile``: one, or none for the paper's study.
-    config : mapping
+    config : dict
         Values of ``--config``, as Snakemake parsed them.
 
     Returns
@@ -98,13 +96,13 @@ def study_of_command(
 
 def _typed(value):
     """Give numbers in a nested value their type: Snakemake leaves all of them as text."""
-    if isinstance(value, Mapping):
-        return {key: _typed(one) for key, one in value.items()}
-    if isinstance(value, list):
-        return [_typed(one) for one in value]
-    if isinstance(value, str):
-        for number in (int, float):
-            with suppress(ValueError):
-                return number(value)
-        return _WORDS.get(value, value)
+    match value:
+        case dict():
+            return {key: _typed(one) for key, one in value.items()}
+        case list():
+            return [_typed(one) for one in value]
+        case str():
+            for read in (int, float, _WORDS.__getitem__):
+                with suppress(ValueError, KeyError):
+                    return read(value)
     return value
