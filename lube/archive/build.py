@@ -29,7 +29,8 @@ from lube.study.resolve import study_files
 from lube.study.study import Study
 from lube.study.text_files import read_yaml
 from lube.types import File
-from lube.workflow.figures import origin, products, wrong_figures
+from lube.workflow.figures import wrong_figures
+from lube.workflow.study_files import origin, products
 
 SUMS = "SHA256SUMS"
 """Name of the file of SHA-256 sums, in the format of ``sha256sum --check``."""

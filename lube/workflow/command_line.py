@@ -2,15 +2,15 @@
 
 import argparse
 import os
-import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
-from lube.errors import LubeError, StudyError
+from lube.errors import StudyError
 from lube.study.resolve import study_files
 from lube.study.study import Study, load_study
 from lube.types import File
+from lube.workflow.study_files import one_line_errors
 
 PAPER = "workflow/config/paper.yaml"
 """Study file of a command without ``--configfile``."""
@@ -18,6 +18,7 @@ PAPER = "workflow/config/paper.yaml"
 _WORDS = {"true": True, "false": False, "null": None}
 
 
+@one_line_errors()
 def check_command_line(arguments: Sequence[str]) -> None:
     """End Snakemake with one line if it would fail to read the study's options.
 
@@ -33,14 +34,11 @@ def check_command_line(arguments: Sequence[str]) -> None:
     parser.add_argument("--configfile", "--configfiles", nargs="+", default=[])
     parser.add_argument("--config", "-C", nargs="*", default=[])
     options, _ = parser.parse_known_args(arguments)
-    try:
-        _check_number(options.configfile)
-        for file in options.configfile:
-            study_files(file)  # refuses what it cannot read
-        for entry in options.config:
-            _check_entry(entry)
-    except LubeError as error:
-        sys.exit(f"The study cannot start. {error}")
+    _check_number(options.configfile)
+    for file in options.configfile:
+        study_files(file)  # refuses what it cannot read
+    for entry in options.config:
+        _check_entry(entry)
 
 
 def _check_number(files):
