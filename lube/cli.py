@@ -7,7 +7,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from lube.errors import LubeError, shown
+from lube.errors import LubeError
 from lube.workflow.environment import compute_alike
 
 
@@ -50,9 +50,7 @@ def _parser():
     figures.add_argument("figure", nargs="*", help="such as fig02_film; by default all")
     figures.add_argument("--to", required=True, help="folder for the new figures")
     figures.set_defaults(run=_figures)
-    explain = commands.add_parser(
-        "explain", help="trace a number of contact.nc and compute it again"
-    )
+    explain = commands.add_parser("explain", help="trace and recompute a number of contact.nc")
     explain.add_argument("path", help="a contact.nc, with its film.nc and lubricant.nc beside it")
     units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
     for name in (*units, "slide-to-roll-ratio"):
@@ -60,23 +58,15 @@ def _parser():
         explain.add_argument(f"--{name}", type=float, help=help_text)
     for name in ("lubricant", "film-formula"):
         explain.add_argument(f"--{name}", help="by name; by default the first")
-    explain.add_argument(
-        "--realisation",
-        type=_realisation,
-        default=0,
-        help="its number, or `all` for the mean and its interval; by default 0",
-    )
+    help_text = "its number, or `all` for the mean and its interval; by default 0"
+    explain.add_argument("--realisation", type=number_or_all, default=0, help=help_text)
     explain.set_defaults(run=_explain)
     return parser
 
 
-def _realisation(text):
-    """Parse the number of a realisation; None stands for all."""
-    try:
-        return None if text == "all" else int(text)
-    except ValueError:
-        message = f"got {shown(text)}, need a whole number or `all`"
-        raise argparse.ArgumentTypeError(message) from None
+def number_or_all(text: str) -> int | None:
+    """Parse the number of a realisation, or None for all; argparse prints this function's name."""
+    return None if text == "all" else int(text)
 
 
 def _verify(options):

@@ -13,7 +13,7 @@ def test_what_is_missing_or_no_archive_is_refused_in_one_line(files, tmp_path, m
     monkeypatch.chdir(tmp_path)
     for arguments, expected in (
         (["verify", "gone"], "Error: gone: no such archive"),
-        (["verify", str(files / "film.nc")], "neither an archive's folder nor its zip"),
+        (["verify", str(files / "film.nc")], "neither a folder nor a whole zip"),
         (["explain", "gone/contact.nc"], "Error: gone/contact.nc: no such file"),
     ):
         assert main(arguments) == 2
@@ -26,7 +26,7 @@ def test_what_is_missing_or_no_archive_is_refused_in_one_line(files, tmp_path, m
 def test_a_realisation_is_a_number_or_all(capsys):
     with pytest.raises(SystemExit):
         main(["explain", "contact.nc", "--realisation", "1.5"])
-    assert "got '1.5', need a whole number or `all`" in capsys.readouterr().err
+    assert "--realisation: invalid number_or_all value: '1.5'" in capsys.readouterr().err
 
 
 def test_a_reader_that_stops_is_no_error(tmp_path):

@@ -12,7 +12,6 @@ import platform
 import shutil
 import zipfile
 from collections import Counter
-from collections.abc import Sequence
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from lube.archive.citation import citation_file, zenodo_metadata
 from lube.archive.crate import CATALOGUE, crate_metadata
 from lube.archive.page import archive_page
 from lube.errors import DataError, StudyError, shown
+from lube.schema import DATASETS
 from lube.storage.files import why_not, written_whole
 from lube.storage.git import ROOT, code_files, commit
 from lube.storage.netcdf import load
@@ -28,7 +28,9 @@ from lube.study.lubricant_record import SHIPPED_FOLDER, is_record_path
 from lube.study.resolve import study_files
 from lube.study.study import Study
 from lube.study.text_files import read_yaml
-from lube.workflow.figures import origin, products, wrong_figures
+from lube.types import File
+from lube.workflow.figures import wrong_figures
+from lube.workflow.study_files import origin, products
 
 SUMS = "SHA256SUMS"
 """Name of the file of SHA-256 sums, in the format of ``sha256sum --check``."""
@@ -36,27 +38,18 @@ VALUES = "values.json"
 """Name of the file with the study's values as they were understood."""
 
 
-def make_archive(
-    study: Study,
-    study_file: str | Path,
-    results: str | Path,
-    kinds: Sequence[str],
-    figures: Sequence[str],
-    folder: str | Path,
-) -> None:
+def make_archive(study: Study, path: File, results: File, figures: list[str], folder: File) -> None:
     """Write the archive of a study: a folder, its zip, and the SHA-256 sum of the zip.
 
     Parameters
     ----------
     study : Study
         The study; it must name its creators.
-    study_file : str or Path
+    path : str or Path
         Its YAML file.
     results : str or Path
         Folder of its results.
-    kinds : sequence of str
-        Datasets to include, by the kinds of `lube.schema`.
-    figures : sequence of str
+    figures : list of str
         Figures to include.
     folder : str or Path
         The archive; its zip goes beside it. An older one is replaced when the new one is whole.
@@ -70,7 +63,7 @@ def make_archive(
     folder, results = Path(folder), Path(results)
     for wrong in wrong_figures(figures, results, results):
         raise DataError(wrong)
-    contents = archive_contents(study, study_file, results, kinds, figures)
+    contents = archive_contents(study, path, results, figures)
     new, packed = (folder.with_name(folder.name + end) for end in (".part", ".zip"))
     try:
         shutil.rmtree(new, ignore_errors=True)  # of a killed process
@@ -87,17 +80,13 @@ def make_archive(
 
 
 def archive_contents(
-    study: Study,
-    study_file: str | Path,
-    results: str | Path,
-    kinds: Sequence[str],
-    figures: Sequence[str],
+    study: Study, path: File, results: File, figures: list[str]
 ) -> dict[str, Path | str]:
     """List what an archive contains, apart from its catalogue and its SHA-256 sums.
 
     Parameters
     ----------
-    study, study_file, results, kinds, figures
+    study, path, results, figures
         As in `make_archive`.
 
     Returns
@@ -106,39 +95,33 @@ def archive_contents(
         From the path below the archive's root to the file to copy, or the text to write.
     """
     results = Path(results)
-    written = written_files(study, study_file)
-    archived_as = next(iter(written))
+    written = written_files(study, path)
+    study_file = next(iter(written))
+    experiment = load(results / "experiment.nc", "experiment")
     drawn = [name for figure in figures for name in (*products(figure), origin(figure))]
     return {
-        **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in kinds},
+        **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in DATASETS},
         **{name: results / name for name in drawn},
         **{f"study/{name}": path for name, path in written.items()},
         **{f"lubricants/{name}": path for name, path in _records(study).items()},
         **{f"code/{name}": ROOT / name for name in code_files()},
         "code/COMMIT": commit() + "\n",
-        VALUES: values_text(study, kinds, archived_as),
+        VALUES: values_text(study, study_file),
         "versions.txt": exact_versions(),
         "CITATION.cff": citation_file(study),
         ".zenodo.json": zenodo_metadata(study),
-        "README.md": archive_page(study, kinds, archived_as, _refused(results, kinds)),
+        "README.md": archive_page(study, study_file, experiment.attrs["refused"].splitlines()),
     }
 
 
-def _refused(results, kinds):
-    """Lines about the measured records of a study that were not used."""
-    if "experiment" not in kinds:
-        return ()
-    return load(results / "experiment.nc", "experiment").attrs["refused"].splitlines()
-
-
-def written_files(study: Study, study_file: str | Path) -> dict[str, Path]:
+def written_files(study: Study, path: File) -> dict[str, Path]:
     """List the files of a study that people wrote, apart from the measured records.
 
     Parameters
     ----------
     study : Study
         The study.
-    study_file : str or Path
+    path : str or Path
         Its YAML file.
 
     Returns
@@ -153,7 +136,7 @@ def written_files(study: Study, study_file: str | Path) -> dict[str, Path]:
     StudyError
         If the study names one of them by a path that would not resolve in an archive.
     """
-    files = study_files(study_file)
+    files = study_files(path)
     for file in files:
         _check_paths(file)
     for record in study.lubricants:
@@ -179,10 +162,8 @@ def _check_paths(study_file):
     for name in filter(None, [content.get("based_on"), *records, manifest]):
         direct = os.path.relpath(os.path.join(folder, name), folder)
         if Path(name) != Path(direct):
-            raise StudyError(
-                f"{study_file}: got {shown(name)}, need the direct relative path from the study's "
-                f"folder, {shown(direct)}: another would not resolve in an archive"
-            )
+            message = f"got {shown(name)}, an archive needs the direct relative path"
+            raise StudyError(f"{study_file}: {message}, {shown(direct)}")
 
 
 def _records(study):
@@ -195,15 +176,13 @@ def _records(study):
     }
 
 
-def values_text(study: Study, kinds: Sequence[str], study_file: str) -> str:
+def values_text(study: Study, study_file: str) -> str:
     """State a study as it was understood: the values that determine each dataset.
 
     Parameters
     ----------
     study : Study
         The study.
-    kinds : sequence of str
-        Its datasets.
     study_file : str
         Path of its file below the archive's folder ``study``, with slashes.
 
@@ -212,18 +191,14 @@ def values_text(study: Study, kinds: Sequence[str], study_file: str) -> str:
     str
         JSON.
     """
-    texts = {kind: config_text(study, kind) for kind in kinds}
-    values = {}
-    for text in texts.values():
-        values |= json.loads(text)
     content = {
         "study": study.name,
         "study_file": study_file,
         "seed": study.seed,
         "realisations": study.realisations,
         "about": study.about.in_files,
-        "config_sha256": {kind: digest(text) for kind, text in texts.items()},
-        "values": values,
+        "config_sha256": {kind: digest(config_text(study, kind)) for kind in DATASETS},
+        "values": {kind: study.stage_inputs(kind) for kind in DATASETS},
     }
     return json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 
@@ -242,7 +217,7 @@ def exact_versions() -> str:
     return system + "\n".join(kept) + "\n"
 
 
-def check_is_archive(folder: str | Path) -> None:
+def check_is_archive(folder: File) -> None:
     """Check that a folder is an archive.
 
     Parameters
@@ -259,7 +234,7 @@ def check_is_archive(folder: str | Path) -> None:
         raise DataError(f"{folder}: not an archive: {SUMS} is missing")
 
 
-def files_of(folder: str | Path) -> list[str]:
+def files_of(folder: File) -> list[str]:
     """List all files below a folder.
 
     Parameters
@@ -272,10 +247,8 @@ def files_of(folder: str | Path) -> list[str]:
     list of str
         Their paths below it, with slashes, sorted.
     """
-    folder = Path(folder)
-    return sorted(
-        path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()
-    )
+    files = (path for path in Path(folder).rglob("*") if path.is_file())
+    return sorted(path.relative_to(folder).as_posix() for path in files)
 
 
 def _fill(folder, contents, study):
@@ -292,11 +265,10 @@ def _fill(folder, contents, study):
     (folder / SUMS).write_text(sums_of(folder), encoding="utf-8")
 
 
-def sums_of(folder: str | Path) -> str:
+def sums_of(folder: File) -> str:
     """SHA-256 sums of all files below a folder, in the format of ``sha256sum``."""
-    folder = Path(folder)
     names = [name for name in files_of(folder) if name != SUMS]
-    return "".join(f"{fingerprint(folder / name)}  {name}\n" for name in names)
+    return "".join(f"{fingerprint(Path(folder, name))}  {name}\n" for name in names)
 
 
 def _zip(folder, path, root):

@@ -32,14 +32,12 @@ def publication_date(study: Study) -> datetime.date:
     StudyError
         If neither is known.
     """
-    if study.about.date is not None:
-        return study.about.date
-    if commit_date() is None:
+    date = study.about.date or commit_date()
+    if date is None:
         raise StudyError(
-            "about.date: missing, and the code has no commit whose date could be taken; need the "
-            "date of publication, such as 2026-11-21"
+            "about.date: missing, and the code has no commit whose date could be taken"
         )
-    return datetime.date.fromisoformat(commit_date())
+    return datetime.date.fromisoformat(str(date))
 
 
 def check_about(study: Study) -> None:
@@ -56,10 +54,8 @@ def check_about(study: Study) -> None:
         If one of them is missing.
     """
     if not study.about.creators:
-        raise StudyError(
-            "about.creators: missing, an archive needs at least one, such as "
-            "about: {creators: [{name: 'Family, Given'}]}"
-        )
+        example = "about: {creators: [{name: 'Family, Given'}]}"
+        raise StudyError(f"about.creators: missing, an archive needs one at least, as in {example}")
     publication_date(study)
 
 
@@ -76,7 +72,7 @@ def citation_file(study: Study) -> str:
     str
         YAML.
     """
-    about = study.about
+    about, makers = study.about, [{"name": "The authors of lube"}]
     content = {
         "cff-version": "1.2.0",
         "message": "If you use these results, please cite them and the paper whose model they use.",
@@ -87,22 +83,13 @@ def citation_file(study: Study) -> str:
         "keywords": list(about.keywords),
         "license": about.licence,
         "date-released": publication_date(study),
-        **_doi(about),
+        **({"doi": about.doi} if about.doi else {}),
         "references": [
             {"type": "article", "title": PAPER, "authors": [{"name": "The authors of the paper"}]},
-            {
-                "type": "software",
-                "title": "lube",
-                "version": version("lube"),
-                "authors": [{"name": "The authors of lube"}],
-            },
+            {"type": "software", "title": "lube", "version": version("lube"), "authors": makers},
         ],
     }
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=90)
-
-
-def _doi(about):
-    return {"doi": about.doi} if about.doi else {}
 
 
 def _cff_person(creator):
@@ -136,8 +123,7 @@ def zenodo_metadata(study: Study) -> str:
         "access_right": "open",
         "license": about.licence.lower(),
         "keywords": list(about.keywords),
-        "notes": "Made with lube. README.md explains how to check the files and draw the figures "
-        "again.",
-        **_doi(about),
+        "notes": "Made with lube. README.md explains how to check it and draw the figures again.",
+        **({"doi": about.doi} if about.doi else {}),
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"

@@ -2,7 +2,7 @@
 
 import json
 import mimetypes
-from collections.abc import Mapping
+from itertools import groupby
 from pathlib import PurePosixPath
 from urllib.parse import quote
 
@@ -26,7 +26,6 @@ _FORMATS = {
     ".ipynb": "application/x-ipynb+json",
     ".yaml": "application/yaml",
     ".cff": "application/yaml",
-    ".md": "text/markdown",
 }
 
 _FOLDERS = {
@@ -40,14 +39,14 @@ _FOLDERS = {
 }
 
 
-def crate_metadata(study: Study, files: Mapping[str, int]) -> str:
+def crate_metadata(study: Study, files: dict[str, int]) -> str:
     """Write ro-crate-metadata.json, the description of each file of an archive.
 
     Parameters
     ----------
     study : Study
         The study.
-    files : mapping
+    files : dict
         From the path of each file below the archive's root, with slashes, to its size in bytes.
 
     Returns
@@ -66,28 +65,21 @@ def crate_metadata(study: Study, files: Mapping[str, int]) -> str:
     crate.publisher = people[0].get("affiliation") or people[0]
     if about.doi:
         crate.root_dataset["identifier"] = f"https://doi.org/{about.doi}"
-    parts = {}
-    for path, size in sorted(files.items()):
-        folder = _folder_of(path)
-        parts.setdefault(folder, [])
-        if folder != "code":  # which is described as a whole
-            parts[folder].append(crate.add(File(crate, None, path, properties=_file(path, size))))
-    parts.pop("", None)
-    for folder, described in parts.items():
-        properties = {"name": folder, "description": _FOLDERS[folder]}
-        entity = crate.add(Dataset(crate, None, f"{folder}/", properties=properties))
-        if described:
-            entity["hasPart"] = _one_or_all(described)
+    for folder, paths in groupby(sorted(files, key=_folder_of), _folder_of):
+        # The code is described as a whole.
+        listed = () if folder == "code" else sorted(paths)
+        described = [crate.add(_file(crate, path, files[path])) for path in listed]
+        if folder:
+            properties = {"name": folder, "description": _FOLDERS[folder]}
+            entity = crate.add(Dataset(crate, None, f"{folder}/", properties=properties))
+            if described:
+                entity["hasPart"] = _one_or_all(described)
     return json.dumps(crate.metadata.generate(), indent=2, ensure_ascii=False) + "\n"
 
 
-def _licence(crate, licence):
-    properties = {
-        "@type": "CreativeWork",
-        "name": licence,
-        "description": f"The licence known as {licence}.",
-    }
-    return ContextEntity(crate, LICENCES[licence], properties=properties)
+def _licence(crate, name):
+    properties = {"@type": "CreativeWork", "name": name, "description": f"The licence {name}."}
+    return ContextEntity(crate, LICENCES[name], properties=properties)
 
 
 def _person(crate, number, creator):
@@ -113,14 +105,10 @@ def _folder_of(path):
     return first if slash else ""
 
 
-def _file(path, size):
-    """Name, description, size and format of a file."""
+def _file(crate, path, size):
     name, folder = PurePosixPath(path), _folder_of(path)
     description = SUMMARIES[name.stem] if folder == "data" else _FOLDERS.get(folder)
     guessed = _FORMATS.get(name.suffix) or mimetypes.guess_type(path)[0] or "text/plain"
-    return {
-        "name": name.name,
-        "description": description or "about the archive",
-        "contentSize": str(size),
-        "encodingFormat": guessed,
-    }
+    properties = {"name": name.name, "description": description or "about the archive"}
+    properties |= {"contentSize": str(size), "encodingFormat": guessed}
+    return File(crate, None, path, properties=properties)

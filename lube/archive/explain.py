@@ -4,7 +4,6 @@ The file states the values of the study that determine it. With the film table b
 suffice to draw the roughness again and run the contact model on it.
 """
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.grid.levels import format_levels, level_index
+from lube.report.pages import render
 from lube.schema import CONTACT_DIMS
 from lube.stages.contact import contact_statistics
 from lube.stages.ensemble import with_intervals
@@ -20,6 +20,7 @@ from lube.stages.roughness import roughness_batch
 from lube.storage.netcdf import load
 from lube.storage.provenance import fingerprint, input_sums, json_attribute
 from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.types import File
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ class Explanation:
         ]
 
 
-def explain(path: str | Path, realisation: int | None = 0, **levels: float | str) -> Explanation:
+def explain(path: File, realisation: int | None = 0, **levels: float | str) -> Explanation:
     """Trace an operating point of contact.nc and compute it again.
 
     Parameters
@@ -82,8 +83,6 @@ def explain(path: str | Path, realisation: int | None = 0, **levels: float | str
         operating point or realisation.
     """
     path = Path(path)
-    if path.is_dir():
-        raise DataError(f"{path}: got a folder, need a contact.nc; an archive's is in its data")
     contact = load(path, "contact")
     film = _input_of(contact, path, "film")
     lubricant = _input_of(film, path.with_name("film.nc"), "lubricant")
@@ -98,11 +97,7 @@ def explain(path: str | Path, realisation: int | None = 0, **levels: float | str
         for table in (film, lubricant)
     )
     values = json_attribute(contact, "config", path)
-    # Of the stored dataset only the levels are used, never a result.
-    realisations, ratios = (
-        stored[name].values.tolist() for name in ("realisation", "slide_to_roll_ratio")
-    )
-    again = _computed_again(realisations, ratios, point, values["contact"])
+    again = _computed_again(stored, point, values["contact"])
     if realisation is None:
         again = with_intervals(again, point)
     return Explanation(stored, properties, point, values, again)
@@ -138,19 +133,16 @@ def _level(coordinate, path, wanted):
     return index
 
 
-def _computed_again(
-    realisations: Sequence[int], ratios: Sequence[float], film: xr.Dataset, run: dict[str, Any]
-) -> xr.Dataset:
-    """Draw the roughness of some realisations again and run the contact model on it."""
+def _computed_again(stored, film, run):
+    """Draw the roughness again and run the contact model on it; of `stored`, use levels only."""
     spec = LineSpec(**run["lines"])
     layer = BoundaryLayer.model_construct(**run["boundary_layer"])
-    parts = []
-    for realisation in realisations:
+    ratios, parts = stored["slide_to_roll_ratio"].values.tolist(), []
+    for realisation in stored["realisation"].values.tolist():
         lines = roughness_batch(spec, run["seed"], [realisation])
         parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"]))
-    return xr.concat(
-        parts, "realisation", join="exact", data_vars="minimal", combine_attrs="override"
-    )
+    options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
+    return xr.concat(parts, "realisation", **options)
 
 
 def in_words(explanation: Explanation) -> str:
@@ -166,75 +158,20 @@ def in_words(explanation: Explanation) -> str:
     str
         Several lines.
     """
-    contact, run = explanation.contact, explanation.values["contact"]
-    sections = {
-        contact.attrs["title"]: [
-            (name, contact.attrs[name])
-            for name in ("study", "config_sha256", "source", "code_commit", "software")
-        ],
-        "Operating point": [_row(contact, name) for name in CONTACT_DIMS],
-        "Lubricant": [_row(explanation.lubricant, name) for name in _LUBRICANT],
-        "Film": [_row(explanation.film, name) for name in _FILM],
-        "Roughness": list(_roughness_rows(contact, run)),
-        "Contact": [
-            ("critical thickness of the layer", f"{run['boundary_layer']['critical_thickness']} m"),
-            ("limiting shear stress", f"{run['boundary_layer']['shear_strength']} Pa"),
-            ("reduced modulus E*", f"{run['reduced_modulus']} Pa"),
-            ("revolutions", run["revolutions"]),
-        ],
-        "Stored value, and whether it came out again": list(_result_rows(explanation)),
-    }
-    width = max(len(name) for rows in sections.values() for name, _ in rows)
-    return "\n\n".join(
-        "\n".join([title, *(f"  {name:{width}}  {value}" for name, value in rows)])
-        for title, rows in sections.items()
-    )
+    again = explanation.again
+    return render(
+        "explanation.txt",
+        **vars(explanation),
+        dims=CONTACT_DIMS,
+        differing=explanation.differing,
+        realised=[name for name in again if "realisation" in again[name].dims],
+        stated=_stated,
+    ).strip()
 
 
-_LUBRICANT = (
-    *("kinematic_viscosity", "density", "dynamic_viscosity", "pressure_viscosity_coefficient"),
-)
-_FILM = (
-    *("film_thickness", "lambda_ratio", "contact_half_width", "hertz_pressure"),
-    *("entrainment_speed", "moes_load", "moes_material", "in_validity_range", "formula_source"),
-)
-
-
-def _row(dataset, name):
-    """Long name and value of a variable with a single value."""
-    array = dataset[name]
-    value = array.values.item()
+def _stated(array):
+    """Value of a variable with a single one, in words or with its unit."""
+    value, unit = array.values.item(), array.attrs.get("units", "1")
     if "flag_meanings" in array.attrs:
         value = array.attrs["flag_meanings"].split()[int(value)]
-    return array.attrs["long_name"], _with_units(value, array)
-
-
-def _with_units(value, array):
-    units = array.attrs.get("units", "1")
-    return f"{value}" if units == "1" else f"{value} {units}"
-
-
-def _roughness_rows(contact, run) -> Iterator[tuple[str, Any]]:
-    realisations, spec = contact["realisation"].values.tolist(), run["lines"]
-    last = realisations[-1]
-    which, each = (last, last) if len(realisations) == 1 else (f"r = 0 to {last}", "r")
-    yield "realisation", which
-    yield "seeds of the two lines", f"numpy.random.SeedSequence(({run['seed']}, {each})).spawn(2)"
-    yield "points of each line", ", ".join(str(points) for points in spec["points"])
-    yield "spacing", f"{spec['spacing']} m"
-    yield "rms heights", ", ".join(f"{height} m" for height in spec["rms_height"])
-    yield "Hurst exponent", spec["hurst_exponent"]
-    yield "wave vectors", f"{spec['q_min']} to {spec['q_max']} rad/m"
-
-
-def _result_rows(explanation) -> Iterator[tuple[str, str]]:
-    differing = set(explanation.differing)
-    for name, again in explanation.again.data_vars.items():
-        if again.size == 1 and again.dims:  # not the many realisations behind a mean
-            stored = _with_units(explanation.contact[name].values.item(), again)
-            verdict = f"NOT THE SAME: {again.item()}" if name in differing else "the same bits"
-            yield again.attrs["long_name"], f"{stored}: {verdict}"
-    count = explanation.contact.sizes["realisation"]
-    if count > 1:
-        wrong = any("realisation" in explanation.again[name].dims for name in differing)
-        yield f"all {count} realisations", "NOT THE SAME" if wrong else "the same bits"
+    return f"{value}" if unit == "1" else f"{value} {unit}"

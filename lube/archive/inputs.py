@@ -24,17 +24,8 @@ def archived_texts(files: StudyFiles) -> list[str]:
     from lube.storage.git import code_files
 
     if files.changes:
-        raise LubeError(
-            "--config: an archive needs the study as a file: write the changes into one that "
-            f"begins with `based_on: {files.path}`"
-        )
+        file = f"a file that begins with `based_on: {files.path}`"
+        raise LubeError(f"--config: for an archive, write the changes into {file}")
     check_about(files.study)
     written = written_files(files.study, files.path).values()
     return [*input_paths(written), *files.record_files(), *code_files()]
-
-
-def code_state() -> tuple:
-    """Return what an archive says about its code: commit, its date, files changed since."""
-    from lube.storage.git import changed_code, commit, commit_date
-
-    return commit(), commit_date(), changed_code()

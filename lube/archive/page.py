@@ -1,29 +1,23 @@
 """The README of an archive, for a reader who has nothing else."""
 
-from collections.abc import Sequence
-
 from lube.report.pages import render
-from lube.schema import SUMMARIES
+from lube.schema import DATASETS, SUMMARIES
 from lube.storage.git import changed_code, commit
 from lube.storage.provenance import title_of
 from lube.study.metadata import LICENCES, PAPER
 from lube.study.study import Study
 
 
-def archive_page(
-    study: Study, kinds: Sequence[str], study_file: str, refused: Sequence[str] = ()
-) -> str:
+def archive_page(study: Study, study_file: str, refused: list[str]) -> str:
     """Write the README.md of an archive.
 
     Parameters
     ----------
     study : Study
         The study.
-    kinds : sequence of str
-        Its datasets.
     study_file : str
         Path of its file below the archive's folder ``study``, with slashes.
-    refused : sequence of str, optional
+    refused : list of str
         Lines about measured records that were not used, and why.
 
     Returns
@@ -38,7 +32,7 @@ def archive_page(
         about=study.about,
         licence=LICENCES[study.about.licence],
         paper=PAPER,
-        datasets={kind: SUMMARIES[kind] for kind in kinds},
+        datasets={kind: SUMMARIES[kind] for kind in DATASETS},
         study_file=study_file,
         commit=commit(),
         changed=changed_code(),

@@ -1,17 +1,16 @@
 """Draw the figures of an archive again from its own content and compare them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 from lube.archive.build import check_is_archive
 from lube.errors import DataError
+from lube.types import File
 from lube.workflow.figures import paths_for, read_origin
 from lube.workflow.notebooks import execute_notebook
 
 
-def redraw(
-    folder: str | Path, target: str | Path, figures: Iterable[str] = ()
-) -> Iterator[tuple[str, bool]]:
+def redraw(folder: File, target: File, figures: list[str]) -> Iterator[tuple[str, bool]]:
     """Draw figures of an archive again, from its datasets and notebooks alone.
 
     Parameters
@@ -20,7 +19,7 @@ def redraw(
         The unpacked archive.
     target : str or Path
         Folder for the new figures, outside the archive.
-    figures : iterable of str, optional
+    figures : list of str
         Which figures, such as ``fig02_film``; all if none is named.
 
     Yields
@@ -36,10 +35,8 @@ def redraw(
     """
     folder, target = Path(folder).resolve(), Path(target).resolve()
     check_is_archive(folder)
-    if target.is_relative_to(folder):
+    if target.is_relative_to(folder) or target.is_file():
         raise DataError(f"got {target} for the new figures, need a folder outside the archive")
-    if target.exists() and not target.is_dir():
-        raise DataError(f"got {target} for the new figures, need a folder, not a file")
     archived = sorted(path.stem for path in (folder / "figures").glob("*.png"))
     for figure in figures:
         if figure not in archived:
@@ -52,5 +49,5 @@ def redraw(
         # Notebooks use the archived code, whatever else is installed.
         execute_notebook(notebook, target / notebook.name, parameters, changes, folder / "code")
         for name in (f"{figure}.png", f"{figure}.pdf"):
-            kept = folder / "figures" / name
-            yield name, kept.is_file() and kept.read_bytes() == (target / name).read_bytes()
+            old, new = folder / "figures" / name, target / name
+            yield name, old.is_file() and old.read_bytes() == new.read_bytes()

@@ -6,6 +6,7 @@ Every check yields one line for each thing that is wrong.
 import contextlib
 import json
 import os
+import shutil
 import tempfile
 import zipfile
 import zlib
@@ -18,11 +19,14 @@ from lube.schema import DATASETS
 from lube.storage.netcdf import load
 from lube.storage.provenance import REMEDY, descriptive_attributes, fingerprint, input_sums
 from lube.study.study import load_study
+from lube.types import File
 from lube.workflow.figures import wrong_figures
+
+_OF_BROWSERS = (".DS_Store", "Thumbs.db", "desktop.ini")
 
 
 @contextlib.contextmanager
-def unpacked(path: str | Path) -> Iterator[Path]:
+def unpacked(path: File) -> Iterator[Path]:
     """Open an archive, zipped or not.
 
     Parameters
@@ -46,14 +50,11 @@ def unpacked(path: str | Path) -> Iterator[Path]:
     if path.is_dir():
         yield path
         return
-    if not zipfile.is_zipfile(path):
-        raise DataError(f"{path}: neither an archive's folder nor its zip")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
         try:
-            with zipfile.ZipFile(path) as packed:
-                packed.extractall(scratch)
+            shutil.unpack_archive(path, scratch, "zip")
         except (OSError, zipfile.BadZipFile, zlib.error) as error:
-            raise DataError(f"{path}: cannot be unpacked: {error}") from None
+            raise DataError(f"{path}: neither a folder nor a whole zip ({error})") from None
         # Whoever packed it, with its folder or without.
         roots = sorted(Path(scratch).rglob(SUMS), key=lambda sums: len(sums.parts))
         if not roots:
@@ -61,7 +62,7 @@ def unpacked(path: str | Path) -> Iterator[Path]:
         yield roots[0].parent
 
 
-def verify_archive(folder: str | Path) -> list[str]:
+def verify_archive(folder: File) -> list[str]:
     """Check the sums of an archive's files, their contents and their origin.
 
     Parameters
@@ -91,54 +92,40 @@ def verify_archive(folder: str | Path) -> list[str]:
 
 def _sums(folder):
     """SHA-256 by file, as stated by the archive."""
-    lines = (folder / SUMS).read_text(encoding="utf-8").splitlines()
+    lines = (folder / SUMS).read_text(encoding="utf-8", errors="replace").splitlines()
     return {name: sha for sha, _, name in (line.partition("  ") for line in lines)}
 
 
 def _wrong_sums(folder):
     """Compare every file with its SHA-256 sum."""
-    try:
-        sums = _sums(folder)
-    except ValueError:
-        yield f"{SUMS}: damaged"
-        return
-    present = set(files_of(folder)) - {SUMS}
+    sums, present = _sums(folder), set(files_of(folder)) - {SUMS}
     for name, expected in sums.items():
         if name not in present:
             yield f"{name}: missing"
         elif fingerprint(folder / name) != expected:
             yield f"{name}: changed: its SHA-256 is not the one in {SUMS}"
     for name in sorted(present - set(sums)):
-        if not _is_byproduct(name):
+        # Running the archived code leaves files, and so do file browsers.
+        if not name.startswith("code/") and Path(name).name not in _OF_BROWSERS:
             yield f"{name}: does not belong to the archive: not in {SUMS}"
-
-
-def _is_byproduct(name):
-    """Whether a file is left by running the archived code, or by a file browser."""
-    return name.startswith("code/") or Path(name).name in (".DS_Store", "Thumbs.db", "desktop.ini")
 
 
 def _wrong_datasets(folder):
     """Check that the study can be read and that every dataset is whole and of this study."""
+    text = (folder / VALUES).read_text(encoding="utf-8")
+    study_file = json.loads(text)["study_file"]
     try:
-        text = (folder / VALUES).read_text(encoding="utf-8")
-        study_file = json.loads(text)["study_file"]
         study = load_study(folder / "study" / study_file)
-    except (OSError, ValueError, KeyError):
-        yield f"{VALUES}: missing or damaged"
-        return
     except LubeError as error:
         yield str(error)
         return
     for kind in DATASETS:
         path = folder / "data" / f"{kind}.nc"
         try:
-            dataset = load(path, kind, study)
+            yield from _wrong_origin(load(path, kind, study), path, kind, study)
         except DataError as error:
             yield str(error)
-        else:
-            yield from _wrong_origin(dataset, path, kind, study)
-    if text != values_text(study, DATASETS, study_file):
+    if text != values_text(study, study_file):
         yield f"{VALUES}: not what study/{study_file} says"
 
 
@@ -151,9 +138,8 @@ def _wrong_origin(dataset, path, kind, study):
     if kind == "experiment" and study.experiment.manifest is not None:
         # The measured records themselves are not in the archive.
         files = [path.with_name("film.nc"), Path(study.experiment.manifest)]
-        other = [
-            file.name for file in files if fingerprint(file) not in made_from.get(file.name, ())
-        ]
+        sums = {file.name: fingerprint(file) for file in files}
+        other = [name for name, sha in sums.items() if sha not in made_from.get(name, ())]
     else:
         sums = _sums(path.parents[1]).items()
         archived = {sha for name, sha in sums if name.startswith(("data/", "lubricants/"))}

@@ -1,11 +1,11 @@
 """The configuration of a study for the report: as written, and with all values filled in."""
 
 import re
-from collections.abc import Iterator
 
 from lube.report.key_tables import record_keys, study_keys
 from lube.report.pages import render
 from lube.schema import DATASETS
+from lube.storage.provenance import single_values
 from lube.study.study import Study
 from lube.units import with_unit
 
@@ -26,7 +26,11 @@ def configuration(study: Study, text: str) -> str:
         HTML.
     """
     content = study.model_dump(mode="json")
-    stages = {stage: list(_stage_values(study.stage_inputs(stage))) for stage in DATASETS}
+    stages = {
+        stage: [(key, _in_si(value)) for key, value in single_values(inputs) if value is not None]
+        for stage in DATASETS
+        if (inputs := study.stage_inputs(stage))  # the other stages follow from these
+    }
     return render(
         "configuration.html",
         written=[_without_comment(line) for line in text.rstrip("\n").split("\n")],
@@ -35,8 +39,7 @@ def configuration(study: Study, text: str) -> str:
             (record.title, list(_values(values, record_keys())))
             for record, values in zip(study.lubricants, content["lubricants"], strict=True)
         ],
-        # The other stages follow from these.
-        stages={stage: rows for stage, rows in stages.items() if rows},
+        stages=stages,
     )
 
 
@@ -49,26 +52,20 @@ def _without_comment(line):
 def _values(content, keys):
     """Rows (key, value, meaning) of the keys that are set."""
     for key, kind, meaning in keys:
-        value = _printed(_at_key(content, key.strip("`").split(".")), _unit(kind))
+        unit = re.match(r"(?:quantity|values and units) in ([^\s,]+)", kind)
+        value = _printed(_at_key(content, key.strip("`")), unit[1] if unit else "")
         if value:
             yield key, value, meaning
 
 
-def _unit(kind):
-    match = re.match(r"(?:quantity|values and units) in ([^\s,]+)", kind)
-    return match[1] if match else ""
-
-
-def _at_key(content, path):
+def _at_key(content, key):
     """Value at a dotted key; a list of values where the key goes through a list."""
-    for number, name in enumerate(path):
-        if content is None:
-            return None
-        if name.endswith("[]"):
-            rest = path[number + 1 :]
-            return [_at_key(one, rest) for one in content[name.removesuffix("[]")] or ()]
-        content = content[name]
-    return content
+    name, _, rest = key.partition(".")
+    if not name or content is None:
+        return content
+    if name.endswith("[]"):
+        return [_at_key(one, rest) for one in content[name.removesuffix("[]")] or ()]
+    return _at_key(content[name], rest)
 
 
 def _printed(value, unit):
@@ -79,22 +76,6 @@ def _printed(value, unit):
     if isinstance(value, float):
         return with_unit(value, unit)
     return "" if value is None else str(value)
-
-
-def _stage_values(values) -> Iterator[tuple[str, str]]:
-    return ((key, _in_si(value)) for key, value in _flat(values) if value is not None)
-
-
-def _flat(value, path=""):
-    """Each plain value, or list of plain values, with its dotted key."""
-    if isinstance(value, dict):
-        for key, inner in value.items():
-            yield from _flat(inner, f"{path}.{key}" if path else key)
-    elif isinstance(value, list) and any(isinstance(one, dict) for one in value):
-        for number, inner in enumerate(value):
-            yield from _flat(inner, f"{path}[{number}]")
-    else:
-        yield path, value
 
 
 def _in_si(value):

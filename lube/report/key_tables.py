@@ -6,7 +6,6 @@ compares the documentation with the code.
 
 import re
 import sys
-from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from lube.physics.film_formulas import FORMULAS, TOLERANCE
@@ -15,88 +14,47 @@ from lube.schema import COORDINATES, DATASETS, FILES, MEASURED, SUMMARIES
 from lube.study.lubricant_record import LubricantRecord
 from lube.study.study import Study
 
-
-def file_table() -> str:
-    """Table of the datasets.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
-    rows = [(f"`{kind}.nc`", SUMMARIES[kind]) for kind in DATASETS]
-    return _table(("file", "content"), rows)
+TABLES = ("files", "coordinates", "variables", "study", "record", "manifest", "formulas")
+"""Names of the tables, as in the markers of the documentation."""
 
 
-def coordinate_table() -> str:
-    """Table of the coordinates that several files share.
+def table(name: str) -> str:
+    """Write a table of the documentation.
+
+    Parameters
+    ----------
+    name : str
+        One of `TABLES`: the datasets; the coordinates that several of them share; the variables
+        of all datasets and benchmarks, each under a heading; the keys of a study, of a lubricant
+        record, and of a list of measured records; the film formulas.
 
     Returns
     -------
     str
         Markdown.
     """
-    return _variables(COORDINATES)
-
-
-def variable_tables() -> str:
-    """Tables of the variables of all datasets and benchmarks, each under a heading.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
-    return "\n\n".join(
-        f"### `{kind}.nc`\n\n{SUMMARIES[kind]}\n\n{_variables(FILES[kind])}"
-        for kind in (*DATASETS, *MEASURED)
-    )
-
-
-def formula_table() -> str:
-    """Table of the film formulas.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
-    rows = [(f"`{row.name}`", row.thickness, row.source, row.validity) for row in FORMULAS.values()]
-    range_ = f"within {100.0 * TOLERANCE:g} % of the computed film for"
-    return _table(("name", "film", "source", range_), rows)
-
-
-def study_table() -> str:
-    """Table of the keys of a study.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
-    return _table(("key", "value", "meaning"), study_keys())
-
-
-def record_table() -> str:
-    """Table of the keys of a lubricant record.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
-    return _table(("key", "value", "meaning"), record_keys())
-
-
-def manifest_table() -> str:
-    """Table of the columns, or keys, of a list of measured records.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
-    return _table(("column or key", "value", "meaning"), _keys(manifest_schema()))
+    match name:
+        case "files":
+            rows = [(f"`{kind}.nc`", SUMMARIES[kind]) for kind in DATASETS]
+            return _table(("file", "content"), rows)
+        case "coordinates":
+            return _variables(COORDINATES)
+        case "variables":
+            return "\n\n".join(
+                f"### `{kind}.nc`\n\n{SUMMARIES[kind]}\n\n{_variables(FILES[kind])}"
+                for kind in (*DATASETS, *MEASURED)
+            )
+        case "study":
+            return _table(("key", "value", "meaning"), study_keys())
+        case "record":
+            return _table(("key", "value", "meaning"), record_keys())
+        case "manifest":
+            return _table(("column or key", "value", "meaning"), _keys(manifest_schema()))
+        case "formulas":
+            found = FORMULAS.values()
+            rows = [(f"`{row.name}`", row.thickness, row.source, row.validity) for row in found]
+            within = f"within {100.0 * TOLERANCE:g} % of the computed film for"
+            return _table(("name", "film", "source", within), rows)
 
 
 def study_keys() -> list[tuple[str, str, str]]:
@@ -121,18 +79,6 @@ def record_keys() -> list[tuple[str, str, str]]:
     return _keys(LubricantRecord.model_json_schema())
 
 
-TABLES = {
-    "files": file_table,
-    "coordinates": coordinate_table,
-    "variables": variable_tables,
-    "study": study_table,
-    "record": record_table,
-    "manifest": manifest_table,
-    "formulas": formula_table,
-}
-"""Functions that write the tables, by the names in the markers."""
-
-
 def with_tables(text: str) -> str:
     """Rewrite the tables of a text.
 
@@ -148,13 +94,13 @@ def with_tables(text: str) -> str:
     """
     return re.sub(
         r"(<!-- table: (\w+) -->\n).*?(?=<!-- end -->)",
-        lambda match: f"{match[1]}{TABLES[match[2]]()}\n",
+        lambda match: f"{match[1]}{table(match[2])}\n",
         text,
         flags=re.DOTALL,
     )
 
 
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+def _table(head, rows):
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
@@ -210,13 +156,13 @@ def _value(field, inner):
 
 def _default(field):
     """Say that a key is optional, with its default if that is short."""
-    default = field.get("default")
-    if isinstance(default, dict):
-        default = f"{', '.join(map(str, default['values']))} {default['units']}"
-    elif isinstance(default, list):
-        default = ", ".join(default)
-    elif isinstance(default, float):
-        default = f"{default:g}"
+    match default := field.get("default"):
+        case {"values": values, "units": units}:
+            default = f"{', '.join(map(str, values))} {units}"
+        case list():
+            default = ", ".join(default)
+        case float():
+            default = f"{default:g}"
     # A summary of several lines would fill the table.
     shown = default not in (None, "") and len(str(default)) <= 60
     return f" (by default {default})" if shown else " (optional)"

@@ -26,24 +26,6 @@ def render(template: str, **values: object) -> str:
     return _environment().get_template(template).render(values)
 
 
-def html_page(title: str, body: str) -> str:
-    """Make a page that needs no other file.
-
-    Parameters
-    ----------
-    title : str
-        Plain title.
-    body : str
-        HTML below the title.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
-    return render("page.html", title=title, body=body)
-
-
 def rounded(number: float) -> float:
     """Round to three significant digits.
 

@@ -26,27 +26,13 @@ def run_times(jobs: Mapping[str, Iterable[str]]) -> str:
     str
         HTML: a paragraph and two tables.
     """
-    steps, every = [], []
-    for name, files in jobs.items():
-        found = [_measured(Path(file)) for file in files if Path(file).exists()]
-        if found:
-            seconds = [job["seconds"] for job in found]
-            steps.append(
-                {
-                    "name": name,
-                    "jobs": len(found),
-                    "seconds": sum(seconds),
-                    "longest": max(seconds),
-                    "memory": max(job["memory"] for job in found),
-                }
-            )
-            every += found
+    steps = {
+        step: [_measured(Path(file)) for file in files if Path(file).exists()]
+        for step, files in jobs.items()
+    }
     return render(
         "run_times.html",
         steps=steps,
-        jobs=sorted(every, key=lambda job: -job["seconds"]),
-        total=sum(job["seconds"] for job in every),
-        largest=max(every, key=lambda job: job["memory"], default=None),
         cores=os.cpu_count(),
         python=platform.python_version(),
         platform=platform.platform(),
@@ -56,16 +42,6 @@ def run_times(jobs: Mapping[str, Iterable[str]]) -> str:
 def _measured(file):
     with file.open(encoding="utf-8", newline="") as lines:
         values = next(csv.DictReader(lines, delimiter="\t"))
-    return {
-        "name": file.stem,
-        "seconds": float(values["s"]),
-        "memory": _number(values["max_rss"]),
-    }
-
-
-def _number(text):
-    """Memory in MB; 0 where Snakemake wrote ``NA``, because the job was too short."""
-    try:
-        return float(text)
-    except ValueError:
-        return 0.0
+    # In MB; Snakemake writes NA if the job was too short.
+    memory = 0.0 if values["max_rss"] == "NA" else float(values["max_rss"])
+    return {"name": file.stem, "seconds": float(values["s"]), "memory": memory}

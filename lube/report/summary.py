@@ -12,6 +12,13 @@ from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
 from lube.study.study import Study
 
+_AGREEMENT = (
+    *("bias", "rms_difference", "overlap_share", "compared_records", "pairs", "origin"),
+    *("overlap_share_expected_lower", "overlap_share_expected_upper"),
+)
+"""What the start page says of the agreement between simulation and rig."""
+_LIMITS = ("mean", "lower", "upper")
+
 
 def facts(study: Study) -> str:
     """Summarise the configuration of a study.
@@ -108,36 +115,19 @@ def _at(variable, point):
 def _agreement(comparison, chosen):
     """Figures of agreement between simulation and rig; None if there is no record."""
     chosen = chosen | {"threshold": comparison["comparison_threshold"].item()}
-
-    def figure(name):
-        return _at(comparison[name], chosen).item()
-
-    if not math.isfinite(figure("bias")):
-        return None
-    expected = [figure(f"overlap_share_expected_{side}") for side in ("lower", "upper")]
-    return {
-        "simulated": comparison["origin"].item() == "simulated",
-        "records": figure("compared_records"),
-        "pairs": comparison["pairs"].item(),
-        "bias": figure("bias"),
-        "rms_difference": figure("rms_difference"),
-        "inside": figure("overlap_share"),
-        "expected": [] if math.isnan(expected[0]) else expected,
-    }
+    figures = {name: _at(comparison[name], chosen).item() for name in _AGREEMENT}
+    return figures if math.isfinite(figures["bias"]) else None
 
 
 def _trace(point, film, contact, comparison):
     """Values at one operating point."""
     shares = _measured_near(comparison, point)
-    contact = contact.sel(point)
+    probability = {limit: contact[f"breakthrough_probability_{limit}"] for limit in _LIMITS}
     return {
         **point,
+        **{limit: values.sel(point).item() for limit, values in probability.items()},
         "film": _at(film["film_thickness"], point).item(),
         "lambda_ratio": _at(film["lambda_ratio"], point).item(),
-        **{
-            limit: contact[f"breakthrough_probability_{limit}"].item()
-            for limit in ("mean", "lower", "upper")
-        },
         "records": shares.size,
         "shares": [shares.min(), shares.max()] if shares.size else [],
     }

@@ -8,13 +8,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lube.errors import DataError
+from lube.types import File
 
 _FULL = 0.5
 """Free space below which a disk counts as full, MiB: the NetCDF library does not give a reason."""
 
 
 @contextlib.contextmanager
-def written_whole(path: str | Path) -> Iterator[Path]:
+def written_whole(path: File) -> Iterator[Path]:
     """Write a file beside its final path and rename it when it is complete.
 
     Until then an older file at `path` stays as it was. A killed process leaves an unfinished
@@ -47,10 +48,10 @@ def written_whole(path: str | Path) -> Iterator[Path]:
         raise DataError(f"{path}: cannot be written: {why_not(error, path)}") from error
     finally:
         with contextlib.suppress(OSError):
-            part.unlink(missing_ok=True)
+            part.unlink()
 
 
-def check_writable(folder: str | Path) -> None:
+def check_writable(folder: File) -> None:
     """Check that files can be created in a folder.
 
     Parameters
@@ -68,7 +69,7 @@ def check_writable(folder: str | Path) -> None:
         raise DataError(f"{folder}: cannot be written: the folder {existing} is not writable")
 
 
-def why_not(error: Exception, path: str | Path) -> str:
+def why_not(error: Exception, path: File) -> str:
     """Explain in one line why a file could not be written.
 
     Parameters
@@ -83,17 +84,12 @@ def why_not(error: Exception, path: str | Path) -> str:
     str
         The reason, and the free space on the disk.
     """
-    folder = _existing(Path(path).parent)
-    if not os.access(folder, os.W_OK):
-        return f"the folder {folder} is not writable"
-    free = shutil.disk_usage(folder).free / 2**20
-    reason = getattr(error, "strerror", None) or str(error)
-    if free < _FULL:
-        reason = "No space left on device"
+    free = shutil.disk_usage(_existing(Path(path).parent)).free / 2**20
+    full = "No space left on device" if free < _FULL else ""
+    reason = full or getattr(error, "strerror", None) or str(error)
     return f"{reason} ({free:.0f} MiB are free on its disk)"
 
 
 def _existing(folder):
     """Return the folder, or its nearest parent that exists."""
-    folder = Path(folder)
-    return next(path for path in (folder, *folder.parents) if path.exists())
+    return next(path for path in (Path(folder), *Path(folder).parents) if path.exists())

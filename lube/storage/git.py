@@ -2,9 +2,9 @@
 
 import functools
 import re
-import subprocess
 from collections.abc import Iterable
 from pathlib import Path
+from subprocess import DEVNULL, CalledProcessError, check_output
 
 ROOT = Path(__file__).parents[2]
 """Folder of the Snakefile, if the code runs from a clone or an unpacked archive."""
@@ -19,7 +19,7 @@ _CODE = (
     "workflow/report/*",
 )
 
-_COMMIT = re.compile("HEAD|[0-9a-f]{7,64}")
+_CACHE = re.compile(r"(^|/)(\.|__pycache__/)")
 
 
 def code_files() -> list[str]:
@@ -30,16 +30,9 @@ def code_files() -> list[str]:
     list of str
         Their paths below `ROOT`, with slashes.
     """
-    found = {file.relative_to(ROOT) for pattern in _CODE for file in ROOT.glob(pattern)}
-    return sorted(
-        file.as_posix()
-        for file in found
-        if (ROOT / file).is_file() and not any(_is_cache(part) for part in file.parts)
-    )
-
-
-def _is_cache(name):
-    return name == "__pycache__" or name.startswith(".")
+    paths = {path for pattern in _CODE for path in ROOT.glob(pattern) if path.is_file()}
+    names = (path.relative_to(ROOT).as_posix() for path in paths)
+    return sorted(name for name in names if not _CACHE.search(name))
 
 
 def changed_code() -> list[str]:
@@ -88,7 +81,7 @@ def changed_since(name: str, files: Iterable[str]) -> list[str] | None:
         None if there is no Git repository or no such commit.
     """
     files = set(files)
-    changed = _git("diff", "--name-only", "-z", name, "--") if _COMMIT.fullmatch(name) else None
+    changed = _git("diff", "--name-only", "-z", name, "--")
     if changed is None:
         return None
     new = _git("ls-files", "--others", "--exclude-standard", "-z")
@@ -112,9 +105,6 @@ def _git(*arguments):
         return None
     command = ["git", "--no-optional-locks", *arguments]
     try:
-        finished = subprocess.run(
-            command, cwd=ROOT, capture_output=True, encoding="utf-8", check=True
-        )
-    except (OSError, subprocess.CalledProcessError):
+        return check_output(command, cwd=ROOT, stderr=DEVNULL, encoding="utf-8").strip()
+    except (OSError, CalledProcessError):
         return None
-    return finished.stdout.strip()

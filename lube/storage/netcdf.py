@@ -5,7 +5,6 @@ bytes.
 """
 
 import logging
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,20 +16,17 @@ from lube.errors import DataError
 from lube.schema import check
 from lube.storage.files import written_whole
 from lube.storage.provenance import check_config, global_attributes
+from lube.types import File, Files
 
 if TYPE_CHECKING:
     from lube.study.study import Study
 
 log = logging.getLogger(__name__)
 
+_COMPRESSED = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
 
-def save(
-    dataset: xr.Dataset,
-    path: str | Path,
-    kind: str,
-    study: "Study",
-    inputs: Iterable[str | Path] = (),
-) -> None:
+
+def save(dataset: xr.Dataset, path: File, kind: str, study: "Study", inputs: Files = ()) -> None:
     """Save a dataset after checking it against the schema of its kind.
 
     Parameters
@@ -59,7 +55,7 @@ def save(
     log.info("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
 
 
-def load(path: str | Path, kind: str, study: "Study | None" = None) -> xr.Dataset:
+def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
     """Load a dataset into memory after checking it against the schema of its kind.
 
     Parameters
@@ -93,9 +89,8 @@ def load(path: str | Path, kind: str, study: "Study | None" = None) -> xr.Datase
             return dataset.load()
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         reason = (str(error) or type(error).__name__).splitlines()[0]
-        raise DataError(
-            f"{path}: not a whole NetCDF file, truncated, damaged or foreign ({reason})"
-        ) from error
+        message = f"{path}: not a whole NetCDF file, truncated, damaged or foreign ({reason})"
+        raise DataError(message) from error
 
 
 def _encoding(dataset):
@@ -108,24 +103,11 @@ def _encoding(dataset):
             # Character arrays: HDF5 cannot checksum strings of variable length.
             encoding[name] |= {"dtype": "S1", "fletcher32": True}
         if variable.dtype.kind in "fib" and variable.ndim > 0:
-            encoding[name] |= {
-                "zlib": True,
-                "complevel": 4,
-                "shuffle": True,
-                "fletcher32": True,
-                "chunksizes": _chunks(variable),
-            }
+            # One chunk for a small variable; one per line for roughness lines and traces.
+            line = (1,) * (variable.ndim - 1) + variable.shape[-1:]
+            chunks = variable.shape if variable.size <= 2**18 else line
+            encoding[name] |= {**_COMPRESSED, "chunksizes": chunks}
     if "height" in dataset:  # whole height steps
-        encoding["height"] |= {
-            "dtype": "int32",
-            "scale_factor": dataset.attrs["height_step"],
-            "_FillValue": np.iinfo(np.int32).min,
-        }
+        step, missing = dataset.attrs["height_step"], np.iinfo(np.int32).min
+        encoding["height"] |= {"dtype": "int32", "scale_factor": step, "_FillValue": missing}
     return encoding
-
-
-def _chunks(variable):
-    """One chunk for a small variable; one chunk per line for roughness lines and traces."""
-    if variable.size <= 2**18:
-        return variable.shape
-    return (1,) * (variable.ndim - 1) + (variable.shape[-1],)

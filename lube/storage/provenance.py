@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from lube.errors import DataError
+from lube.errors import DataError, shown
 from lube.schema import SUMMARIES
 from lube.storage.git import commit
 from lube.study.metadata import LICENCES, PAPER
+from lube.types import File, Files
 
 if TYPE_CHECKING:
     from lube.study.study import Study
@@ -32,9 +33,7 @@ REMEDY = "; delete it and run snakemake again"
 """What to do about a result that does not belong to the study, at the end of the message."""
 
 
-def global_attributes(
-    study: "Study", kind: str, inputs: Iterable[str | Path] = ()
-) -> dict[str, Any]:
+def global_attributes(study: "Study", kind: str, inputs: Files = ()) -> dict[str, Any]:
     """Global attributes of a file, by the names of CF and ACDD where they have one.
 
     Parameters
@@ -134,7 +133,7 @@ def config_text(study: "Study", kind: str) -> str:
     return json.dumps(study.origin(_stage(kind)), sort_keys=True)
 
 
-def check_config(dataset: xr.Dataset, study: "Study", kind: str, where: str | Path) -> None:
+def check_config(dataset: xr.Dataset, study: "Study", kind: str, where: File) -> None:
     """Check that a file follows from a study's values.
 
     Parameters
@@ -156,10 +155,8 @@ def check_config(dataset: xr.Dataset, study: "Study", kind: str, where: str | Pa
     came = json_attribute(dataset, "config", where)
     wanted = json.loads(config_text(study, kind))
     if came != wanted:
-        raise DataError(
-            f"{where}: belongs to other values than this study's: "
-            f"{_difference(came, wanted)}{REMEDY}"
-        )
+        difference = _difference(came, wanted)
+        raise DataError(f"{where}: belongs to other values than this study's: {difference}{REMEDY}")
 
 
 def merged_config(datasets: Iterable[xr.Dataset]) -> str:
@@ -181,20 +178,17 @@ def merged_config(datasets: Iterable[xr.Dataset]) -> str:
         If two files have different values for a stage, so that they are not of one study, or a
         file does not state its values.
     """
-    merged, first = {}, {}
+    merged = {}
     for dataset in datasets:
         title = dataset.attrs.get("title", "a dataset without a title")
         for stage, values in json_attribute(dataset, "config", title).items():
             if merged.setdefault(stage, values) != values:
-                difference = _difference({stage: merged[stage]}, {stage: values})
-                raise DataError(
-                    f"{first[stage]!r} and {title!r} are not of one study: {difference}"
-                )
-            first.setdefault(stage, title)
+                difference = _difference({stage: values}, {stage: merged[stage]})
+                raise DataError(f"{title}: the datasets are not of one study: {difference}")
     return json.dumps(merged, sort_keys=True)
 
 
-def json_attribute(dataset: xr.Dataset, name: str, where: str | Path) -> dict[str, Any]:
+def json_attribute(dataset: xr.Dataset, name: str, where: File) -> dict[str, Any]:
     """Read an attribute that holds a JSON mapping.
 
     Parameters
@@ -219,25 +213,36 @@ def json_attribute(dataset: xr.Dataset, name: str, where: str | Path) -> dict[st
     try:
         return json.loads(dataset.attrs[name])
     except (KeyError, ValueError):
-        raise DataError(
-            f"{where}: its attribute {name!r} is missing or damaged, so its origin is unknown"
-        ) from None
+        message = f"{where}: its attribute {name!r} is missing or damaged, so its origin is unknown"
+        raise DataError(message) from None
 
 
 def _difference(came, wanted):
     """First value by which two configurations differ, in words."""
-    came, wanted = dict(_leaves(came)), dict(_leaves(wanted))
+    came, wanted = dict(single_values(came)), dict(single_values(wanted))
     key = min(key for key in {*came, *wanted} if came.get(key) != wanted.get(key))
-    return f"{key} is {came.get(key, 'missing')}, need {wanted.get(key, 'no such value')}"
+    stated, needed = (
+        shown(values[key]) if key in values else "missing" for values in (came, wanted)
+    )
+    return f"{key} is {stated}, need {needed}"
 
 
-def _leaves(content, path="") -> Iterator[tuple[str, Any]]:
-    """Yield the single values of nested mappings and lists with their dotted keys."""
-    if not isinstance(content, dict | list):
+def single_values(content: object, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the values of nested mappings, and lists of plain values, with their dotted keys.
+
+    Examples
+    --------
+    >>> list(single_values({"film": {"force": [1.0, 2.0]}, "traces": [{"speed": 3.0}]}))
+    [('film.force', [1.0, 2.0]), ('traces[0].speed', 3.0)]
+    """
+    if isinstance(content, dict):
+        for name, value in content.items():
+            yield from single_values(value, f"{path}.{name}" if path else name)
+    elif isinstance(content, list) and any(isinstance(one, dict) for one in content):
+        for number, value in enumerate(content):
+            yield from single_values(value, f"{path}[{number}]")
+    else:
         yield path, content
-        return
-    for name, value in content.items() if isinstance(content, dict) else enumerate(content):
-        yield from _leaves(value, f"{path}.{name}" if path else str(name))
 
 
 def digest(text: str) -> str:
@@ -251,7 +256,7 @@ def digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def fingerprint(path: str | Path) -> str:
+def fingerprint(path: File) -> str:
     """SHA-256 of a file, in hexadecimal digits.
 
     Raises
@@ -266,7 +271,7 @@ def fingerprint(path: str | Path) -> str:
         raise DataError(f"{path}: cannot be read: {error.strerror}") from None
 
 
-def fingerprints(paths: Iterable[str | Path]) -> dict[str, str]:
+def fingerprints(paths: Files) -> dict[str, str]:
     """SHA-256 of several files, by names that do not depend on the folder of the study.
 
     Parameters
@@ -285,7 +290,7 @@ def fingerprints(paths: Iterable[str | Path]) -> dict[str, str]:
     return {name if count[name] == 1 else f"{name}#{sha[:SHORT]}": sha for name, sha in found}
 
 
-def input_sums(dataset: xr.Dataset, where: str | Path) -> dict[str, set[str]]:
+def input_sums(dataset: xr.Dataset, where: File) -> dict[str, set[str]]:
     """Read which files a file was made from.
 
     Parameters

@@ -7,9 +7,10 @@ from typing import Any
 
 from lube.errors import LubeError
 from lube.schema import DATASETS, MEASURED
+from lube.types import File
 
 
-def cells_of(notebook: str | Path) -> list[dict[str, Any]]:
+def cells_of(notebook: File) -> list[dict[str, Any]]:
     """Read the cells of a notebook, reduced to what determines its figure.
 
     Parameters
@@ -51,17 +52,14 @@ def reduced(text: str) -> list[dict[str, Any]]:
     list of dict
         With the keys ``type``, ``source`` and ``tags``.
     """
-    return [
-        {
-            "type": cell["cell_type"],
-            "source": "".join(cell["source"]),
-            "tags": cell.get("metadata", {}).get("tags", []),
-        }
-        for cell in json.loads(text)["cells"]
-    ]
+    cells = []
+    for cell in json.loads(text)["cells"]:
+        source, tags = "".join(cell["source"]), cell.get("metadata", {}).get("tags", [])
+        cells.append({"type": cell["cell_type"], "source": source, "tags": tags})
+    return cells
 
 
-def python_of(cell: dict[str, Any], notebook: str | Path) -> str:
+def python_of(cell: dict[str, Any], notebook: File) -> str:
     """Return the Python code of a cell, without lines of IPython such as ``%matplotlib inline``.
 
     Parameters
@@ -91,7 +89,7 @@ def python_of(cell: dict[str, Any], notebook: str | Path) -> str:
     return code
 
 
-def parameters_of(notebook: str | Path) -> dict[str, Any]:
+def parameters_of(notebook: File) -> dict[str, Any]:
     """Read the parameters of a notebook: the variables of its cell tagged ``parameters``.
 
     Parameters
@@ -121,7 +119,7 @@ def parameters_of(notebook: str | Path) -> dict[str, Any]:
     return found
 
 
-def datasets_of(notebook: str | Path) -> dict[str, str]:
+def datasets_of(notebook: File) -> dict[str, str]:
     """Find the parameters of a notebook whose values are paths of datasets.
 
     Parameters
@@ -140,9 +138,6 @@ def datasets_of(notebook: str | Path) -> dict[str, str]:
         As from `parameters_of`.
     """
     kinds = {f"{kind}.nc": kind for kind in (*DATASETS, *MEASURED)}
-    names = {
-        parameter: value.rsplit("/", 1)[-1]
-        for parameter, value in parameters_of(notebook).items()
-        if isinstance(value, str)
-    }
+    values = parameters_of(notebook).items()
+    names = {parameter: str(value).rsplit("/", 1)[-1] for parameter, value in values}
     return {parameter: kinds[name] for parameter, name in names.items() if name in kinds}

@@ -2,15 +2,15 @@
 
 import argparse
 import os
-import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
-from lube.errors import LubeError, StudyError
+from lube.errors import StudyError
 from lube.study.resolve import study_files
 from lube.study.study import Study, load_study
+from lube.types import File
+from lube.workflow.study_files import one_line_errors
 
 PAPER = "workflow/config/paper.yaml"
 """Study file of a command without ``--configfile``."""
@@ -18,6 +18,7 @@ PAPER = "workflow/config/paper.yaml"
 _WORDS = {"true": True, "false": False, "null": None}
 
 
+@one_line_errors()
 def check_command_line(arguments: Sequence[str]) -> None:
     """End Snakemake with one line if it would fail to read the study's options.
 
@@ -33,14 +34,11 @@ def check_command_line(arguments: Sequence[str]) -> None:
     parser.add_argument("--configfile", "--configfiles", nargs="+", default=[])
     parser.add_argument("--config", "-C", nargs="*", default=[])
     options, _ = parser.parse_known_args(arguments)
-    try:
-        _check_number(options.configfile)
-        for file in options.configfile:
-            study_files(file)  # refuses what it cannot read
-        for entry in options.config:
-            _check_entry(entry)
-    except LubeError as error:
-        sys.exit(f"The study cannot start. {error}")
+    _check_number(options.configfile)
+    for file in options.configfile:
+        study_files(file)  # refuses what it cannot read
+    for entry in options.config:
+        _check_entry(entry)
 
 
 def _check_number(files):
@@ -66,16 +64,14 @@ def _check_entry(entry):
         raise StudyError(f"--config: got {entry}, need '{outer}={value}' for a nested key")
 
 
-def study_of_command(
-    files: Sequence[str | Path], config: Mapping[str, Any]
-) -> tuple[Study, dict[str, Any]]:
+def study_of_command(files: Sequence[File], config: dict) -> tuple[Study, dict[str, Any]]:
     """Load the study that a Snakemake command asks for.
 
     Parameters
     ----------
     files : sequence of str or Path
         Files of ``--configfile``: one, or none for the paper's study.
-    config : mapping
+    config : dict
         Values of ``--config``, as Snakemake parsed them.
 
     Returns
@@ -98,13 +94,13 @@ def study_of_command(
 
 def _typed(value):
     """Give numbers in a nested value their type: Snakemake leaves all of them as text."""
-    if isinstance(value, Mapping):
-        return {key: _typed(one) for key, one in value.items()}
-    if isinstance(value, list):
-        return [_typed(one) for one in value]
-    if isinstance(value, str):
-        for number in (int, float):
-            with suppress(ValueError):
-                return number(value)
-        return _WORDS.get(value, value)
+    match value:
+        case dict():
+            return {key: _typed(one) for key, one in value.items()}
+        case list():
+            return [_typed(one) for one in value]
+        case str():
+            for read in (int, float, _WORDS.__getitem__):
+                with suppress(ValueError, KeyError):
+                    return read(value)
     return value

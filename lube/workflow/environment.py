@@ -1,7 +1,8 @@
 """The environment of all jobs: the package of this folder, and the same digits everywhere."""
 
 import os
-from pathlib import Path
+
+from lube.types import File
 
 AVX512 = "X86_V4 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR"
 """NumPy's names for its AVX-512 functions, in version 2.4 and before."""
@@ -16,7 +17,7 @@ def compute_alike() -> None:
     os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", AVX512)
 
 
-def use_package(root: str | Path) -> None:
+def use_package(root: File) -> None:
     """Make processes started from here import the package of one folder, not an installed one.
 
     Parameters

@@ -1,12 +1,12 @@
 """The figures of a study, from their notebooks' cells: what each needs and what it says."""
 
-import functools
 from dataclasses import dataclass
 from pathlib import Path
 
 from lube.report.markdown import title_and_text
 from lube.schema import MEASURED
 from lube.study.study import Study
+from lube.types import File
 from lube.workflow.cells import cells_of, datasets_of, python_of
 from lube.workflow.sources import script_sources, sources
 
@@ -20,47 +20,32 @@ class Figure:
 
     Attributes
     ----------
-    notebook : Path
-        The notebook. Its name, such as ``fig02_film``, is the figure's.
+    name : str
+        Name of the figure and its notebook, such as ``fig02_film``.
+    cells : list of dict
+        What determines the figure: the types, sources and tags of the notebook's cells.
+    datasets : list of str
+        Kinds of the datasets that its parameters cell names.
+    sources : list of str
+        Files of the lube package that its cells and the script ``figure.py`` depend on.
+    title, text : str
+        Heading of its first cell, or else its name; and the text below. In Markdown.
+    tags : list of str
+        Tags of all cells.
     """
 
-    notebook: Path
-
-    @property
-    def name(self) -> str:
-        """Name of the figure."""
-        return self.notebook.stem
-
-    @functools.cached_property
-    def cells(self) -> list[dict]:
-        """Cells reduced to what decides on the figure: kinds, sources and tags."""
-        return cells_of(self.notebook)
-
-    @functools.cached_property
-    def datasets(self) -> list[str]:
-        """Kinds of the datasets that its parameters cell names."""
-        return sorted(set(datasets_of(self.notebook).values()))
+    name: str
+    cells: list[dict]
+    datasets: list[str]
+    sources: list[str]
+    title: str
+    text: str
+    tags: list[str]
 
     @property
     def measured(self) -> bool:
         """Whether it shows measured times; such a figure is made on request only."""
         return not set(self.datasets).isdisjoint(MEASURED)
-
-    @functools.cached_property
-    def sources(self) -> list[str]:
-        """Files of the lube package that its cells and the script ``figure.py`` depend on."""
-        code = (python_of(cell, self.notebook) for cell in self.cells if cell["type"] == "code")
-        return sorted({*sources("\n".join(code)), *script_sources("figure")})
-
-    @property
-    def title(self) -> str:
-        """Heading of its first cell, in Markdown; without one, its name."""
-        return self._words[0] or self.name
-
-    @property
-    def text(self) -> str:
-        """Text of its first cell below the heading, in Markdown."""
-        return self._words[1]
 
     @property
     def chapter(self) -> str:
@@ -85,17 +70,20 @@ class Figure:
         levels = study.operating_grid.model_dump()
         return all(len(levels.get(name, ())) > 1 for name in self._tagged("several-"))
 
-    @functools.cached_property
-    def _words(self):
-        first = self.cells[:1]
-        return title_and_text("".join(c["source"] for c in first if c["type"] == "markdown"))
-
     def _tagged(self, prefix):
-        tags = [tag for cell in self.cells for tag in cell["tags"]]
-        return [tag.removeprefix(prefix) for tag in tags if tag.startswith(prefix)]
+        return [tag.removeprefix(prefix) for tag in self.tags if tag.startswith(prefix)]
 
 
-def study_figures(study: Study, folder: str | Path = "notebooks") -> dict[str, Figure]:
+def _read(notebook):
+    cells, datasets = cells_of(notebook), sorted(set(datasets_of(notebook).values()))
+    code = "\n".join(python_of(cell, notebook) for cell in cells if cell["type"] == "code")
+    files = sorted({*sources(code), *script_sources("figure")})
+    title, text = title_and_text(cells[0]["source"] if cells[0]["type"] == "markdown" else "")
+    tags = [tag for cell in cells for tag in cell["tags"]]
+    return Figure(notebook.stem, cells, datasets, files, title or notebook.stem, text, tags)
+
+
+def study_figures(study: Study, folder: File = "notebooks") -> dict[str, Figure]:
     """List the figures that a study can draw.
 
     Parameters
@@ -115,10 +103,7 @@ def study_figures(study: Study, folder: str | Path = "notebooks") -> dict[str, F
     LubeError
         If a notebook is damaged, is not Python or has no parameters cell.
     """
-    figures = [Figure(path) for path in sorted(Path(folder).glob("*.ipynb"))]
-    for figure in figures:
-        # Read now, so that a mistake is reported before any job.
-        figure.datasets, figure.sources  # noqa: B018
+    figures = [_read(path) for path in sorted(Path(folder).glob("*.ipynb"))]
     return {figure.name: figure for figure in figures if figure.fits(study)}
 
 

@@ -6,7 +6,7 @@ files are still as the workflow made them.
 """
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,38 +15,14 @@ import netCDF4
 from lube.errors import DataError, LubeError
 from lube.storage.files import written_whole
 from lube.storage.provenance import REMEDY, fingerprint
+from lube.types import File, Files
 from lube.workflow.cells import datasets_of
 from lube.workflow.notebooks import execute_notebook
 from lube.workflow.stamps import drawn_by
+from lube.workflow.study_files import origin, products
 
 
-def products(figure: str) -> list[str]:
-    """List the files of a figure: its pictures and its executed notebook.
-
-    Parameters
-    ----------
-    figure : str
-        Its name, such as ``fig02_film``.
-
-    Returns
-    -------
-    list of str
-        Paths below the folder of a study's results, or below an archive.
-
-    Examples
-    --------
-    >>> products("fig02_film")
-    ['figures/fig02_film.png', 'figures/fig02_film.pdf', 'notebooks/fig02_film.ipynb']
-    """
-    return [f"figures/{figure}.png", f"figures/{figure}.pdf", f"notebooks/{figure}.ipynb"]
-
-
-def origin(figure: str) -> str:
-    """Path of the file that states the origin of a figure, below the same folder."""
-    return f"figures/{figure}.json"
-
-
-def paths_for(notebook: str | Path, datasets: Iterable[str | Path]) -> dict[str, str]:
+def paths_for(notebook: File, datasets: Files) -> dict[str, str]:
     """Assign datasets to the parameters of a notebook.
 
     Parameters
@@ -74,21 +50,16 @@ def paths_for(notebook: str | Path, datasets: Iterable[str | Path]) -> dict[str,
     return {parameter: paths[kind] for parameter, kind in kinds.items()}
 
 
-def draw_figure(
-    notebook: str | Path,
-    datasets: Sequence[str | Path],
-    code: Sequence[str],
-    results: str | Path,
-) -> None:
+def draw_figure(notebook: File, datasets: list[str], code: list[str], results: File) -> None:
     """Execute a notebook on a study's datasets and write the origin of its figure.
 
     Parameters
     ----------
     notebook : str or Path
         The notebook.
-    datasets : sequence of str or Path
-        The datasets that it names.
-    code : sequence of str
+    datasets : list of str
+        Paths of the datasets that it names.
+    code : list of str
         Files of code that the figure depends on, below the folder of the Snakefile.
     results : str or Path
         Folder of the study's results.
@@ -99,16 +70,13 @@ def draw_figure(
         If the notebook fails, or saves no figure.
     """
     results, figure = Path(results), Path(notebook).stem
-    pictures = [results / name for name in products(figure)[:2]]
-    before = [_last_change(picture) for picture in pictures]
+    before = _last_changes(results, figure)
     parameters = {**paths_for(notebook, datasets), "figure": str(results / "figures" / figure)}
     changes = drawn_by(map(_commit_of, datasets), code, notebook)
     execute_notebook(notebook, results / "notebooks" / f"{figure}.ipynb", parameters, changes)
     # Snakemake keeps the old pictures until new ones replace them.
-    if any(_last_change(picture) == old for picture, old in zip(pictures, before, strict=True)):
-        raise LubeError(
-            f"{notebook}: saved no figure, need plots.save_figure(..., figure, ...) in its cells"
-        )
+    if not before.isdisjoint(_last_changes(results, figure)):
+        raise LubeError(f"{notebook}: saved no figure, need plots.save_figure(..., figure, ...)")
     content = {
         "datasets": {Path(path).stem: fingerprint(path) for path in sorted(datasets)},
         "products": {name: fingerprint(results / name) for name in products(figure)},
@@ -127,11 +95,13 @@ def _commit_of(path):
         raise DataError(f"{path}: not a whole NetCDF file of lube ({error})") from None
 
 
-def _last_change(path):
-    return path.stat().st_mtime_ns if path.exists() else None
+def _last_changes(results, figure):
+    """Return the pictures of a figure with the times of their last changes."""
+    paths = [results / name for name in products(figure)[:2]]
+    return {(path, path.stat().st_mtime_ns if path.exists() else None) for path in paths}
 
 
-def read_origin(figure: str, folder: str | Path) -> dict[str, Any]:
+def read_origin(figure: str, folder: File) -> dict[str, Any]:
     """Read the origin of a figure.
 
     Parameters
@@ -159,7 +129,7 @@ def read_origin(figure: str, folder: str | Path) -> dict[str, Any]:
         raise DataError(f"{path}: missing or damaged") from None
 
 
-def wrong_figures(figures: Iterable[str], folder: str | Path, data: str | Path) -> Iterator[str]:
+def wrong_figures(figures: Iterable[str], folder: File, data: File) -> Iterator[str]:
     """Check that figures are as the workflow drew them from the present datasets.
 
     Parameters

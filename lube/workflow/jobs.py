@@ -5,10 +5,10 @@ import logging
 import signal
 import sys
 import time
-from pathlib import Path
 
 from lube.errors import DataError, LubeError
 from lube.storage.files import why_not
+from lube.types import File
 
 TERMINAL_PAUSE = 5.0
 """Least time between two progress lines of a job on the terminal, s; the log has all of them."""
@@ -29,14 +29,7 @@ class _Occasionally(logging.Filter):
         return True
 
 
-class _Log(logging.FileHandler):
-    """A job's log. On a full disk it stays silent: the job's own error reports that."""
-
-    def handleError(self, record):
-        pass
-
-
-def begin_job(log_file: str | Path) -> None:
+def begin_job(log_file: File) -> None:
     """Set up the process of a job: messages go to its log and, occasionally, to the terminal.
 
     From here on an error that the user can correct is reported in one line, and a job that is
@@ -59,15 +52,12 @@ def begin_job(log_file: str | Path) -> None:
     terminal.addFilter(_Occasionally())
     logging.basicConfig(level=logging.WARNING, handlers=[terminal], format="%(message)s")
     logging.getLogger("lube").setLevel(logging.DEBUG)
-    logging.getLogger().addHandler(_log_handler(Path(log_file)))
-
-
-def _log_handler(path):
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        return _Log(path, mode="w")
+        log = logging.FileHandler(log_file, mode="w")
     except OSError as error:
-        raise DataError(f"{path}: cannot be written: {why_not(error, path)}") from error
+        raise DataError(f"{log_file}: cannot be written: {why_not(error, log_file)}") from error
+    log.handleError = lambda record: None  # on a full disk the job's own error is enough
+    logging.getLogger().addHandler(log)
 
 
 def _report(kind, error, traceback):

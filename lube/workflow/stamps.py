@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 import xarray as xr
@@ -10,18 +10,19 @@ import xarray as xr
 from lube.errors import DataError
 from lube.storage.git import ROOT, changed_since, commit, text_in
 from lube.storage.provenance import SHORT, digest, merged_config
+from lube.types import File
 from lube.workflow.cells import cells_of, reduced
 
 DRAWN_BY = "LUBE_DRAWN_BY"
 """Environment variable by which the workflow passes the text of `drawn_by` to a notebook."""
 
 
-def stamp(datasets: Sequence[xr.Dataset]) -> str:
+def stamp(datasets: list[xr.Dataset]) -> str:
     """Compose the stamp of a figure.
 
     Parameters
     ----------
-    datasets : sequence of xarray.Dataset
+    datasets : list of xarray.Dataset
         What the figure shows.
 
     Returns
@@ -52,16 +53,14 @@ def stamp(datasets: Sequence[xr.Dataset]) -> str:
     return f"{line} · {changes}" if changes else line
 
 
-def drawn_by(
-    commits: Iterable[str], code: Iterable[str], notebook: str | Path | None = None
-) -> str:
+def drawn_by(commits: Iterable[str], code: list[str], notebook: File | None = None) -> str:
     """State how the code that draws a figure differs from the commits that made its datasets.
 
     Parameters
     ----------
     commits : iterable of str
         Those commits, from the datasets' attributes.
-    code : iterable of str
+    code : list of str
         Files of code that the figure depends on, below the folder of the Snakefile.
     notebook : str or Path, optional
         Its notebook; its cells are compared, not their outputs.
@@ -73,7 +72,7 @@ def drawn_by(
         and what differs from it. Empty if notebook and code are as in one of the commits, or if
         this is unknown, as in an unpacked archive.
     """
-    code, head = list(code), commit().partition("+")[0]
+    head = commit().partition("+")[0]
     made_at = {name.partition("+")[0] for name in commits}
     changes = {name: _changes(name, code, notebook) for name in (*made_at, head)}
     if changes[head] is None or any(changes[name] == [] for name in made_at):

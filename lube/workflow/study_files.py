@@ -2,6 +2,7 @@
 
 import contextlib
 import hashlib
+import itertools
 import json
 import os
 import sys
@@ -12,6 +13,7 @@ from lube.errors import LubeError
 from lube.schema import DATASETS, STAGES, forerunners
 from lube.study.resolve import study_files
 from lube.study.study import Study
+from lube.types import File, Files
 
 
 @contextlib.contextmanager
@@ -28,7 +30,7 @@ def digest(content: object) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def input_paths(files: Iterable[str | Path]) -> list[str]:
+def input_paths(files: Files) -> list[str]:
     """List files relative to the working folder, so that the repository can be moved.
 
     Parameters
@@ -53,6 +55,32 @@ def input_paths(files: Iterable[str | Path]) -> list[str]:
     return paths
 
 
+def products(figure: str) -> list[str]:
+    """List the files of a figure: its pictures and its executed notebook.
+
+    Parameters
+    ----------
+    figure : str
+        Its name, such as ``fig02_film``.
+
+    Returns
+    -------
+    list of str
+        Paths below the folder of a study's results, or below an archive.
+
+    Examples
+    --------
+    >>> products("fig02_film")
+    ['figures/fig02_film.png', 'figures/fig02_film.pdf', 'notebooks/fig02_film.ipynb']
+    """
+    return [f"figures/{figure}.png", f"figures/{figure}.pdf", f"notebooks/{figure}.ipynb"]
+
+
+def origin(figure: str) -> str:
+    """Path of the file that states the origin of a figure, below the same folder."""
+    return f"figures/{figure}.json"
+
+
 class StudyFiles:
     """Paths and fingerprints of one study, for the rules.
 
@@ -66,7 +94,7 @@ class StudyFiles:
         Values that ``--config`` changes.
     """
 
-    def __init__(self, study: Study, path: str | Path, changes: dict):
+    def __init__(self, study: Study, path: File, changes: dict):
         self.study, self.path, self.changes = study, path, changes
         self.folder = f"results/{study.name}"
 
@@ -135,14 +163,8 @@ class StudyFiles:
 
     def products(self, figures: Iterable[str]) -> list[str]:
         """List the files that the jobs of some figures make: pictures, origin, notebook."""
-        return [
-            self.result(name)
-            for figure in figures
-            for name in (
-                *(f"figures/{figure}.{suffix}" for suffix in ("png", "pdf", "json")),
-                f"notebooks/{figure}.ipynb",
-            )
-        ]
+        names = [(*products(figure), origin(figure)) for figure in figures]
+        return [self.result(name) for name in itertools.chain.from_iterable(names)]
 
     def benchmarks(self, figures: Iterable[str]) -> dict[str, list[str]]:
         """List the benchmark files of all jobs, by the steps of the study.
@@ -160,10 +182,8 @@ class StudyFiles:
         steps = {"batches of realisations": [f"batch_{first}" for first in self.study.batches]}
         steps |= {stage: [stage] for stage in DATASETS}
         steps["figures"] = list(figures)
-        return {
-            step: [self.result(f"benchmarks/{job}.tsv") for job in jobs]
-            for step, jobs in steps.items()
-        }
+        file = "benchmarks/{}.tsv".format
+        return {step: [self.result(file(job)) for job in jobs] for step, jobs in steps.items()}
 
     def refused_records(self) -> str | None:
         """Say in one line which measured records were refused, and why; None if none was."""

@@ -10,7 +10,7 @@ from lube.archive.build import make_archive
 from lube.schema import DATASETS
 from lube.storage.netcdf import save
 from lube.storage.provenance import fingerprint
-from lube.workflow.figures import origin, products
+from lube.workflow.study_files import origin, products
 
 FIGURE = "fig02_film"
 
@@ -37,7 +37,7 @@ def archive(study, datasets, tmp_path_factory):
     """The archive; not to be changed. Its zip stands beside it."""
     folder = tmp_path_factory.mktemp("results")
     write_results(study, datasets, folder)
-    make_archive(study, SMOKE, folder, DATASETS, [FIGURE], folder / "archive/smoke")
+    make_archive(study, SMOKE, folder, [FIGURE], folder / "archive/smoke")
     return folder / "archive/smoke"
 
 

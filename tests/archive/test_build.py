@@ -10,6 +10,7 @@ from studies import ROOT, SMOKE
 
 from lube.archive.build import VALUES, archive_contents, exact_versions, make_archive, written_files
 from lube.errors import DataError, StudyError
+from lube.schema import DATASETS
 from lube.storage.provenance import config_text, digest
 from lube.study.study import load_study
 
@@ -41,12 +42,12 @@ def change(path, **values):
     path.write_text(yaml.safe_dump(content), encoding="utf-8")
 
 
-def contents_of(path, results):
-    return archive_contents(load_study(path), path, results, ["film"], ["fig02_film"])
+def contents_of(path, archive):
+    return archive_contents(load_study(path), path, archive / "data", ["fig02_film"])
 
 
-def test_a_study_is_archived_with_all_its_files_and_loads_from_there(own, tmp_path):
-    contents = contents_of(own, tmp_path / "results")
+def test_a_study_is_archived_with_all_its_files_and_loads_from_there(own, archive, tmp_path):
+    contents = contents_of(own, archive)
     written = {name for name in contents if name.startswith(("study/", "lubricants/"))}
     assert written == {
         *("study/studies/study.yaml", "study/studies/records/list.csv", "study/oils/mine.yaml"),
@@ -62,17 +63,19 @@ def test_a_study_is_archived_with_all_its_files_and_loads_from_there(own, tmp_pa
     assert archived.stage_inputs("film") == load_study(own).stage_inputs("film")
 
 
-def test_results_and_values_are_archived(study, tmp_path):
-    contents = archive_contents(study, SMOKE, tmp_path, ["film", "contact"], ["fig02_film"])
-    assert contents["data/film.nc"] == tmp_path / "film.nc"
+def test_results_and_values_are_archived(study, archive):
+    results = archive.parents[1]
+    contents = archive_contents(study, SMOKE, results, ["fig02_film"])
+    assert contents["data/film.nc"] == results / "film.nc"
     drawn = [f"figures/fig02_film.{suffix}" for suffix in ("png", "pdf", "json")]
     for name in (*drawn, "notebooks/fig02_film.ipynb"):
-        assert contents[name] == tmp_path / name
+        assert contents[name] == results / name
     values = json.loads(contents[VALUES])
-    assert set(values["values"]) == {"lubricant", "film", "roughness", "contact"}
-    assert values["config_sha256"] == {
-        kind: digest(config_text(study, kind)) for kind in ("film", "contact")
-    }
+    merged = {}
+    for kind in DATASETS:
+        merged |= json.loads(config_text(study, kind))
+    assert values["values"] == merged
+    assert values["config_sha256"]["film"] == digest(config_text(study, "film"))
 
 
 def test_paths_that_would_not_resolve_in_an_archive_are_refused(own, tmp_path):
@@ -87,17 +90,17 @@ def test_paths_that_would_not_resolve_in_an_archive_are_refused(own, tmp_path):
     ):
         before = own.read_text("utf-8")
         change(own, **changed)
-        expected = rf"got '.*, need the direct relative .* folder, '{re.escape(direct)}'"
+        expected = rf"got '.*, an archive needs the direct relative path, '{re.escape(direct)}'"
         with pytest.raises(StudyError, match=expected):
             written_files(load_study(own), own)
         own.write_text(before, encoding="utf-8")
 
 
-def test_records_with_the_same_file_name_are_both_archived(own, tmp_path):
+def test_records_with_the_same_file_name_are_both_archived(own, archive, tmp_path):
     same = own.parent / "mobilgear-shc-xmp-320.yaml"
     shutil.copy(tmp_path / "oils/mine.yaml", same)
     change(own, lubricants=["mobilgear-shc-xmp-320", same.name])
-    contents = contents_of(own, tmp_path / "results")
+    contents = contents_of(own, archive)
     assert contents["lubricants/mine/mobilgear-shc-xmp-320.yaml"].samefile(same)
     shipped = contents["lubricants/mobilgear-shc-xmp-320/mobilgear-shc-xmp-320.yaml"]
     assert shipped.is_relative_to(ROOT / "lube/study/lubricants")
@@ -123,15 +126,19 @@ def test_versions_are_fit_for_pip():
     assert not [line for line in lines if line.startswith("lube==")]
 
 
-def test_an_archive_that_cannot_be_made_leaves_the_old_one(study, tmp_path):
+def test_an_archive_that_cannot_be_made_leaves_the_old_one(
+    study, files, tmp_path, tmp_path_factory
+):
+    results = tmp_path_factory.mktemp("results")
+    shutil.copy(files / "experiment.nc", results)
     archive = tmp_path / "archive"
     archive.mkdir()
     (archive / "README.md").write_text("old")
-    for kinds, figures, expected in (
-        (["film"], [], "archive: cannot be archived: No such file"),
-        ([], ["fig02_film"], r"fig02_film.json: missing or damaged; delete it and run snakemake"),
+    for figures, expected in (
+        ([], "archive: cannot be archived: No such file"),
+        (["fig02_film"], r"fig02_film.json: missing or damaged; delete it and run snakemake"),
     ):
         with pytest.raises(DataError, match=expected):
-            make_archive(study, SMOKE, tmp_path, kinds, figures, archive)
+            make_archive(study, SMOKE, results, figures, archive)
         assert (archive / "README.md").read_text() == "old"
         assert list(tmp_path.iterdir()) == [archive]

@@ -40,7 +40,7 @@ def test_zenodo_gets_what_it_asks_for(attributed_study):
 
 def test_an_archive_needs_creators_and_a_date(study, monkeypatch):
     undated = study.model_copy(update={"about": About()})
-    with pytest.raises(StudyError, match=r"about.creators: missing, an archive needs at least one"):
+    with pytest.raises(StudyError, match=r"about.creators: missing, an archive needs one at least"):
         check_about(undated)
     monkeypatch.setattr("lube.archive.citation.commit_date", lambda: "2026-05-06")
     assert publication_date(undated).isoformat() == "2026-05-06"

@@ -12,7 +12,7 @@ from lube.study.metadata import About
 
 def page_of(study, study_file="smoke.yaml", **about):
     about = About.model_validate({"creators": [{"name": "A"}]} | about)
-    return archive_page(study.model_copy(update={"about": about}), DATASETS, study_file)
+    return archive_page(study.model_copy(update={"about": about}), study_file, [])
 
 
 def shown(page):
@@ -50,7 +50,7 @@ def test_the_place_of_measured_records_is_named(study):
 def test_refused_records_are_named_with_their_reasons(study):
     measured = study.experiment.model_copy(update={"manifest": "list.csv"})
     study = study.model_copy(update={"experiment": measured})
-    page = archive_page(study, DATASETS, "smoke.yaml", ["run_7.csv: line 3: got 'x', need y"])
+    page = archive_page(study, "smoke.yaml", ["run_7.csv: line 3: got 'x', need y"])
     assert "refused, and are in no result" in page
     assert "run_7.csv: line 3: got 'x', need y" in unescape(shown(page))
 

@@ -31,7 +31,7 @@ def test_figures_are_drawn_from_the_archive_and_compared(changed, tmp_path, exec
     content = json.loads(origin.read_text("utf-8")) | {"drawn_by": "changed notebook"}
     origin.write_text(json.dumps(content))
     new = tmp_path / "new"
-    assert dict(redraw(changed, new)) == {f"{FIGURE}.png": True, f"{FIGURE}.pdf": True}
+    assert dict(redraw(changed, new, [])) == {f"{FIGURE}.png": True, f"{FIGURE}.pdf": True}
     (parameters,) = executed
     assert parameters["film"] == str(changed / "data/film.nc")
     assert parameters["figure"] == str(new / FIGURE)
@@ -46,7 +46,7 @@ def test_figures_that_cannot_be_drawn_are_refused(archive, changed, tmp_path):
     (tmp_path / "file").touch()
     for folder, target, figures, expected in (
         (archive, tmp_path, ["fig99"], f"got fig99, need a figure of the archive: {FIGURE}"),
-        (archive, tmp_path / "file", [], "need a folder, not a file"),
+        (archive, tmp_path / "file", [], "need a folder outside the archive"),
         (archive, archive / "notebooks/../figures", [], "need a folder outside the archive"),
         (archive.parent, tmp_path, [], "not an archive: SHA256SUMS is missing"),
     ):
@@ -55,4 +55,4 @@ def test_figures_that_cannot_be_drawn_are_refused(archive, changed, tmp_path):
     assert verify_archive(archive) == []
     (changed / f"code/notebooks/{FIGURE}.ipynb").unlink()
     with pytest.raises(LubeError, match=r"fig02_film.ipynb: cannot be read: No such file"):
-        list(redraw(changed, tmp_path / "new"))
+        list(redraw(changed, tmp_path / "new", []))

@@ -81,8 +81,6 @@ def test_a_dataset_of_another_kind_or_damaged_is_found(changed):
 def test_values_that_are_not_the_studys_are_found(changed):
     edit(changed / VALUES, '"realisations": 4', '"realisations": 3')
     assert verified_with_new_sums(changed) == ["values.json: not what study/smoke.yaml says"]
-    (changed / VALUES).write_text("{}")
-    assert verified_with_new_sums(changed) == ["values.json: missing or damaged"]
 
 
 # Origin
@@ -145,7 +143,7 @@ def test_of_measured_records_the_manifest_is_checked(datasets, archive, tmp_path
     for kind in DATASETS:
         inputs = [results / "film.nc", manifest, record] if kind == "experiment" else []
         save(datasets[kind], results / f"{kind}.nc", kind, study, inputs)
-    make_archive(study, mine, results, DATASETS, [], results / "mine")
+    make_archive(study, mine, results, [], results / "mine")
     assert verify_archive(results / "mine") == []
     assert "study/film.nc" not in files_of(results / "mine")
     (results / "mine/study/list.csv").write_text("file\nother.nc\n")
@@ -173,7 +171,10 @@ def test_a_damaged_zip_is_found(archive, tmp_path):
     path = tmp_path / "damaged.zip"
     for position in (len(packed) // 3, len(packed) // 2):
         path.write_bytes(packed[:position] + bytes([packed[position] ^ 4]) + packed[position + 1 :])
-        with pytest.raises(DataError, match=r"damaged.zip: cannot be unpacked"), unpacked(path):
+        with (
+            pytest.raises(DataError, match=r"damaged.zip: neither a folder nor a whole zip"),
+            unpacked(path),
+        ):
             pass
 
 
@@ -182,7 +183,7 @@ def test_what_is_no_archive_is_refused(tmp_path):
     with pytest.raises(DataError, match="no such archive; `snakemake archive`"), unpacked(path):
         pass
     path.write_bytes(b"not a zip")
-    with pytest.raises(DataError, match="neither an archive's folder nor its zip"), unpacked(path):
+    with pytest.raises(DataError, match="neither a folder nor a whole zip"), unpacked(path):
         pass
     with zipfile.ZipFile(path, "w") as packed:
         packed.writestr("README.md", "empty")

@@ -8,14 +8,7 @@ from studies import ROOT
 from lube.physics.film_formulas import FORMULAS
 from lube.recordings.manifest import manifest_schema, read_manifest
 from lube.recordings.reader import open_recording
-from lube.report.key_tables import (
-    TABLES,
-    formula_table,
-    manifest_table,
-    record_table,
-    study_table,
-    with_tables,
-)
+from lube.report.key_tables import TABLES, table, with_tables
 
 PAGES = {
     path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
@@ -37,30 +30,30 @@ def test_the_tables_are_those_of_the_code():
 def test_tables_are_filled_between_their_markers_only():
     text = "before\n<!-- table: formulas -->\nold\n<!-- end -->\nafter"
     filled = with_tables(text)
-    assert filled == f"before\n<!-- table: formulas -->\n{formula_table()}\n<!-- end -->\nafter"
+    assert filled == f"before\n<!-- table: formulas -->\n{table('formulas')}\n<!-- end -->\nafter"
 
 
 def test_every_row_is_there():
-    names = [row.split("`")[1] for row in formula_table().splitlines()[2:]]
+    names = [row.split("`")[1] for row in table("formulas").splitlines()[2:]]
     assert names == list(FORMULAS)
-    names = [row.split("`")[1] for row in manifest_table().splitlines()[2:]]
+    names = [row.split("`")[1] for row in table("manifest").splitlines()[2:]]
     assert names == list(manifest_schema()["properties"])
 
 
 def test_a_key_has_its_unit_limits_and_default():
-    for row, table in {
-        "| `rollers.first.radius` | quantity in m, above 0 |": study_table,
-        "| `rollers.second.poisson_ratio` | number, at least 0 and at most 0.5 |": study_table,
-        "| `operating_grid.force` | values and units in N, above 0 |": study_table,
-        "| `lubricants` | list of names or paths |": study_table,
-        "| `traces[].lubricant` | text (optional) |": study_table,
-        "| `rig.bandwidth` | quantity in Hz, above 0 (by default 50 kHz) |": study_table,
-        "| `experiment.thresholds` | values and units in ohm, above 0 (by default 10": study_table,
-        "| `gain` | number, other than 0 (by default 1) |": manifest_table,
-        "| `temperature_tolerance` | quantity in K, above 0 (optional) |": manifest_table,
-        "| `density.at_15_degC` | quantity in kg/m^3, above 0 (section optional) |": record_table,
+    for row, name in {
+        "| `rollers.first.radius` | quantity in m, above 0 |": "study",
+        "| `rollers.second.poisson_ratio` | number, at least 0 and at most 0.5 |": "study",
+        "| `operating_grid.force` | values and units in N, above 0 |": "study",
+        "| `lubricants` | list of names or paths |": "study",
+        "| `traces[].lubricant` | text (optional) |": "study",
+        "| `rig.bandwidth` | quantity in Hz, above 0 (by default 50 kHz) |": "study",
+        "| `experiment.thresholds` | values and units in ohm, above 0 (by default 10": "study",
+        "| `gain` | number, other than 0 (by default 1) |": "manifest",
+        "| `temperature_tolerance` | quantity in K, above 0 (optional) |": "manifest",
+        "| `density.at_15_degC` | quantity in kg/m^3, above 0 (section optional) |": "record",
     }.items():
-        assert any(line.startswith(row) for line in table().splitlines()), row
+        assert any(line.startswith(row) for line in table(name).splitlines()), row
 
 
 def test_links_lead_to_files():

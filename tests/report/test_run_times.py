@@ -2,7 +2,7 @@
 
 import pytest
 
-from lube.report.pages import html_page
+from lube.report.pages import render
 from lube.report.run_times import run_times
 
 HEAD = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time\n"
@@ -43,6 +43,6 @@ def test_short_and_missing_jobs(measured):
 
 
 def test_a_page_holds_its_style_and_escapes_its_title():
-    page = html_page("a < b", "<p>text</p>")
+    page = render("page.html", title="a < b", body="<p>text</p>")
     assert page.startswith("<!doctype html>") and "<p>text</p>" in page
     assert page.count("a &lt; b") == 2 and page.count("font-size") > 3

@@ -58,6 +58,7 @@ def test_a_folder_that_is_not_writable_is_refused(tmp_path, disk):
     expected = f"results: cannot be written: the folder {tmp_path} is not writable"
     with pytest.raises(DataError, match=expected):
         check_writable(tmp_path / "results")
+    expected = "results: cannot be written: Read-only file system"
     with pytest.raises(DataError, match=expected), written_whole(tmp_path / "results"):
         pass
 

@@ -65,21 +65,6 @@ def test_files_of_other_values_than_the_studys_are_refused(files, study):
                 load(files / f"{kind}.nc", kind, other)
 
 
-def test_a_save_that_fails_leaves_the_old_file_alone(datasets, files, study, tmp_path, monkeypatch):
-    path = shutil.copy(files / "film.nc", tmp_path / "film.nc")
-
-    def fail(*arguments, **options):
-        raise OSError("No space left on device")
-
-    with pytest.raises(DataError, match="film_thickness"):
-        save(datasets["film"].drop_vars("film_thickness"), path, "film", study)
-    monkeypatch.setattr("xarray.Dataset.to_netcdf", fail)
-    with pytest.raises(DataError, match=r"film.nc: cannot be written: No space left.*MiB are free"):
-        save(datasets["film"], path, "film", study)
-    assert path.read_bytes() == (files / "film.nc").read_bytes()
-    assert list(tmp_path.iterdir()) == [path]
-
-
 def test_on_a_disk_of_any_size_a_file_is_whole_or_not_there(datasets, study, tmp_path, disk):
     """The library may run out of space anywhere in the file, even while it closes it."""
     path = tmp_path / "small" / "film.nc"

@@ -4,7 +4,6 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from lube.errors import LubeError
 from lube.workflow.figure_list import chapters, study_figures
 
 
@@ -58,24 +57,3 @@ def test_chapters_are_numbered_by_their_figures_measured_times_last(write, study
         "fig01_a": "1 Oil and film",
         "fig02_b": "1 Oil and film",
     }
-
-
-@pytest.mark.parametrize(
-    ("code", "message"),
-    [
-        ("plot this nicely", "fig99_mine.ipynb: got 'plot this nicely', which is not Python"),
-        (None, "fig99_mine.ipynb: no cell is tagged 'parameters'"),
-        ("{", "fig99_mine.ipynb: not a Jupyter notebook"),
-    ],
-    ids=["not Python", "no parameters", "damaged"],
-)
-def test_a_notebook_that_is_no_figure_is_refused_in_one_line(write, study, code, message):
-    folder = write("fig99_mine", code if code and len(code) > 1 else "x = 1")
-    path = folder / "fig99_mine.ipynb"
-    if code is None:
-        path.write_text(path.read_text("utf-8").replace("parameters", "other"), "utf-8")
-    elif code == "{":
-        path.write_text(code, "utf-8")
-    with pytest.raises(LubeError) as refused:
-        study_figures(study, folder)
-    assert message in str(refused.value)

@@ -9,14 +9,8 @@ from PIL import Image
 
 from lube.errors import LubeError
 from lube.storage import provenance
-from lube.workflow.figures import (
-    draw_figure,
-    origin,
-    paths_for,
-    products,
-    read_origin,
-    wrong_figures,
-)
+from lube.workflow.figures import draw_figure, paths_for, read_origin, wrong_figures
+from lube.workflow.study_files import origin, products
 
 FIGURE = "fig99_mine"
 PARAMETERS = 'oil = "../results/paper/film.nc"\nspeed = 100\nfigure = None'

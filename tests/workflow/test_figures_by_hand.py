@@ -1,14 +1,9 @@
 """Figures of a study under Snakemake: run by hand, failing, stamped."""
 
-import re
-import subprocess
-
 import nbformat
-import pytest
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
-from PIL import Image
-from repository import environment, products_of
+from repository import products_of
 
 PICTURE, TARGET = "figures/fig99_mine.png", "results/smoke/figures/fig99_mine.png"
 DRAW = """\
@@ -73,32 +68,3 @@ def test_a_failing_cell_leaves_its_traceback_and_the_old_figure(spare):
     assert made(spare)[PICTURE] != old[PICTURE]
     assert not failed.exists()
     assert "Nothing to be done" in spare.run()
-
-
-@pytest.mark.slow
-def test_a_stamp_states_that_notebook_or_code_are_not_as_committed(spare):
-    def git(*arguments):
-        command = ["git", "-c", "user.name=A", "-c", "user.email=a@b", *arguments]
-        subprocess.run(command, cwd=spare.folder, env=environment(), check=True, timeout=60)
-
-    def stamp():
-        with Image.open(spare / TARGET) as picture:
-            return picture.text["Description"]
-
-    (spare / ".gitignore").write_text("results/\n.snakemake/\n__pycache__/\n")
-    git("init", "--quiet")
-    git("add", ".")
-    git("commit", "--quiet", "-m", "first")
-    (spare.results / "film.nc").unlink()
-    write(spare, DRAW.format(1))
-    spare.run(TARGET)
-    clean = stamp().removesuffix(" · new notebook")
-    assert re.fullmatch(r"study smoke · config \w{10} · commit [0-9a-f]{10}", clean)
-    assert stamp() == f"{clean} · new notebook"
-    git("add", ".")
-    git("commit", "--quiet", "-m", "second")
-    write(spare, DRAW.format(2))
-    spare.append("lube/plots.py", "# changed")
-    spare.run(TARGET)
-    added = stamp().removeprefix(clean)
-    assert re.fullmatch(r" · drawn at commit \w{10} · changed notebook · changed code", added)

@@ -25,7 +25,7 @@ def run(tmp_path):
     """Run a job of some code by itself; return its standard error and its log."""
 
     def run_job(code, exit_code=1):
-        log = tmp_path / "logs" / "job.log"
+        log = tmp_path / "job.log"
         finished = subprocess.run(
             [sys.executable, "-c", BEGIN + textwrap.dedent(code), log],
             capture_output=True,

@@ -94,7 +94,7 @@ def test_the_start_page_tells_the_study_and_leads_to_every_figure(smoke, held):
         assert words in start
     for figure in smoke.notebooks:
         assert f'resultPath: "results/smoke/figures/{figure}.png"' in start
-        assert plain(first_cell(smoke, figure)[0]) in start
+        assert plain(first_cell(smoke, figure)[0]) in unescape(start)
 
 
 def test_the_pages_tell_configuration_assumptions_and_run_times(smoke, held):

@@ -32,15 +32,6 @@ def test_every_dataset_fits_the_schema_and_says_what_it_was_made_from(smoke):
         assert {name for name in made_from if name.endswith(".nc")} == read
 
 
-def test_every_batch_fits_the_schema(smoke):
-    batches = sorted((smoke.results / "batches").iterdir())
-    expected = [f"{stage}_{first}.nc" for stage in ("contact", "master") for first in (0, 2)]
-    assert [path.name for path in batches] == expected
-    for path in batches:
-        kind = f"{path.stem.split('_')[0]}_batch"
-        check(load(path, kind), kind)
-
-
 def warnings_in(notebook):
     cells = json.loads(notebook.read_text("utf-8"))["cells"]
     outputs = [output for cell in cells for output in cell.get("outputs", [])]

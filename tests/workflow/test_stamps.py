@@ -34,7 +34,7 @@ def test_files_of_two_studies_are_drawn_together_only_if_they_have_different_nam
     layer = study.boundary_layer.model_copy(update={"shear_strength": 2e6})
     stronger = study.model_copy(update={"boundary_layer": layer})
     pair = [made_by(study, "trace"), made_by(stronger, "trace")]
-    expected = "not of one study: trace.boundary_layer.shear_strength is 1000000.0, need 2000000.0"
+    expected = "not of one study: trace.boundary_layer.shear_strength is 2000000.0, need 1000000.0"
     with pytest.raises(DataError, match=expected):
         stamp(pair)
     pair[1] = made_by(stronger.model_copy(update={"name": "strong"}), "trace")

@@ -80,10 +80,10 @@ def test_without_a_manifest_there_are_no_measured_files(files):
 
 
 def test_a_figures_products_are_named(files):
-    assert files.products(["fig02_film"]) == [
+    assert set(files.products(["fig02_film"])) == {
         *(f"results/smoke/figures/fig02_film.{suffix}" for suffix in ("png", "pdf", "json")),
         "results/smoke/notebooks/fig02_film.ipynb",
-    ]
+    }
 
 
 def test_steps_name_the_benchmarks_of_all_jobs(files):

@@ -1,4 +1,5 @@
-from lube.archive.inputs import archived_texts, code_state
+from lube.archive.inputs import archived_texts
+from lube.storage.git import changed_code, commit, commit_date
 
 
 rule archive:
@@ -18,8 +19,7 @@ rule archive:
         result("benchmarks/archive.tsv")
     params:
         about=digest(STUDY.about.model_dump(mode="json")),
-        code=lambda wildcards: code_state(),
-        kinds=DATASETS,
+        code=lambda wildcards: [commit(), commit_date(), changed_code()],
         figures=ARCHIVED,
     message:
         "Archive: {output.zip}, and the same as a folder beside it"

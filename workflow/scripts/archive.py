@@ -8,6 +8,5 @@ from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study, study_file = load_study(**snakemake.config["study"]), snakemake.config["study"]["path"]
-kinds, figures = snakemake.params.kinds, snakemake.params.figures
 sums = Path(snakemake.output.sums)
-make_archive(study, study_file, sums.parents[2], kinds, figures, sums.parent)
+make_archive(study, study_file, sums.parents[2], snakemake.params.figures, sums.parent)

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from lube.report.configuration import configuration
-from lube.report.key_tables import file_table
+from lube.report.key_tables import table
 from lube.report.markdown import title_and_text, to_html
-from lube.report.pages import html_page
+from lube.report.pages import render
 from lube.report.summary import facts, findings, notes
 from lube.storage.files import written_whole
 from lube.storage.netcdf import load
@@ -24,10 +24,10 @@ parts = {
     "facts": facts(study),
     "findings": findings(study, film, contact, comparison) + notes(experiment, comparison),
     "limits": to_html(title_and_text(docs["limits"])[1]),
-    "files": to_html(file_table()),
+    "files": to_html(table("files")),
     "pipeline": to_html(f"```{drawing}```"),
-    "configuration": html_page("Configuration", configuration(study, written)),
-    "assumptions": html_page(title, to_html(assumptions)),
+    "configuration": render("page.html", title="Configuration", body=configuration(study, written)),
+    "assumptions": render("page.html", title=title, body=to_html(assumptions)),
 }
 for name, html in parts.items():
     with written_whole(snakemake.output[name]) as part:

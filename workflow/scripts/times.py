@@ -1,10 +1,11 @@
 """Write the report's page on time and memory, from what Snakemake measured of each job."""
 
-from lube.report.pages import html_page
+from lube.report.pages import render
 from lube.report.run_times import run_times
 from lube.storage.files import written_whole
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
+page = render("page.html", title="Run times", body=run_times(snakemake.params.jobs))
 with written_whole(snakemake.output[0]) as part:
-    part.write_text(html_page("Run times", run_times(snakemake.params.jobs)), encoding="utf-8")
+    part.write_text(page, encoding="utf-8")
