@@ -4,7 +4,9 @@ All three are files turned into frozen pydantic models: a strict base model, fie
 numbers but are written with their units, and the one line that reports a refused value.
 """
 
+import ast
 import difflib
+import inspect
 import operator
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -29,10 +31,22 @@ LEAST_MAGNITUDE, MOST_MAGNITUDE = 1e-30, 1e30
 """Allowed magnitude of any SI input other than 0, so that no power of one overflows."""
 
 
-class StrictModel(BaseModel):
-    """Frozen model that refuses unknown keys."""
+def _with_descriptions(schema, model):
+    """Add the text under each field of a model to its JSON schema.
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    Pydantic's own `use_attribute_docstrings` reads the source at every import, which is slow.
+    """
+    for base in model.__mro__[: model.__mro__.index(StrictModel)]:
+        for field, below in pairwise(ast.parse(inspect.getsource(base)).body[0].body):
+            match field, below:
+                case ast.AnnAssign(), ast.Expr(ast.Constant(str(text))):
+                    schema["properties"][field.target.id]["description"] = " ".join(text.split())
+
+
+class StrictModel(BaseModel):
+    """Frozen model that refuses unknown keys; the text under a field describes it."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_with_descriptions)
 
 
 @contextmanager

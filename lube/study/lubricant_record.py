@@ -11,7 +11,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, PrivateAttr, StringConstraints, model_validator
+from pydantic import PrivateAttr, StringConstraints, model_validator
 
 from lube.errors import RangeError, RecordError, shown
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_range
@@ -34,7 +34,8 @@ DynamicViscosity = quantity("Pa*s", above=0.0)
 class Sourced(StrictModel):
     """A section of a lubricant record, which must name the source of its values."""
 
-    source: Text = Field(description="where the values come from, or 'assumed: ...' and why")
+    source: Text
+    """where the values come from, or 'assumed: ...' and why"""
 
 
 class ViscosityPoint(StrictModel):
@@ -54,11 +55,12 @@ class ViscosityPoint(StrictModel):
 class Viscosity(Sourced):
     """Where the viscosity comes from: points, a CSV file or a CoolProp fluid."""
 
-    points: tuple[ViscosityPoint, ...] | None = Field(
-        None, description="viscosities at two temperatures or more; from the CSV file, if any"
-    )
-    csv: Text | None = Field(None, description="CSV file in the record's folder")
-    coolprop_fluid: Text | None = Field(None, description="CoolProp's name of a pure fluid")
+    points: tuple[ViscosityPoint, ...] | None = None
+    """viscosities at two temperatures or more; from the CSV file, if any"""
+    csv: Text | None = None
+    """CSV file in the record's folder"""
+    coolprop_fluid: Text | None = None
+    """CoolProp's name of a pure fluid"""
 
     @model_validator(mode="after")
     def _check_one_way(self):
@@ -72,27 +74,23 @@ class Viscosity(Sourced):
 class Density(Sourced):
     """Density falling linearly with temperature about 15 degC."""
 
-    at_15_degC: quantity("kg/m^3", above=0.0) = Field(description="density at 15 degC")
-    thermal_coefficient: quantity("1/K", least=0.0, below=2e-3) = Field(
-        description="relative fall of the density per kelvin"
-    )
+    at_15_degC: quantity("kg/m^3", above=0.0)
+    """density at 15 degC"""
+    thermal_coefficient: quantity("1/K", least=0.0, below=2e-3)
+    """relative fall of the density per kelvin"""
 
 
 class PressureViscosity(Sourced):
     """Pressure-viscosity coefficient: Gold's form, a measured value, or CoolProp's."""
 
-    gold_base: Literal[tuple(GOLD_BASES)] | None = Field(
-        None, description="base oil, for Gold's form alpha = s nu^t"
-    )
-    value: quantity("1/Pa", above=0.0) | None = Field(
-        None, description="measured coefficient, the same at all temperatures"
-    )
-    definition: Literal["slope-at-atmospheric", "secant", "reciprocal-asymptotic"] | None = Field(
-        None, description="definition of the measured, or CoolProp's, coefficient"
-    )
-    pressure: quantity("Pa", above=ATMOSPHERIC_PRESSURE) | None = Field(
-        None, description="pressure to which the secant runs"
-    )
+    gold_base: Literal[tuple(GOLD_BASES)] | None = None
+    """base oil, for Gold's form alpha = s nu^t"""
+    value: quantity("1/Pa", above=0.0) | None = None
+    """measured coefficient, the same at all temperatures"""
+    definition: Literal["slope-at-atmospheric", "secant", "reciprocal-asymptotic"] | None = None
+    """definition of the measured, or CoolProp's, coefficient"""
+    pressure: quantity("Pa", above=ATMOSPHERIC_PRESSURE) | None = None
+    """pressure to which the secant runs"""
 
     @model_validator(mode="after")
     def _check_definition(self):
@@ -123,7 +121,8 @@ class PressureViscosity(Sourced):
 class ThermalConductivity(Sourced):
     """Thermal conductivity, the same at all temperatures."""
 
-    value: quantity("W/m/K", above=0.0) = Field(description="thermal conductivity")
+    value: quantity("W/m/K", above=0.0)
+    """thermal conductivity"""
 
 
 class TemperatureRange(Sourced):
@@ -144,12 +143,13 @@ class TemperatureRange(Sourced):
 class LubricantRecord(StrictModel):
     """A lubricant, in SI units (but temperatures in degC). Read it with `load_record`."""
 
-    name: Slug = Field(description="label of the lubricant in all files")
-    title: Text = Field(description="name of the lubricant in figures")
+    name: Slug
+    """label of the lubricant in all files"""
+    title: Text
+    """name of the lubricant in figures"""
     viscosity: Viscosity
-    viscosity_law: Literal[tuple(VISCOSITY_LAWS)] | None = Field(
-        None, description="law that gives the viscosity between the data; by default astm-d341"
-    )
+    viscosity_law: Literal[tuple(VISCOSITY_LAWS)] | None = None
+    """law that gives the viscosity between the data; by default astm-d341"""
     density: Density | None = None
     pressure_viscosity: PressureViscosity
     thermal_conductivity: ThermalConductivity | None = None

@@ -73,9 +73,12 @@ _Doi = _text(
 class Creator(StrictModel):
     """An author of a study."""
 
-    name: _Name = Field(description="as it is cited: `Family, Given`")
-    affiliation: _Line | None = Field(None, description="institution")
-    orcid: _Orcid | None = Field(None, description="ORCID iD, such as 0000-0002-1825-0097")
+    name: _Name
+    """as it is cited: `Family, Given`"""
+    affiliation: _Line | None = None
+    """institution"""
+    orcid: _Orcid | None = None
+    """ORCID iD, such as 0000-0002-1825-0097"""
 
     @model_validator(mode="before")
     @classmethod
@@ -94,29 +97,30 @@ class Creator(StrictModel):
 class About(StrictModel):
     """Title, authors and licence of a study's results."""
 
-    title: _Line | None = Field(None, description="title of the results; else the study's name")
-    summary: _Line = Field(
+    title: _Line | None = None
+    """title of the results; else the study's name"""
+    summary: _Line = (
         "Share of time with metal contact between two rough rollers that roll under load with oil "
         "between them: elastohydrodynamic film thickness, rough lines by the Method of "
-        "Dimensionality Reduction, and the break-up of a boundary layer.",
-        description="what the results are, in a sentence or two",
+        "Dimensionality Reduction, and the break-up of a boundary layer."
     )
-    creators: tuple[Creator, ...] = Field(
-        (), description="who made them; an archive needs one at least"
-    )
-    licence: Literal[tuple(LICENCES)] = Field("CC-BY-4.0", description="licence of the results")
+    """what the results are, in a sentence or two"""
+    creators: tuple[Creator, ...] = ()
+    """who made them; an archive needs one at least"""
+    licence: Literal[tuple(LICENCES)] = "CC-BY-4.0"
+    """licence of the results"""
     keywords: Annotated[tuple[_Line, ...], AfterValidator(each_once)] = Field(
         (
             *("tribology", "mixed lubrication", "boundary lubrication"),
             *("elastohydrodynamic lubrication", "rolling contact", "surface roughness"),
         ),
         min_length=1,
-        description="keywords",
     )
-    date: _Day | None = Field(
-        None, description="day of publication, for the archive; else that of the code's commit"
-    )
-    doi: _Doi | None = Field(None, description="DOI that the repository reserved for the archive")
+    """keywords"""
+    date: _Day | None = None
+    """day of publication, for the archive; else that of the code's commit"""
+    doi: _Doi | None = None
+    """DOI that the repository reserved for the archive"""
 
     @field_validator("creators")
     @classmethod

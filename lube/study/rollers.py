@@ -30,16 +30,21 @@ AUTOMATIC_WAVELENGTH = "contact width at the largest force"
 class Roller(StrictModel):
     """One roller: a cylinder of some material with a rough surface."""
 
-    radius: Length = Field(description="radius of the cylinder")
-    young_modulus: Pressure = Field(description="Young's modulus")
-    poisson_ratio: pure_number(least=0.0, most=0.5) = Field(description="Poisson's ratio")
-    rms_roughness: Length = Field(description="rms height of the roughness")
+    radius: Length
+    """radius of the cylinder"""
+    young_modulus: Pressure
+    """Young's modulus"""
+    poisson_ratio: pure_number(least=0.0, most=0.5)
+    """Poisson's ratio"""
+    rms_roughness: Length
+    """rms height of the roughness"""
 
 
 class RollerPair(StrictModel):
     """Two rollers in line contact."""
 
-    length: Length = Field(description="length L' of the line contact")
+    length: Length
+    """length L' of the line contact"""
     first: Roller
     second: Roller
 
@@ -90,36 +95,38 @@ def _points_of(wavelength):
 class Roughness(StrictModel):
     """Statistics and grid of the random roughness lines of both rollers."""
 
-    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)] = Field(
-        description="points N around the first roller"
-    )
-    hurst_exponent: pure_number(above=0.0, below=1.0) = Field(description="Hurst exponent H")
+    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
+    """points N around the first roller"""
+    hurst_exponent: pure_number(above=0.0, below=1.0)
+    """Hurst exponent H"""
     longest_wavelength: Annotated[
         float | Literal[AUTOMATIC_WAVELENGTH],
         BeforeValidator(_longest_wavelength),
         WithJsonSchema(
             {"type": "string", "format": f"quantity in m, or the words `{AUTOMATIC_WAVELENGTH}`"}
         ),
-    ] = Field(
-        description="2 pi / q_min; with the automatic choice a larger force level redraws all "
-        "lines and changes the probability at all points: adding 3200 N to the paper's study "
-        "multiplies it by 0.86 to 0.61"
-    )
+    ]
+    """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
+    the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
+    0.61
+    """
     shortest_wavelength: Annotated[
         float | str,
         BeforeValidator(_shortest_wavelength),
         WithJsonSchema({"type": "string", "format": "quantity in m, or as in `10 points`"}),
-    ] = Field(description="2 pi / q_max; the break-up of the boundary layer depends on it")
-    height_step: Length = Field(
-        description="heights and films are whole multiples of this length, so sums are exact"
-    )
+    ]
+    """2 pi / q_max; the break-up of the boundary layer depends on it"""
+    height_step: Length
+    """heights and films are whole multiples of this length, so sums are exact"""
 
 
 class BoundaryLayer(StrictModel):
     """The adsorbed boundary layer, which breaks at metal contact (the paper's Eqs. 4 and 6)."""
 
-    critical_thickness: Length = Field(description="critical thickness h_c")
-    shear_strength: Pressure = Field(description="limiting shear stress tau0")
+    critical_thickness: Length
+    """critical thickness h_c"""
+    shear_strength: Pressure
+    """limiting shear stress tau0"""
 
 
 class LineSpec(StrictModel):

@@ -46,71 +46,72 @@ def _known_formula(name):
 class OperatingGrid(StrictModel):
     """Levels of the operating variables; every combination is an operating point."""
 
-    force: levels("N", above=0.0) = Field(description="normal forces")
-    speed: levels("rpm", above=0.0) = Field(
-        description="rotation speeds of the first roller when it rolls without slip"
-    )
-    temperature: levels("degC", above=-273.15) = Field(
-        description="temperatures of rollers and oil"
-    )
-    slide_to_roll_ratio: levels(None, least=-2.0, most=2.0) = Field(
-        description="(v1 - v2) / mean surface speed; 0 is pure rolling"
-    )
+    force: levels("N", above=0.0)
+    """normal forces"""
+    speed: levels("rpm", above=0.0)
+    """rotation speeds of the first roller when it rolls without slip"""
+    temperature: levels("degC", above=-273.15)
+    """temperatures of rollers and oil"""
+    slide_to_roll_ratio: levels(None, least=-2.0, most=2.0)
+    """(v1 - v2) / mean surface speed; 0 is pure rolling"""
 
 
 class TracePoint(StrictModel):
     """An operating point at which the contact is kept at every time step."""
 
-    force: quantity("N") = Field(description="a force of the grid")
-    speed: quantity("rpm") = Field(description="a speed of the grid, the same for all traces")
-    temperature: quantity("degC") = Field(description="a temperature of the grid")
-    lubricant: str | None = Field(None, description="a lubricant of the study; else its first")
-    film_formula: str | None = Field(None, description="a formula of the study; else its first")
-    slide_to_roll_ratio: pure_number() | None = Field(
-        None, description="a ratio of the grid; else its first"
-    )
+    force: quantity("N")
+    """a force of the grid"""
+    speed: quantity("rpm")
+    """a speed of the grid, the same for all traces"""
+    temperature: quantity("degC")
+    """a temperature of the grid"""
+    lubricant: str | None = None
+    """a lubricant of the study; else its first"""
+    film_formula: str | None = None
+    """a formula of the study; else its first"""
+    slide_to_roll_ratio: pure_number() | None = None
+    """a ratio of the grid; else its first"""
 
 
 class Study(StrictModel):
     """A whole study, checked, in SI units (except rpm and degC)."""
 
-    name: Slug = Field(description="results go to results/<name>")
-    about: About = Field(default_factory=About, description="title, authors and licence")
-    seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)] = Field(
-        description="seed of all randomness"
-    )
-    realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
-        description="number of pairs of roughness lines"
-    )
-    revolutions: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
-        description="of the roller with the faster surface; equal rollers without slip repeat "
-        "themselves after one"
-    )
-    batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
-        description="realisations per job; changes no result"
-    )
+    name: Slug
+    """results go to results/<name>"""
+    about: About = Field(default_factory=About)
+    """title, authors and licence"""
+    seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)]
+    """seed of all randomness"""
+    realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
+    """number of pairs of roughness lines"""
+    revolutions: Annotated[StrictInt, Field(ge=1, le=1000)]
+    """of the roller with the faster surface; equal rollers without slip repeat themselves after
+    one
+    """
+    batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
+    """realisations per job; changes no result"""
     kept_realisations: Annotated[
         tuple[Annotated[StrictInt, Field(ge=0)], ...], AfterValidator(each_once)
-    ] = Field(description="realisations whose lines stay in roughness.nc, 0 among them")
+    ]
+    """realisations whose lines stay in roughness.nc, 0 among them"""
     rollers: RollerPair
-    lubricants: tuple[LubricantRecord, ...] = Field(
-        min_length=1,
-        description="names of shipped records, or paths of your own YAML records",
-    )
+    lubricants: tuple[LubricantRecord, ...] = Field(min_length=1)
+    """names of shipped records, or paths of your own YAML records"""
     film_formulas: Annotated[
         tuple[Annotated[str, AfterValidator(_known_formula)], ...], AfterValidator(each_once)
-    ] = Field(min_length=1, description="names from the registry of film formulas")
+    ] = Field(min_length=1)
+    """names from the registry of film formulas"""
     operating_grid: OperatingGrid
     roughness: Roughness
     boundary_layer: BoundaryLayer
-    resistivity: Resistivity = Field(description="resistivity of the rollers' material (Eq. 1)")
-    traces: tuple[TracePoint, ...] = Field(
-        min_length=1, description="operating points recorded over one revolution"
-    )
-    rig: Rig = Field(default_factory=Rig, description="the rig, simulated or measured on")
-    experiment: Experiment = Field(
-        default_factory=Experiment, description="its records and their evaluation"
-    )
+    resistivity: Resistivity
+    """resistivity of the rollers' material (Eq. 1)"""
+    traces: tuple[TracePoint, ...] = Field(min_length=1)
+    """operating points recorded over one revolution"""
+    rig: Rig = Field(default_factory=Rig)
+    """the rig, simulated or measured on"""
+    experiment: Experiment = Field(default_factory=Experiment)
+    """its records and their evaluation"""
 
     @property
     def line_spec(self) -> LineSpec:
