@@ -11,8 +11,8 @@ import operator
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from itertools import pairwise
-from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
 from pydantic import (
@@ -25,10 +25,8 @@ from pydantic import (
 )
 
 from lube.errors import LubeError, shown
+from lube.types import File
 from lube.units import convert, parse_number, parse_quantity
-
-LEAST_MAGNITUDE, MOST_MAGNITUDE = 1e-30, 1e30
-"""Allowed magnitude of any SI input other than 0, so that no power of one overflows."""
 
 
 def _with_descriptions(schema, model):
@@ -50,15 +48,13 @@ class StrictModel(BaseModel):
 
 
 @contextmanager
-def collected(key: str = "", hint: str = "") -> Iterator[None]:
+def collected(key: str = "") -> Iterator[None]:
     """Turn a LubeError into an error that pydantic collects; also a decorator of validators.
 
     Parameters
     ----------
     key : str, optional
         The key of the model that the error is about.
-    hint : str, optional
-        Added to the message.
 
     Raises
     ------
@@ -68,7 +64,7 @@ def collected(key: str = "", hint: str = "") -> Iterator[None]:
     try:
         yield
     except LubeError as error:
-        raise ValueError(f"{key}: {error}{hint}" if key else f"{error}{hint}") from None
+        raise ValueError(f"{key}: {error}".removeprefix(": ")) from None
 
 
 _LIMITS = {
@@ -87,6 +83,8 @@ def _in_words(limits):
 
 def bounded(number: float, units: str | None, **limits: float) -> float:
     """Return the number if it lies within its limits.
+
+    Its magnitude, unless it is 0, must be from 1e-30 to 1e30, so that no power of it overflows.
 
     Parameters
     ----------
@@ -113,20 +111,11 @@ def bounded(number: float, units: str | None, **limits: float) -> float:
     Traceback (most recent call last):
     lube.errors.LubeError: got 3, need a value above 0 and at most 2 mm
     """
-    if not all(_LIMITS[name][0](number, limit) for name, limit in limits.items()):
-        raise LubeError(f"got {number:g}, need a value {_in_words(limits)} {units or ''}".rstrip())
-    return number
-
-
-def _checked(number, units, limits):
-    """Check the limits of a number and, unless it is 0, its magnitude."""
-    bounded(number, units, **limits)
-    if number != 0.0 and not LEAST_MAGNITUDE <= abs(number) <= MOST_MAGNITUDE:
-        unit = f" {units}" if units else ""
-        raise LubeError(
-            f"got {number:g}{unit}, need a magnitude from {LEAST_MAGNITUDE:g} to {MOST_MAGNITUDE:g}"
-        )
-    return number
+    within = all(_LIMITS[name][0](number, limit) for name, limit in limits.items())
+    if within and (number == 0.0 or 1e-30 <= abs(number) <= 1e30):
+        return number
+    needed = f"value {_in_words(limits)}" if not within else "magnitude from 1e-30 to 1e+30"
+    raise LubeError(f"got {number:g}, need a {needed} {units or ''}".rstrip())
 
 
 def sensible_quantity(value: object, units: str, **limits: float) -> float:
@@ -151,7 +140,7 @@ def sensible_quantity(value: object, units: str, **limits: float) -> float:
     LubeError
         If it is no such quantity, or outside its limits.
     """
-    return _checked(parse_quantity(value, units), units, limits)
+    return bounded(parse_quantity(value, units), units, **limits)
 
 
 def _field(kept, parse, kind, limits=None, shape="string"):
@@ -176,10 +165,7 @@ def quantity(units: str, **limits: float) -> Any:
     type
         An annotated float.
     """
-
-    def parse(value):
-        return sensible_quantity(value, units, **limits)
-
+    parse = partial(sensible_quantity, units=units, **limits)
     return _field(float, parse, f"quantity in {units}", limits)
 
 
@@ -198,7 +184,7 @@ def pure_number(**limits: float) -> Any:
     """
 
     def parse(value):
-        return _checked(parse_number(value), None, limits)
+        return bounded(parse_number(value), None, **limits)
 
     return _field(float, parse, "number", limits, "number")
 
@@ -226,6 +212,32 @@ def checked_text(check: Callable[[str], object], kind: str) -> Any:
     return _field(str, parse, kind)
 
 
+def alternatives(parse: Callable[[object], float | str], kind: str) -> Any:
+    """Make a field type for a quantity that may be replaced by words, which are kept as written.
+
+    Parameters
+    ----------
+    parse : callable
+        Takes what is written; raises LubeError.
+    kind : str
+        Such as ``quantity in m, or as in `10 points```: for the JSON schema and, from the comma
+        on, for the message.
+
+    Returns
+    -------
+    type
+        An annotated float or str.
+    """
+
+    def parse_either(value):
+        try:
+            return parse(value)
+        except LubeError as error:
+            raise LubeError(f"{error}{kind[kind.index(',') :]}") from None
+
+    return _field(float | str, parse_either, kind)
+
+
 def levels(units: str | None, **limits: float) -> Any:
     """Make a field type for the levels of an operating variable.
 
@@ -245,7 +257,7 @@ def levels(units: str | None, **limits: float) -> Any:
     """
 
     def parse(value):
-        numbers = tuple(_checked(number, units, limits) for number in _level_list(value, units))
+        numbers = tuple(bounded(one, units, **limits) for one in _level_list(value, units))
         for lower, upper in pairwise(numbers):
             if upper <= lower:
                 raise LubeError(f"got {upper:g} after {lower:g}, need rising levels, each once")
@@ -258,7 +270,7 @@ def levels(units: str | None, **limits: float) -> Any:
 def _level_list(value, target):
     match value:
         case [_, *_] if target is None:
-            return [parse_number(one) for one in value]
+            return map(parse_number, value)
         case {"values": [_, *_] as values, "units": str(units), **rest} if target and not rest:
             return [float(convert(parse_number(one), units, target)) for one in values]
     needed = f"values and their unit, such as {{values: [1, 2], units: {target}}}"
@@ -292,6 +304,7 @@ def each_once(values: tuple) -> tuple:
 Slug = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")]
 """Name of a folder and label in files: lower-case letters, digits, ``-`` and ``_``."""
 
+Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 Length = quantity("m", above=0.0)
 Pressure = quantity("Pa", above=0.0)
 Resistivity = quantity("ohm*m", above=0.0)
@@ -300,9 +313,7 @@ Resistivity = quantity("ohm*m", above=0.0)
 Model = TypeVar("Model", bound=StrictModel)
 
 
-def validate(
-    model: type[Model], content: dict, where: str | Path, error_type: type[LubeError]
-) -> Model:
+def validate(model: type[Model], content: dict, where: File, error_type: type) -> Model:
     """Build a model from a mapping, or report the first mistake in one line.
 
     Parameters
@@ -359,7 +370,7 @@ def _in_one_line(mistake, model):
     if kind == "missing":
         return f"{key}: missing, and it has no default"
     if kind == "value_error":
-        return f"{key}: {mistake['ctx']['error']}" if key else str(mistake["ctx"]["error"])
+        return f"{key}: {mistake['ctx']['error']}".removeprefix(": ")
     needed = mistake["msg"].replace("Input should be", "need")
     needed = _NEEDED.get(kind, needed).format(**mistake.get("ctx", {}))
     return f"{key}: got {shown(mistake['input'])}, {needed}"

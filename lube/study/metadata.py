@@ -109,7 +109,7 @@ class About(StrictModel):
     """who made them; an archive needs one at least"""
     licence: Literal[tuple(LICENCES)] = "CC-BY-4.0"
     """licence of the results"""
-    keywords: Annotated[tuple[_Line, ...], AfterValidator(each_once)] = Field(
+    keywords: tuple[_Line, ...] = Field(
         (
             *("tribology", "mixed lubrication", "boundary lubrication"),
             *("elastohydrodynamic lubrication", "rolling contact", "surface roughness"),
@@ -121,6 +121,8 @@ class About(StrictModel):
     """day of publication, for the archive; else that of the code's commit"""
     doi: _Doi | None = None
     """DOI that the repository reserved for the archive"""
+
+    _each_once = field_validator("keywords")(each_once)
 
     @field_validator("creators")
     @classmethod

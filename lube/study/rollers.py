@@ -5,10 +5,10 @@ Written in YAML with units, kept in SI. A notebook makes them in the same way:
 """
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
-from pydantic import BeforeValidator, Field, StrictInt, WithJsonSchema
+from pydantic import Field, StrictInt
 
 from lube.errors import StudyError
 from lube.physics.hertz import contact_half_width, reduced_modulus, reduced_radius
@@ -16,8 +16,8 @@ from lube.study.field_types import (
     Length,
     Pressure,
     StrictModel,
+    alternatives,
     bounded,
-    collected,
     pure_number,
     sensible_quantity,
 )
@@ -56,11 +56,9 @@ class RollerPair(StrictModel):
     @property
     def reduced_modulus(self) -> float:
         """Reduced modulus E*, Pa."""
+        one, other = self.first, self.second
         return reduced_modulus(
-            self.first.young_modulus,
-            self.first.poisson_ratio,
-            self.second.young_modulus,
-            self.second.poisson_ratio,
+            one.young_modulus, one.poisson_ratio, other.young_modulus, other.poisson_ratio
         )
 
     @property
@@ -73,12 +71,10 @@ class RollerPair(StrictModel):
         return contact_half_width(force, self.length, self.reduced_radius, self.reduced_modulus)
 
 
-@collected(hint=f", or the words {AUTOMATIC_WAVELENGTH!r}")
 def _longest_wavelength(value):
     return value if value == AUTOMATIC_WAVELENGTH else sensible_quantity(value, "m", above=0.0)
 
 
-@collected(hint=", or a number of grid points such as '10 points'")
 def _shortest_wavelength(value):
     if isinstance(value, str) and value.endswith(" points"):
         _points_of(value)
@@ -99,22 +95,14 @@ class Roughness(StrictModel):
     """points N around the first roller"""
     hurst_exponent: pure_number(above=0.0, below=1.0)
     """Hurst exponent H"""
-    longest_wavelength: Annotated[
-        float | Literal[AUTOMATIC_WAVELENGTH],
-        BeforeValidator(_longest_wavelength),
-        WithJsonSchema(
-            {"type": "string", "format": f"quantity in m, or the words `{AUTOMATIC_WAVELENGTH}`"}
-        ),
-    ]
+    longest_wavelength: alternatives(
+        _longest_wavelength, f"quantity in m, or the words `{AUTOMATIC_WAVELENGTH}`"
+    )
     """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
     the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
     0.61
     """
-    shortest_wavelength: Annotated[
-        float | str,
-        BeforeValidator(_shortest_wavelength),
-        WithJsonSchema({"type": "string", "format": "quantity in m, or as in `10 points`"}),
-    ]
+    shortest_wavelength: alternatives(_shortest_wavelength, "quantity in m, or as in `10 points`")
     """2 pi / q_max; the break-up of the boundary layer depends on it"""
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
@@ -197,27 +185,22 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
         q_max=2.0 * math.pi / shortest,
         height_step=roughness.height_step,
     )
-    _check_waves(spec, roughness, longest, shortest)
+    _check_waves(spec, longest, shortest)
     _check_height_step(spec)
     return spec
 
 
-def _check_waves(spec, roughness, longest, shortest):
+def _check_waves(spec, longest, shortest):
     if shortest < 2.0 * spec.spacing * (1.0 - 1e-9):
         raise StudyError(
             f"roughness.points: got {spec.points[0]}, too coarse a grid: its spacing is "
             f"{spec.spacing:.3g} m, need at most half the shortest wavelength, {shortest:.3g} m"
         )
-    if shortest >= longest and shortest == roughness.shortest_wavelength:
-        raise StudyError(
-            f"roughness.shortest_wavelength: got {shortest:.3g} m, need less than the longest "
-            f"wavelength, {longest:.3g} m"
-        )
     if shortest >= longest:
         least = math.ceil(spec.points[0] * shortest / longest) + 1
         raise StudyError(
-            f"roughness.points: got {spec.points[0]}, too coarse a grid: the shortest wavelength, "
-            f"{shortest:.3g} m, is not below the longest, {longest:.3g} m; need {least} or more"
+            f"roughness.shortest_wavelength: got {shortest:.3g} m, need less than the longest "
+            f"wavelength, {longest:.3g} m; or, if it is given in points, {least} roughness.points"
         )
     for roller, points in zip(("first", "second"), spec.points, strict=True):
         perimeter = points * spec.spacing

@@ -11,7 +11,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, StrictInt, model_validator
+from pydantic import AfterValidator, Field, StrictInt, field_validator, model_validator
 from pydantic_core import to_jsonable_python
 
 from lube.errors import LubeError, StudyError, shown
@@ -36,6 +36,7 @@ from lube.study.resolve import resolved_content
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.rollers import BoundaryLayer, LineSpec, RollerPair, Roughness, line_spec
 from lube.study.size_limits import check_sizes
+from lube.types import File
 
 
 @collected()
@@ -54,6 +55,9 @@ class OperatingGrid(StrictModel):
     """temperatures of rollers and oil"""
     slide_to_roll_ratio: levels(None, least=-2.0, most=2.0)
     """(v1 - v2) / mean surface speed; 0 is pure rolling"""
+
+
+_TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "speed", "force")
 
 
 class TracePoint(StrictModel):
@@ -90,16 +94,12 @@ class Study(StrictModel):
     """
     batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
     """realisations per job; changes no result"""
-    kept_realisations: Annotated[
-        tuple[Annotated[StrictInt, Field(ge=0)], ...], AfterValidator(each_once)
-    ]
+    kept_realisations: tuple[Annotated[StrictInt, Field(ge=0)], ...]
     """realisations whose lines stay in roughness.nc, 0 among them"""
     rollers: RollerPair
     lubricants: tuple[LubricantRecord, ...] = Field(min_length=1)
     """names of shipped records, or paths of your own YAML records"""
-    film_formulas: Annotated[
-        tuple[Annotated[str, AfterValidator(_known_formula)], ...], AfterValidator(each_once)
-    ] = Field(min_length=1)
+    film_formulas: tuple[Annotated[str, AfterValidator(_known_formula)], ...] = Field(min_length=1)
     """names from the registry of film formulas"""
     operating_grid: OperatingGrid
     roughness: Roughness
@@ -112,6 +112,8 @@ class Study(StrictModel):
     """the rig, simulated or measured on"""
     experiment: Experiment = Field(default_factory=Experiment)
     """its records and their evaluation"""
+
+    _each_once = field_validator("kept_realisations", "film_formulas")(each_once)
 
     @property
     def line_spec(self) -> LineSpec:
@@ -223,12 +225,10 @@ class Study(StrictModel):
 
     @model_validator(mode="after")
     def _check_realisations(self):
-        if 0 not in self.kept_realisations:
-            raise ValueError("kept_realisations: need 0 among them, the traces use it")
-        if max(self.kept_realisations) >= self.realisations:
+        if 0 not in self.kept_realisations or max(self.kept_realisations) >= self.realisations:
             raise ValueError(
-                f"kept_realisations: got {max(self.kept_realisations)}, need realisations from 0 "
-                f"to {self.realisations - 1}"
+                f"kept_realisations: got {shown(self.kept_realisations)}, need 0, which the traces "
+                f"use, and none above {self.realisations - 1}"
             )
         return self
 
@@ -275,24 +275,20 @@ class Study(StrictModel):
 
     def _trace_point(self, number, point):
         """Levels of the study that a trace names, the first of those that it does not name."""
-        levels_of = {
-            "slide_to_roll_ratio": self.operating_grid.slide_to_roll_ratio,
+        available = dict(self.operating_grid) | {
             "lubricant": [record.name for record in self.lubricants],
             "film_formula": self.film_formulas,
-            "temperature": self.operating_grid.temperature,
-            "speed": self.operating_grid.speed,
-            "force": self.operating_grid.force,
         }
         found = {}
-        for variable, available in levels_of.items():
-            wanted = getattr(point, variable)
-            index = 0 if wanted is None else level_index(available, wanted, SAME)
+        for variable in _TRACED:
+            wanted, given = getattr(point, variable), available[variable]
+            index = 0 if wanted is None else level_index(given, wanted, SAME)
             if index is None:
                 raise ValueError(
                     f"traces.{number}.{variable}: got {wanted}, need one of the study's: "
-                    f"{', '.join(str(level) for level in available)}"
+                    f"{', '.join(map(str, given))}"
                 )
-            found[variable] = available[index]
+            found[variable] = given[index]
         return found
 
 
@@ -303,7 +299,7 @@ def _plain(study, values):
     return to_jsonable_python(attrgetter(values)(study))
 
 
-def load_study(path: str | Path, changes: dict | None = None) -> Study:
+def load_study(path: File, changes: dict | None = None) -> Study:
     """Read and check a study.
 
     Parameters
@@ -327,30 +323,18 @@ def load_study(path: str | Path, changes: dict | None = None) -> Study:
         If a lubricant record that the study names cannot be used.
     """
     content = resolved_content(path, changes)
+    folder = Path(path).parent
     if isinstance(content.get("lubricants"), list):
-        content = content | {"lubricants": _records(content["lubricants"], path)}
-    return _with_manifest_found(validate(Study, content, path, StudyError), path)
-
-
-def _with_manifest_found(study, path):
-    """Complete the manifest's path, which starts from the study's folder."""
+        try:
+            records = tuple(load_record(name, folder) for name in content["lubricants"])
+        except LubeError as error:
+            raise type(error)(f"{path}: lubricants: {error}") from None
+        content = content | {"lubricants": records}
+    study = validate(Study, content, path, StudyError)
     if study.experiment.manifest is None:
         return study
-    manifest = Path(path).parent / study.experiment.manifest
+    manifest = folder / study.experiment.manifest
     if not manifest.is_file():
         raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that exists")
     experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
     return study.model_copy(update={"experiment": experiment})
-
-
-def _records(names, path):
-    """Load the lubricant records of a study; their paths start from its folder."""
-    for name in names:
-        if not isinstance(name, str):
-            raise StudyError(
-                f"{path}: lubricants: got {shown(name)}, need names or paths of records"
-            )
-    try:
-        return tuple(load_record(name, Path(path).parent) for name in names)
-    except LubeError as error:
-        raise type(error)(f"{path}: lubricants: {error}") from None

@@ -1,0 +1,5 @@
+"""Short names of types that signatures share."""
+
+from pathlib import Path
+
+File = str | Path
