@@ -16,14 +16,7 @@ from pydantic import Field, model_validator
 from lube.errors import DataError, LubeError, shown
 from lube.recordings.signals import header_cell
 from lube.schema import ORIGINS
-from lube.study.field_types import (
-    StrictModel,
-    Text,
-    checked_text,
-    pure_number,
-    quantity,
-    validate,
-)
+from lube.study.field_types import StrictModel, Text, checked_text, pure_number, quantity, validate
 from lube.study.small_csv import read_cells
 from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
@@ -97,8 +90,7 @@ class _Row(StrictModel):
         None, description="a ratio of the study; else 0, or the study's first if 0 is none of them"
     )
     pair: Text | None = Field(
-        None,
-        description="label of the measured pair of rollers; rows without it are of one pair",
+        None, description="label of the measured pair of rollers; rows without it are of one pair"
     )
     origin: Literal[ORIGINS] = Field(
         ORIGINS[0], description="where the values come from, the same in all rows"

@@ -48,13 +48,15 @@ class StrictModel(BaseModel):
 
 
 @contextmanager
-def collected(key: str = "") -> Iterator[None]:
+def collected(key: str = "", hint: str = "") -> Iterator[None]:
     """Turn a LubeError into an error that pydantic collects; also a decorator of validators.
 
     Parameters
     ----------
     key : str, optional
         The key of the model that the error is about.
+    hint : str, optional
+        Added to the message.
 
     Raises
     ------
@@ -64,7 +66,7 @@ def collected(key: str = "") -> Iterator[None]:
     try:
         yield
     except LubeError as error:
-        raise ValueError(f"{key}: {error}".removeprefix(": ")) from None
+        raise ValueError(f"{key}: {error}{hint}".removeprefix(": ")) from None
 
 
 _LIMITS = {
@@ -143,11 +145,11 @@ def sensible_quantity(value: object, units: str, **limits: float) -> float:
     return bounded(parse_quantity(value, units), units, **limits)
 
 
-def _field(kept, parse, kind, limits=None, shape="string"):
+def _field(kept, parse, kind, limits=None, shape="string", hint=""):
     """Field type: what is kept, its parser, and its JSON schema for the table of keys."""
     described = f"{kind}, {_in_words(limits)}" if limits else kind
     schema = {"type": shape, "format": described}
-    return Annotated[kept, BeforeValidator(collected()(parse)), WithJsonSchema(schema)]
+    return Annotated[kept, BeforeValidator(collected(hint=hint)(parse)), WithJsonSchema(schema)]
 
 
 def quantity(units: str, **limits: float) -> Any:
@@ -228,14 +230,7 @@ def alternatives(parse: Callable[[object], float | str], kind: str) -> Any:
     type
         An annotated float or str.
     """
-
-    def parse_either(value):
-        try:
-            return parse(value)
-        except LubeError as error:
-            raise LubeError(f"{error}{kind[kind.index(',') :]}") from None
-
-    return _field(float | str, parse_either, kind)
+    return _field(float | str, parse, kind, hint=kind[kind.index(",") :])
 
 
 def levels(units: str | None, **limits: float) -> Any:
@@ -307,7 +302,6 @@ Slug = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")]
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 Length = quantity("m", above=0.0)
 Pressure = quantity("Pa", above=0.0)
-Resistivity = quantity("ohm*m", above=0.0)
 
 
 Model = TypeVar("Model", bound=StrictModel)
@@ -366,7 +360,9 @@ def _in_one_line(mistake, model):
     """Say in one line which key is mistaken, what came and what is needed."""
     key, kind = ".".join(map(str, mistake["loc"])), mistake["type"]
     if kind in _UNKNOWN:
-        return f"{key}: unknown key, {_right_key(mistake['loc'], model)}"
+        # For YAML {name: Somebody, Else} has two keys, the second without a value.
+        hint = "; a text with a comma needs quotes" if mistake["input"] is None else ""
+        return f"{key}: unknown key, {_right_key(mistake['loc'], model)}{hint}"
     if kind == "missing":
         return f"{key}: missing, and it has no default"
     if kind == "value_error":

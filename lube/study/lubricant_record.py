@@ -27,8 +27,6 @@ SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
 _ROUNDING = 1e-6
 
 OilTemperature = quantity("degC", above=-ZERO_CELSIUS, most=1000.0)
-KinematicViscosity = quantity("m^2/s", above=0.0)
-DynamicViscosity = quantity("Pa*s", above=0.0)
 
 
 class Sourced(StrictModel):
@@ -42,8 +40,8 @@ class ViscosityPoint(StrictModel):
     """Viscosity at one temperature, kinematic or dynamic."""
 
     temperature: OilTemperature
-    kinematic_viscosity: KinematicViscosity | None = None
-    dynamic_viscosity: DynamicViscosity | None = None
+    kinematic_viscosity: quantity("m^2/s", above=0.0) | None = None
+    dynamic_viscosity: quantity("Pa*s", above=0.0) | None = None
 
     @model_validator(mode="after")
     def _check_one_viscosity(self):
@@ -185,9 +183,8 @@ class LubricantRecord(StrictModel):
     @property
     def law_used(self) -> str:
         """Source of the viscosity between the data: ``coolprop``, or a key of `VISCOSITY_LAWS`."""
-        if self.viscosity.coolprop_fluid is not None:
-            return "coolprop"
-        return self.viscosity_law or "astm-d341"
+        law = self.viscosity_law or "astm-d341"
+        return law if self.viscosity.coolprop_fluid is None else "coolprop"
 
     @property
     def valid_temperatures(self) -> tuple[float, float]:
@@ -253,15 +250,13 @@ def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
     """
     path = _record_path(name_or_path, folder)
     record = validate(LubricantRecord, read_yaml(path, RecordError), path, RecordError)
-    files = (path,)
-    if record.viscosity.csv is not None:
-        data_path = _beside(path, record.viscosity.csv)
-        points = read_viscosity_csv(data_path)
-        viscosity = record.viscosity.model_copy(update={"points": points})
+    viscosity, files = record.viscosity, (path,)
+    if viscosity.csv is not None:
+        files += (_beside(path, viscosity.csv),)
+        viscosity = viscosity.model_copy(update={"points": read_viscosity_csv(files[1])})
         record = record.model_copy(update={"viscosity": viscosity})
-        files = (path, data_path)
-    if record.viscosity.points is not None:
-        _check_points(record.viscosity.points, files[-1])
+    if viscosity.points is not None:
+        _check_points(viscosity.points, files[-1])
     record._files = files
     return record
 

@@ -4,14 +4,7 @@ import datetime
 import re
 from typing import Annotated, Literal
 
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    Field,
-    StringConstraints,
-    field_validator,
-    model_validator,
-)
+from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints, field_validator
 
 from lube.errors import shown
 from lube.study.field_types import StrictModel, each_once
@@ -79,19 +72,6 @@ class Creator(StrictModel):
     """institution"""
     orcid: _Orcid | None = None
     """ORCID iD, such as 0000-0002-1825-0097"""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _check_quotes(cls, content):
-        # For YAML {name: Somebody, Else} has two keys, the second without a value.
-        if isinstance(content, dict):
-            for key in content:
-                if key not in cls.model_fields and content[key] is None:
-                    raise ValueError(
-                        f"got {shown(key)} without a value, need quotes where a name has a comma: "
-                        "{name: 'Family, Given'}"
-                    )
-        return content
 
 
 class About(StrictModel):

@@ -20,7 +20,6 @@ from lube.physics.electrical import divider_voltage
 from lube.physics.film_formulas import formula
 from lube.schema.stages import STAGES, forerunners
 from lube.study.field_types import (
-    Resistivity,
     Slug,
     StrictModel,
     collected,
@@ -104,7 +103,7 @@ class Study(StrictModel):
     operating_grid: OperatingGrid
     roughness: Roughness
     boundary_layer: BoundaryLayer
-    resistivity: Resistivity
+    resistivity: quantity("ohm*m", above=0.0)
     """resistivity of the rollers' material (Eq. 1)"""
     traces: tuple[TracePoint, ...] = Field(min_length=1)
     """operating points recorded over one revolution"""

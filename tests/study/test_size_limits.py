@@ -33,10 +33,7 @@ def traces(speed="100 rpm"):
 
 def test_a_study_that_is_too_large_is_refused(load):
     for changes, message in [
-        (
-            {"rollers__second__radius": "1 km"},
-            "rollers.second.radius: its line has 4e+08 points",
-        ),
+        ({"rollers__second__radius": "1 km"}, "rollers.second.radius: its line has 4e+08 points"),
         (
             {"realisations": 10**6, "batch_size": 99},
             "batch_size: got 99 for 1000000 realisations, need at least 100",
@@ -61,10 +58,7 @@ def test_a_study_that_is_too_large_is_refused(load):
             {"rig__pairs": 1000, "operating_grid__force": levels(20, "N"), "traces": traces()},
             "rig.pairs: its folded records take 1.6e+09 numbers",
         ),
-        (
-            {"rig__sampling_rate": "1 THz"},
-            "rig.sampling_rate: its samples of the traces take",
-        ),
+        ({"rig__sampling_rate": "1 THz"}, "rig.sampling_rate: its samples of the traces take"),
         (
             {"operating_grid__speed": {"values": [1e-9, 100], "units": "rpm"}},
             "rig.sampling_rate: its samples of the traces take",
