@@ -11,18 +11,10 @@ import operator
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
 from itertools import pairwise
 from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    StringConstraints,
-    ValidationError,
-    WithJsonSchema,
-)
+from pydantic import BaseModel, BeforeValidator, StringConstraints, ValidationError, WithJsonSchema
 
 from lube.errors import LubeError, shown
 from lube.types import File
@@ -41,10 +33,8 @@ def _with_descriptions(schema, model):
                     schema["properties"][field.target.id]["description"] = " ".join(text.split())
 
 
-class StrictModel(BaseModel):
+class StrictModel(BaseModel, extra="forbid", frozen=True, json_schema_extra=_with_descriptions):
     """Frozen model that refuses unknown keys; the text under a field describes it."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_with_descriptions)
 
 
 @contextmanager
@@ -120,31 +110,6 @@ def bounded(number: float, units: str | None, **limits: float) -> float:
     raise LubeError(f"got {number:g}, need a {needed} {units or ''}".rstrip())
 
 
-def sensible_quantity(value: object, units: str, **limits: float) -> float:
-    """Read a number written with its unit, within limits and of an allowed magnitude.
-
-    Parameters
-    ----------
-    value : str
-        A number and its unit.
-    units : str
-        Unit of the returned number.
-    **limits : float
-        As in `bounded`, in `units`.
-
-    Returns
-    -------
-    float
-        The value in `units`.
-
-    Raises
-    ------
-    LubeError
-        If it is no such quantity, or outside its limits.
-    """
-    return bounded(parse_quantity(value, units), units, **limits)
-
-
 def _field(kept, parse, kind, limits=None, shape="string", hint=""):
     """Field type: what is kept, its parser, and its JSON schema for the table of keys."""
     described = f"{kind}, {_in_words(limits)}" if limits else kind
@@ -167,7 +132,10 @@ def quantity(units: str, **limits: float) -> Any:
     type
         An annotated float.
     """
-    parse = partial(sensible_quantity, units=units, **limits)
+
+    def parse(value):
+        return bounded(parse_quantity(value, units), units, **limits)
+
     return _field(float, parse, f"quantity in {units}", limits)
 
 
@@ -214,23 +182,31 @@ def checked_text(check: Callable[[str], object], kind: str) -> Any:
     return _field(str, parse, kind)
 
 
-def alternatives(parse: Callable[[object], float | str], kind: str) -> Any:
-    """Make a field type for a quantity that may be replaced by words, which are kept as written.
+def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, **limits: float) -> Any:
+    """Make a field type for a quantity in whose place words may stand, which are kept as written.
 
     Parameters
     ----------
-    parse : callable
-        Takes what is written; raises LubeError.
-    kind : str
-        Such as ``quantity in m, or as in `10 points```: for the JSON schema and, from the comma
-        on, for the message.
+    units : str
+        Unit of the kept number.
+    accepts : callable
+        Whether what is written are such words; may raise LubeError.
+    words : str
+        What they are, for messages and for the JSON schema.
+    **limits : float
+        As in `bounded`, in `units`.
 
     Returns
     -------
     type
         An annotated float or str.
     """
-    return _field(float | str, parse, kind, hint=kind[kind.index(",") :])
+
+    def parse(value):
+        return value if accepts(value) else bounded(parse_quantity(value, units), units, **limits)
+
+    hint = f", or {words}"
+    return _field(float | str, parse, f"quantity in {units}{hint}", hint=hint)
 
 
 def levels(units: str | None, **limits: float) -> Any:

@@ -131,9 +131,7 @@ class TemperatureRange(Sourced):
     @model_validator(mode="after")
     def _check_order(self):
         if not self.lowest < self.highest:
-            raise ValueError(
-                f"highest: got {self.highest:g} degC, need more than lowest, {self.lowest:g} degC"
-            )
+            raise ValueError(f"got {self.lowest:g} to {self.highest:g} degC, need the lowest first")
         return self
 
 
@@ -170,8 +168,7 @@ class LubricantRecord(StrictModel):
                 raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
         if fluid is not None and alpha.definition == "reciprocal-asymptotic":
             raise ValueError(
-                "pressure_viscosity.definition: got 'reciprocal-asymptotic', which needs "
-                "viscosities beyond CoolProp's pressures; need slope-at-atmospheric or secant"
+                "pressure_viscosity.definition: 'reciprocal-asymptotic' not allowed with CoolProp"
             )
         return self
 
@@ -264,10 +261,10 @@ def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
 def _record_path(name_or_path, folder):
     if is_record_path(name_or_path):
         return Path(folder) / name_or_path
-    if name_or_path not in shipped_records():
+    names = shipped_records()
+    if name_or_path not in names:
         raise RecordError(
-            f"lubricant: got {shown(name_or_path)}, need one of "
-            f"{', '.join(shipped_records())}, or the path of a .yaml file"
+            f"got {shown(name_or_path)}, need one of {', '.join(names)}, or a path of a .yaml file"
         )
     return SHIPPED_FOLDER / f"{name_or_path}.yaml"
 
@@ -293,8 +290,8 @@ def _check_points(points, where):
             rises = getattr(cold, kind) <= getattr(hot, kind)
             if rises and cold.temperature < hot.temperature:
                 raise RecordError(
-                    f"{where}: viscosity: got no less at {hot.temperature:g} degC than at "
-                    f"{cold.temperature:g} degC, need a viscosity that falls with temperature"
+                    f"{where}: viscosity: need less at {hot.temperature:g} degC than at "
+                    f"{cold.temperature:g} degC"
                 )
 
 
@@ -373,6 +370,5 @@ def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -
     for temperature in temperatures:
         if not lowest - _ROUNDING <= temperature <= highest + _ROUNDING:
             raise RangeError(
-                f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC, "
-                "the range of the record"
+                f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC"
             )

@@ -36,9 +36,7 @@ def _is_orcid(text):
     if not re.fullmatch(r"\d{4}-\d{4}-\d{4}-\d{3}[\dX]", text, re.ASCII):
         return False
     *digits, last = text.replace("-", "")
-    total = 0
-    for digit in digits:
-        total = 2 * (total + int(digit))
+    total = sum(int(digit) << (15 - place) for place, digit in enumerate(digits))
     return "0123456789X"[(12 - total % 11) % 11] == last
 
 

@@ -16,10 +16,9 @@ from lube.study.field_types import (
     Length,
     Pressure,
     StrictModel,
-    alternatives,
     bounded,
     pure_number,
-    sensible_quantity,
+    quantity_or_words,
 )
 from lube.study.size_limits import MOST_POINTS
 from lube.units import parse_number
@@ -71,15 +70,8 @@ class RollerPair(StrictModel):
         return contact_half_width(force, self.length, self.reduced_radius, self.reduced_modulus)
 
 
-def _longest_wavelength(value):
-    return value if value == AUTOMATIC_WAVELENGTH else sensible_quantity(value, "m", above=0.0)
-
-
-def _shortest_wavelength(value):
-    if isinstance(value, str) and value.endswith(" points"):
-        _points_of(value)
-        return value
-    return sensible_quantity(value, "m", above=0.0)
+def _is_points(value):
+    return isinstance(value, str) and value.endswith(" points") and bool(_points_of(value))
 
 
 def _points_of(wavelength):
@@ -95,14 +87,17 @@ class Roughness(StrictModel):
     """points N around the first roller"""
     hurst_exponent: pure_number(above=0.0, below=1.0)
     """Hurst exponent H"""
-    longest_wavelength: alternatives(
-        _longest_wavelength, f"quantity in m, or the words `{AUTOMATIC_WAVELENGTH}`"
+    longest_wavelength: quantity_or_words(
+        "m",
+        lambda text: text == AUTOMATIC_WAVELENGTH,
+        f"the words `{AUTOMATIC_WAVELENGTH}`",
+        above=0.0,
     )
     """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
     the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
     0.61
     """
-    shortest_wavelength: alternatives(_shortest_wavelength, "quantity in m, or as in `10 points`")
+    shortest_wavelength: quantity_or_words("m", _is_points, "as in `10 points`", above=0.0)
     """2 pi / q_max; the break-up of the boundary layer depends on it"""
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
@@ -199,8 +194,8 @@ def _check_waves(spec, longest, shortest):
     if shortest >= longest:
         least = math.ceil(spec.points[0] * shortest / longest) + 1
         raise StudyError(
-            f"roughness.shortest_wavelength: got {shortest:.3g} m, need less than the longest "
-            f"wavelength, {longest:.3g} m; or, if it is given in points, {least} roughness.points"
+            f"roughness.shortest_wavelength: got {shortest:.3g} m, need less than the longest, "
+            f"{longest:.3g} m; if it is given in points, need {least} roughness.points or more"
         )
     for roller, points in zip(("first", "second"), spec.points, strict=True):
         perimeter = points * spec.spacing

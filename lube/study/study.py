@@ -161,15 +161,11 @@ class Study(StrictModel):
             With the contact width, and what is needed.
         """
         spec, width = self.line_spec, 2.0 * self.rollers.contact_half_width(force)
-        if width >= min(spec.points) * spec.spacing:
+        least, most = 2.0 * spec.spacing, min(spec.points) * spec.spacing
+        if not least <= width < most:
             raise StudyError(
-                f"operating_grid.force: the contact at {force:g} N is {width:.3g} m wide, "
-                "need less than a roller's perimeter"
-            )
-        if width < 2.0 * spec.spacing:
-            raise StudyError(
-                f"roughness.points: the contact at {force:g} N is {width:.3g} m wide, "
-                f"need at least two grid spacings of {spec.spacing:.3g} m"
+                f"operating_grid.force: the contact at {force:g} N is {width:.3g} m wide, need at "
+                f"least two grid spacings of {least:.3g} m, and less than a perimeter, {most:.3g} m"
             )
 
     @property
@@ -178,9 +174,8 @@ class Study(StrictModel):
 
         A measured file is identified by its contents, wherever it lies.
         """
-        return self.experiment.model_dump(mode="json") | {
-            "manifest": self.experiment.manifest is not None
-        }
+        values = self.experiment.model_dump(mode="json")
+        return values | {"manifest": self.experiment.manifest is not None}
 
     def stage_inputs(self, stage: str) -> dict:
         """Return the values of the study that a stage depends on, as plain data.
@@ -214,25 +209,12 @@ class Study(StrictModel):
         return {name: self.stage_inputs(name) for name in (*forerunners(stage), stage)}
 
     @model_validator(mode="after")
-    def _check_lubricants(self):
+    def _check_levels(self):
         with collected("lubricants"):
             each_once(tuple(record.name for record in self.lubricants))
         with collected("operating_grid.temperature"):
             for record in self.lubricants:
                 check_temperatures(record, self.operating_grid.temperature)
-        return self
-
-    @model_validator(mode="after")
-    def _check_realisations(self):
-        if 0 not in self.kept_realisations or max(self.kept_realisations) >= self.realisations:
-            raise ValueError(
-                f"kept_realisations: got {shown(self.kept_realisations)}, need 0, which the traces "
-                f"use, and none above {self.realisations - 1}"
-            )
-        return self
-
-    @model_validator(mode="after")
-    def _check_lines(self):
         with collected():
             for force in self.operating_grid.force:
                 self.check_window(force)
@@ -241,13 +223,15 @@ class Study(StrictModel):
 
     @model_validator(mode="after")
     def _check_traces(self):
-        points = self.trace_points
-        # All traces share one time axis, whose step is set by the faster surface.
-        if len({(point["speed"], point["slide_to_roll_ratio"]) for point in points}) > 1:
+        if 0 not in self.kept_realisations or max(self.kept_realisations) >= self.realisations:
             raise ValueError(
-                "traces: need one speed and one slide-to-roll ratio for all, as they share a "
-                "time axis"
+                f"kept_realisations: got {shown(self.kept_realisations)}, need 0, which the traces "
+                f"use, and none above {self.realisations - 1}"
             )
+        # All traces share one time axis, whose step is set by the faster surface.
+        axes = {(point["speed"], point["slide_to_roll_ratio"]) for point in self.trace_points}
+        if len(axes) > 1:
+            raise ValueError("traces: need the same speed and slide-to-roll ratio for all")
         return self
 
     @model_validator(mode="after")

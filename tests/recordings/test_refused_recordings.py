@@ -213,8 +213,8 @@ def test_gains_and_offsets(tmp_path):
     for gain, reason in (
         (0, "got 0, need a value other than 0"),
         (np.nan, "got nan, need a finite number"),
-        ("ten", "got 'ten', need a number"),
-        (None, "got None, need a number"),
+        ("ten", "got 'ten', need a finite number"),
+        (None, "got None, need a finite number"),
     ):
         assert refusal(path, gain=gain) == f"gain: {reason}"
     for offset, reason in {

@@ -92,13 +92,6 @@ def test_xmp_320_has_the_values_of_physics_section_2_in_si():
     assert record.valid_temperatures == (40.0, 100.0)
 
 
-def test_a_relative_path_starts_from_the_given_folder(write, tmp_path):
-    path = write(OIL)
-    record = load_record("my-oil.yaml", folder=tmp_path)
-    assert record.name == "my-oil"
-    assert record.files == (path,)
-
-
 def test_an_unknown_name_and_a_missing_file_are_refused(tmp_path):
     with pytest.raises(RecordError, match=r"got 'mobil-1', need one of mobilgear.*n-dodecane"):
         load_record("mobil-1")
@@ -125,22 +118,22 @@ MISTAKES = [
     (POINTS, POINTS + "  csv: a.csv\n", "viscosity: got points and csv, need one of"),
     (POINTS, "  points: []\n", "viscosity: need values at two temperatures or more"),
     ("100 degC", "40 degC", "viscosity: need values at two temperatures or more"),
-    ("11 mm^2/s", "110 mm^2/s", "got no less at 100 degC than at 40 degC"),
+    ("11 mm^2/s", "110 mm^2/s", "viscosity: need less at 100 degC than at 40 degC"),
     (
         "100 mm^2/s}",
         "100 mm^2/s, dynamic_viscosity: 9 mPa*s}",
         "viscosity.points.0: need either kinematic_viscosity or dynamic_viscosity",
     ),
     ("title: My oil", "title: My oil\nviscosity_law: walther", "viscosity_law: got 'walther'"),
-    (GOLD, "", "pressure_viscosity: need either gold_base, or definition"),
-    (GOLD, GOLD + "  value: 20 1/GPa\n", "need either gold_base or value, got both"),
+    (GOLD, "", "pressure_viscosity: need either gold_base alone, or definition"),
+    (GOLD, GOLD + "  value: 20 1/GPa\n", "need either gold_base alone, or definition"),
     (GOLD, "  definition: secant\n", "pressure: need it with definition 'secant'"),
     (GOLD, GOLD + "  pressure: 200 MPa\n", "pressure: need it with definition 'secant', and"),
     (GOLD, "  definition: reciprocal-asymptotic\n", "gold_base or value: missing"),
     (
         "title: My oil",
         "title: x\ntemperature_range: {source: x, lowest: 40 degC, highest: 30 degC}",
-        "highest: got 30 degC, need more than lowest, 40 degC",
+        "temperature_range: got 40 to 30 degC, need the lowest first",
     ),
     ("name: my-oil", "name: my-oil\nname: my-oil", 'at line 2: found duplicate key "name"'),
 ]
@@ -154,7 +147,7 @@ COOLPROP_MISTAKES = [
         "temperature_range:",
         "density: not allowed, CoolProp gives it for n-Decane",
     ),
-    ("slope-at-atmospheric", "reciprocal-asymptotic", "got 'reciprocal-asymptotic'"),
+    ("slope-at-atmospheric", "reciprocal-asymptotic", "'reciprocal-asymptotic' not allowed"),
     (
         "slope-at-atmospheric",
         "slope-at-atmospheric\n  value: 12 1/GPa",
@@ -174,11 +167,6 @@ def test_each_mistake_in_a_record_is_refused_by_key_and_value(write):
         for old, new, message in mistakes:
             assert text.count(old) == 1
             assert message in refusal(write(text.replace(old, new)))
-
-
-def test_a_truncated_record_is_refused_wherever_it_is_cut(write):
-    for length in range(0, len(OIL) - len("W/m/K\n"), 5):
-        refusal(write(OIL[:length]))
 
 
 # Viscosities in a CSV file
@@ -211,29 +199,31 @@ def test_csv_may_contain_dynamic_viscosity_and_a_temperature_twice(write):
     points = read_viscosity_csv(write(text, "data.csv"))
     assert [point.dynamic_viscosity for point in points] == pytest.approx([0.085, 0.009, 0.0091])
     assert points[0].kinematic_viscosity is None
-    write(HEADER + "20,460\n40,100\n40,101\n", "data.csv")
     assert len(load_record(write(CSV_OIL)).viscosity.points) == 3
 
 
 def test_each_mistake_in_a_csv_file_is_refused_by_line_and_column(write):
     for text, message in [
         ("", "data.csv: empty, need a line of column names"),
-        ("temperature,viscosity\n40,100\n", "line 1: got the column 'temperature', need"),
-        ("temperature [degC],nu [mm^2/s]\n40,1\n", "line 1: got the column 'nu [mm^2/s]'"),
-        ("temperature [degC]\n40\n", "line 1: got the columns temperature, need"),
-        ("temperature [degC],temperature [K]\n", "line 1: got the column 'temperature [K]'"),
         (
-            "temperature [degC],kinematic_viscosity [mm^2/s],dynamic_viscosity [mPa*s]\n",
-            "line 1: got the columns temperature, kinematic_viscosity, dynamic_viscosity",
+            "temperature,viscosity\n40,100\n",
+            "line 1: got the columns 'temperature, viscosity', need",
         ),
+        (
+            "temperature [degC],nu [mm^2/s]\n40,1\n",
+            "line 1: got the columns 'temperature [degC], nu",
+        ),
+        ("temperature [degC]\n40\n", "line 1: got the columns 'temperature [degC]', need"),
+        ("temperature [degC],temperature [K]\n", "line 1: got the columns 'temperature [degC], t"),
+        (HEADER.strip() + ",dynamic_viscosity [mPa*s]\n", "line 1: got the columns 'temperature"),
         ("temperature [s],kinematic_viscosity [mm^2/s]\n40,100\n", "line 2: temperature: wrong"),
         (HEADER + "40,100\n# pause\n100,eleven\n", "line 4: kinematic_viscosity: got 'eleven mm"),
         (HEADER + "40,\n", "line 2: kinematic_viscosity: got ' mm^2/s'"),
         (HEADER + "40,100\n100,0\n", "line 3: kinematic_viscosity: got 0, need a value above 0"),
         (HEADER + "40,0,100,5\n", "line 2: got 4 values, need 2"),
         (HEADER + "40,100\n", "data.csv: viscosity: need values at two temperatures or more"),
-        (HEADER + "40,10\n100,100\n", "got no less at 100 degC than at 40 degC"),
-        (HEADER + "20,460\n40,100\n30,50\n", "got no less at 40 degC than at 30 degC"),
+        (HEADER + "40,10\n100,100\n", "need less at 100 degC than at 40 degC"),
+        (HEADER + "20,460\n40,100\n30,50\n", "need less at 40 degC than at 30 degC"),
         (
             HEADER.replace(",", ";") + "20;1.100\n40;46,2\n",
             "line 2: got '1.100' in a file with decimal commas, need no point",
