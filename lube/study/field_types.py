@@ -182,31 +182,26 @@ def checked_text(check: Callable[[str], object], kind: str) -> Any:
     return _field(str, parse, kind)
 
 
-def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, **limits: float) -> Any:
-    """Make a field type for a quantity in whose place words may stand, which are kept as written.
+def length_or_words(accepts: Callable[..., bool], words: str) -> Any:
+    """Make a field type for a length in whose place words may stand, which are kept as written.
 
     Parameters
     ----------
-    units : str
-        Unit of the kept number.
     accepts : callable
         Whether what is written are such words; may raise LubeError.
     words : str
         What they are, for messages and for the JSON schema.
-    **limits : float
-        As in `bounded`, in `units`.
 
     Returns
     -------
     type
-        An annotated float or str.
+        An annotated float, m, or str.
     """
 
     def parse(value):
-        return value if accepts(value) else bounded(parse_quantity(value, units), units, **limits)
+        return value if accepts(value) else bounded(parse_quantity(value, "m"), "m", above=0.0)
 
-    hint = f", or {words}"
-    return _field(float | str, parse, f"quantity in {units}{hint}", hint=hint)
+    return _field(float | str, parse, f"quantity in m, or {words}", hint=f", or {words}")
 
 
 def levels(units: str | None, **limits: float) -> Any:

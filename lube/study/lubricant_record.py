@@ -287,8 +287,7 @@ def _check_points(points, where):
     for kind in ("kinematic_viscosity", "dynamic_viscosity"):
         known = [point for point in points if getattr(point, kind) is not None]
         for cold, hot in pairwise(sorted(known, key=lambda point: point.temperature)):
-            rises = getattr(cold, kind) <= getattr(hot, kind)
-            if rises and cold.temperature < hot.temperature:
+            if cold.temperature < hot.temperature and getattr(cold, kind) <= getattr(hot, kind):
                 raise RecordError(
                     f"{where}: viscosity: need less at {hot.temperature:g} degC than at "
                     f"{cold.temperature:g} degC"

@@ -92,13 +92,12 @@ def resolved_text(path: File, changes: dict | None = None, folder: File | None =
         As in `resolved_content`.
     """
     names = " based on ".join(file.name for file in study_files(path))
-    text = io.StringIO(f"# Resolved: {names}{', changed by --config' if changes else ''}.\n")
-    text.seek(0, io.SEEK_END)
     yaml = YAML()
     yaml.width = 200  # no text is broken
     yaml.representer.ignore_aliases = lambda _: True
+    text = io.StringIO()
     yaml.dump(resolved_content(path, changes, folder), text)
-    return text.getvalue()
+    return f"# Resolved: {names}{', changed by --config' if changes else ''}.\n{text.getvalue()}"
 
 
 def _chain(path, above=()):

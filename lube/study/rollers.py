@@ -17,8 +17,8 @@ from lube.study.field_types import (
     Pressure,
     StrictModel,
     bounded,
+    length_or_words,
     pure_number,
-    quantity_or_words,
 )
 from lube.study.size_limits import MOST_POINTS
 from lube.units import parse_number
@@ -87,17 +87,14 @@ class Roughness(StrictModel):
     """points N around the first roller"""
     hurst_exponent: pure_number(above=0.0, below=1.0)
     """Hurst exponent H"""
-    longest_wavelength: quantity_or_words(
-        "m",
-        lambda text: text == AUTOMATIC_WAVELENGTH,
-        f"the words `{AUTOMATIC_WAVELENGTH}`",
-        above=0.0,
+    longest_wavelength: length_or_words(
+        lambda text: text == AUTOMATIC_WAVELENGTH, f"the words `{AUTOMATIC_WAVELENGTH}`"
     )
     """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
     the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
     0.61
     """
-    shortest_wavelength: quantity_or_words("m", _is_points, "as in `10 points`", above=0.0)
+    shortest_wavelength: length_or_words(_is_points, "as in `10 points`")
     """2 pi / q_max; the break-up of the boundary layer depends on it"""
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
@@ -199,15 +196,10 @@ def _check_waves(spec, longest, shortest):
         )
     for roller, points in zip(("first", "second"), spec.points, strict=True):
         perimeter = points * spec.spacing
-        if perimeter < longest:
+        if perimeter < longest or math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
             raise StudyError(
-                f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short, "
-                f"need at least the longest wavelength, {longest:.3g} m"
-            )
-        if math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
-            raise StudyError(
-                f"rollers.{roller}.radius: no whole number of waves between {shortest:.3g} "
-                f"and {longest:.3g} m long goes round its perimeter, {perimeter:.3g} m"
+                f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short, need a "
+                f"whole number of waves between {shortest:.3g} and {longest:.3g} m long around it"
             )
 
 

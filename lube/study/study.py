@@ -237,10 +237,9 @@ class Study(StrictModel):
     @model_validator(mode="after")
     def _check_rig(self):
         if self.experiment.threshold not in self.experiment.thresholds:
-            known = ", ".join(f"{threshold:g}" for threshold in self.experiment.thresholds)
             raise ValueError(
                 f"experiment.threshold: got {self.experiment.threshold:g} ohm, need one of "
-                f"experiment.thresholds: {known} ohm"
+                f"experiment.thresholds: {shown(self.experiment.thresholds)} ohm"
             )
         largest = max(self.experiment.thresholds) * self.experiment.release_ratio
         voltage = divider_voltage(largest, self.rig)

@@ -39,10 +39,9 @@ def read_text(path: File, error_type: type) -> str:
     """
     try:
         return Path(path).read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise error_type(f"{path}: cannot be read: it is not UTF-8 text") from None
-    except OSError as error:
-        raise error_type(f"{path}: cannot be read: {error.strerror}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", "it is not UTF-8 text")
+        raise error_type(f"{path}: cannot be read: {reason}") from None
 
 
 def read_yaml(path: File, error_type: type, kind: type = dict) -> dict | list:

@@ -39,7 +39,7 @@ PURE_NUMBERS = [
     ("rig.amplifier_range", "20 mV", "got 0.02 V, need more than the 0.0455 V"),
     ("experiment.release_ratio", 0.9, "got 0.9, need a value at least 1"),
     ("experiment.debounce", "-1 s", "got -1, need a value at least 0 s"),
-    ("experiment.threshold", "50 ohm", "got 50 ohm, need one of experiment.thresholds: 10, "),
+    ("experiment.threshold", "50 ohm", "got 50 ohm, need one of experiment.thresholds: (10.0, "),
     ("experiment.manifest", "none.csv", "need a file that exists"),
     ("roughness.shortest_wavelength", "1.9 points", "got 1.9, need a value at least 2 and at most"),
     ("operating_grid.slide_to_roll_ratio", [2.5], "got 2.5, need a value at least -2 and at most"),
