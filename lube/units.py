@@ -175,9 +175,7 @@ def electrical_quantity(units: object) -> str:
         with contextlib.suppress(LubeError):
             convert(1.0, usual_spelling(units), target)
             return quantity
-    raise LubeError(
-        f"got the unit {shown(units)}, need one of voltage or resistance, such as 'mV' or 'kohm'"
-    )
+    raise LubeError(f"got the unit {shown(units)}, need one of voltage or resistance")
 
 
 def parse_quantity(value: object, target: str) -> float:

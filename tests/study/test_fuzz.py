@@ -229,34 +229,22 @@ def is_read(read):
     return lambda path: attempt(read, path) is not None
 
 
-YAML_FILES = {
-    "study.yaml": (STUDIES, study_is_valid),
-    "oil.yaml": (RECORDS, record_is_valid),
-    "list.yaml": ([ROWS], manifest_is_read),
-}
-TEXT_FILES = {
-    "study.yaml": ([resolved_text(SMOKE).encode()], study_is_valid),
-    "oil.yaml": ([path.read_bytes() for path in SHIPPED], record_is_valid),
-    "viscosity.csv": (
-        [TABLE, TABLE.replace(b".", b",").replace(b", ", b";")],
-        is_read(read_viscosity_csv),
-    ),
-    "list.csv": ([LIST], manifest_is_read),
-}
+CSV_TABLES = [TABLE, TABLE.replace(b".", b",").replace(b", ", b";")]
+FILES = [
+    ("study.yaml", mistaken(STUDIES), study_is_valid),
+    ("study.yaml", spoilt([resolved_text(SMOKE).encode()]), study_is_valid),
+    ("oil.yaml", mistaken(RECORDS), record_is_valid),
+    ("oil.yaml", spoilt([path.read_bytes() for path in SHIPPED]), record_is_valid),
+    ("viscosity.csv", spoilt(CSV_TABLES), is_read(read_viscosity_csv)),
+    ("list.yaml", mistaken([ROWS]), manifest_is_read),
+    ("list.csv", spoilt([LIST]), manifest_is_read),
+]
 
 
 @cases
-@pytest.mark.parametrize("name", YAML_FILES)
-def test_a_file_with_mistaken_values_is_read_or_refused_in_one_line(tmp_path, examples, name):
-    contents, check = YAML_FILES[name]
-    fuzz(mistaken(contents), examples, check, tmp_path / name)
-
-
-@cases
-@pytest.mark.parametrize("name", TEXT_FILES)
-def test_a_file_with_spoilt_text_is_read_or_refused_in_one_line(tmp_path, examples, name):
-    texts, check = TEXT_FILES[name]
-    fuzz(spoilt(texts), examples, check, tmp_path / name)
+@pytest.mark.parametrize(("name", "mistakes", "check"), FILES)
+def test_a_mistaken_file_is_read_or_refused_in_one_line(tmp_path, examples, name, mistakes, check):
+    fuzz(mistakes, examples, check, tmp_path / name)
 
 
 # Measured records

@@ -3,13 +3,11 @@
 import re
 from functools import partial
 
-import yaml
 from refusals import NEEDED, one_line
-from studies import OIL, PAPER_CONTENT, REMOVED, with_value
+from studies import OIL, PAPER_CONTENT, REMOVED
 
 from lube.errors import LubeError
 from lube.report.key_tables import study_keys
-from lube.study.lubricant_record import SHIPPED_FOLDER
 from lube.study.rollers import AUTOMATIC_WAVELENGTH
 from lube.study.study import load_study
 
@@ -21,13 +19,8 @@ UNKNOWN_KEYS = [
     ("sede", 1, "sede: unknown key, did you mean 'seed'?"),
     ("about.licens", 1, "about.licens: unknown key, did you mean 'licence'?"),
     ("about.creators.0.orchid", 1, "about.creators.0.orchid: unknown key, did you mean 'orcid'?"),
-    ("rollers.third", 1, "rollers.third: unknown key, need one of length, first, second"),
-    ("rollers.first.radios", 1, "rollers.first.radios: unknown key, did you mean 'radius'?"),
     ("operating_grid.load", 1, "operating_grid.load: unknown key, need one of force, speed, "),
-    ("roughness.hurst_exp", 1, "unknown key, did you mean 'hurst_exponent'?"),
-    ("boundary_layer.strength", 1, "unknown key, did you mean 'shear_strength'?"),
     ("traces.0.load", "800 N", "traces.0.load: unknown key, need one of force, speed, "),
-    ("rig.noize", 1, "rig.noize: unknown key, did you mean 'noise'?"),
     ("experiment.treshold", 1, "experiment.treshold: unknown key, did you mean 'threshold'?"),
 ]
 
@@ -70,6 +63,11 @@ GRIDS = [
     ("roughness.longest_wavelength", "1 um", "need less than the longest, 1e-06 m; if it is"),
     ("roughness.shortest_wavelength", "1 mm", "got 0.001 m, need less than the longest"),
     ("roughness.shortest_wavelength", "1e308 points", "got 1e+308, need a value at least 2 and at"),
+    (
+        "roughness.longest_wavelength",
+        "as long as can be",
+        f", or the words `{AUTOMATIC_WAVELENGTH}`",
+    ),
     ("roughness.longest_wavelength", "1 m", "the perimeter, 0.314 m, is too short"),
     ("roughness.height_step", "1 nm", "got 1e-09 m, need 2e-14 to 2e-10 m"),
 ]
@@ -111,20 +109,15 @@ def test_a_mistake_is_refused_by_key_value_and_what_is_needed(paper_with):
             assert f"mine.yaml: {key}" in message
 
 
-def keys_with_units(kind):
-    """Keys of a study whose values carry a unit, with that unit, from its JSON schema."""
-    found = {}
-    for cell, value, _ in study_keys():
-        key = cell.strip("`").replace("[]", ".0")
-        match = re.match(rf"{kind} in ([^ ,(]+)(, above 0)?", value)
-        if match and not key.startswith("lubricants"):
-            found[key] = match.groups()
-    return found.items()
-
-
 def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
-    assert len(keys_with_units("quantity")) >= 20
-    for key, (units, positive) in keys_with_units("quantity"):
+    tested = 0
+    for cell, value, _ in study_keys():  # of the JSON schema
+        key = cell.strip("`").replace("[]", ".0")
+        match = re.match(r"quantity in ([^ ,(]+)(, above 0)?", value)
+        if match is None:
+            continue
+        tested += 1
+        units, positive = match.groups()
         bare = refusal(paper_with((key, 50)))
         assert f"mine.yaml: {key}: got 50, need a number with its unit, such as '1 {units}'" in bare
         wrong = refusal(paper_with((key, "50 kg")))
@@ -132,20 +125,7 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
         if positive:
             negative = refusal(paper_with((key, f"-0.5 {units}")))
             assert f"mine.yaml: {key}: got -0.5, need a value above 0" in negative
-
-
-def test_levels_rise_and_have_a_unit_of_their_dimension(paper_with):
-    assert len(keys_with_units("values and units")) == 4
-    for key, (units, _) in keys_with_units("values and units"):
-        for value, needed in [
-            ([50, 60], f"need values and their unit, such as {{values: [1, 2], units: {units}}}"),
-            ({"values": [60, 50], "units": units}, "need rising levels, each once"),
-            ({"values": [50], "units": "kg"}, f"need a unit of the kind '{units}'"),
-            ({"values": [-500], "units": units}, "need a value above"),
-        ]:
-            message = refusal(paper_with((key, value)))
-            assert f"mine.yaml: {key}: " in message
-            assert needed in message
+    assert tested >= 20
 
 
 def test_temperatures_outside_the_lubricants_range_are_refused(paper_with):
@@ -185,23 +165,3 @@ def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_wi
         ({"traces.1.speed": "150 rpm"}, "traces: need the same speed"),
     ]:
         assert message in refusal(paper_with(*changes.items()))
-
-
-def test_a_lubricant_record_without_sources_is_refused(paper_with):
-    path = paper_with(("lubricants", ["oil.yaml"]))
-    record = yaml.safe_load((SHIPPED_FOLDER / f"{OIL}.yaml").read_text(encoding="utf-8"))
-    for section in [key for key, value in record.items() if isinstance(value, dict)]:
-        text = yaml.safe_dump(with_value(record, f"{section}.source", REMOVED))
-        (path.parent / "oil.yaml").write_text(text, encoding="utf-8")
-        assert f"{section}.source: missing" in refusal(path)
-
-
-def test_the_automatic_wavelength_is_offered_where_a_length_is_refused(paper_with):
-    message = refusal(paper_with(("roughness.longest_wavelength", "as long as can be")))
-    assert AUTOMATIC_WAVELENGTH in message
-
-
-def test_a_file_that_is_no_study_is_named(tmp_path):
-    assert "absent.yaml: cannot be read" in refusal(tmp_path / "absent.yaml")
-    (tmp_path / "empty.yaml").touch()
-    assert "empty.yaml: need a mapping" in refusal(tmp_path / "empty.yaml")
