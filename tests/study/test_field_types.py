@@ -121,17 +121,16 @@ def test_a_misspelt_key_is_refused_with_the_nearest_right_one():
     inner = model_of(radius=(Length, ...), length=(Length, ...))
     model = model_of(first=(inner, ...), others=(tuple[inner, ...] | None, None))
     roller = {"radius": "1 m", "length": "1 m"}
+    meant = (
+        "first.colour: unknown key, need one of radius, length; a text with a comma needs quotes"
+    )
     for content, line in [
         ({"frist": roller}, "frist: unknown key, did you mean 'first'? (and 1 more)"),
         (
             {"first": roller, "others": [roller, roller | {"lenght": 1}]},
             "others.1.lenght: unknown key, did you mean 'length'?",
         ),
-        (
-            {"first": roller | {"colour": None}},
-            "first.colour: unknown key, need one of radius, length; a text with a comma needs "
-            "quotes",
-        ),
+        ({"first": roller | {"colour": None}}, meant),
         ({"first": roller, "two\nlines": 1}, "two\\nlines: unknown key, need one of first, others"),
         ({"first": roller, 3: 1}, "3: unknown key, need one of first, others"),
     ]:

@@ -122,23 +122,7 @@ def rescaled(value, factor):
         return value
 
 
-FRAGMENTS = [
-    "\t",
-    "\ufeff",
-    "'",
-    '"',
-    "{",
-    "[",
-    "]",
-    ": ",
-    "- ",
-    "#",
-    "&a ",
-    "*a",
-    "? ",
-    "|\n",
-    "%",
-]
+FRAGMENTS = ["\t", "\ufeff", "'", '"', *"{[]#%", ": ", "- ", "&a ", "*a", "? ", "|\n"]
 FRAGMENTS += ["---\n", "...\n", "<<: *a\n", "<<: {seed: 1}\n", "!!str ", "!!int ''", "!!binary é"]
 FRAGMENTS += ["!!python/object/apply:os.getcwd []", "? !!set {a}\n: 1\n", "name: again\n", "=: 1\n"]
 FRAGMENTS += ["yes", "2018-11-09", "2018-02-30", "1e400", "\x85", "é", ";", ",", "based_on: x\n"]

@@ -32,18 +32,14 @@ def test_the_papers_study_has_the_papers_125_operating_points():
 
 def test_the_papers_rollers_layer_roughness_and_trace_are_in_si():
     study = load_study(PAPER)
-    rollers = study.rollers
-    assert rollers.length == pytest.approx(10e-3)
-    assert rollers.first.radius == pytest.approx(50e-3)
-    assert rollers.first.rms_roughness == pytest.approx(0.2e-6)
+    rollers, layer, trace = study.rollers, study.boundary_layer, study.trace_points[0]
+    given = [rollers.length, rollers.first.radius, rollers.first.rms_roughness]
+    assert given == pytest.approx([10e-3, 50e-3, 0.2e-6])
     assert rollers.reduced_radius == pytest.approx(25e-3)
     assert rollers.composite_rms_roughness == pytest.approx(0.2e-6 * 2**0.5)
-    assert study.boundary_layer.critical_thickness == pytest.approx(5e-9)
-    assert study.boundary_layer.shear_strength == pytest.approx(1e6)
-    assert study.roughness.points == 1_000_000
-    assert study.roughness.hurst_exponent == 0.7
-    first = study.trace_points[0]
-    assert (first["force"], first["speed"], first["temperature"]) == (800.0, 100.0, 40.0)
+    assert (layer.critical_thickness, layer.shear_strength) == pytest.approx((5e-9, 1e6))
+    assert (study.roughness.points, study.roughness.hurst_exponent) == (1_000_000, 0.7)
+    assert (trace["force"], trace["speed"], trace["temperature"]) == (800.0, 100.0, 40.0)
 
 
 def test_the_defaults_of_the_rig_are_those_of_the_papers_study():

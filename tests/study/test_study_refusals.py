@@ -55,7 +55,6 @@ COUNTS = [
     ("kept_realisations", [0, 0], "0 is repeated, need each once"),
     ("kept_realisations", [1], "got (1,), need 0, which the traces use"),
     ("kept_realisations", [], "got (), need 0"),
-    ("kept_realisations", 0, "got 0, need a list"),
 ]
 
 GRIDS = [
@@ -63,12 +62,14 @@ GRIDS = [
     ("roughness.longest_wavelength", "1 um", "need less than the longest, 1e-06 m; if it is"),
     ("roughness.shortest_wavelength", "1 mm", "got 0.001 m, need less than the longest"),
     ("roughness.shortest_wavelength", "1e308 points", "got 1e+308, need a value at least 2 and at"),
-    (
-        "roughness.longest_wavelength",
-        "as long as can be",
-        f", or the words `{AUTOMATIC_WAVELENGTH}`",
-    ),
+    ("roughness.longest_wavelength", "long", f", or the words `{AUTOMATIC_WAVELENGTH}`"),
     ("roughness.longest_wavelength", "1 m", "the perimeter, 0.314 m, is too short"),
+    (
+        "operating_grid.temperature",
+        {"values": [39], "units": "degC"},
+        "got 39 degC, need 40 to 100",
+    ),
+    ("operating_grid.temperature", {"values": [101], "units": "degC"}, f"{OIL}: got 101 degC"),
     ("roughness.height_step", "1 nm", "got 1e-09 m, need 2e-14 to 2e-10 m"),
 ]
 
@@ -83,19 +84,23 @@ NAMES = [
     ("film_formulas", ["nope"], "film_formulas.0: unknown film formula 'nope', need one of paper"),
     ("film_formulas", [], "got [], need at least 1"),
     ("film_formulas", ["paper", "paper"], "paper is repeated, need each once"),
-    ("film_formulas", "paper", "got 'paper', need a list"),
     ("name", "My study", "got 'My study', need lower-case letters"),
-    ("name", "../elsewhere", "got '../elsewhere', need lower-case letters"),
     ("name", 3, "got 3, need text"),
     ("rollers", 3, "got 3, need keys with their values"),
 ]
 
+TRACE = {"force": "800 N", "speed": "150 rpm", "temperature": "40 degC"}
 TRACES = [
     ("traces.0.force", "300 N", "got 300.0, need one of the study's: 100.0, 200.0"),
     ("traces.0.speed", "101 rpm", "got 101.0, need one of the study's: 85.7"),
     ("traces.0.lubricant", "nope", f"got nope, need one of the study's: {OIL}"),
     ("traces.0.film_formula", "nope", "got nope, need one of the study's: paper"),
     ("traces", [], "got [], need at least 1"),
+    (
+        "traces",
+        [TRACE, TRACE | {"speed": "100 rpm"}],
+        "need the same speed and slide-to-roll ratio",
+    ),
 ]
 
 
@@ -128,40 +133,20 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
     assert tested >= 20
 
 
-def test_temperatures_outside_the_lubricants_range_are_refused(paper_with):
-    for temperature in (39, 101):
-        value = {"values": [temperature], "units": "degC"}
-        message = refusal(paper_with(("operating_grid.temperature", value)))
-        assert f"{OIL}: got {temperature} degC, need 40 to 100 degC" in message
-
-
 def test_every_key_without_a_default_is_needed(paper_with):
-    sections = ("rollers", "rollers.first", "operating_grid", "roughness", "boundary_layer")
     keys = [key for key in PAPER_CONTENT if key not in ("about", "rig", "experiment")]
-    for section in sections:
-        content = PAPER_CONTENT
-        for part in section.split("."):
-            content = content[part]
-        keys += [f"{section}.{key}" for key in content]
-    for key in keys:
+    for section in ("rollers", "operating_grid", "roughness", "boundary_layer"):
+        keys += [f"{section}.{key}" for key in PAPER_CONTENT[section]]
+    for key in [*keys, "rollers.first.radius", "rollers.second.rms_roughness"]:
         assert f"{key}: missing" in refusal(paper_with((key, REMOVED)))
 
 
 def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_with):
-    for changes, message in [
-        (
-            {"operating_grid.force.values": [1e-3, 1600], "traces.0.force": "1600 N"},
-            "operating_grid.force: the contact at 0.001 N",
-        ),
-        (
-            {"operating_grid.force.values": [1600, 1e10], "traces.0.force": "1600 N"}
-            | {"roughness.longest_wavelength": "0.4 mm"},
-            "operating_grid.force: the contact at 1e+10 N",
-        ),
-        (
-            {"rollers.second.radius": "25 mm", "roughness.longest_wavelength": "0.2 m"},
-            "rollers.second.radius: the perimeter, 0.157 m, is too short",
-        ),
-        ({"traces.1.speed": "150 rpm"}, "traces: need the same speed"),
+    forces, trace = "operating_grid.force.values", ("traces.0.force", "1600 N")
+    longest = "roughness.longest_wavelength"
+    for *changes, message in [
+        ((forces, [1e-3, 1600]), trace, "operating_grid.force: the contact at 0.001 N"),
+        ((forces, [1600, 1e10]), trace, (longest, "0.4 mm"), "force: the contact at 1e+10 N"),
+        (("rollers.second.radius", "25 mm"), (longest, "0.2 m"), "the perimeter, 0.157 m, is too"),
     ]:
-        assert message in refusal(paper_with(*changes.items()))
+        assert message in refusal(paper_with(*changes))
