@@ -1,17 +1,22 @@
 """What all figures share: style, colours, axis labels from attributes, saving.
 
-Colours are Okabe and Ito's, which readers with any colour vision can tell apart; ordered
-quantities get steps of a map that also rises in lightness.
+Colours are those of Okabe and Ito, which readers with any colour vision can tell apart; ordered
+quantities take theirs from a colour map whose lightness changes steadily.
 """
 
 import io
+import re
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 from IPython import get_ipython
 from IPython.display import Image, display
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
@@ -72,8 +77,8 @@ _AXIS_UNITS = {
 }
 
 
-_STAMP_STRIP = 0.12  # inches
-_LONGEST_NAME = 32  # of a record; of a longer one the end is told
+_STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
+_LONGEST_NAME = 32  # characters of a record's name; of a longer one the end is shown
 
 
 def use_style() -> None:
@@ -85,7 +90,7 @@ def use_style() -> None:
     plt.rcParams.update(_STYLE)
 
 
-def in_units(array, units):
+def in_units(array: xr.DataArray, units: str) -> xr.DataArray:
     """Convert a labelled array for an axis.
 
     Parameters
@@ -98,25 +103,23 @@ def in_units(array, units):
     Returns
     -------
     xarray.DataArray
-        The converted array, its attributes telling so.
+        The converted array, with the new unit in its attributes.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from lube import plots
+    >>> film = xr.DataArray(2e-6, attrs={"units": "m", "long_name": "film thickness"})
+    >>> plots.in_units(film, "um").item()
+    2.0
     """
-    factor = convert(1.0, _for_pint(array.attrs["units"]), _for_pint(units))
-    converted = array * factor
-    converted.attrs = {**array.attrs, "units": units}
-    return converted
+    # As pint writes them: ``m2 s-1`` -> ``m^2 s^-1``.
+    before, after = (re.sub(r"(-?\d+)", r"^\1", each) for each in (array.attrs["units"], units))
+    return (array * convert(1.0, before, after)).assign_attrs(array.attrs | {"units": units})
 
 
-def _for_pint(units):
-    """``m2 s-1`` -> ``m^2 s^-1``."""
-    return " ".join(
-        part.rstrip("-0123456789") + ("^" + power if power else "")
-        for part in units.split()
-        for power in [part[len(part.rstrip("-0123456789")) :]]
-    )
-
-
-def axis_label(array, symbol=None):
-    """Axis label from the attributes of an array: what it is, its symbol, its unit.
+def axis_label(array: xr.DataArray, symbol: str | None = None) -> str:
+    """Axis label from the attributes of an array: its name, symbol and unit.
 
     Parameters
     ----------
@@ -129,54 +132,57 @@ def axis_label(array, symbol=None):
     -------
     str
         Such as ``Film thickness $h_0$ (µm)``.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from lube import plots
+    >>> film = xr.DataArray(2.0, attrs={"units": "um", "long_name": "film thickness"})
+    >>> plots.axis_label(film, "$h_0$")
+    'Film thickness $h_0$ (µm)'
     """
     name = array.attrs["long_name"]
     units = array.attrs.get("units", "1")
-    words = [name[0].upper() + name[1:], symbol, None if units == "1" else f"({nice_units(units)})"]
-    return " ".join(word for word in words if word)
+    unit = None if units == "1" else f"({_AXIS_UNITS.get(units, units)})"
+    return " ".join(word for word in (name[0].upper() + name[1:], symbol, unit) if word)
 
 
-def nice_units(units):
-    """Units as a reader expects them: ``degC`` -> ``°C``."""
-    return _AXIS_UNITS.get(units, units)
-
-
-def level_colours(levels):
+def level_colours(levels: npt.ArrayLike) -> dict[float, np.ndarray]:
     """Colours for the levels of an ordered quantity, light to dark.
 
     Parameters
     ----------
-    levels : sequence
+    levels : array_like
         The levels, rising.
 
     Returns
     -------
     dict
-        From level to colour.
+        From level to colour, as red, green, blue and opacity.
     """
     values = np.asarray(levels).tolist()
     shades = plt.get_cmap("viridis_r")(np.linspace(0.15, 0.95, len(values)))
     return dict(zip(values, shades, strict=True))
 
 
-def level_markers(levels):
+def level_markers(levels: npt.ArrayLike) -> dict[float, str]:
     """Markers for the levels of a quantity, from level to marker."""
     values = np.asarray(levels).tolist()
     return {value: MARKERS[number % len(MARKERS)] for number, value in enumerate(values)}
 
 
-def level_name(value, units):
+def level_name(value: float, units: str) -> str:
     """Level of an operating variable as text: ``86 r/min``, ``800 N``, ``40.5 °C``."""
-    near = abs(value - round(value)) <= 0.004 * abs(value)
-    return f"{f'{value:.0f}' if near else f'{value:.3g}'} {nice_units(units)}"
+    digits = ".0f" if abs(value - round(value)) <= 0.004 * abs(value) else ".3g"
+    return f"{value:{digits}} {_AXIS_UNITS.get(units, units)}"
 
 
-def point_name(place, *variables):
+def point_name(point: xr.Dataset | xr.DataArray, *variables: str) -> str:
     """Operating point as text: ``800 N, 100 r/min, 40 °C``.
 
     Parameters
     ----------
-    place : xarray.Dataset or xarray.DataArray
+    point : xarray.Dataset or xarray.DataArray
         With scalar coordinates.
     *variables : str
         Which of them; force, speed and temperature if none is named.
@@ -187,11 +193,11 @@ def point_name(place, *variables):
         The levels with their units.
     """
     names = variables or ("force", "speed", "temperature")
-    return ", ".join(level_name(place[name].item(), COORDINATES[name].units) for name in names)
+    return ", ".join(level_name(point[name].item(), COORDINATES[name].units) for name in names)
 
 
-def rig_name(dataset):
-    """Rig behind some records as text: ``simulated rig, 1 pair of rollers``.
+def rig_name(dataset: xr.Dataset) -> str:
+    """Rig that produced some records, as text: ``simulated rig, 1 pair of rollers``.
 
     Parameters
     ----------
@@ -201,29 +207,30 @@ def rig_name(dataset):
     Returns
     -------
     str
-        Its origin and its pairs of rollers, and how fast their roughness drifts if it does.
+        Whether it is measured or simulated, its number of pairs of rollers, and the drift of their
+        roughness if it is not zero.
     """
     pairs, drift = dataset["pairs"].item(), dataset["drift"].item()
     words = [f"{dataset['origin'].item()} rig", f"{pairs} pair{'s' * (pairs != 1)} of rollers"]
-    words += [f"drift {drift:g} a revolution"] * (drift > 0.0)
+    words += [f"drift {drift:g} per revolution"] * (drift > 0.0)
     return ", ".join(words)
 
 
-def record_name(record, pairs=1):
-    """Record as text: what it is called, and its conditions in a line of their own.
+def record_name(record: xr.Dataset, pairs: int = 1) -> str:
+    """Record as text: its name, and its conditions in a second line.
 
     Parameters
     ----------
     record : xarray.Dataset
         One record, with its conditions and the coordinate ``origin``.
     pairs : int, optional
-        Pairs of rollers behind all records; if several, the record's is named.
+        Number of pairs of rollers in the dataset; if there are several, the record's is named.
 
     Returns
     -------
     str
-        Such as ``run1.nc (list.csv: line 2), pair A`` and ``1603 N, 100 r/min, 80 °C``; a
-        simulated record has no name but its conditions.
+        Such as ``run1.nc (list.csv: line 2), pair A`` and ``1603 N, 100 r/min, 80 °C``; for a
+        simulated record the conditions alone.
     """
     name = record["record"].item() if record["origin"].item() == "measured" else ""
     name = name if len(name) <= _LONGEST_NAME else "…" + name[1 - _LONGEST_NAME :]
@@ -231,8 +238,10 @@ def record_name(record, pairs=1):
     return "\n".join([", ".join(words)] * bool(words) + [point_name(record)])
 
 
-def level_groups(records, name):
-    """Group records by the level that they are near, with a style for each level.
+def level_groups(
+    records: xr.Dataset, name: str
+) -> list[tuple[str, np.ndarray | str, str, xr.Dataset]]:
+    """Group records by the level of the study that they are at, with a style for each level.
 
     Parameters
     ----------
@@ -244,87 +253,87 @@ def level_groups(records, name):
     Returns
     -------
     list of tuple
-        For each level, rising, its name, colour and marker and its records; last those near
-        no level, if there are any.
+        For each level, rising, its name, colour, marker and records; at the end those that are
+        not at a level, if there are any.
     """
     near = records[f"{name}_level"].values
     levels = np.unique(near[np.isfinite(near)])
     colours, markers = level_colours(levels), level_markers(levels)
+    names = [level_name(level, COORDINATES[name].units) for level in levels.tolist()]
     groups = [
-        (
-            level_name(level, COORDINATES[name].units),
-            colours[level],
-            markers[level],
-            records.isel(record=near == level),
-        )
-        for level in levels.tolist()
+        (text, colours[level], markers[level], records.isel(record=near == level))
+        for text, level in zip(names, levels.tolist(), strict=True)
     ]
     if np.isnan(near).any():
         other = records.isel(record=np.isnan(near))
-        groups.append(("near no level", COLOURS["black"], "X", other))
+        groups.append(("not at a level", COLOURS["black"], "X", other))
     return groups
 
 
-def footnote(figure, dataset):
-    """Say below a figure which lubricant, film formula and slip it shows.
+def footnote(figure: Figure, dataset: xr.Dataset | xr.DataArray) -> None:
+    """Write below a figure which lubricant, film formula and slide-to-roll ratio it shows.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
         The figure, in constrained layout.
     dataset : xarray.Dataset or xarray.DataArray
-        What it shows; a coordinate of several values is told with all of them.
+        What it shows; of a coordinate with several values all are written.
     """
     words = {
         "lubricant": "",
         "film_formula": "film formula ",
         "slide_to_roll_ratio": "slide-to-roll ratio ",
     }
-    told = [
+    parts = [
         word + ", ".join(str(value) for value in np.unique(dataset[name]))
         for name, word in words.items()
         if name in dataset.coords
     ]
-    figure.supxlabel(" · ".join(told), x=0.99, ha="right", fontsize=6.5, color="#5F5F5F")
+    # An empty line keeps the stamp's place free.
+    line = " · ".join(parts) + "\n"
+    figure.supxlabel(line, x=0.99, ha="right", fontsize=6.5, color="#5F5F5F")
 
 
-def plain_log_ticks(axis, numbers=(1, 2, 5)):
+def plain_log_ticks(axis: Axis, numbers: Sequence[int] = (1, 2, 5)) -> None:
     """Label a logarithmic axis with plain numbers: 20, 50, 100 instead of powers of ten.
 
     Parameters
     ----------
     axis : matplotlib.axis.Axis
-        The axis, on a logarithmic scale, its limits as they are to stay.
+        The axis, on a logarithmic scale, with its final limits.
     numbers : sequence of int, optional
-        Which multiples of the powers of ten get a label; on an axis too short for two of them,
-        round numbers do.
+        Multiples of the powers of ten that get a label. On an axis too short for two of these
+        labels, evenly spaced round numbers get one.
     """
     low, high = sorted(axis.get_view_interval())
     axis.set_major_locator(LogLocator(subs=numbers))
-    if sum(low <= place <= high for place in axis.get_majorticklocs()) < 2:
+    if sum(low <= tick <= high for tick in axis.get_majorticklocs()) < 2:
         axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 
 
-def panel_letters(axes):
-    """Write (a), (b), ... over the panels of a figure, before what stands there already.
+def panel_letters(axes: Iterable[Axes]) -> None:
+    """Write (a), (b), ... in front of the titles of a figure's panels.
 
     Parameters
     ----------
     axes : iterable of matplotlib.axes.Axes
-        The panels in reading order.
+        The panels in reading order; rows of panels may be nested.
     """
     for letter, panel in zip("abcdefghijklmnop", np.ravel(list(axes)), strict=False):
         panel.set_title(f"({letter}) {panel.get_title(loc='left')}".strip(), loc="left")
 
 
-def interval_bars(axes, x, mean, lower, upper, **style):
+def interval_bars(
+    axes: Axes, x: np.ndarray, mean: np.ndarray, lower: np.ndarray, upper: np.ndarray, **style
+) -> None:
     """Draw probabilities with their intervals.
 
-    On a logarithmic scale a probability that was never seen has no point; an arrow hangs down
-    from its upper limit instead.
+    On a logarithmic scale an estimate of zero has no point; an arrow hangs from its upper limit
+    instead.
 
     Parameters
     ----------
@@ -339,17 +348,9 @@ def interval_bars(axes, x, mean, lower, upper, **style):
     bars = np.where(seen, [mean - lower, upper - mean], 0.0)
     points = np.where(seen, mean, np.nan)
     axes.errorbar(x, points, yerr=bars, capsize=2, elinewidth=1.0, **style)
-    limits = np.asarray(upper)[~seen]
-    axes.errorbar(
-        np.asarray(x)[~seen],
-        limits,
-        yerr=0.5 * limits,
-        uplims=True,
-        linestyle="none",
-        capsize=2.5,
-        elinewidth=1.0,
-        color=style.get("color"),
-    )
+    at, limits = np.asarray(x)[~seen], np.asarray(upper)[~seen]
+    arrows = {"uplims": True, "linestyle": "none", "capsize": 2.5, "elinewidth": 1.0}
+    axes.errorbar(at, limits, yerr=0.5 * limits, color=style.get("color"), **arrows)
 
 
 def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> None:
@@ -382,7 +383,7 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     # The PDF gets the same layout, which takes as long to find as the picture to draw.
     figure.set_layout_engine("none")
     pdf = _picture(figure, "pdf", {"CreationDate": None, "Producer": None, "Subject": line})
-    for suffix, picture in (("png", png), ("pdf", pdf)):
+    for suffix, picture in {"png": png, "pdf": pdf}.items():
         with written_whole(f"{stem}.{suffix}") as part:
             part.write_bytes(picture)
     if get_ipython() is not None:
@@ -400,6 +401,7 @@ def _picture(figure, suffix, metadata):
 def _write_below(figure, line):
     """Write a small line into a strip of its own below a figure."""
     strip = _STAMP_STRIP / figure.get_figheight()
-    if isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
+    free = not figure.get_supxlabel()  # no footnote that leaves room for it
+    if free and isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
         figure.get_layout_engine().set(rect=(0.0, strip, 1.0, 1.0 - strip))
     figure.text(0.006, 0.25 * strip, line, fontsize=5, color="#8A8A8A", va="bottom")

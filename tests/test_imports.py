@@ -19,7 +19,8 @@ MODULES = {
 
 # A folder, or a module beside them, imports from those of the floors before its own.
 FLOORS = [
-    {"errors", "kernels"},
+    {"errors", "types"},
+    {"kernels"},
     {"units", "schema", "physics", "statistics", "surfaces"},
     {"grid"},
     {"study"},

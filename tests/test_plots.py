@@ -1,4 +1,4 @@
-"""What the figures share: labels from attributes, units, honest bars, the same bytes."""
+"""What the figures share: labels from attributes, units, interval bars, the same bytes."""
 
 import matplotlib
 import numpy as np
@@ -15,24 +15,24 @@ matplotlib.use("Agg")
 plt = plots.plt
 
 
+@pytest.fixture(autouse=True)
+def own_style():
+    """Every test starts from Matplotlib's defaults and leaves no figure open."""
+    with matplotlib.rc_context():
+        yield
+    plt.close("all")
+
+
 def quantity(value, units, name="film thickness"):
     return xr.DataArray(value, attrs={"units": units, "long_name": name})
 
 
-@pytest.mark.parametrize(
-    ("units", "wanted", "factor"),
-    [
-        ("m", "um", 1e6),
-        ("m2 s-1", "mm2 s-1", 1e6),
-        ("Pa-1", "GPa-1", 1e9),
-        ("ohm", "kohm", 1e-3),
-        ("m", "m", 1.0),
-    ],
-)
-def test_units_of_the_files_are_converted_and_told(units, wanted, factor):
-    converted = plots.in_units(quantity([1.0, 2.0], units), wanted)
-    np.testing.assert_allclose(converted, [factor, 2.0 * factor], rtol=1e-12)
-    assert converted.attrs == {"units": wanted, "long_name": "film thickness"}
+def test_units_are_converted_and_named():
+    cases = [("m", "um", 1e6), ("m2 s-1", "mm2 s-1", 1e6), ("Pa-1", "GPa-1", 1e9), ("m", "m", 1.0)]
+    for units, wanted, factor in cases:
+        converted = plots.in_units(quantity([1.0, 2.0], units), wanted)
+        np.testing.assert_allclose(converted, [factor, 2.0 * factor], rtol=1e-12)
+        assert converted.attrs == {"units": wanted, "long_name": "film thickness"}
 
 
 def test_axis_labels_come_from_the_attributes():
@@ -46,32 +46,28 @@ def test_every_level_has_a_colour_and_a_marker_of_its_own():
     assert len(set(plots.level_markers(levels).values())) == 5
 
 
-def drawn(scale):
-    figure, axes = plt.subplots()
-    axes.set_yscale(scale)
-    mean, lower, upper = np.array([0.0, 0.1]), np.array([0.0, 0.05]), np.array([1e-3, 0.2])
-    plots.interval_bars(axes, np.array([1.0, 2.0]), mean, lower, upper, color="black", marker="o")
-    points, limits = (container[0] for container in axes.containers)
-    plt.close(figure)
-    return points.get_ydata(), limits.get_ydata()
+def test_the_style_leaves_the_users_other_settings():
+    plt.rcParams.update({"image.cmap": "magma", "font.size": 20})
+    plots.use_style()
+    assert plt.rcParams["image.cmap"] == "magma"
+    assert plt.rcParams["font.size"] == 9
 
 
-def test_a_probability_never_seen_hangs_from_its_limit_on_a_logarithmic_scale():
-    points, limits = drawn("log")
-    assert np.isnan(points[0])
-    assert points[1] == 0.1
-    assert limits.tolist() == [1e-3]
-
-
-def test_a_probability_never_seen_is_zero_on_a_linear_scale():
-    points, limits = drawn("linear")
-    assert points.tolist() == [0.0, 0.1]
-    assert limits.size == 0
+def test_a_probability_of_zero_hangs_from_its_limit_on_a_logarithmic_scale():
+    x, mean = np.array([1.0, 2.0]), np.array([0.0, 0.1])
+    lower, upper = np.array([0.0, 0.05]), np.array([1e-3, 0.2])
+    for scale, drawn, limits in (("log", [np.nan, 0.1], [1e-3]), ("linear", [0.0, 0.1], [])):
+        _, axes = plt.subplots()
+        axes.set_yscale(scale)
+        plots.interval_bars(axes, x, mean, lower, upper, color="black", marker="o")
+        points, arrows = (container[0] for container in axes.containers)
+        np.testing.assert_array_equal(points.get_ydata(), drawn)
+        assert arrows.get_ydata().tolist() == limits
 
 
 @pytest.fixture
 def records():
-    """Three records of two pairs of rollers, the last near no level of force."""
+    """Three records of two pairs of rollers, the last not at a level of force."""
     columns = {
         "force": [1603.0, 800.0, 1205.0],
         "speed": [100.0, 100.0, 93.0],
@@ -85,13 +81,10 @@ def records():
     return xr.Dataset({"pairs": 2, "drift": 0.0}, coords)
 
 
-def test_the_rig_behind_records_is_named(records):
+def test_rig_and_records_are_named(records):
     assert plots.rig_name(records) == "measured rig, 2 pairs of rollers"
     one = records.assign(pairs=1, drift=0.3).assign_coords(origin="simulated")
-    assert plots.rig_name(one) == "simulated rig, 1 pair of rollers, drift 0.3 a revolution"
-
-
-def test_a_measured_record_has_its_name_and_a_simulated_one_its_conditions(records):
+    assert plots.rig_name(one) == "simulated rig, 1 pair of rollers, drift 0.3 per revolution"
     first, last = records.isel(record=0), records.isel(record=2)
     conditions = "1603 N, 100 r/min, 80 °C"
     assert plots.record_name(first) == f"run1.nc (list.csv: line 2)\n{conditions}"
@@ -102,20 +95,38 @@ def test_a_measured_record_has_its_name_and_a_simulated_one_its_conditions(recor
     assert plots.record_name(simulated, pairs=2) == f"pair A\n{conditions}"
 
 
-def test_records_are_grouped_by_the_levels_they_are_near(records):
+def test_records_are_grouped_by_their_levels(records):
     groups = plots.level_groups(records, "force")
-    assert [name for name, *_ in groups] == ["800 N", "1600 N", "near no level"]
+    assert [name for name, *_ in groups] == ["800 N", "1600 N", "not at a level"]
     assert [here.force.values.tolist() for *_, here in groups] == [[800.0], [1603.0], [1205.0]]
     assert len(plots.level_groups(records.isel(record=[0]), "force")) == 1
 
 
 def test_panels_are_lettered_before_their_titles():
     plots.use_style()
-    figure, panels = plt.subplots(1, 2)
+    _, panels = plt.subplots(1, 2)
     panels[1].set_title("slow")
     plots.panel_letters(panels)
     assert [panel.get_title(loc="left") for panel in panels] == ["(a)", "(b) slow"]
-    plt.close(figure)
+
+
+def test_a_logarithmic_axis_has_plain_labels_however_short_it_is():
+    cases = {
+        (15.0, 120.0): ["20", "50", "100"],
+        (0.7, 1.4): ["0.8", "1", "1.2", "1.4"],
+        (1.02, 1.07): ["1.02", "1.03", "1.04", "1.05", "1.06", "1.07"],
+    }
+    for (low, high), labels in cases.items():
+        figure, axes = plt.subplots()
+        axes.set(yscale="log", ylim=(low, high))
+        plots.plain_log_ticks(axes.yaxis)
+        figure.canvas.draw()
+        ticks = zip(axes.get_yticks(), axes.get_yticklabels(), strict=True)
+        shown = [text for at, text in ticks if low * (1 - 1e-9) <= at <= high * (1 + 1e-9)]
+        assert [text.get_text() for text in shown] == labels
+
+
+# Saving
 
 
 @pytest.fixture(scope="module")
@@ -130,35 +141,39 @@ def test_a_figure_is_saved_as_the_same_bytes_each_time(tmp_path, shown):
         figure, axes = plt.subplots()
         axes.plot([1, 2], [1, 4])
         plots.save_figure(figure, tmp_path / name, shown)
-        plt.close(figure)
     for suffix in ("png", "pdf"):
         one, two = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("one", "two"))
         assert one == two
 
 
-def test_a_figure_bears_the_stamp_of_what_it_shows_below_everything_else(tmp_path, shown):
+def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
     plots.use_style()
-    figure, axes = plt.subplots()
-    axes.set_xlabel("Force (N)")
-    plots.save_figure(figure, tmp_path / "figure", shown)
-    (written,) = figure.texts
-    assert written.get_text() == stamp([shown])
-    figure.canvas.draw()
-    label, line = axes.xaxis.label.get_window_extent(), written.get_window_extent()
-    assert line.y1 <= label.y0
-    assert line.y0 >= 0
-    plt.close(figure)
+    for footnote in (False, True):
+        figure, axes = plt.subplots()
+        axes.set_xlabel("Force (N)")
+        if footnote:
+            plots.footnote(figure, shown.assign_coords(slide_to_roll_ratio=[0.0, 0.1]))
+            assert figure.get_supxlabel().strip() == "slide-to-roll ratio 0.0, 0.1"
+        plots.save_figure(figure, tmp_path / "figure", shown)
+        figure.canvas.draw()
+        bottom = axes.xaxis.label.get_window_extent().y0
+        if footnote:
+            words = figure._supxlabel.get_window_extent()
+            assert words.y1 <= bottom
+            bottom = words.y0 + words.height / 2  # it ends in an empty line
+        (line,) = (text for text in figure.texts if text.get_text() == stamp([shown]))
+        assert line.get_window_extent().y0 >= 0
+        assert line.get_window_extent().y1 <= bottom
     with Image.open(tmp_path / "figure.png") as picture:
         assert picture.text["Description"] == stamp([shown])
 
 
-def test_a_figure_without_a_place_is_stamped_and_written_nowhere(tmp_path, shown, monkeypatch):
+def test_without_a_path_a_figure_is_stamped_but_not_written(tmp_path, shown, monkeypatch):
     monkeypatch.chdir(tmp_path)
     figure, _ = plt.subplots()
     plots.save_figure(figure, None, shown)
     assert [written.get_text() for written in figure.texts] == [stamp([shown])]
     assert plt.fignum_exists(figure.number)  # for Jupyter to show
-    plt.close(figure)
     assert not list(tmp_path.iterdir())
 
 
@@ -166,13 +181,10 @@ def test_a_figure_of_no_dataset_is_refused(tmp_path):
     figure, _ = plt.subplots()
     with pytest.raises(DataError, match="a figure needs the datasets that it shows"):
         plots.save_figure(figure, tmp_path / "figure")
-    plt.close(figure)
     assert not list(tmp_path.iterdir())
 
 
-def test_a_figure_that_cannot_be_written_is_told_and_leaves_the_old_one(
-    tmp_path, shown, monkeypatch
-):
+def test_a_figure_that_cannot_be_written_leaves_the_old_one(tmp_path, shown, monkeypatch):
     figure, _ = plt.subplots()
     plots.save_figure(figure, tmp_path / "figure", shown)
     before = (tmp_path / "figure.png").read_bytes()
@@ -183,25 +195,5 @@ def test_a_figure_that_cannot_be_written_is_told_and_leaves_the_old_one(
     monkeypatch.setattr("os.replace", fail)
     with pytest.raises(DataError, match=r"figure.png: cannot be written: No space left"):
         plots.save_figure(figure, tmp_path / "figure", shown)
-    plt.close(figure)
     assert (tmp_path / "figure.png").read_bytes() == before
     assert len(list(tmp_path.iterdir())) == 2
-
-
-@pytest.mark.parametrize(
-    ("limits", "labels"),
-    [
-        ((15.0, 120.0), ["20", "50", "100"]),
-        ((0.7, 1.4), ["0.8", "1", "1.2", "1.4"]),
-        ((1.02, 1.07), ["1.02", "1.03", "1.04", "1.05", "1.06", "1.07"]),
-    ],
-)
-def test_a_logarithmic_axis_has_plain_labels_however_short_it_is(limits, labels):
-    figure, axes = plt.subplots()
-    axes.set(yscale="log", ylim=limits)
-    plots.plain_log_ticks(axes.yaxis)
-    figure.canvas.draw()
-    low, high = (limit * (1.0 + side * 1e-9) for limit, side in zip(limits, (-1, 1), strict=True))
-    ticks = zip(axes.get_yticks(), axes.get_yticklabels(), strict=True)
-    assert [label.get_text() for place, label in ticks if low <= place <= high] == labels
-    plt.close(figure)

@@ -3,20 +3,15 @@
 import numpy as np
 
 from lube.kernels.compiler import kernel
+from lube.types import Array, Pair
+
+Triple = tuple[float, float, float]
 
 
 @kernel
 def sampled_voltage(
-    contact: np.ndarray,
-    targets: np.ndarray,
-    memories: np.ndarray,
-    gain: float,
-    offset: float,
-    limit: float,
-    passed: float,
-    ratio: float,
-    samples: int,
-) -> np.ndarray:
+    contact: Array, gap_states: Pair, amplifier: Triple, passed: float, ratio: float, samples: int
+) -> Array:
     r"""Compute the sampled voltage of a contact that is known at every time step.
 
     In a time step the contact resistance is constant, so that the voltage over the gap, which
@@ -32,14 +27,12 @@ def sampled_voltage(
     ----------
     contact : numpy.ndarray
         Shape (T,), number w of points in metallic contact at each time step.
-    targets : numpy.ndarray
-        Shape (W + 1,): steady voltage over the gap for each number of points, V.
-    memories : numpy.ndarray
-        Shape (W + 1,): factor m of the distance to the target in one time step.
-    gain, offset : float
-        Input of the amplifier is ``gain * gap voltage + offset``, V.
-    limit : float
-        Voltage l of either sign at which the amplifier saturates, V.
+    gap_states : tuple of numpy.ndarray
+        For each number of points, shape (W + 1,): the steady voltage over the gap, V, and the
+        factor m of the distance to it in one time step.
+    amplifier : tuple of float
+        Gain g and offset o (V): its input is ``gain * gap voltage + offset``. Last the voltage l
+        of either sign at which it saturates, V.
     passed : float
         Factor k of the filter's distance to its input in one time step.
     ratio : float
@@ -56,11 +49,12 @@ def sampled_voltage(
     --------
     Open for two steps, then in contact; a capacitance that halves the distance in each step:
 
-    >>> contact, targets = np.array([0, 0, 1, 1], np.int32), np.array([1.0, 0.0])
-    >>> memories = np.array([0.5, 0.5])
-    >>> sampled_voltage(contact, targets, memories, 1.0, 0.0, 9.0, 0.0, 1.0, 4)
+    >>> contact = np.array([0, 0, 1, 1], np.int32)
+    >>> gap_states = np.array([1.0, 0.0]), np.array([0.5, 0.5])
+    >>> sampled_voltage(contact, gap_states, (1.0, 0.0, 9.0), 0.0, 1.0, 4)
     array([1.  , 1.  , 0.5 , 0.25])
     """
+    (targets, memories), (gain, offset, limit) = gap_states, amplifier
     record = np.empty(samples)
     gap = targets[contact[0]]
     open_input = min(max(gain * targets[0] + offset, -limit), limit)

@@ -25,8 +25,22 @@ def _cache_folder(sources: Path) -> str:
 _CACHE_FOLDER = _cache_folder(Path(__file__).parent)
 
 
-def _compile(function: Callable, **options) -> Callable:
-    """Compile a function: strict IEEE arithmetic (no fast-math), cached in our folder."""
+def kernel(function: Callable, **options) -> Callable:
+    """Compile a kernel.
+
+    Parameters
+    ----------
+    function : callable
+        Plain Python on numbers and NumPy arrays.
+    **options
+        Further options of `numba.njit`.
+
+    Returns
+    -------
+    callable
+        The compiled function. Its machine code is cached on disk; it releases Python's global
+        lock; arithmetic is strict IEEE (no fast-math), and a division by zero gives infinity.
+    """
     # Numba reads this setting while it decorates. Put back at once, it concerns no other function.
     users_folder = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = _CACHE_FOLDER
@@ -36,23 +50,6 @@ def _compile(function: Callable, **options) -> Callable:
         numba.config.CACHE_DIR = users_folder
 
 
-def kernel(function: Callable) -> Callable:
-    """Compile a kernel.
-
-    Parameters
-    ----------
-    function : callable
-        Plain Python on numbers and NumPy arrays.
-
-    Returns
-    -------
-    callable
-        The compiled function. Its machine code is cached on disk; it releases Python's global
-        lock; arithmetic is strict IEEE (no fast-math), and a division by zero gives infinity.
-    """
-    return _compile(function)
-
-
 def inlined(function: Callable) -> Callable:
     """Compile a small helper into each kernel that calls it; else as `kernel`."""
-    return _compile(function, inline="always")
+    return kernel(function, inline="always")

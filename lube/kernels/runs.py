@@ -10,20 +10,19 @@ begin at any point, and most windows are excluded before a single pair of height
 import numpy as np
 
 from lube.kernels.compiler import kernel
+from lube.types import Array, Pair
 
 BLOCK = 32
 """Number of points that are searched, or skipped, together."""
 
 
 @kernel
-def add_lines(
-    line_1: np.ndarray, line_2: np.ndarray, first_1: int, first_2: int, line: np.ndarray
-) -> None:
+def add_lines(lines: Pair, first_1: int, first_2: int, line: Array) -> None:
     """Add two periodic lines, each from its own first point on.
 
     Parameters
     ----------
-    line_1, line_2 : numpy.ndarray
+    lines : tuple of numpy.ndarray
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     first_1, first_2 : int
         Indices of the first points, any whole numbers.
@@ -33,10 +32,11 @@ def add_lines(
     Examples
     --------
     >>> line = np.empty(5, np.int32)
-    >>> add_lines(np.array([1, 2, 3], np.int32), np.array([0, 10], np.int32), 2, 0, line)
+    >>> add_lines((np.array([1, 2, 3], np.int32), np.array([0, 10], np.int32)), 2, 0, line)
     >>> line.tolist()
     [3, 11, 2, 13, 1]
     """
+    line_1, line_2 = lines
     i, k = first_1 % line_1.size, first_2 % line_2.size
     done = 0
     while done < line.size:  # in stretches without wrap-around, which the compiler vectorises
@@ -49,7 +49,7 @@ def add_lines(
 
 
 @kernel
-def high_stretches(line: np.ndarray, film: int, starts: np.ndarray, stops: np.ndarray) -> int:
+def _high_stretches(line, film, stretches):
     """Find the stretches of successive blocks in each of which a point lies above a film.
 
     Parameters
@@ -58,7 +58,7 @@ def high_stretches(line: np.ndarray, film: int, starts: np.ndarray, stops: np.nd
         Heights, shape (L,), int32 height steps.
     film : int
         Film thickness, height steps.
-    starts, stops : numpy.ndarray
+    stretches : tuple of numpy.ndarray
         Filled with the first index of each stretch and the index after its last.
 
     Returns
@@ -71,10 +71,11 @@ def high_stretches(line: np.ndarray, film: int, starts: np.ndarray, stops: np.nd
     >>> line = np.zeros(5 * BLOCK, np.int32)
     >>> line[[BLOCK + 1, 2 * BLOCK + 5, 4 * BLOCK]] = 9
     >>> starts, stops = np.empty((2, 9), np.int64)
-    >>> count = high_stretches(line, 8, starts, stops)
+    >>> count = _high_stretches(line, 8, (starts, stops))
     >>> starts[:count] // BLOCK, stops[:count] // BLOCK
     (array([1, 4]), array([3, 5]))
     """
+    starts, stops = stretches
     found = 0
     inside = False
     for start in range(0, line.size, BLOCK):
@@ -92,7 +93,7 @@ def high_stretches(line: np.ndarray, film: int, starts: np.ndarray, stops: np.nd
 
 
 @kernel
-def block_maxima(line: np.ndarray, reach: int) -> np.ndarray:
+def block_maxima(line: Array, reach: int) -> Array:
     """Maximum of each block of a periodic line, for blocks that begin at any point.
 
     Parameters
@@ -135,21 +136,12 @@ def block_maxima(line: np.ndarray, reach: int) -> np.ndarray:
 
 
 @kernel
-def possible_stretches(
-    maxima_1: np.ndarray,
-    maxima_2: np.ndarray,
-    first_1: int,
-    first_2: int,
-    size: int,
-    film: int,
-    starts: np.ndarray,
-    stops: np.ndarray,
-) -> int:
+def _possible_stretches(maxima, first_1, first_2, size, film, stretches):
     """Find the stretches of blocks in which the sum of two lines may lie above a film.
 
     Parameters
     ----------
-    maxima_1, maxima_2 : numpy.ndarray
+    maxima : tuple of numpy.ndarray
         From `block_maxima`, of either line.
     first_1, first_2 : int
         Indices of the first points, zero or more.
@@ -157,7 +149,7 @@ def possible_stretches(
         Number of points to search.
     film : int
         Film thickness, height steps.
-    starts, stops : numpy.ndarray
+    stretches : tuple of numpy.ndarray
         Filled with the first index of each stretch and the index after its last, counted from
         the first points.
 
@@ -172,19 +164,21 @@ def possible_stretches(
     >>> line[2 * BLOCK] = 9
     >>> maxima = block_maxima(line, line.size)
     >>> starts, stops = np.empty((2, 9), np.int64)
-    >>> count = possible_stretches(maxima, maxima, 0, 0, line.size, 8, starts, stops)
+    >>> maxima = maxima, maxima
+    >>> count = _possible_stretches(maxima, 0, 0, line.size, 8, (starts, stops))
     >>> starts[:count] // BLOCK, stops[:count] // BLOCK
     (array([2]), array([3]))
     """
     blocks = (size + BLOCK - 1) // BLOCK
     column_1, column_2 = first_1 // BLOCK, first_2 // BLOCK
-    highest_1 = maxima_1[first_1 % BLOCK, column_1 : column_1 + blocks]
-    highest_2 = maxima_2[first_2 % BLOCK, column_2 : column_2 + blocks]
+    highest_1 = maxima[0][first_1 % BLOCK, column_1 : column_1 + blocks]
+    highest_2 = maxima[1][first_2 % BLOCK, column_2 : column_2 + blocks]
     highest = np.int32(highest_1[0] + highest_2[0])
     for block in range(1, blocks):  # without a branch, so the compiler vectorises it
         highest = max(highest, np.int32(highest_1[block] + highest_2[block]))
     if highest <= film:
         return 0
+    starts, stops = stretches
     found = 0
     inside = False
     for block in range(blocks):
@@ -200,24 +194,15 @@ def possible_stretches(
 
 @kernel
 def fill_high_stretches(
-    line_1: np.ndarray,
-    line_2: np.ndarray,
-    maxima_1: np.ndarray,
-    maxima_2: np.ndarray,
-    first_1: int,
-    first_2: int,
-    film: int,
-    line: np.ndarray,
-    starts: np.ndarray,
-    stops: np.ndarray,
+    lines: Pair, maxima: Pair, first_1: int, first_2: int, film: int, line: Array, stretches: Pair
 ) -> int:
     """Add two lines in all stretches of blocks in which their sum may lie above a film.
 
     Parameters
     ----------
-    line_1, line_2 : numpy.ndarray
+    lines : tuple of numpy.ndarray
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
-    maxima_1, maxima_2 : numpy.ndarray
+    maxima : tuple of numpy.ndarray
         From `block_maxima`, of either line; empty to add the lines everywhere, which is faster
         where one sum serves many time steps.
     first_1, first_2 : int
@@ -226,7 +211,7 @@ def fill_high_stretches(
         Film thickness, height steps.
     line : numpy.ndarray
         Shape (L,), int32; filled with the sum, height steps, in the stretches at least.
-    starts, stops : numpy.ndarray
+    stretches : tuple of numpy.ndarray
         Filled with the first index of each stretch in `line` and the index after its last.
 
     Returns
@@ -234,26 +219,18 @@ def fill_high_stretches(
     int
         Number of stretches.
     """
-    if maxima_1.size == 0:
-        add_lines(line_1, line_2, first_1, first_2, line)
-        return high_stretches(line, film, starts, stops)
-    count = possible_stretches(maxima_1, maxima_2, first_1, first_2, line.size, film, starts, stops)
+    if maxima[0].size == 0:
+        add_lines(lines, first_1, first_2, line)
+        return _high_stretches(line, film, stretches)
+    count = _possible_stretches(maxima, first_1, first_2, line.size, film, stretches)
     for stretch in range(count):
-        start, stop = starts[stretch], stops[stretch]
-        add_lines(line_1, line_2, first_1 + start, first_2 + start, line[start:stop])
+        start, stop = stretches[0][stretch], stretches[1][stretch]
+        add_lines(lines, first_1 + start, first_2 + start, line[start:stop])
     return count
 
 
 @kernel
-def find_runs(
-    line: np.ndarray,
-    film: int,
-    starts: np.ndarray,
-    stops: np.ndarray,
-    count: int,
-    new_starts: np.ndarray,
-    new_stops: np.ndarray,
-) -> int:
+def find_runs(line: Array, film: int, stretches: Pair, count: int, runs: Pair) -> int:
     """Find the runs of points above a film within given stretches.
 
     Parameters
@@ -262,11 +239,11 @@ def find_runs(
         Heights, shape (L,), int32 height steps.
     film : int
         Film thickness, height steps.
-    starts, stops : numpy.ndarray
+    stretches : tuple of numpy.ndarray
         First index of each stretch to search and index after its last, int64.
     count : int
         Number of stretches.
-    new_starts, new_stops : numpy.ndarray
+    runs : tuple of numpy.ndarray
         Filled with the first index of each run and the index after its last, in order; length
         at least (L + 1) // 2.
 
@@ -279,10 +256,12 @@ def find_runs(
     --------
     >>> line = np.array([0, 3, 4, 0, 5], np.int32)
     >>> starts, stops = np.empty((2, 3), np.int64)
-    >>> count = find_runs(line, 2, np.array([0]), np.array([5]), 1, starts, stops)
+    >>> count = find_runs(line, 2, (np.array([0]), np.array([5])), 1, (starts, stops))
     >>> starts[:count], stops[:count]
     (array([1, 4]), array([3, 5]))
     """
+    starts, stops = stretches
+    new_starts, new_stops = runs
     found = 0
     for stretch in range(count):
         inside = False

@@ -9,17 +9,12 @@ import numpy as np
 from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
+from lube.types import Array, Pair, Points, Ratios
 
 
 @kernel
 def scan_window(
-    line_1: np.ndarray,
-    line_2: np.ndarray,
-    first_1: int,
-    first_2: int,
-    width: int,
-    film: int,
-    factor: float,
+    lines: Pair, firsts: Points, width: int, film: int, factor: float
 ) -> tuple[int, int, int]:
     r"""Find the segments in one contact window, and those whose boundary layer breaks.
 
@@ -31,9 +26,9 @@ def scan_window(
 
     Parameters
     ----------
-    line_1, line_2 : numpy.ndarray
+    lines : tuple of numpy.ndarray
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
-    first_1, first_2 : int
+    firsts : tuple of int
         Indices of the window's first point on either line.
     width : int
         Number of points in the window.
@@ -56,12 +51,13 @@ def scan_window(
     Two segments, of one and of two points; the layer breaks on the first only:
 
     >>> line = np.array([5, 0, 2, 2, 0], np.int32)
-    >>> scan_window(line, np.zeros_like(line), 0, 0, 5, 1, 1.0)
+    >>> scan_window((line, np.zeros_like(line)), (0, 0), 5, 1, 1.0)
     (3, 1, 6)
     """
     contact_points = broken_points = total_overlap = 0
     segment_points = segment_overlap = 0
-    i, k = first_1, first_2
+    line_1, line_2 = lines
+    i, k = firsts
     for point in range(width + 1):
         overlap = np.int64(line_1[i]) + line_2[k] - film
         if point == width:
@@ -86,19 +82,13 @@ def scan_window(
 
 @kernel
 def scan_trace(
-    line_1: np.ndarray,
-    line_2: np.ndarray,
-    speed_ratios: tuple[float, float],
-    steps: int,
-    film: int,
-    half_window: int,
-    factor: float,
-) -> np.ndarray:
+    lines: Pair, speed_ratios: Ratios, steps: int, film: int, half_window: int, factor: float
+) -> Array:
     """Contact at every time step of one operating point.
 
     Parameters
     ----------
-    line_1, line_2 : numpy.ndarray
+    lines : tuple of numpy.ndarray
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     speed_ratios : tuple of float
         Surface speeds over that of the faster surface.
@@ -122,33 +112,27 @@ def scan_trace(
     One high point passes a window of three points in pure rolling:
 
     >>> line = np.array([5, 0, 0, 0, 0], np.int32)
-    >>> scan_trace(line, np.zeros_like(line), (1.0, 1.0), 5, 3, 1, 1.0)[:, 0].tolist()
+    >>> scan_trace((line, np.zeros_like(line)), (1.0, 1.0), 5, 3, 1, 1.0)[:, 0].tolist()
     [1, 1, 0, 0, 1]
     """
     trace = np.empty((steps, 3), np.int64)
     width = 2 * half_window + 1
     for step in range(steps):
-        first_1 = (surface_position(step, speed_ratios[0]) - half_window) % line_1.size
-        first_2 = (surface_position(step, speed_ratios[1]) - half_window) % line_2.size
-        trace[step] = scan_window(line_1, line_2, first_1, first_2, width, film, factor)
+        first_1 = (surface_position(step, speed_ratios[0]) - half_window) % lines[0].size
+        first_2 = (surface_position(step, speed_ratios[1]) - half_window) % lines[1].size
+        trace[step] = scan_window(lines, (first_1, first_2), width, film, factor)
     return trace
 
 
 @kernel
 def scan_statistics(
-    line_1: np.ndarray,
-    line_2: np.ndarray,
-    speed_ratios: tuple[float, float],
-    steps: int,
-    films: np.ndarray,
-    half_windows: np.ndarray,
-    factor: float,
-) -> np.ndarray:
+    lines: Pair, speed_ratios: Ratios, steps: int, films: Array, half_windows: Array, factor: float
+) -> Array:
     """Contact statistics of many operating points by the literal scan.
 
     Parameters
     ----------
-    line_1, line_2, speed_ratios, steps, factor
+    lines, speed_ratios, steps, factor
         As in `scan_trace`.
     films, half_windows : numpy.ndarray
         Film thickness (height steps) and points on either side of the window's centre, shape
@@ -163,17 +147,14 @@ def scan_statistics(
     Examples
     --------
     >>> line = np.array([5, 0, 0, 0, 0], np.int32)
-    >>> scan_statistics(
-    ...     line, np.zeros_like(line), (1.0, 1.0), 5, np.array([3, 9]), np.array([1, 1]), 1.0
-    ... ).tolist()
+    >>> lines, films = (line, np.zeros_like(line)), np.array([3, 9])
+    >>> scan_statistics(lines, (1.0, 1.0), 5, films, np.array([1, 1]), 1.0).tolist()
     [[3, 3, 3, 6], [0, 0, 0, 0]]
     """
     statistics = np.empty((films.size, 4), np.int64)
     for point in range(films.size):
-        film, half_window = films[point], half_windows[point]
-        trace = scan_trace(line_1, line_2, speed_ratios, steps, film, half_window, factor)
+        trace = scan_trace(lines, speed_ratios, steps, films[point], half_windows[point], factor)
         statistics[point, 0] = np.sum(trace[:, 0] > 0)
         statistics[point, 1] = np.sum(trace[:, 1] > 0)
-        statistics[point, 2] = np.sum(trace[:, 1])
-        statistics[point, 3] = np.sum(trace[:, 2])
+        statistics[point, 2:] = np.sum(trace[:, 1:], axis=0)
     return statistics

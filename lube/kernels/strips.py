@@ -16,13 +16,19 @@ from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.kernels.runs import block_maxima, fill_high_stretches, find_runs
+from lube.types import Array, Pair, Ratios
 
 LONGEST_STRIP = 2**14
 """Longer strips are cut, so that the data of one strip stay in the processor's cache."""
 
 
 @kernel
-def strip_end(step: int, steps: int, speed_ratios: tuple[float, float]) -> int:
+def _positions(step, speed_ratios):
+    return surface_position(step, speed_ratios[0]), surface_position(step, speed_ratios[1])
+
+
+@kernel
+def strip_end(step: int, steps: int, speed_ratios: Ratios) -> int:
     """Find the end of the strip that begins at a time step.
 
     Parameters
@@ -48,22 +54,18 @@ def strip_end(step: int, steps: int, speed_ratios: tuple[float, float]) -> int:
     last = min(steps, step + LONGEST_STRIP)
     if speed_ratios[0] == speed_ratios[1]:
         return last
-    first_1, first_2 = (
-        surface_position(step, speed_ratios[0]),
-        surface_position(step, speed_ratios[1]),
-    )
+    first_1, first_2 = _positions(step, speed_ratios)
     end = step + 1
-    while (
-        end < last
-        and surface_position(end, speed_ratios[0]) - first_1 == end - step
-        and surface_position(end, speed_ratios[1]) - first_2 == end - step
+    while end < last and _positions(end, speed_ratios) == (
+        first_1 + end - step,
+        first_2 + end - step,
     ):
         end += 1
     return end
 
 
 @kernel
-def overlap_sum(line: np.ndarray, start: int, stop: int, film: int) -> int:
+def _overlap_sum(line, start, stop, film):
     """Sum the overlaps of the points start .. stop - 1, in height steps."""
     total = np.int64(0)
     for i in range(start, stop):
@@ -90,16 +92,7 @@ def _mark_steps(first, last, points, broken, lengths):
 
 
 @kernel
-def visit_run(
-    line: np.ndarray,
-    start: int,
-    stop: int,
-    film: int,
-    width: int,
-    factor: float,
-    broken: np.ndarray,
-    lengths: np.ndarray | None,
-) -> int:
+def _visit_run(line, start, stop, film, width, factor, broken, lengths):
     """Pass all windows of a strip over one run, and mark where its boundary layer breaks.
 
     The window at the strip's time step t covers the indices t .. t + width - 1 of `line`.
@@ -133,7 +126,7 @@ def visit_run(
 
     >>> line = np.array([0, 0, 9, 9, 0, 0], np.int32)
     >>> broken, lengths = np.zeros(4, np.uint8), np.zeros(4, np.int32)
-    >>> visit_run(line, 2, 4, 1, 3, 1.0, broken, lengths), lengths.tolist()
+    >>> _visit_run(line, 2, 4, 1, 3, 1.0, broken, lengths), lengths.tolist()
     (6, [1, 2, 2, 1])
     """
     total = 0
@@ -142,7 +135,7 @@ def visit_run(
 
     # The first i points have entered at the right edge: time step start + i - width.
     least, most = max(1, width - start), min(points - 1, steps - 1 + width - start)
-    overlap = overlap_sum(line, start, start + least - 1, film) if least <= most else 0
+    overlap = _overlap_sum(line, start, start + least - 1, film) if least <= most else 0
     for i in range(least, most + 1):
         overlap += line[start + i - 1] - film
         if layer_breaks(i, overlap, factor):
@@ -150,10 +143,10 @@ def visit_run(
 
     if stop - start <= width:  # lies inside the window
         first, last = max(stop - width, 0), min(start, steps - 1)
-        if first <= last and layer_breaks(points, overlap_sum(line, start, stop, film), factor):
+        if first <= last and layer_breaks(points, _overlap_sum(line, start, stop, film), factor):
             total += _mark_steps(first, last, points, broken, lengths)
     else:  # fills the window, which slides along it
-        overlap = overlap_sum(line, start, start + width, film)
+        overlap = _overlap_sum(line, start, start + width, film)
         for step in range(start, min(stop - width, steps - 1) + 1):
             if step > start:
                 overlap += line[step + width - 1] - line[step - 1]
@@ -162,7 +155,7 @@ def visit_run(
 
     # The last i points have not yet left at the left edge: time step stop - i.
     least, most = max(1, stop - steps + 1), min(points - 1, stop)
-    overlap = overlap_sum(line, stop - most, stop, film) if least <= most else 0
+    overlap = _overlap_sum(line, stop - most, stop, film) if least <= most else 0
     for i in range(most, least - 1, -1):
         if layer_breaks(i, overlap, factor):
             total += _mark_step(stop - i, i, broken, lengths)
@@ -171,15 +164,13 @@ def visit_run(
 
 
 @kernel
-def windowed_overlap(
-    line: np.ndarray, start: int, stop: int, film: int, width: int, steps: int
-) -> int:
+def _windowed_overlap(line, start, stop, film, width, steps):
     """Sum the overlaps of a run over all windows of a strip.
 
     Parameters
     ----------
     line, start, stop, film, width
-        As in `visit_run`.
+        As in `_visit_run`.
     steps : int
         Number of time steps in the strip.
 
@@ -190,11 +181,11 @@ def windowed_overlap(
 
     Examples
     --------
-    >>> windowed_overlap(np.array([0, 0, 9, 9, 0, 0], np.int32), 2, 4, 1, 3, 4)
+    >>> _windowed_overlap(np.array([0, 0, 9, 9, 0, 0], np.int32), 2, 4, 1, 3, 4)
     48
     """
     if start >= width - 1 and stop <= steps:  # away from the ends every window passes over it
-        return width * overlap_sum(line, start, stop, film)
+        return width * _overlap_sum(line, start, stop, film)
     total = 0
     for i in range(start, stop):
         windows = min(i, steps - 1) - max(0, i - width + 1) + 1
@@ -203,24 +194,24 @@ def windowed_overlap(
 
 
 @kernel
-def _strip_point(line, starts, stops, runs, film, width, factor, broken, lengths, counts):
+def _strip_point(line, runs, found, film, width, factor, broken, lengths, counts):
     """Add one operating point's statistics of one strip to its counts."""
     steps = broken.size
     first = (line.size - steps + 1 - width) // 2  # the widest window's margin, less this one's
     line = line[first : line.size - first]
     broken[:] = 0
     contact_until = -1
-    for run in range(runs):
-        start = max(starts[run] - first, 0)
-        stop = min(stops[run] - first, line.size)
+    for run in range(found):
+        start = max(runs[0][run] - first, 0)
+        stop = min(runs[1][run] - first, line.size)
         if start >= stop:
             continue
         # The window holds a part of the run at the time steps start - width + 1 .. stop - 1.
         last = min(stop - 1, steps - 1)
         counts[0] += last - max(start - width, contact_until)
         contact_until = last
-        counts[2] += visit_run(line, start, stop, film, width, factor, broken, lengths)
-        counts[3] += windowed_overlap(line, start, stop, film, width, steps)
+        counts[2] += _visit_run(line, start, stop, film, width, factor, broken, lengths)
+        counts[3] += _windowed_overlap(line, start, stop, film, width, steps)
     counts[1] += np.sum(broken)
 
 
@@ -234,68 +225,52 @@ def _steps_of(lengths, point, begin, end):
 
 @kernel
 def _run_strips(
-    line_1,
-    line_2,
-    speed_ratios,
-    steps,
-    films,
-    half_windows,
-    factor,
-    thinnest_first,
-    margin,
-    lengths,
+    lines, speed_ratios, steps, films, half_windows, factor, thinnest_first, margin, lengths
 ):
     """Return the statistics of `strip_statistics`; fill the lengths of `strip_trace` if given."""
     statistics = np.zeros((films.size, 4), np.int64)
     buffer = np.empty(min(steps, LONGEST_STRIP) + 2 * margin, np.int32)
     marks = np.empty(buffer.size - 2 * margin, np.uint8)
     capacity = buffer.size // 2 + 1
-    starts, stops = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
-    new_starts, new_stops = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
+    runs = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
+    found_before = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
+    maxima = np.empty((0, 0), np.int32), np.empty((0, 0), np.int32)
     if speed_ratios[0] != speed_ratios[1]:
-        maxima_1, maxima_2 = block_maxima(line_1, buffer.size), block_maxima(line_2, buffer.size)
-    else:
-        maxima_1 = maxima_2 = np.empty((0, 0), np.int32)
+        maxima = block_maxima(lines[0], buffer.size), block_maxima(lines[1], buffer.size)
     begin = 0
     while begin < steps:
         end = strip_end(begin, steps, speed_ratios)
         line, broken = buffer[: end - begin + 2 * margin], marks[: end - begin]
-        first_1 = (surface_position(begin, speed_ratios[0]) - margin) % line_1.size
-        first_2 = (surface_position(begin, speed_ratios[1]) - margin) % line_2.size
-        thinnest = films[thinnest_first[0]]
-        runs = fill_high_stretches(
-            line_1, line_2, maxima_1, maxima_2, first_1, first_2, thinnest, line, starts, stops
+        position_1, position_2 = _positions(begin, speed_ratios)
+        first_1, first_2 = (
+            (position_1 - margin) % lines[0].size,
+            (position_2 - margin) % lines[1].size,
         )
+        thinnest = films[thinnest_first[0]]
+        found = fill_high_stretches(lines, maxima, first_1, first_2, thinnest, line, runs)
         for point in thinnest_first:
-            if runs == 0:  # a thicker film has none either
+            if found == 0:  # a thicker film has none either
                 break
             film, width = films[point], 2 * half_windows[point] + 1
-            runs = find_runs(line, film, starts, stops, runs, new_starts, new_stops)
-            starts, new_starts = new_starts, starts
-            stops, new_stops = new_stops, stops
+            runs, found_before = found_before, runs
+            found = find_runs(line, film, found_before, found, runs)
             kept = _steps_of(lengths, point, begin, end)
             counts = statistics[point]
-            _strip_point(line, starts, stops, runs, film, width, factor, broken, kept, counts)
+            _strip_point(line, runs, found, film, width, factor, broken, kept, counts)
         begin = end
     return statistics
 
 
 def strip_statistics(
-    line_1: np.ndarray,
-    line_2: np.ndarray,
-    speed_ratios: tuple[float, float],
-    steps: int,
-    films: np.ndarray,
-    half_windows: np.ndarray,
-    factor: float,
-) -> np.ndarray:
+    lines: Pair, speed_ratios: Ratios, steps: int, films: Array, half_windows: Array, factor: float
+) -> Array:
     """Contact statistics of many operating points at any slip.
 
     Equal to `lube.kernels.scan.scan_statistics` to the last bit.
 
     Parameters
     ----------
-    line_1, line_2 : numpy.ndarray
+    lines : tuple of numpy.ndarray
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     speed_ratios : tuple of float
         Surface speeds over that of the faster surface.
@@ -316,32 +291,24 @@ def strip_statistics(
     Examples
     --------
     >>> line = np.array([5, 0, 0, 0, 0], np.int32)
-    >>> strip_statistics(
-    ...     line, np.zeros_like(line), (1.0, 1.0), 5, np.array([3, 9]), np.array([1, 1]), 1.0
-    ... ).tolist()
+    >>> lines, films = (line, np.zeros_like(line)), np.array([3, 9])
+    >>> strip_statistics(lines, (1.0, 1.0), 5, films, np.array([1, 1]), 1.0).tolist()
     [[3, 3, 3, 6], [0, 0, 0, 0]]
     """
-    motion = line_1, line_2, speed_ratios, steps
-    plan = _plan(films, half_windows)
-    return _run_strips(*motion, films, half_windows, factor, *plan, None)
+    points = films, half_windows
+    return _run_strips(lines, speed_ratios, steps, *points, factor, *_plan(*points), None)
 
 
 def strip_trace(
-    line_1: np.ndarray,
-    line_2: np.ndarray,
-    speed_ratios: tuple[float, float],
-    steps: int,
-    films: np.ndarray,
-    half_windows: np.ndarray,
-    factor: float,
-) -> np.ndarray:
+    lines: Pair, speed_ratios: Ratios, steps: int, films: Array, half_windows: Array, factor: float
+) -> Array:
     """Broken points at every time step of many operating points, at any slip.
 
     Equal to the broken points of `lube.kernels.scan.scan_trace`.
 
     Parameters
     ----------
-    line_1, line_2, speed_ratios, steps, films, half_windows, factor
+    lines, speed_ratios, steps, films, half_windows, factor
         As in `strip_statistics`.
 
     Returns
@@ -352,14 +319,13 @@ def strip_trace(
     Examples
     --------
     >>> line = np.array([5, 0, 0, 0, 0], np.int32)
-    >>> film, half_window = np.array([3]), np.array([1])
-    >>> strip_trace(line, np.zeros_like(line), (1.0, 1.0), 5, film, half_window, 1.0).tolist()
+    >>> lines, film, half_window = (line, np.zeros_like(line)), np.array([3]), np.array([1])
+    >>> strip_trace(lines, (1.0, 1.0), 5, film, half_window, 1.0).tolist()
     [[1, 1, 0, 0, 1]]
     """
     lengths = np.zeros((films.size, steps), np.int32)
-    motion = line_1, line_2, speed_ratios, steps
-    plan = _plan(films, half_windows)
-    _run_strips(*motion, films, half_windows, factor, *plan, lengths)
+    points = films, half_windows
+    _run_strips(lines, speed_ratios, steps, *points, factor, *_plan(*points), lengths)
     return lengths
 
 

@@ -7,15 +7,14 @@ n >> doublings.
 import numpy as np
 
 from lube.kernels.compiler import kernel
+from lube.types import Array, Pair
 
 CHUNK = 4096
 """Values compared with all limits at a time: so many stay in the first-level cache."""
 
 
 @kernel
-def count_below(
-    values: np.ndarray, seen: int, doublings: int, limits: np.ndarray, counts: np.ndarray
-) -> None:
+def count_below(values: Array, seen: int, doublings: int, limits: Array, counts: Array) -> None:
     """Count the samples of a piece of a record below each limit.
 
     Parameters
@@ -55,14 +54,7 @@ def count_below(
 
 @kernel
 def follow_contact(
-    values: np.ndarray,
-    seen: int,
-    doublings: int,
-    limits: np.ndarray,
-    releases: np.ndarray,
-    hold: int,
-    states: np.ndarray,
-    counts: np.ndarray,
+    values: Array, seen: int, doublings: int, limits: Pair, hold: int, states: Array, counts: Array
 ) -> None:
     """Count the samples of a piece of a record in contact, with hysteresis and hold time.
 
@@ -74,8 +66,8 @@ def follow_contact(
     ----------
     values, seen, doublings
         As in `count_below`.
-    limits, releases : numpy.ndarray
-        Shape (K,), in the unit of `values`.
+    limits : tuple of numpy.ndarray
+        Limits and releases, shape (K,) each, in the unit of `values`.
     hold : int
         Samples that a change must last; 0 and 1 have the same effect.
     states : numpy.ndarray
@@ -90,15 +82,16 @@ def follow_contact(
 
     >>> counts, states = np.zeros((1, 3), np.int64), np.zeros((1, 3), np.int64)
     >>> values, limits = np.array([9.0, 0.5, 1.5, 2.0, 1.5]), np.array([1.0])
-    >>> follow_contact(values, 0, 1, limits, 2.0 * limits, 0, states, counts)
+    >>> follow_contact(values, 0, 1, (limits, 2.0 * limits), 0, states, counts)
     >>> counts
     array([[1, 1, 0]])
     """
-    for k in range(limits.size):
+    lower, upper = limits
+    for k in range(lower.size):
         closed, contact, lasting = states[k]
         for i in range(values.size):
             sample = seen + i
-            closed = np.int64(values[i] < (releases[k] if closed else limits[k]))
+            closed = np.int64(values[i] < (upper[k] if closed else lower[k]))
             counts[k, sample >> doublings] += contact
             lasting = lasting + 1 if closed != contact else 0
             if lasting > 0 and lasting >= hold:

@@ -13,6 +13,7 @@ import numpy as np
 
 from lube.errors import RangeError, RecordError
 from lube.physics.viscosity import ZERO_CELSIUS
+from lube.types import Array
 
 ATMOSPHERIC_PRESSURE = 101325.0
 """Standard atmosphere, Pa."""
@@ -33,6 +34,10 @@ _PROPERTIES = {"viscosity": "V", "density": "D", "conductivity": "L"}
 # Mixtures (A&B, A[0.5]) and other backends (INCOMP::S800, with oils whose viscosity does not
 # depend on pressure) lack properties that the study needs.
 _PURE_FLUID = re.compile(r"[A-Za-z0-9()-]{1,60}")
+
+
+def _unfit(fluid, need):
+    return RecordError(f"coolprop_fluid: got {fluid!r}, need a {need}")
 
 
 def _coolprop():
@@ -71,22 +76,16 @@ def liquid_range(fluid: str) -> tuple[float, float]:
     try:
         if not _PURE_FLUID.fullmatch(fluid):
             raise ValueError("not the name of a pure fluid")
-        coolprop.get_fluid_param_string(fluid, "CAS")
+        lowest = coolprop.PropsSI("Tmin", fluid) + _MARGIN
     except ValueError:
-        raise RecordError(
-            f"coolprop_fluid: got {fluid!r}, need a pure fluid by CoolProp's spelling, "
-            "such as 'n-Dodecane'"
-        ) from None
-    lowest = coolprop.PropsSI("Tmin", fluid) + _MARGIN
+        raise _unfit(fluid, "pure fluid by CoolProp's spelling, such as 'n-Dodecane'") from None
     try:
         boiling = coolprop.PropsSI("T", "P", ATMOSPHERIC_PRESSURE, "Q", 0, fluid)
     except ValueError:
         boiling = -np.inf
     highest = min(coolprop.PropsSI("Tmax", fluid), boiling - _MARGIN)
     if not lowest < highest:
-        raise RecordError(
-            f"coolprop_fluid: got {fluid!r}, need a fluid that is liquid at atmospheric pressure"
-        )
+        raise _unfit(fluid, "fluid that is liquid at atmospheric pressure")
     return lowest, highest
 
 
@@ -96,12 +95,10 @@ def _within_range(fluid, temperature, pressure):
     temperature = np.asarray(temperature, dtype=float)
     beyond = np.maximum(lowest - temperature, temperature - highest)
     if not beyond.max() <= _ROUNDING:
-        came, low, high = (
-            kelvin - ZERO_CELSIUS for kelvin in (temperature[beyond.argmax()], lowest, highest)
-        )
         raise RangeError(
-            f"{fluid}: got {came:g} degC, CoolProp's liquid range at atmospheric pressure is "
-            f"{low:.2f} to {high:.2f} degC"
+            f"{fluid}: got {temperature[beyond.argmax()] - ZERO_CELSIUS:g} degC, CoolProp's liquid "
+            f"range at atmospheric pressure is {lowest - ZERO_CELSIUS:.2f} to "
+            f"{highest - ZERO_CELSIUS:.2f} degC"
         )
     most = _coolprop().PropsSI("pmax", fluid)
     if not ATMOSPHERIC_PRESSURE <= pressure <= most:
@@ -113,8 +110,8 @@ def _within_range(fluid, temperature, pressure):
 
 
 def liquid_property(
-    fluid: str, name: str, temperature: np.ndarray, pressure: float = ATMOSPHERIC_PRESSURE
-) -> np.ndarray:
+    fluid: str, name: str, temperature: Array, pressure: float = ATMOSPHERIC_PRESSURE
+) -> Array:
     """Viscosity, density or thermal conductivity of a pure liquid.
 
     Parameters
@@ -151,9 +148,7 @@ def liquid_property(
         pressures = np.full(temperature.shape, pressure)
         values = _coolprop().PropsSI(_PROPERTIES[name], "T", temperature, "P", pressures, fluid)
     except ValueError:
-        raise RecordError(
-            f"coolprop_fluid: got {fluid!r}, need a fluid whose {name} CoolProp knows"
-        ) from None
+        raise _unfit(fluid, f"fluid whose {name} CoolProp knows") from None
     wrong = ~(np.isfinite(values) & (values > 0.0))
     if wrong.any():
         raise RangeError(
@@ -164,7 +159,7 @@ def liquid_property(
     return values
 
 
-def secant_pressure_viscosity(fluid: str, temperature: np.ndarray, pressure: float) -> np.ndarray:
+def secant_pressure_viscosity(fluid: str, temperature: Array, pressure: float) -> Array:
     r"""Secant pressure-viscosity coefficient, from atmospheric pressure to a given one.
 
     .. math:: \alpha = \frac{\ln(\eta(p) / \eta(p_0))}{p - p_0}
@@ -193,13 +188,12 @@ def secant_pressure_viscosity(fluid: str, temperature: np.ndarray, pressure: flo
     >>> f"{secant_pressure_viscosity('n-Dodecane', np.array([313.15]), 200e6)[0]:.3g}"
     '8.68e-09'
     """
-    ratio = liquid_property(fluid, "viscosity", temperature, pressure) / liquid_property(
-        fluid, "viscosity", temperature
-    )
+    under_pressure = liquid_property(fluid, "viscosity", temperature, pressure)
+    ratio = under_pressure / liquid_property(fluid, "viscosity", temperature)
     return np.log(ratio) / (pressure - ATMOSPHERIC_PRESSURE)
 
 
-def initial_pressure_viscosity(fluid: str, temperature: np.ndarray) -> np.ndarray:
+def initial_pressure_viscosity(fluid: str, temperature: Array) -> Array:
     r"""Pressure-viscosity coefficient as the slope of ln(viscosity) at atmospheric pressure.
 
     .. math:: \alpha = \left. \frac{d \ln \eta}{d p} \right|_{p_0}

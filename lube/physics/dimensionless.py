@@ -14,7 +14,7 @@ The film thickness over :math:`R^* \sqrt{2U}` depends on only two combinations o
 
 import numpy as np
 
-from lube.physics import Values
+from lube.types import Values
 
 
 def dimensionless_load(

@@ -4,7 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
-from lube.physics import Values
+from lube.types import Values
 
 VACUUM_PERMITTIVITY = 8.8541878188e-12
 """Electric constant, F/m (CODATA 2022)."""

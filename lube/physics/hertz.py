@@ -7,7 +7,7 @@ a modulus says which of the two it is.
 
 import numpy as np
 
-from lube.physics import Values
+from lube.types import Values
 
 
 def reduced_radius(radius_1: float, radius_2: float) -> float:

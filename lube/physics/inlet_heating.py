@@ -1,6 +1,6 @@
 """Shear heating of the oil at the inlet, where the film forms."""
 
-from lube.physics import Values
+from lube.types import Values
 
 
 def inlet_shear_heating_factor(
@@ -39,7 +39,6 @@ def inlet_shear_heating_factor(
     >>> f"{inlet_shear_heating_factor(0.28, 0.05, 0.52, 0.14):.3f}"
     '0.974'
     """
-    loading = (
-        viscosity * temperature_viscosity_coefficient * entrainment_speed**2 / thermal_conductivity
-    )
+    heating = viscosity * temperature_viscosity_coefficient * entrainment_speed**2
+    loading = heating / thermal_conductivity
     return 1.0 / (1.0 + 0.254 * loading**0.62)

@@ -6,12 +6,10 @@ Moes' M and L (`lube.physics.dimensionless`) alone decide which of the four comb
 
 import numpy as np
 
-from lube.physics import Values
+from lube.types import Values
 
 
-def moes_asymptotes(
-    moes_load: Values, moes_material: Values
-) -> tuple[Values, Values, Values, Values]:
+def moes_asymptotes(moes_load: Values, moes_material: Values) -> tuple[Values, ...]:
     r"""Moes' asymptotic films in the four corners of the (M, L) plane.
 
     .. math::

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lube.errors import RangeError
-from lube.physics import Values
+from lube.types import Array, Values
 
 ZERO_CELSIUS = 273.15
 DENSITY_REFERENCE = ZERO_CELSIUS + 15.0
@@ -51,7 +51,7 @@ def _low_viscosity_term(kinematic_viscosity):
     return np.exp(-1.47 - 1.84 * kinematic_viscosity - 0.51 * kinematic_viscosity**2)
 
 
-def fit_astm_d341(temperature: np.ndarray, kinematic_viscosity: np.ndarray) -> tuple[float, float]:
+def fit_astm_d341(temperature: Array, kinematic_viscosity: Array) -> tuple[float, float]:
     r"""Fit the law of ASTM D341 (Ubbelohde-Walther).
 
     .. math::
@@ -124,9 +124,7 @@ def evaluate_astm_d341(temperature: Values, a: float, b: float) -> Values:
     return viscosity
 
 
-def fit_vogel(
-    temperature: np.ndarray, kinematic_viscosity: np.ndarray
-) -> tuple[float, float, float]:
+def fit_vogel(temperature: Array, kinematic_viscosity: Array) -> tuple[float, float, float]:
     r"""Fit Vogel's law.
 
     .. math:: \nu = a\, e^{b / (T - c)}
@@ -195,10 +193,7 @@ def _best_pole(temperature, log_viscosity):
     grid = np.linspace(0.0, temperature.min() - 1.0, _POLE_GRID)
     best = int(np.argmin([squared_residuals(pole) for pole in grid]))
     bounds = grid[max(best - 1, 0)], grid[min(best + 1, _POLE_GRID - 1)]
-    refined = minimize_scalar(
-        squared_residuals, bounds=bounds, method="bounded", options={"xatol": 1e-9}
-    )
-    return refined.x
+    return minimize_scalar(squared_residuals, bounds=bounds, options={"xatol": 1e-9}).x
 
 
 def evaluate_vogel(temperature: Values, a: float, b: float, c: float) -> Values:
@@ -228,7 +223,7 @@ def evaluate_vogel(temperature: Values, a: float, b: float, c: float) -> Values:
         return a * np.exp(b / above_pole)
 
 
-def fit_andrade(temperature: np.ndarray, kinematic_viscosity: np.ndarray) -> tuple[float, float]:
+def fit_andrade(temperature: Array, kinematic_viscosity: Array) -> tuple[float, float]:
     r"""Fit Andrade's law, which has Arrhenius' form.
 
     .. math:: \nu = a\, e^{b / T}
@@ -302,7 +297,7 @@ class ViscosityLaw:
         The equation and its publication.
     """
 
-    fit: Callable[[np.ndarray, np.ndarray], tuple[float, ...]]
+    fit: Callable[[Array, Array], tuple[float, ...]]
     evaluate: Callable[..., Values]
     parameters: tuple[str, ...]
     source: str
@@ -385,11 +380,8 @@ def reference_oils(viscosity_100: float) -> tuple[float, float]:
             f"got {viscosity_100:g} mm2/s at 100 degC, the viscosity index needs 2 mm2/s or more"
         )
     row = np.searchsorted(_REFERENCE_OILS[:, 0], viscosity_100, side="right") - 1
-    low_coefficients, high_coefficients = _REFERENCE_OILS[row, 1:4], _REFERENCE_OILS[row, 4:7]
-    return (
-        float(np.polyval(low_coefficients, viscosity_100)),
-        float(np.polyval(high_coefficients, viscosity_100)),
-    )
+    of_low, of_high = _REFERENCE_OILS[row, 1:].reshape(2, 3)
+    return float(np.polyval(of_low, viscosity_100)), float(np.polyval(of_high, viscosity_100))
 
 
 def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:

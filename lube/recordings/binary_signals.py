@@ -159,7 +159,7 @@ def _is_whole(path):
 def _netcdf_array(variable, shared):
     attributes = shared | {name: variable.getncattr(name) for name in variable.ncattrs()}
     units = attributes.get("units")
-    # Only steps of time count, whatever date the times begin at.
+    # Only steps of time are used, so that the reference date does not matter.
     units = units.split(" since ")[0] if isinstance(units, str) else None
     channel = Channel(variable.name, units, variable.name, variable.dimensions[0], variable.size)
     return _Array(channel, variable, attributes)

@@ -103,8 +103,8 @@ def header_cell(cell: str) -> tuple[str, str | None]:
 
     Examples
     --------
-    >>> header_cell("U [mV]"), header_cell("voltage")
-    (('U', 'mV'), ('voltage', None))
+    >>> header_cell("Dev1/ai0 [mV]"), header_cell("t/s"), header_cell("voltage")
+    (('Dev1/ai0', 'mV'), ('t', 's'), ('voltage', None))
     """
     match = _HEADER.fullmatch(cell.strip())
     if match is None:

@@ -15,18 +15,16 @@ from lube.rig.record_scatter import record_scatter
 from lube.schema import OPERATING_DIMS
 from lube.study.study import Study
 
+Data = xr.Dataset
+
 log = logging.getLogger(__name__)
 
 PROBABILITY = "breakthrough_probability"
 
 
 def model_at_records(
-    at_records: xr.Dataset,
-    experiment: xr.Dataset,
-    film: xr.Dataset,
-    contact: xr.Dataset,
-    study: Study,
-) -> xr.Dataset:
+    at_records: Data, experiment: Data, film: Data, contact: Data, study: Study
+) -> Data:
     """Probability at the conditions of each record, and the scatter of one pair there.
 
     Parameters
@@ -68,9 +66,8 @@ def model_at_records(
         }
     )
     model = model.assign_coords(realisation=contact["realisation"].values)
-    return model.assign_attrs(
-        {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
-    )
+    attributes = {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
+    return model.assign_attrs(attributes)
 
 
 def _stored(runs, film, contact):
@@ -91,10 +88,8 @@ def _probability(runs, points, stored, realisations):
     values = np.empty((realisations, distinct.shape[1]))
     missing = []
     for number, point in enumerate(map(tuple, distinct.T.tolist())):
-        if point in stored:
-            values[:, number] = stored[point]
-        else:
-            missing.append(number)
+        values[:, number] = stored.get(point, np.nan)
+        missing += [number] * (point not in stored)
     for realisation in range(realisations) if missing else ():
         pair = runs.pair(realisation)
         values[realisation, missing] = runs.share(pair, 0.0, distinct[:, missing])

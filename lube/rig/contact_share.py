@@ -97,8 +97,8 @@ class ContactShare:
     def _count(self, values):
         piece = values, self._samples, self._doublings
         if self._remembers:
-            limits = self._limits, self._releases, self._hold
-            follow_contact(*piece, *limits, self._states, self._counts)
+            limits = self._limits, self._releases
+            follow_contact(*piece, limits, self._hold, self._states, self._counts)
         else:
             count_below(*piece, self._limits, self._counts)
 

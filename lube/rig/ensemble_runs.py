@@ -9,9 +9,7 @@ from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_statistics
 from lube.study.study import Study
 from lube.surfaces.synthetic import draw_realisation, line_attributes
-
-Pair = tuple[np.ndarray, np.ndarray]
-"""The lines of two rollers, in height steps."""
+from lube.types import Array, Pair
 
 
 class EnsembleRuns:
@@ -33,14 +31,14 @@ class EnsembleRuns:
         """Draw the two lines of a realisation."""
         return draw_realisation(self._study.line_spec, self._study.seed, realisation)
 
-    def points(self, film_thickness: npt.ArrayLike, half_width: npt.ArrayLike) -> np.ndarray:
+    def points(self, film_thickness: npt.ArrayLike, half_width: npt.ArrayLike) -> Array:
         """Convert films and half-widths (m) to height steps and grid points, shape (2, P)."""
         thickness, widths = np.broadcast_arrays(film_thickness, half_width)
         return np.stack(whole_numbers(thickness.ravel(), widths.ravel(), self._lines))
 
     def share(
-        self, pair: Pair, slip: float, points: np.ndarray, turns: float = 1.0, begin: int = 0
-    ) -> np.ndarray:
+        self, pair: Pair, slip: float, points: Array, turns: float = 1.0, begin: int = 0
+    ) -> Array:
         """Share of time steps with breakthrough in some revolutions, shape (P,).
 
         Parameters
@@ -64,16 +62,12 @@ class EnsembleRuns:
         steps = max(round(turns * revolution(pair, speed_ratios(slip))), 1)
         return self.breakthroughs(pair, slip, points, begin, begin + steps) / steps
 
-    def breakthroughs(
-        self, pair: Pair, slip: float, points: np.ndarray, begin: int, end: int
-    ) -> np.ndarray:
+    def breakthroughs(self, pair: Pair, slip: float, points: Array, begin: int, end: int) -> Array:
         """Count the time steps from `begin` to `end` with breakthrough, shape (P,)."""
         ratios = speed_ratios(slip)
         if begin:
-            pair = [
-                np.roll(line, -surface_position(begin, ratio))
-                for line, ratio in zip(pair, ratios, strict=True)
-            ]
+            positions = (surface_position(begin, ratio) for ratio in ratios)
+            pair = tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))
         films, half_windows = np.ascontiguousarray(points)
-        counts = strip_statistics(*pair, ratios, end - begin, films, half_windows, self._factor)
+        counts = strip_statistics(pair, ratios, end - begin, films, half_windows, self._factor)
         return counts[:, 1]

@@ -10,12 +10,15 @@ import scipy.special
 import xarray as xr
 
 from lube.physics.film_formulas import formula
-from lube.rig.map_curves import curve_at, layer_curve_at, logits_on
+from lube.rig.map_curves import curve_at, layer_curve_at, logits_on, windows_in
 from lube.rig.study_shares import values_with_limits
 from lube.schema import LIMITS
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
-from lube.statistics.sample_size import effective_sample_size, independent_windows
+from lube.statistics.sample_size import effective_sample_size
+from lube.types import Array
+
+Data = xr.Dataset
 
 ALPHA_FACTORS = np.geomspace(1.0 / 8.0, 8.0, 193)
 """Factors of the pressure-viscosity coefficient that are tried."""
@@ -23,7 +26,7 @@ STRENGTH_LEVELS = 193
 """Number of layer strengths that are tried, between the map's weakest and strongest."""
 
 
-def fit_alpha(master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
+def fit_alpha(master: Data, contact: Data, comparison: Data) -> Data:
     """Fit the factor of the pressure-viscosity coefficient to all records together.
 
     For every lubricant and film formula there is one factor, common to all records. The film
@@ -51,7 +54,7 @@ def fit_alpha(master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset) -
     return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison)
 
 
-def alpha_logits(master: xr.Dataset, comparison: xr.Dataset) -> xr.DataArray:
+def alpha_logits(master: Data, comparison: Data) -> xr.DataArray:
     """Logits of the map's mean probability at the records, for each of `ALPHA_FACTORS`.
 
     Parameters
@@ -69,9 +72,7 @@ def alpha_logits(master: xr.Dataset, comparison: xr.Dataset) -> xr.DataArray:
     return logits.transpose("factor", "film_formula", "record")
 
 
-def fit_layer_strength(
-    master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset
-) -> xr.Dataset:
+def fit_layer_strength(master: Data, contact: Data, comparison: Data) -> Data:
     """Fit the strength tau0 / h_c of the boundary layer to all records together.
 
     As `fit_alpha`, with the film thickness as the formula gives it.
@@ -89,13 +90,11 @@ def fit_layer_strength(
         ``fitted_layer_strength_coverage`` as in `fit_alpha`.
     """
     tried, logits = strength_logits(master, contact, comparison)
-    truth = study_strength(contact)
-    return _fits("fitted_layer_strength", tried, truth, logits, contact, comparison)
+    study = study_strength(contact)
+    return _fits("fitted_layer_strength", tried, study, logits, contact, comparison)
 
 
-def strength_logits(
-    master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset
-) -> tuple[np.ndarray, xr.DataArray]:
+def strength_logits(master: Data, contact: Data, comparison: Data) -> tuple[Array, xr.DataArray]:
     """Logits of the map's mean probability at the records, for many layer strengths.
 
     Parameters
@@ -120,7 +119,7 @@ def strength_logits(
     return tried, known.expand_dims(factor=tried.size).copy(data=spline(np.log(tried))).where(known)
 
 
-def study_strength(contact: xr.Dataset) -> float:
+def study_strength(contact: Data) -> float:
     """Strength of the study's boundary layer; the model depends on its properties only by this.
 
     Parameters
@@ -167,7 +166,7 @@ def _coarse_strength_logits(master, comparison, study):
     ratios, widths = comparison["lambda_ratio"], 2.0 * comparison["contact_half_width"]
     coarse = [
         logits_on(lambda width, one=one: layer_curve_at(one, master, width), widths, ratios)
-        for one in (maps.sel(layer_strength=strength) for strength in maps.layer_strength)
+        for one in maps.transpose("layer_strength", ...)
     ]
     coarse = xr.concat(coarse, maps["layer_strength"], join="exact")
     fine = _mean_logits(master, comparison, ratios)
@@ -192,9 +191,7 @@ def _fits(name, tried, truth, logits, contact, comparison):
     )
 
 
-def fit_records(
-    log_factors: np.ndarray, logits: np.ndarray, comparison: xr.Dataset
-) -> tuple[float, float, float]:
+def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[float, float, float]:
     """Fit a factor to the records of one lubricant, with one film formula.
 
     Parameters
@@ -211,8 +208,7 @@ def fit_records(
     factor, lower, upper : float
         From `lube.statistics.curves.fit_factor`.
     """
-    logits, comparison = _usable(logits, comparison)
-    probabilities, size = _members(comparison)
+    logits, comparison, probabilities, size = _usable(logits, comparison)
     deviations = comparison["record_deviation"].values
     # Only the first realisations were run as records of several revolutions.
     deviations = deviations[np.isfinite(deviations).all(axis=1)]
@@ -223,19 +219,16 @@ def fit_records(
 
 
 def _usable(logits, comparison):
-    """Keep the records that have a share and a probability at every factor."""
-    shares = comparison["measured_share"].values
-    used = np.isfinite(shares) & np.isfinite(logits).all(axis=0)
-    return logits[:, used], comparison.isel(record=used)
+    """Keep the records that have a share and a probability at every factor.
 
-
-def _members(comparison):
-    """Probabilities of the realisations at the records, and their effective sample size."""
+    With the probabilities of the realisations there, and their effective sample size.
+    """
+    used = np.isfinite(comparison["measured_share"].values) & np.isfinite(logits).all(axis=0)
+    comparison = comparison.isel(record=used)
     probabilities = comparison["breakthrough_probability"].values
-    widths = 2.0 * comparison["contact_half_width"].values
-    attributes = comparison.attrs
-    windows = independent_windows(attributes["travel"], widths, attributes["longest_wavelength"])
-    return probabilities, effective_sample_size(probabilities, windows)
+    windows = windows_in(comparison, 2.0 * comparison["contact_half_width"].values)
+    size = effective_sample_size(probabilities, windows)
+    return logits[:, used], comparison, probabilities, size
 
 
 def _pair_scatter(comparison):
@@ -251,8 +244,7 @@ def _coverage(log_factors, truth, logits, comparison):
     The interval holds all factors that the misfit does not contradict, so it contains the truth
     where the misfit there is within its quantile.
     """
-    logits, comparison = _usable(logits, comparison)
-    probabilities, size = _members(comparison)
+    logits, comparison, probabilities, size = _usable(logits, comparison)
     count = len(probabilities)
     if count < 3 or not size.size:
         return np.nan

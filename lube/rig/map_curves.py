@@ -7,6 +7,7 @@ import xarray as xr
 
 from lube.statistics.curves import Curve, falling_curve
 from lube.statistics.sample_size import effective_sample_size, independent_windows
+from lube.types import Values
 
 PROBABILITY = "breakthrough_probability"
 
@@ -28,7 +29,7 @@ def curve_at(master: xr.Dataset, width: float) -> Curve:
     """
     mean = master[f"{PROBABILITY}_mean"]
     widths = master["contact_width"].values
-    sample_size = effective_sample_size(master[PROBABILITY].values, _windows(master, widths))
+    sample_size = effective_sample_size(master[PROBABILITY].values, windows_in(master, widths))
     here = np.array([np.interp(width, widths, row) for row in sample_size])
     return _curve(mean, master, width, here)
 
@@ -53,9 +54,22 @@ def layer_curve_at(probability: xr.DataArray, master: xr.Dataset, width: float) 
     return _curve(probability, master, width, np.full(probability.shape[0], np.nan))
 
 
-def _windows(master, width):
-    """Count the independent windows in one realisation of a map."""
-    return independent_windows(master.attrs["travel"], width, master.attrs["longest_wavelength"])
+def windows_in(dataset: xr.Dataset, width: Values) -> Values:
+    """Count the independent contact windows in one realisation of a dataset.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        With the attributes ``travel`` and ``longest_wavelength`` of a realisation, m.
+    width : float, numpy.ndarray or xarray.DataArray
+        Contact width, m.
+
+    Returns
+    -------
+    float, numpy.ndarray or xarray.DataArray
+        From `lube.statistics.sample_size.independent_windows`.
+    """
+    return independent_windows(dataset.attrs["travel"], width, dataset.attrs["longest_wavelength"])
 
 
 def _curve(probability, master, width, sample_size):
@@ -68,7 +82,7 @@ def _curve(probability, master, width, sample_size):
     intensity = -np.log1p(-np.minimum(probability.values, 1.0 - 1e-12))
     nearest = np.clip(width, widths[0], widths[-1])
     here = np.array([np.interp(width, widths, row) for row in intensity]) * width / nearest
-    resolution = 1.0 / (_windows(master, width) * master.sizes["realisation"])
+    resolution = 1.0 / (windows_in(master, width) * master.sizes["realisation"])
     return falling_curve(np.log(ratios), -np.expm1(-here), sample_size, resolution)
 
 

@@ -147,9 +147,12 @@ class Record:
         folded = fold(below[at] / sizes, block, self._period)
         speed_ratio = self._period / folded.period if folded.repeatability >= CLEAR else np.nan
         duration = self.samples * self._interval
-        revolutions = duration / folded.period * self._faster_revolutions()
-        folds = [folded_counts(below, sizes, block, each) for each in self._periods(folded.period)]
-        folds = folds if duration > folded.period else []
+        # Of the roller with the faster surface.
+        steps_around = self._study.line_spec.points[self._faster]
+        revolutions = duration / folded.period * (self._revolutions[0] / steps_around)
+        periods = {folded.period * each / self._revolutions[0] for each in self._revolutions}
+        periods = sorted(periods) if duration > folded.period else ()
+        folds = [folded_counts(below, sizes, block, period) for period in periods]
         shares = share_interval(below, sizes, self._windows(revolutions), folds)
         conditions = self._corrected(speed_ratio) if correct_speed else self.conditions
         steps = self._steps
@@ -180,14 +183,6 @@ class Record:
         equal_rollers = len(set(self._study.line_spec.points)) == 1
         rolling = self.conditions.slide_to_roll_ratio == 0.0
         return equal_rollers and rolling and self._study.rig.drift == 0.0
-
-    def _faster_revolutions(self):
-        """Revolutions of the roller with the faster surface in one period."""
-        return self._revolutions[0] / self._study.line_spec.points[self._faster]
-
-    def _periods(self, period):
-        """Periods of the rollers that turn; one if they are equal."""
-        return sorted({period * each / self._revolutions[0] for each in self._revolutions})
 
     def _windows(self, revolutions):
         """Count the windows in the record that share no roughness."""

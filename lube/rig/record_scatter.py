@@ -21,8 +21,11 @@ from lube.grid.discretise import revolution, speed_ratios
 from lube.rig.ensemble_runs import EnsembleRuns
 from lube.statistics.one_pair import persistent_share, scatter_ratio
 from lube.study.study import Study
+from lube.types import Array, Pair
 
 log = logging.getLogger(__name__)
+
+Data = xr.Dataset
 
 MOST_PAIRS = 64
 """Largest number of pairs of lines that are run to estimate a scatter."""
@@ -34,9 +37,7 @@ ALIGNMENT_RATIOS = np.linspace(1.0, 3.5, 6)
 """Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare."""
 
 
-def record_scatter(
-    model: xr.Dataset, experiment: xr.Dataset, probability: np.ndarray, study: Study
-) -> tuple[np.ndarray, np.ndarray]:
+def record_scatter(model: Data, experiment: Data, probability: Array, study: Study) -> Pair:
     """Scatter of the contact share of each record between pairs of rollers.
 
     Parameters
@@ -63,9 +64,8 @@ def record_scatter(
     runs = EnsembleRuns(study)
     points = runs.points(model["film_thickness"], model["contact_half_width"])
     formulas = points.shape[1] // model.sizes["record"]
-    slips, turns = (
-        np.tile(experiment[name].values, formulas) for name in ("slide_to_roll_ratio", "turns")
-    )
+    slips = np.tile(experiment["slide_to_roll_ratio"].values, formulas)
+    turns = np.tile(experiment["turns"].values, formulas)
     variance = _variance(probability)
     persistent, line_effects = _line_effects(runs, model, study, slips, turns, len(probability))
     ratio, deviation = 1.0 / turns, probability - probability.mean(axis=0)
@@ -73,9 +73,8 @@ def record_scatter(
         here = np.flatnonzero((slips == slip) & (turns >= 1.0))
         shares = _one_revolution(runs, points[:, here], slip, probability[:, here])
         by_slip = _variance_ratio(_variance(shares), variance[here])
-        alone, together = _components(
-            study, slip, turns[here], np.minimum(persistent[here] / by_slip, 1.0)
-        )
+        part = np.minimum(persistent[here] / by_slip, 1.0)
+        alone, together = _components(study, slip, turns[here], part)
         ratio[here] = by_slip * (alone + together)
         if line_effects is not None:
             shares = combined_deviations(alone, together, line_effects[:, here], shares)
@@ -126,17 +125,14 @@ def _components(study, slip, turns, persistent):
     motion = speed_ratios(slip), spec.points, reach
     alone, together = np.empty((2, turns.size))
     for point, (length, part) in enumerate(zip(turns, persistent, strict=True)):
-        whole, renewed = (
-            scatter_ratio(length, *motion, share, study.rig.drift) for share in (part, 0.0)
-        )
+        whole = scatter_ratio(length, *motion, part, study.rig.drift)
+        renewed = scatter_ratio(length, *motion, 0.0, study.rig.drift)
         together[point] = min((1.0 - part) * renewed, whole)
         alone[point] = whole - together[point]
     return alone, together
 
 
-def combined_deviations(
-    alone: np.ndarray, together: np.ndarray, line_effects: np.ndarray, shares: np.ndarray
-) -> np.ndarray:
+def combined_deviations(alone: Array, together: Array, line_effects: Array, shares: Array) -> Array:
     """Deviations of each realisation in records of several alignments, shape (R, P).
 
     The effect of each line alone is more alike at neighbouring films than the effect of both
@@ -195,10 +191,8 @@ def _line_effects(runs, model, study, slips, turns, realisations):
     if not known.any():
         return np.ones(ratio.size), None
     effects = _standardised(shares.mean(axis=1) + shares.mean(axis=0))
-    *effects, persistent = (
-        np.interp(ratio, ALIGNMENT_RATIOS[known], row[known]) for row in (*effects, persistent)
-    )
-    return persistent, np.array(effects)
+    rows = [np.interp(ratio, ALIGNMENT_RATIOS[known], row[known]) for row in (*effects, persistent)]
+    return rows[-1], np.array(rows[:-1])
 
 
 def _crosswise(runs, count, levels):

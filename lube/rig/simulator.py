@@ -30,6 +30,7 @@ from lube.kernels.strips import strip_trace
 from lube.physics.electrical import contact_resistance, film_capacitance
 from lube.study.rig_settings import Rig
 from lube.study.study import Study
+from lube.types import Array
 
 log = logging.getLogger(__name__)
 
@@ -117,7 +118,7 @@ class SimulatedRig:
             [point.contact_half_width for point in points],
             self._lines,
         )
-        return strip_trace(*pair, self._ratios, steps, films, half_windows, factor)
+        return strip_trace(pair, self._ratios, steps, films, half_windows, factor)
 
     def _revolution(self, contact, number, seed):
         point, spacing = self._points[number], self._lines.attrs["spacing"]
@@ -157,14 +158,14 @@ class Revolution:
         Seed of the noise.
     """
 
-    contact: np.ndarray
+    contact: Array
     point: OperatingPoint
     time_step: float
     spot_resistance: float
     length: float
     seed: tuple[int, ...]
 
-    def voltage(self, rig: Rig) -> np.ndarray:
+    def voltage(self, rig: Rig) -> Array:
         """Log the revolution with a rig's circuit; the noise differs between rigs by a factor.
 
         Parameters
@@ -190,13 +191,13 @@ class Revolution:
 
 
 def logged_voltage(
-    contact: np.ndarray,
+    contact: Array,
     time_step: float,
     spot_resistance: float,
     capacitance: float,
     rig: Rig,
     generator: np.random.Generator,
-) -> np.ndarray:
+) -> Array:
     r"""Simulate the voltage that the rig logs, given the contact at every time step.
 
     With :math:`w` points in contact, conductance :math:`G = 1 / R_c + 1 / R_{leak}` and
@@ -235,11 +236,8 @@ def logged_voltage(
     gain = rig.series_resistance / feed
     voltage = sampled_voltage(
         contact,
-        targets,
-        memories,
-        gain,
-        rig.bias_voltage * (1.0 - gain),
-        rig.amplifier_range,
+        (targets, memories),
+        (gain, rig.bias_voltage * (1.0 - gain), rig.amplifier_range),
         np.exp(-2.0 * np.pi * rig.bandwidth * time_step),
         1.0 / (rig.sampling_rate * time_step),
         int(contact.size * time_step * rig.sampling_rate) or 1,

@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from lube.errors import DataError
-from lube.schema.coordinates import COORDINATES
-from lube.schema.kinds import ATTRIBUTES, FILES
-from lube.schema.variables import Variable
+from lube.schema.tables import ATTRIBUTES, COORDINATES, FILES, Variable
 
 if TYPE_CHECKING:  # Snakemake loads the schema at every start, without xarray
     import xarray as xr
@@ -45,19 +43,17 @@ def label(dataset: xr.Dataset, kind: str) -> xr.Dataset:
         attributes = {"long_name": expected.long_name, **expected.attributes}
         if expected.units is not None:
             attributes["units"] = expected.units
-        attributes["coverage_content_type"] = _content(name, expected, labelled)
+        attributes["coverage_content_type"] = _content(expected.content, labelled)
         labelled[name].attrs = attributes
     return check(labelled, kind)
 
 
-def _content(name, expected, dataset):
-    """ACDD's ``coverage_content_type`` of a variable."""
-    if name in COORDINATES:
-        return "coordinate"
-    if expected.content == "record":
-        measured = dataset["origin"].item() == "measured"
-        return "physicalMeasurement" if measured else "modelResult"
-    return expected.content
+def _content(content, dataset):
+    """Value of ``coverage_content_type`` for an entry in the table's column ``content``."""
+    if content != "record":
+        return content
+    measured = dataset["origin"].item() == "measured"
+    return "physicalMeasurement" if measured else "modelResult"
 
 
 def check(dataset: xr.Dataset, kind: str, where: str = "dataset") -> xr.Dataset:

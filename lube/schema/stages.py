@@ -4,8 +4,8 @@ A stage makes one kind of file. Its row names the stages whose files it reads an
 the study that it uses. From the rows follow the inputs and parameters of the Snakemake rules,
 the values recorded in every file, and the list of datasets.
 
-To add a stage `name`, add a row here, the variables of its file in `lube.schema`, the script
-``workflow/scripts/name.py`` and the rule ``workflow/rules/name.smk``.
+To add a stage `name`, add a row here, its file in ``files.csv`` and the variables in
+``variables.csv``, the script ``workflow/scripts/name.py`` and the rule ``workflow/rules/name.smk``.
 """
 
 from dataclasses import dataclass, field

@@ -17,6 +17,7 @@ import pandas as pd
 import scipy.special
 import xarray as xr
 
+from lube.rig.map_curves import windows_in
 from lube.rig.study_shares import (
     at_comparison_threshold,
     levels_named,
@@ -26,7 +27,8 @@ from lube.rig.study_shares import (
 from lube.schema import AT_RECORDS, LIMITS, label
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
-from lube.statistics.sample_size import effective_sample_size, independent_windows
+from lube.statistics.sample_size import effective_sample_size
+from lube.types import Array
 
 log = logging.getLogger(__name__)
 
@@ -80,15 +82,12 @@ def _side_by_side(model, experiment):
     table = experiment[names].drop_attrs()
     model = model.assign_coords(record=experiment["record"])
     table = table.merge(model, join="exact", compat="no_conflicts").assign_attrs(model.attrs)
-    probabilities, windows = model[PROBABILITY].values, _windows(model)
+    probabilities = model[PROBABILITY].values
+    windows = windows_in(model, 2.0 * model["contact_half_width"].values)
     mean, *limits = probability_interval(probabilities, windows)
-    lower, upper = prediction_limits(
-        mean,
-        effective_sample_size(probabilities, windows),
-        model["scatter_ratio"].values,
-        probabilities.shape[0],
-        table["share_error"].values,
-    )
+    size, noise = effective_sample_size(probabilities, windows), table["share_error"].values
+    ratio = model["scatter_ratio"].values
+    lower, upper = prediction_limits(mean, size, ratio, len(probabilities), noise)
     shares = at_comparison_threshold(experiment)
     shares = [shares[f"contact_share{limit}"].values for limit in LIMITS]
     by_formula = {
@@ -97,19 +96,10 @@ def _side_by_side(model, experiment):
         "predicted_share_upper": upper,
         "within_prediction": (shares[0] >= lower) & (shares[0] <= upper),
     }
-    return table.assign(
-        {
-            name: ("record", values)
-            for name, values in values_with_limits("measured_share", shares).items()
-        }
-        | {name: (("film_formula", "record"), values) for name, values in by_formula.items()}
-    )
-
-
-def _windows(table):
-    """Count the independent contact windows in one realisation, shape (record,)."""
-    width = 2.0 * table["contact_half_width"].values
-    return independent_windows(table.attrs["travel"], width, table.attrs["longest_wavelength"])
+    measured = values_with_limits("measured_share", shares)
+    table = table.assign({name: ("record", values) for name, values in measured.items()})
+    dims = ("film_formula", "record")
+    return table.assign({name: (dims, values) for name, values in by_formula.items()})
 
 
 def _agreement(table, experiment):
@@ -135,7 +125,7 @@ def _figures(table, shares):
 
 
 def agreement(
-    simulated: np.ndarray, lower: np.ndarray, upper: np.ndarray, measured: np.ndarray
+    simulated: Array, lower: Array, upper: Array, measured: Array
 ) -> dict[str, float | int]:
     r"""Figures of agreement between simulated probabilities and measured shares.
 
@@ -205,7 +195,7 @@ def _expected(table):
     record of a pair of rollers, at all records at once.
     """
     known = np.isfinite(table["measured_share"].values)
-    windows = _windows(table)[known]
+    windows = windows_in(table, 2.0 * table["contact_half_width"].values)[known]
     members = table[PROBABILITY].transpose("film_formula", "realisation", "record").values
     ranges = np.array([_ranges(of_formula[:, known], windows) for of_formula in members])
     return xr.Dataset(
@@ -219,25 +209,18 @@ def _expected(table):
 
 def _ranges(members, windows):
     """Range of each figure over the realisations left out, shape (figures, 2)."""
-    ranges = np.full((len(FIGURES), 2), np.nan)
-    if len(members) > 2 and windows.size:
-        for figure, values in enumerate(_leave_one_out(members, windows).T):
-            values = values[np.isfinite(values)]
-            if values.size:
-                ranges[figure] = np.quantile(values, [0.025, 0.975])
-    return ranges
-
-
-def _leave_one_out(members, windows):
-    """Figures of agreement of each realisation with all others, shape (R, figures)."""
+    if len(members) < 3 or not windows.size:
+        return np.full((len(FIGURES), 2), np.nan)
     rows = []
     for number, member in enumerate(members):
         others = np.delete(members, number, axis=0)
         mean, size = others.mean(axis=0), effective_sample_size(others, windows)
         limits = prediction_limits(mean, size, np.ones(mean.size), len(others))
-        figures = agreement(mean, *limits, member)
-        rows.append([figures[name] for name in FIGURES])
-    return np.array(rows)
+        rows.append(agreement(mean, *limits, member))
+    columns = np.array([[row[name] for row in rows] for name in FIGURES])
+    known = [values[np.isfinite(values)] for values in columns]
+    nothing = [np.nan, np.nan]
+    return [np.quantile(each, [0.025, 0.975]) if each.size else nothing for each in known]
 
 
 def _level_means(table):

@@ -74,12 +74,9 @@ def contact_statistics(
     width = 2.0 * film["contact_half_width"]
     patch_load = np.pi / 4.0 * film["hertz_pressure"] * width * width
     results["contact_load_share"] = results["mean_contact_force"] / patch_load
-    dataset = results.assign_coords(
-        slide_to_roll_ratio=np.asarray(slide_to_roll_ratio, float),
-        revolutions=revolutions,
-        **{name: film[name] for name in OPERATING_DIMS},
-    )
-    return label(dataset, "contact_batch")
+    levels = {name: film[name] for name in OPERATING_DIMS} | {"revolutions": revolutions}
+    levels["slide_to_roll_ratio"] = np.asarray(slide_to_roll_ratio, float)
+    return label(results.assign_coords(levels), "contact_batch")
 
 
 def contact_map(
@@ -131,17 +128,13 @@ def _levels(film, lambda_levels, width_levels):
 
 def _map(lines, film, boundary_layer, levels, dims):
     """Probabilities in pure rolling over (realisation, lambda ratio, contact width)."""
-    ratios, widths = (
-        xr.DataArray(values, dims=name, coords={name: values})
-        for name, values in zip(dims, levels, strict=True)
-    )
+    points = xr.Dataset(coords=dict(zip(dims, levels, strict=True)))
     table = film[["reduced_modulus"]].assign(
-        film_thickness=ratios * film["composite_rms_roughness"].item(),
-        contact_half_width=widths / 2.0,
+        film_thickness=points[dims[0]] * film["composite_rms_roughness"].item(),
+        contact_half_width=points[dims[1]] / 2.0,
     )
-    results = _run(lines, table, boundary_layer)
-    probabilities = results[["breakthrough_probability", "geometric_contact_probability"]]
-    return probabilities.isel(slide_to_roll_ratio=0)
+    results = _run(lines, table, boundary_layer).isel(slide_to_roll_ratio=0)
+    return results[["breakthrough_probability", "geometric_contact_probability"]]
 
 
 def _layer_map(lines, film, boundary_layer):
@@ -171,7 +164,7 @@ def _run(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), revolutions=1)
         for s, ratio in enumerate(slide_to_roll_ratio):
             ratios = speed_ratios(ratio)
             steps = revolutions * revolution(pair, ratios)
-            counts[r, s] = strip_statistics(*pair, ratios, steps, films, half_windows, factor)
+            counts[r, s] = strip_statistics(pair, ratios, steps, films, half_windows, factor)
             counts[r, s] /= steps
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
     touching, breaking, points, overlap = np.moveaxis(counts[:, :, inverse.ravel()], -1, 0)
@@ -185,15 +178,9 @@ def _run(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), revolutions=1)
     }
     dims = ("realisation", "slide_to_roll_ratio", *thickness.dims)
     shape = counts.shape[:2] + thickness.shape
-    dataset = xr.Dataset(
-        {name: (dims, values.reshape(shape)) for name, values in results.items()},
-        coords={"realisation": lines["realisation"].values, **thickness.coords},
-        attrs={
-            "travel": spacing * min(lines.attrs["points"]),
-            "longest_wavelength": 2.0 * np.pi / lines.attrs["q_min"],
-        },
-    )
-    return dataset.assign(
-        critical_thickness=boundary_layer.critical_thickness,
-        shear_strength=boundary_layer.shear_strength,
-    )
+    variables = {name: (dims, values.reshape(shape)) for name, values in results.items()}
+    for name in ("critical_thickness", "shear_strength"):
+        variables[name] = ((), getattr(boundary_layer, name))
+    coords = {"realisation": lines["realisation"].values, **thickness.coords}
+    travel, longest = spacing * min(lines.attrs["points"]), 2.0 * np.pi / lines.attrs["q_min"]
+    return xr.Dataset(variables, coords, {"travel": travel, "longest_wavelength": longest})

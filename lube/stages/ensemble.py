@@ -17,6 +17,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
+from lube.rig.map_curves import windows_in
 from lube.schema import label
 from lube.statistics import sample_size
 from lube.statistics.confidence import probability_interval
@@ -106,10 +107,7 @@ def gather_map(batches: Sequence[xr.Dataset]) -> xr.Dataset:
         As `gather`.
     """
     joined = _join(batches)
-    windows = sample_size.independent_windows(
-        joined.attrs["travel"], joined["contact_width"], joined.attrs["longest_wavelength"]
-    )
-    return _add_intervals(joined, windows, "master")
+    return _add_intervals(joined, windows_in(joined, joined["contact_width"]), "master")
 
 
 def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
@@ -137,16 +135,10 @@ def _join(batches):
         batch.drop_attrs(deep=False).assign_attrs({name: batch.attrs[name] for name in ATTRIBUTES})
         for batch in batches
     ]
+    minimal = {"data_vars": "minimal", "coords": "minimal", "compat": "equals"}
+    strict = {"join": "exact", "combine_attrs": "identical"}
     try:
-        joined = xr.concat(
-            batches,
-            "realisation",
-            data_vars="minimal",
-            coords="minimal",
-            compat="equals",
-            join="exact",
-            combine_attrs="identical",
-        )
+        joined = xr.concat(batches, "realisation", **minimal, **strict)
     except ValueError as error:
         raise DataError(f"the batches belong to different studies: {error}") from None
     joined = joined.sortby("realisation")

@@ -63,13 +63,9 @@ def film_table(
     >>> f"lambda ratio {film.lambda_ratio.item():.2f}"
     'lambda ratio 3.78'
     """
-    table = film_at(lubricant, rollers, _axis("force", force), _axis("speed", speed), formulas)
+    axes = xr.Dataset(coords={"force": np.asarray(force, float), "speed": np.asarray(speed, float)})
+    table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas)
     return schema.label(table.transpose(*schema.OPERATING_DIMS), "film")
-
-
-def _axis(name, values):
-    values = np.asarray(values, dtype=np.float64)
-    return xr.DataArray(values, dims=name, coords={name: values})
 
 
 def film_at_records(
@@ -167,15 +163,13 @@ def _hertz_contact(rollers, force, speed):
 def _dimensionless_groups(lubricant, rollers, force, contact):
     """Load W, speed U and material parameter G of each operating point."""
     film_modulus = 2.0 * rollers.reduced_modulus
-    scale = (film_modulus, rollers.reduced_radius)
-    load = dimensionless.dimensionless_load(force / rollers.length, *scale)
-    speed = dimensionless.dimensionless_speed(
-        lubricant["dynamic_viscosity"], contact["entrainment_speed"], *scale
+    scale = film_modulus, rollers.reduced_radius
+    viscosity, alpha = lubricant["dynamic_viscosity"], lubricant["pressure_viscosity_coefficient"]
+    return (
+        dimensionless.dimensionless_load(force / rollers.length, *scale),
+        dimensionless.dimensionless_speed(viscosity, contact["entrainment_speed"], *scale),
+        dimensionless.dimensionless_material(alpha, film_modulus),
     )
-    material = dimensionless.dimensionless_material(
-        lubricant["pressure_viscosity_coefficient"], film_modulus
-    )
-    return load, speed, material
 
 
 def _regime(load, speed, material):

@@ -52,10 +52,8 @@ def gauge_records(master: xr.Dataset, contact: xr.Dataset, comparison: xr.Datase
     known = np.isfinite(comparison["measured_share"].values)
     oils = comparison["lubricant"].values[known]
     counts = [np.count_nonzero(oils == oil) for oil in gauged["fitted_lubricant"].values]
-    gauged = gauged.assign(
-        study_layer_strength=study_strength(contact),
-        fitted_records=("fitted_lubricant", counts),
-    )
+    gauged["study_layer_strength"] = study_strength(contact)
+    gauged["fitted_records"] = "fitted_lubricant", counts
     return label(gauged.drop_attrs(deep=False), "gauge")
 
 
@@ -76,24 +74,18 @@ def gauge_film(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
         map's thinnest film has only an upper limit, and zero as the lower limit. The 95 %
         intervals include the scatter of one pair's record and the error of the ensemble.
     """
-    curve = cache(lambda width: curve_at(master, width))
-    records = zip(
-        2.0 * comparison["contact_half_width"].values,
-        comparison["measured_share"].values,
-        comparison["scatter_ratio"].values[0],
-        comparison["share_error"].values,
-        strict=True,
-    )
+    curve, realisations = cache(lambda width: curve_at(master, width)), master.sizes["realisation"]
+    names = ("contact_half_width", "measured_share", "share_error")
+    columns = *(comparison[name].values for name in names), comparison["scatter_ratio"].values[0]
     films = [
-        film_interval(curve(width), share, ratio, master.sizes["realisation"], noise)
-        for width, share, ratio, noise in records
+        film_interval(curve(2.0 * half_width), share, ratio, realisations, noise)
+        for half_width, share, noise, ratio in zip(*columns, strict=True)
     ]
     ratios = np.exp(films)
     ratios[:, 0] = np.where(np.isfinite(films)[:, 0], ratios[:, 0], np.nan)
     thickness = ratios * comparison["composite_rms_roughness"].item()
-    found = values_with_limits("gauged_lambda_ratio", ratios.T) | values_with_limits(
-        "gauged_film_thickness", thickness.T
-    )
+    found = values_with_limits("gauged_lambda_ratio", ratios.T)
+    found |= values_with_limits("gauged_film_thickness", thickness.T)
     return xr.Dataset({name: ("record", values) for name, values in found.items()})
 
 
@@ -139,9 +131,8 @@ def _leave_one_out(curve, film, shares):
     """Whether the interval of each realisation contains a film, and whether it has two limits."""
     if curve.films.size < 2:
         return np.ones(shares.size, bool), np.zeros(shares.size, bool)
-    thinnest, here, thickest = (
-        _distance(curve, each, shares) for each in (curve.films[0], film, curve.films[-1])
-    )
+    ends = curve.films[0], film, curve.films[-1]
+    thinnest, here, thickest = (_distance(curve, each, shares) for each in ends)
     limit = quantile(shares.size - 1)
     return np.abs(here) <= limit, (thinnest < -limit) & (thickest > limit)
 

@@ -144,7 +144,8 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
     names = [record.name for record in records]
     if len(set(names)) < len(names):
         raise RecordError(f"lubricants: got the names {', '.join(names)}, need each once")
-    fit_temperature = _whole_degrees(records)
+    lowest, highest = zip(*(record.valid_temperatures for record in records), strict=True)
+    fit_temperature = np.arange(math.floor(min(lowest)), math.ceil(max(highest)) + 1.0)
     rows = [_row(record, temperature, fit_temperature) for record in records]
     # Lubricants have different numbers of data points; NaN stands for the missing ones.
     table = xr.concat(rows, xr.Variable("lubricant", names), join="outer").drop_vars("data_point")
@@ -152,22 +153,9 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
         parameter_units=("parameter", list(PARAMETER_UNITS.values())),
         law_source=("viscosity_law", [law.source for law in VISCOSITY_LAWS.values()]),
     )
-    table = table.assign_coords(
-        lubricant=names,
-        temperature=temperature,
-        viscosity_law=list(VISCOSITY_LAWS),
-        parameter=list(PARAMETER_UNITS),
-        fit_temperature=fit_temperature,
-    )
-    return label(table, "lubricant")
-
-
-def _whole_degrees(records):
-    """Whole degrees Celsius over the temperature ranges of all lubricant records."""
-    ranges = [record.valid_temperatures for record in records]
-    lowest = math.floor(min(low for low, _ in ranges))
-    highest = math.ceil(max(high for _, high in ranges))
-    return np.arange(lowest, highest + 1, dtype=float)
+    levels = {"temperature": temperature, "fit_temperature": fit_temperature, "lubricant": names}
+    laws = {"viscosity_law": list(VISCOSITY_LAWS), "parameter": list(PARAMETER_UNITS)}
+    return label(table.assign_coords(levels | laws), "lubricant")
 
 
 def _row(record, temperature, fit_temperature):
@@ -190,19 +178,18 @@ def _row(record, temperature, fit_temperature):
 
 def _properties(substance, temperature):
     """Properties at the temperatures of the study, in K."""
-    kinematic_viscosity = substance.kinematic_viscosity(temperature)
-    wrong = ~(np.isfinite(kinematic_viscosity) & (kinematic_viscosity > 0.0))
+    viscosity, density = substance.kinematic_viscosity(temperature), substance.density(temperature)
+    wrong = ~(np.isfinite(viscosity) & (viscosity > 0.0))
     if wrong.any():
         raise RangeError(
-            f"the viscosity law gives {kinematic_viscosity[wrong][0]:g} m2/s at "
+            f"the viscosity law gives {viscosity[wrong][0]:g} m2/s at "
             f"{temperature[wrong][0] - ZERO_CELSIUS:g} degC, need a positive viscosity; "
             "narrow temperature_range"
         )
-    density = substance.density(temperature)
     return {
-        "kinematic_viscosity": kinematic_viscosity,
+        "kinematic_viscosity": viscosity,
         "density": density,
-        "dynamic_viscosity": kinematic_viscosity * density,
+        "dynamic_viscosity": viscosity * density,
         "pressure_viscosity_coefficient": substance.pressure_viscosity_coefficient(temperature),
         "thermal_conductivity": substance.thermal_conductivity(temperature),
         "temperature_viscosity_coefficient": _temperature_viscosity(substance, temperature),
@@ -211,15 +198,10 @@ def _properties(substance, temperature):
 
 def _temperature_viscosity(substance, temperature):
     """Temperature-viscosity coefficient beta = -d ln(eta)/dT, 1/K, by a central difference."""
-    below, above = (
-        np.clip(temperature + step, *substance.temperature_limits)
-        for step in (-_DIFFERENCE_STEP, _DIFFERENCE_STEP)
-    )
-    log_below, log_above = (
-        np.log(substance.kinematic_viscosity(side) * substance.density(side))
-        for side in (below, above)
-    )
-    return (log_below - log_above) / (above - below)
+    steps = np.array([[-_DIFFERENCE_STEP], [_DIFFERENCE_STEP]])
+    sides = np.clip(temperature + steps, *substance.temperature_limits)
+    below, above = (np.log(substance.kinematic_viscosity(t) * substance.density(t)) for t in sides)
+    return (below - above) / (sides[1] - sides[0])
 
 
 def _viscosity_index(record, substance):
@@ -238,10 +220,7 @@ def _fits(record, substance, fit_temperature):
     inside = (lowest <= fit_temperature) & (fit_temperature <= highest)
     curve_temperature = np.where(inside, fit_temperature + ZERO_CELSIUS, np.nan)
     data = substance.data_viscosity
-    fits = [
-        _fit(law, substance.data_temperature, data, curve_temperature)
-        for law in VISCOSITY_LAWS.values()
-    ]
+    fits = [_fit(law, substance, curve_temperature) for law in VISCOSITY_LAWS.values()]
     parameters, curves, fitted = (np.array(column) for column in zip(*fits, strict=True))
     curves = np.where(np.isfinite(curves), curves, np.nan)
     return xr.Dataset(
@@ -256,15 +235,13 @@ def _fits(record, substance, fit_temperature):
     )
 
 
-def _fit(law, data_temperature, data_viscosity, curve_temperature):
+def _fit(law, substance, curve_temperature):
     """Parameters by name, curve and fitted data of one law; NaN where the law allows no fit."""
     try:
-        parameters = law.fit(data_temperature, data_viscosity / MM2_PER_S)
+        parameters = law.fit(substance.data_temperature, substance.data_viscosity / MM2_PER_S)
     except RangeError:
         parameters = (math.nan,) * len(law.parameters)
     named = dict(zip(law.parameters, parameters, strict=True))
-    return (
-        [named.get(name, math.nan) for name in PARAMETER_UNITS],
-        law.evaluate(curve_temperature, *parameters) * MM2_PER_S,
-        law.evaluate(data_temperature, *parameters) * MM2_PER_S,
-    )
+    temperatures = curve_temperature, substance.data_temperature
+    row = [named.get(name, math.nan) for name in PARAMETER_UNITS]
+    return row, *(law.evaluate(t, *parameters) * MM2_PER_S for t in temperatures)

@@ -37,31 +37,27 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
         The ``roughness`` file of `lube.schema`. Heights are in m, exact multiples of the
         height step; where the rollers differ in size, the shorter line is padded with NaN.
     """
-    shape = (len(realisations), len(ROLLERS))
-    heights = np.full((*shape, max(spec.points)), np.nan)
-    moments = np.empty(shape, dict)
-    for row, realisation in enumerate(realisations):
-        for roller, line in enumerate(draw_realisation(spec, seed, realisation)):
-            heights[row, roller, : line.size] = line * spec.height_step
-            moments[row, roller] = line_moments(heights[row, roller, : line.size], spec.spacing)
+    dataset = _lines_in_steps(spec, seed, realisations)
+    steps = dataset["height"]
+    heights = steps.where(steps != PADDING) * spec.height_step
+    dataset = dataset.assign(height=heights)
+    moments = [
+        [
+            line_moments(line[:size], spec.spacing)
+            for line, size in zip(pair, spec.points, strict=True)
+        ]
+        for pair in heights.values
+    ]
+    for name in moments[0][0]:
+        dataset[name] = (
+            ("realisation", "roller"),
+            [[line[name] for line in pair] for pair in moments],
+        )
     expected = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
-    dims = ("realisation", "roller")
-    dataset = xr.Dataset(
-        {
-            "height": ((*dims, "position"), heights),
-            "seed": ("realisation", np.full(len(realisations), seed, np.int64)),
-            **{
-                name: (dims, np.reshape([moment[name] for moment in moments.flat], shape))
-                for name in moments.flat[0]
-            },
-            **{
-                f"spectrum_{name}": ("roller", [moment[name] for moment in expected])
-                for name in expected[0]
-            },
-        },
-        coords={**_labels(realisations), "position": spec.spacing * np.arange(max(spec.points))},
-        attrs=line_attributes(spec),
-    )
+    for name in expected[0]:
+        dataset[f"spectrum_{name}"] = "roller", [line[name] for line in expected]
+    dataset["seed"] = "realisation", np.full(len(realisations), seed, np.int64)
+    dataset["position"] = spec.spacing * np.arange(max(spec.points))
     return label(dataset, "roughness")
 
 
@@ -79,22 +75,22 @@ def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
         The ``roughness_batch`` file of `lube.schema`: int32 heights in height steps, which the
         attribute ``scale_factor`` converts into m.
     """
-    heights = np.full((len(realisations), len(ROLLERS), max(spec.points)), PADDING, np.int32)
-    for row, realisation in enumerate(realisations):
-        for roller, line in enumerate(draw_realisation(spec, seed, realisation)):
-            heights[row, roller, : line.size] = line
-    dataset = xr.Dataset(
-        {"height": (("realisation", "roller", "position"), heights)},
-        coords=_labels(realisations),
-        attrs=line_attributes(spec),
-    )
-    dataset = label(dataset, "roughness_batch")
+    dataset = label(_lines_in_steps(spec, seed, realisations), "roughness_batch")
     dataset["height"].attrs["scale_factor"] = spec.height_step
     return dataset
 
 
-def _labels(realisations):
-    return {
-        "realisation": np.asarray(realisations, np.int64),
-        "roller": np.asarray(ROLLERS, np.int64),
-    }
+def _lines_in_steps(spec, seed, realisations):
+    """Heights in height steps, int32, over (realisation, roller, position)."""
+    heights = np.full((len(realisations), len(ROLLERS), max(spec.points)), PADDING, np.int32)
+    for row, realisation in enumerate(realisations):
+        for roller, line in enumerate(draw_realisation(spec, seed, realisation)):
+            heights[row, roller, : line.size] = line
+    return xr.Dataset(
+        {"height": (("realisation", "roller", "position"), heights)},
+        {
+            "realisation": np.asarray(realisations, np.int64),
+            "roller": np.asarray(ROLLERS, np.int64),
+        },
+        line_attributes(spec),
+    )

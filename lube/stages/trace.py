@@ -14,17 +14,19 @@ from lube.physics.electrical import contact_resistance
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
 from lube.study.rollers import BoundaryLayer
 
+Data = xr.Dataset
+
 REALISATION = 0
 """The realisation that traces show."""
 
 
 def contact_trace(
-    lines: xr.Dataset,
-    film: xr.Dataset,
+    lines: Data,
+    film: Data,
     points: Sequence[Mapping[str, float | str]],
     boundary_layer: BoundaryLayer,
     resistivity: float,
-) -> xr.Dataset:
+) -> Data:
     """Contact at every time step of one revolution, at some operating points.
 
     Parameters
@@ -55,7 +57,7 @@ def contact_trace(
     ratios = speed_ratios(ratio)
     steps = revolution(pair, ratios)
     spacing = lines.attrs["spacing"]
-    length = strip_trace(*pair, ratios, steps, films, half_windows, factor) * spacing
+    length = strip_trace(pair, ratios, steps, films, half_windows, factor) * spacing
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
     trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
@@ -71,21 +73,17 @@ def contact_trace(
 
 def _rows(film, points):
     """Rows of the film table at the operating points, along ``operating_point``."""
-    levels = {
-        name: xr.DataArray([point[name] for point in points], dims="operating_point")
-        for name in CONTACT_DIMS
+    columns = {
+        name: ("operating_point", [point[name] for point in points]) for name in CONTACT_DIMS
     }
+    levels = xr.Dataset(columns)
     rows = film.sel({name: levels[name] for name in OPERATING_DIMS})
     return rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
 
 
 def contact_window(
-    lines: xr.Dataset,
-    trace: xr.Dataset,
-    operating_point: int,
-    step: int,
-    reach: float | None = None,
-) -> xr.Dataset:
+    lines: Data, trace: Data, operating_point: int, step: int, reach: float | None = None
+) -> Data:
     r"""Heights and segments in the contact window at one time step of a trace.
 
     Parameters
@@ -124,13 +122,9 @@ def contact_window(
     film, half_window = whole_numbers(point["film_thickness"], reach, lines)
     window = np.arange(-half_window, half_window + 1)
     ratios = speed_ratios(point["slide_to_roll_ratio"].item())
-    heights = np.array(
-        [
-            line[(surface_position(step, ratio) + window) % line.size]
-            for line, ratio in zip(line_pair(lines, REALISATION), ratios, strict=True)
-        ],
-        np.int64,
-    )
+    moving = zip(line_pair(lines, REALISATION), ratios, strict=True)
+    rows = [line[(surface_position(step, ratio) + window) % line.size] for line, ratio in moving]
+    heights = np.array(rows, np.int64)
     overlap = heights.sum(axis=0) - film
     segments = _segments(overlap, point, lines)
     return xr.Dataset(
@@ -160,6 +154,6 @@ def _segments(overlap, point, lines):
         "force": force,
         "layer_thickness": np.pi * point["shear_strength"].item() / 12.0 * length**3 / force,
         "broken": np.array(
-            [layer_breaks(n, s, factor) for n, s in zip(points, sums, strict=True)], bool
+            [layer_breaks(*each, factor) for each in zip(points, sums, strict=True)], bool
         ),
     }

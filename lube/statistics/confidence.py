@@ -7,14 +7,15 @@ Without scatter, the number of independent windows takes its place.
 """
 
 import numpy as np
-import numpy.typing as npt
 import scipy.special
+
+from lube.types import Array, Pair, Values
 
 CONFIDENCE = 0.95
 """Confidence level of all intervals."""
 
 
-def mean_over_first(values: np.ndarray) -> np.ndarray:
+def mean_over_first(values: Array) -> Array:
     """Mean over the first axis, with the terms added one after the other.
 
     NumPy's own sum pairs the terms by the array's shape and memory layout, so the last digit of
@@ -42,9 +43,7 @@ def mean_over_first(values: np.ndarray) -> np.ndarray:
     return total / len(values)
 
 
-def score_interval(
-    mean: npt.ArrayLike, sample_size: npt.ArrayLike, quantile: npt.ArrayLike
-) -> tuple[np.ndarray, np.ndarray]:
+def score_interval(mean: Values, sample_size: Values, quantile: Values) -> Pair:
     r"""Wilson's score interval of a probability.
 
     .. math::
@@ -85,9 +84,7 @@ def score_interval(
     return np.maximum(centre - half, 0.0), np.minimum(centre + half, 1.0)
 
 
-def probability_limits(
-    mean: np.ndarray, sample_size: npt.ArrayLike, degrees: npt.ArrayLike, windows: npt.ArrayLike
-) -> tuple[np.ndarray, np.ndarray]:
+def probability_limits(mean: Array, sample_size: Values, degrees: Values, windows: Values) -> Pair:
     r"""Limits of the 95 % confidence interval of a probability, which is never a point.
 
     It is Wilson's interval with Student's quantile. Where the scatter is unknown, `windows` takes
@@ -137,9 +134,7 @@ def probability_limits(
     return lower, upper
 
 
-def probability_interval(
-    probabilities: np.ndarray, windows: npt.ArrayLike
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def probability_interval(probabilities: Array, windows: Values) -> tuple[Array, Array, Array]:
     r"""Mean over realisations and its 95 % confidence interval.
 
     The effective sample size of the mean is

@@ -13,6 +13,7 @@ import scipy.optimize
 import scipy.special
 
 from lube.statistics.one_pair import quantile, standard_error
+from lube.types import Array
 
 STEPS = 16
 """Steps between two levels of a curve in the search for the limits of a film."""
@@ -38,11 +39,11 @@ class Curve:
     (0.0, 0.5)
     """
 
-    films: np.ndarray
-    logits: np.ndarray
-    sample_size: np.ndarray
+    films: Array
+    logits: Array
+    sample_size: Array
 
-    def logit_at(self, films: npt.ArrayLike) -> np.ndarray:
+    def logit_at(self, films: npt.ArrayLike) -> Array:
         """Logit of the probability at given films, extrapolated linearly beyond the ends.
 
         Parameters
@@ -82,7 +83,7 @@ class Curve:
 
 
 def falling_curve(
-    films: np.ndarray, probabilities: np.ndarray, sample_size: np.ndarray, resolution: float
+    films: Array, probabilities: Array, sample_size: Array, resolution: float
 ) -> Curve:
     """Fit a falling curve to estimated probabilities.
 
@@ -176,7 +177,7 @@ def _distances(curve, share, ratio, realisations, noise):
     return films, np.maximum.accumulate((share - model) / error)
 
 
-def realisation_correlation(probabilities: np.ndarray) -> np.ndarray:
+def realisation_correlation(probabilities: Array) -> Array:
     """Pearson correlation of the probabilities at different operating points.
 
     Parameters
@@ -209,13 +210,13 @@ def realisation_correlation(probabilities: np.ndarray) -> np.ndarray:
 
 
 def fit_factor(
-    log_factors: np.ndarray,
-    logits: np.ndarray,
-    shares: np.ndarray,
-    sample_size: np.ndarray,
-    covariance: np.ndarray,
+    log_factors: Array,
+    logits: Array,
+    shares: Array,
+    sample_size: Array,
+    covariance: Array,
     realisations: int,
-    noise: np.ndarray,
+    noise: Array,
 ) -> tuple[float, float, float]:
     r"""Fit one factor, common to all records, to their contact shares.
 

@@ -78,14 +78,13 @@ def fold(shares: np.ndarray, interval: float, nominal_period: float) -> Fold:
     >>> f"{folded.period:.3f} s", f"{folded.repeatability:.3f}"
     ('0.640 s', '1.000')
     """
-    found = refined_period(shares, interval, nominal_period)
-    period, repeatability = found, _repeatability(shares, interval, found)
+    period = refined_period(shares, interval, nominal_period)
+    repeatability = _repeatability(shares, interval, period)
     if not repeatability >= CLEAR:
         period = nominal_period
         repeatability = _repeatability(shares, interval, period)
-    profile, deviation = _profile(shares, interval, period)
-    error = _share_error(shares, interval, period)
-    return Fold(period, repeatability, profile, deviation, error)
+    folded = shares, interval, period
+    return Fold(period, repeatability, *_profile(*folded), _share_error(*folded))
 
 
 def refined_period(shares: np.ndarray, interval: float, nominal_period: float) -> float:

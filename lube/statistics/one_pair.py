@@ -14,6 +14,7 @@ import numpy.typing as npt
 import scipy.special
 
 from lube.statistics.confidence import CONFIDENCE
+from lube.types import Array, Pair, Points, Ratios, Values
 
 MOST_TURNS = 100_000
 """Turns over which alignments and drift are evaluated; longer records are taken as this long."""
@@ -150,12 +151,7 @@ def drift_factor(turns: float, drift: float) -> float:
 
 
 def scatter_ratio(
-    turns: float,
-    ratios: tuple[float, float],
-    points: tuple[int, int],
-    reach: float,
-    persistent: float = 0.0,
-    drift: float = 0.0,
+    turns: float, ratios: Ratios, points: Points, reach: float, persistent: float, drift: float
 ) -> float:
     r"""Variance of the share of one pair's record about the mean, over that of one revolution.
 
@@ -179,10 +175,10 @@ def scatter_ratio(
         Points around either roller.
     reach : float
         Distance of two alignments that share no roughness, points.
-    persistent : float, optional
+    persistent : float
         :math:`s_\infty^2 / s_1^2`, the part that new alignments do not average out. It does not
         matter for equal rollers in pure rolling, which keep one alignment.
-    drift : float, optional
+    drift : float
         As in `drift_factor`.
 
     Returns
@@ -194,7 +190,7 @@ def scatter_ratio(
     --------
     A slip of a tenth of the perimeter has ten alignments:
 
-    >>> f"{scatter_ratio(20, (1.0, 0.9), (10_000, 10_000), 40.0, persistent=0.2):.2f}"
+    >>> f"{scatter_ratio(20, (1.0, 0.9), (10_000, 10_000), 40.0, 0.2, 0.0):.2f}"
     '0.28'
     """
     if turns <= 1.0:
@@ -218,12 +214,8 @@ def scatter_ratio(
 
 
 def prediction_limits(
-    mean: np.ndarray,
-    sample_size: npt.ArrayLike,
-    ratio: npt.ArrayLike,
-    realisations: int,
-    noise: npt.ArrayLike = 0.0,
-) -> tuple[np.ndarray, np.ndarray]:
+    mean: Array, sample_size: Values, ratio: Values, realisations: int, noise: Values = 0.0
+) -> Pair:
     r"""95 % prediction limits of the contact share of one pair's record.
 
     .. math:: p \pm t_{R-1} \sigma
@@ -267,12 +259,8 @@ def prediction_limits(
 
 
 def standard_error(
-    mean: npt.ArrayLike,
-    sample_size: npt.ArrayLike,
-    ratio: npt.ArrayLike,
-    realisations: int,
-    noise: npt.ArrayLike = 0.0,
-) -> np.ndarray:
+    mean: Values, sample_size: Values, ratio: Values, realisations: int, noise: Values = 0.0
+) -> Array:
     r"""Calculate the standard error of one pair's share about the mean of the ensemble.
 
     .. math:: \sigma^2 = p (1 - p) \left( \frac{v}{n} + \frac{1}{n R} \right) + \epsilon^2
@@ -301,7 +289,7 @@ def standard_error(
     return np.sqrt(variance + np.square(noise))
 
 
-def persistent_share(probabilities: np.ndarray) -> np.ndarray:
+def persistent_share(probabilities: Array) -> Array:
     """Part of one alignment's scatter that new alignments do not average out.
 
     It is the effect of either line alone, whatever it is paired with. Each first line is paired

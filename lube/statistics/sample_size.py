@@ -3,10 +3,10 @@
 import numpy as np
 import numpy.typing as npt
 
+from lube.types import Array, Values
 
-def independent_windows(
-    travel: npt.ArrayLike, width: npt.ArrayLike, longest_wavelength: float
-) -> np.ndarray:
+
+def independent_windows(travel: Values, width: Values, longest_wavelength: float) -> Array:
     r"""Count the contact windows of one realisation that share no roughness.
 
     Two windows see independent roughness if a longest wavelength lies between them:
@@ -36,7 +36,7 @@ def independent_windows(
     return np.maximum(travel / (width + longest_wavelength), 1.0)
 
 
-def effective_sample_size(probabilities: np.ndarray, windows: npt.ArrayLike) -> np.ndarray:
+def effective_sample_size(probabilities: Array, windows: npt.ArrayLike) -> Array:
     r"""Effective sample size of one realisation, from the scatter between realisations.
 
     So many independent trials with the probability :math:`p` would scatter as one realisation

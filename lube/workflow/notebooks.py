@@ -5,16 +5,16 @@ notebook does not know, and it writes clock times into its output. Here the firs
 and the times are removed, so that an executed notebook is the same whenever it is made.
 """
 
-import contextlib
 import logging
 import multiprocessing
 import os
 import re
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
+import matplotlib
 import nbformat
 import papermill
 from ipykernel.inprocess import InProcessKernelManager
@@ -34,15 +34,6 @@ _CELL_FAILED = 3
 
 _ADDED = {"injected-parameters", "papermill-error-cell-tag"}
 """Tags of the cells that papermill adds."""
-
-_ENVIRONMENT = {
-    # Pictures below the cells, as in Jupyter.
-    "MPLBACKEND": "module://matplotlib_inline.backend_inline",
-    # The figures are the same whatever style the user has set up for their own.
-    "MATPLOTLIBRC": os.devnull,
-    # Jupyter's debugger, not used here, would print a warning.
-    "PYDEVD_DISABLE_FILE_VALIDATION": "1",
-}
 
 # Parts of IPython's tracebacks.
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
@@ -85,8 +76,7 @@ def execute_notebook(
     failed = output.with_name(f"{output.stem}.failed.ipynb")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
         executed = Path(scratch) / output.name
-        with environment({**_ENVIRONMENT, DRAWN_BY: drawn_by}):
-            exit_code = _execute_apart(str(notebook), str(executed), dict(parameters), code)
+        exit_code = _execute_apart(str(notebook), str(executed), dict(parameters), drawn_by, code)
         if exit_code == 1:
             raise LubeError(f"{notebook}: could not be executed, for the reason printed above")
         cells = nbformat.read(executed, as_version=4)
@@ -113,8 +103,11 @@ def _execute_apart(*arguments):
     return process.exitcode
 
 
-def _execute(notebook, output, parameters, code):
+def _execute(notebook, output, parameters, drawn_by, code):
     """Execute a notebook with papermill; its output is written even if a cell fails."""
+    os.environ[DRAWN_BY] = drawn_by
+    # Jupyter's debugger, not used here, would print a warning.
+    os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"
     if code is not None:
         _use_package_in(code)
     try:
@@ -150,6 +143,9 @@ class _InProcess(Engine):
         config = Config({"HistoryManager": {"enabled": False}})
         manager = InProcessKernelManager(config=config)
         manager.start_kernel()
+        # Pictures appear below the cells, whatever style the user has set up for their own.
+        manager.kernel.shell.enable_matplotlib("inline")
+        matplotlib.rcdefaults()
         client = manager.client()
         client.start_channels()
         nb_man.nb.metadata.language_info = manager.kernel.language_info
@@ -171,8 +167,8 @@ def _run(cell, client):
     client.execute(cell.source)
     reply = client.get_shell_msg()["content"]
     cell.execution_count = reply["execution_count"]
-    while client.iopub_channel.msg_ready():
-        message = client.get_iopub_msg()
+    # A thread delivers the outputs; the last message says that there are no more.
+    while (message := client.get_iopub_msg())["content"].get("execution_state") != "idle":
         if message["msg_type"] in ("stream", "display_data", "execute_result", "error"):
             _add_output(cell, nbformat.v4.output_from_msg(message))
     return reply["status"]
@@ -209,26 +205,6 @@ def _save(executed, path):
     """Write an executed notebook, the same bytes each time."""
     with written_whole(path) as part:
         nbformat.write(_without_times(executed), part)
-
-
-@contextlib.contextmanager
-def environment(variables: Mapping[str, str]) -> Iterator[None]:
-    """Set environment variables within a block, for the processes started in it.
-
-    Parameters
-    ----------
-    variables : dict
-        From name to value.
-    """
-    before = {name: os.environ.get(name) for name in variables}
-    os.environ.update(variables)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name)
-            if value is not None:
-                os.environ[name] = value
 
 
 def _check_parameters(notebook, parameters):

@@ -64,7 +64,8 @@ def sources(code: str, root: Path = ROOT) -> list[str]:
     Returns
     -------
     list of str
-        Paths relative to `root`, sorted. Two modules are left out, with what only they import:
+        Paths relative to `root`, sorted: the modules, and the CSV tables in their folders, such
+        as ``lube/schema/variables.csv``. Two modules are left out, with what only they import:
         the study, whose values are parameters of the rules, and the package's ``__init__``,
         which computes nothing.
 
@@ -79,6 +80,7 @@ def sources(code: str, root: Path = ROOT) -> list[str]:
         if file is not None and file not in found:
             found.add(file)
             waiting += _imports_of(file)
+    found |= {table for file in found for table in file.parent.glob("*.csv")}
     return sorted(file.relative_to(root).as_posix() for file in found)
 
 

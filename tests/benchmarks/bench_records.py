@@ -1,13 +1,13 @@
-"""How fast records of the rig are read and evaluated, beside other readers of the same files.
+"""Speed of reading and evaluating recordings, compared with other readers of the same files.
 
     snakemake benchmark                                            # measures, saves and draws
-    python tests/benchmarks/bench_records.py [STUDY [READING.NC]]  # measures and tells
+    python tests/benchmarks/bench_records.py [STUDY [READING.NC]]  # measures and prints
 
-Each way runs in a process of its own, whose peak memory is told, and the ways take turns; each
-time is the shortest of several runs, with the files in the system's cache. The binary record is
-whole numbers of 16 bits with a scale, as a converter delivers them: NetCDF in compressed chunks
-(deflate, level 1), TDMS in segments of a million samples. It is read on one core; the CSV
-record, of time and voltage, on all cores that a reader knows how to use.
+Each reader runs in its own process, whose peak memory is recorded, and the readers take turns; a
+time is the shortest of several runs, with the files in the system's cache. The binary recording is
+16-bit integers with a scale, as from a converter: NetCDF in compressed chunks (deflate, level 1),
+TDMS in segments of a million samples. It is read on one core; the CSV recording, of time and
+voltage, on all cores that a reader can use.
 """
 
 import multiprocessing
@@ -48,11 +48,11 @@ LIMITS = (0.1, 0.2, 0.3, 0.4, 0.5)
 TURNS = 3
 
 BYTES_PER_SAMPLE, BYTES_PER_ROW = 4, 25
-"""On disk, a little more than needed: two bytes in each binary file, and a line of text."""
+"""Space needed on disk, rounded up: two bytes in each binary file, and a line of text."""
 
 
 def record(samples):
-    """Voltage of a bridge that contact closes now and then, int16, in pieces."""
+    """Voltage with random contacts, int16, in pieces."""
     rng = np.random.default_rng(1)
     for first in range(0, samples, PIECE):
         count = min(PIECE, samples - first)
@@ -62,7 +62,7 @@ def record(samples):
 
 
 def write_netcdf(path, samples):
-    """Write the record as a scaled variable."""
+    """Write the recording as a scaled variable."""
     with netCDF4.Dataset(path, "w") as file:
         file.createDimension("time", samples)
         packed = {"zlib": True, "complevel": 1, "shuffle": True, "chunksizes": (PIECE,)}
@@ -74,7 +74,7 @@ def write_netcdf(path, samples):
 
 
 def write_tdms(path, samples):
-    """Write the record as a scaled channel."""
+    """Write the recording as a scaled channel."""
     properties = {
         "wf_increment": INTERVAL,
         "NI_UnitDescription": "V",
@@ -91,7 +91,7 @@ def write_tdms(path, samples):
 
 
 def write_csv(path, rows):
-    """Write the record as a table of time and voltage."""
+    """Write the recording as a table of time and voltage."""
     names = ["time [s]", "voltage [V]"]
     schema = pyarrow.schema([(name, pyarrow.float64()) for name in names])
     with pyarrow.csv.CSVWriter(path, schema) as file:
@@ -101,14 +101,14 @@ def write_csv(path, rows):
 
 
 def evaluate(path):
-    """Read and evaluate a record as the study does."""
+    """Read and evaluate a recording as the study does."""
     share = ContactShare(LIMITS)
     for piece in open_recording(path).pieces():
         share.add(piece)
 
 
 def in_memory(path):
-    """Evaluate an array that is there already, as a notebook would."""
+    """Evaluate an array in memory, as a notebook would."""
     values = np.concatenate(list(open_recording(path).pieces()))
     return lambda: [np.count_nonzero(values < limit) for limit in LIMITS]
 
@@ -132,7 +132,7 @@ def peak_memory():
 
 
 def run_way(name, folder):
-    """Run one way in this process; return its time (s) and the peak memory (bytes)."""
+    """Run one reader in this process; return its time (s) and the peak memory (bytes)."""
     if name in RECORD_WAYS:
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     file, prepare = WAYS[name]
@@ -144,13 +144,13 @@ def run_way(name, folder):
 
 
 def alone(work, *arguments):
-    """Call a function in a process of its own."""
+    """Call a function in its own process."""
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         return pool.submit(work, *arguments).result()
 
 
 def measure_ways(names, folder, turns):
-    """Shortest time and largest memory of each way, the ways taking turns."""
+    """Shortest time and largest memory of each reader; they take turns."""
     measured = np.array([[alone(run_way, name, folder) for name in names] for _ in range(turns)])
     times, memories = measured[..., 0].min(axis=0), measured[..., 1].max(axis=0)
     for name, seconds, memory in zip(names, times, memories, strict=True):
@@ -162,9 +162,9 @@ def measure(samples, rows, turns, folder):
     """Measure everything, as the ``reading`` file of `lube.schema`."""
     need = samples * BYTES_PER_SAMPLE + rows * BYTES_PER_ROW
     if shutil.disk_usage(folder).free < need:
-        raise DataError(f"{folder}: need {need / 2**20:.0f} MiB free on its disk for the records")
+        raise DataError(f"{folder}: need {need / 2**20:.0f} MiB free on its disk")
     bare_memory = alone(peak_memory)
-    # In processes of their own too: a process begins with the memory of the one that began it.
+    # A new process begins with the peak memory of the one that started it.
     alone(write_netcdf, folder / "record.nc", samples)
     alone(write_tdms, folder / "record.tdms", samples)
     alone(write_csv, folder / "record.csv", rows)

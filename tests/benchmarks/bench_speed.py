@@ -85,8 +85,8 @@ def measure_slip(study):
             ratios = speed_ratios(slip)
             steps = revolution(pair, ratios)
             chosen = films[-count:], half_windows[-count:], factor  # the thickest
-            strips = partial(strip_statistics, *pair, ratios, steps, *chosen)
-            scan = partial(scan_statistics, *pair, ratios, steps // SCAN_SHARE, *chosen)
+            strips = partial(strip_statistics, pair, ratios, steps, *chosen)
+            scan = partial(scan_statistics, pair, ratios, steps // SCAN_SHARE, *chosen)
             fast, slow = best_times(strips, scan, runs=2) * (1, SCAN_SHARE)
             times[:, row, column] = fast, slow
             print(
@@ -129,7 +129,7 @@ def measure_realisation(study, spec, films, half_windows, factor, realisation=0)
     """Draw one realisation, and run all operating points in pure rolling."""
     pair = draw_realisation(spec, study.seed, realisation)
     ratios = speed_ratios(0.0)
-    return strip_statistics(*pair, ratios, pair[0].size, films, half_windows, factor)
+    return strip_statistics(pair, ratios, pair[0].size, films, half_windows, factor)
 
 
 def measure_grids(study):
@@ -156,7 +156,7 @@ def measure_operating_points(study):
         chosen = [np.interp(index, range(films.size), of) for of in (films, half_windows)]
         chosen = [np.rint(values).astype(np.int64) for values in chosen]
         steps = pair[0].size
-        run = partial(strip_statistics, *pair, speed_ratios(0.0), steps, *chosen, factor)
+        run = partial(strip_statistics, pair, speed_ratios(0.0), steps, *chosen, factor)
         times.append(best_times(run, runs=5)[0])
         print(f"{count:3d} operating points: {1e3 * times[-1]:.1f} ms", flush=True)
     counts = np.array(OPERATING_POINTS)
@@ -204,7 +204,7 @@ def measure(study_file):
     pair = draw_realisation(study.line_spec, study.seed, 0)
     for kernel in (strip_statistics, scan_statistics):
         for slip in (0.0, 1.0):
-            kernel(*pair, speed_ratios(slip), 10, films, half_windows, factor)
+            kernel(pair, speed_ratios(slip), 10, films, half_windows, factor)
     parts = (
         measure_synthesis(study),
         measure_slip(study),

@@ -13,8 +13,8 @@ OPEN, TOUCHING = 1.0, 0.01
 def sampled(contact, memories=(0.9, 0.2), passed=0.7, ratio=1.0, samples=None, limit=10.0):
     contact = np.asarray(contact, np.int32)
     samples = samples or int(contact.size / ratio)
-    targets, memories = np.array([OPEN, TOUCHING]), np.array(memories)
-    return sampled_voltage(contact, targets, memories, 0.8, 0.1, limit, passed, ratio, samples)
+    gap_states = np.array([OPEN, TOUCHING]), np.array(memories)
+    return sampled_voltage(contact, gap_states, (0.8, 0.1, limit), passed, ratio, samples)
 
 
 def one_by_one(contact, memories, passed, limit):

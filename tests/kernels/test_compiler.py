@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numba
 
-import lube
+import lube.types
 from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 
@@ -16,7 +16,7 @@ SCAN = """
 import numpy as np
 from lube.kernels.scan import scan_window
 line = np.array([3, 3, 0], np.int32)
-print(*scan_window(line, line, 0, 0, 3, 0, 1.0))
+print(*scan_window((line, line), (0, 0), 3, 0, 1.0))
 """
 
 
@@ -38,6 +38,7 @@ def test_a_changed_layer_criterion_reaches_the_kernels_that_inline_it(tmp_path):
         ignore=shutil.ignore_patterns("__pycache__"),
     )
     (tmp_path / "lube" / "__init__.py").touch()
+    shutil.copy(lube.types.__file__, tmp_path / "lube")
     assert scan_in(tmp_path) == ["2", "2", "12"]
     layer = kernels / "layer.py"
     text = layer.read_text()

@@ -51,9 +51,8 @@ def test_points_that_are_skipped_lie_below_the_film(points_1, points_2, size, fi
     maxima = [block_maxima(line, size) if slips else nothing for line in (line_1, line_2)]
     line = np.full(size, 99, np.int32)
     starts, stops = np.empty((2, size // 2 + 1), np.int64)
-    count = fill_high_stretches(
-        line_1, line_2, *maxima, first_1, first_2, film, line, starts, stops
-    )
+    pair, stretches = (line_1, line_2), (starts, stops)
+    count = fill_high_stretches(pair, tuple(maxima), first_1, first_2, film, line, stretches)
     searched = np.zeros(size, bool)
     for start, stop in zip(starts[:count], stops[:count], strict=True):
         assert 0 <= start < stop <= size
@@ -73,15 +72,15 @@ def test_lines_are_added_as_the_windows_meet_them(line_1, line_2, size, first, a
     indices = np.arange(first, first + size)
     expected = line_1[indices % line_1.size] + line_2[(indices + ahead) % line_2.size]
     line = np.empty(size, np.int32)
-    add_lines(line_1, line_2, first, first + ahead, line)
+    add_lines((line_1, line_2), first, first + ahead, line)
     np.testing.assert_array_equal(line, expected)
 
 
 def runs_above(line, film, starts, stops):
     size = line.size // 2 + 1
-    new_starts, new_stops = np.empty(size, np.int64), np.empty(size, np.int64)
-    count = find_runs(line, film, starts, stops, starts.size, new_starts, new_stops)
-    return new_starts[:count], new_stops[:count]
+    runs = np.empty(size, np.int64), np.empty(size, np.int64)
+    count = find_runs(line, film, (starts, stops), starts.size, runs)
+    return runs[0][:count], runs[1][:count]
 
 
 @given(rough_lines, st.integers(-4, 4), st.integers(0, 4))

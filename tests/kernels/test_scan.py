@@ -52,7 +52,7 @@ def test_scan_equals_the_naive_model_at_any_two_speeds(
 ):
     speeds = (slower, Fraction(1)) if first_is_slower else (Fraction(1), slower)
     ratios = (float(speeds[0]), float(speeds[1]))
-    trace = scan_trace(int32(z1), int32(z2), ratios, steps, film, half_window, float(factor))
+    trace = scan_trace((int32(z1), int32(z2)), ratios, steps, film, half_window, float(factor))
     expected = naive_trace(z1, z2, *speeds, steps, film, half_window, factor)
     assert trace.tolist() == expected
 
@@ -68,7 +68,7 @@ def test_scan_statistics_sum_up_the_naive_trace(z1, z2, slower, points, factor):
     steps = 17
     films, half_windows = np.array(points, np.int64).reshape(-1, 2).T
     statistics = scan_statistics(
-        int32(z1), int32(z2), (1.0, float(slower)), steps, films, half_windows, float(factor)
+        (int32(z1), int32(z2)), (1.0, float(slower)), steps, films, half_windows, float(factor)
     )
     for row, (film, half_window) in zip(statistics.tolist(), points, strict=True):
         trace = naive_trace(z1, z2, Fraction(1), slower, steps, film, half_window, factor)
@@ -93,11 +93,11 @@ def test_surface_position_is_the_nearest_point(step, slower, excess):
 def test_a_surface_at_rest_shows_the_window_the_same_points():
     rough, smooth = int32([0, 0, 5, 0, 0, 0, 0]), int32([0] * 7)
     for pair, ratios in (((smooth, rough), (1.0, 0.0)), ((rough, smooth), (0.0, 1.0))):
-        assert scan_trace(*pair, ratios, 7, 3, 2, 1.0).tolist() == [[1, 1, 2]] * 7
+        assert scan_trace(pair, ratios, 7, 3, 2, 1.0).tolist() == [[1, 1, 2]] * 7
 
 
 def test_window_cuts_segments_at_its_edges():
     line = int32([2, 2, 2, 0, 0, 0, 0, 0])
     flat = np.zeros_like(line)
-    trace = scan_trace(line, flat, (1.0, 1.0), 8, 0, 1, 0.0)
+    trace = scan_trace((line, flat), (1.0, 1.0), 8, 0, 1, 0.0)
     assert trace[:, 0].tolist() == [2, 3, 2, 1, 0, 0, 0, 1]

@@ -33,7 +33,7 @@ factors = st.sampled_from([0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 9.0, 16.0, 27.0, 
 
 def by_strips(line_1, line_2, points, factor, steps=None, ratios=ROLLING, kernel=strip_statistics):
     films, half_windows = np.array(points, np.int64).T
-    return kernel(line_1, line_2, ratios, steps or line_1.size, films, half_windows, factor)
+    return kernel((line_1, line_2), ratios, steps or line_1.size, films, half_windows, factor)
 
 
 def assert_equals_the_scan(*arguments):
@@ -52,7 +52,7 @@ def test_statistics_equal_the_scan(line_1, line_2, points, factor, steps, ratios
 @given(rough_lines, rough_lines, operating_points, factors, st.integers(1, 150), speed_ratios)
 def test_trace_equals_the_scan_at_every_step(line_1, line_2, points, factor, steps, ratios):
     expected = [
-        scan_trace(line_1, line_2, ratios, steps, film, half_window, factor)[:, 1]
+        scan_trace((line_1, line_2), ratios, steps, film, half_window, factor)[:, 1]
         for film, half_window in points
     ]
     found = by_strips(line_1, line_2, points, factor, steps, ratios, strip_trace)

@@ -184,13 +184,6 @@ def test_of_many_channels_the_first_are_named(tmp_path):
     assert refusal(path, 1.0, channel="CH4") == message
 
 
-def test_a_variable_of_several_dimensions_is_not_a_channel(tmp_path):
-    with netCDF4.Dataset(tmp_path / "r.nc", "w") as file:
-        file.createDimension("time", 3)
-        file.createVariable("CH4", "f8", ("time", "time"))
-    assert refusal(tmp_path / "r.nc", channel="CH4").endswith("the file has no numeric channel")
-
-
 def test_a_name_of_several_channels(tmp_path):
     (tmp_path / "r.csv").write_text("t [s],U [V],U [mV]\n0,1,2\n")
     with TdmsWriter(tmp_path / "r.tdms") as file:
@@ -210,20 +203,15 @@ def test_a_unit_that_contradicts_the_channel(tmp_path):
 
 def test_gains_and_offsets(tmp_path):
     path = write_netcdf(tmp_path / "r.nc", VOLTS)
-    for gain, reason in (
-        (0, "got 0, need a value other than 0"),
-        (np.nan, "got nan, need a finite number"),
-        ("ten", "got 'ten', need a finite number"),
-        (None, "got None, need a finite number"),
+    for options, reason in (
+        ({"gain": 0}, "gain: got 0, need a value other than 0"),
+        ({"gain": np.nan}, "gain: got nan, need a finite number"),
+        ({"gain": "ten"}, "gain: got 'ten', need a finite number"),
+        ({"offset": "3 ohm"}, "offset: got '3 ohm', need a voltage, as the recording is one"),
+        ({"offset": "3 mm"}, "offset: got the unit 'mm', need one of voltage or resistance"),
+        ({"offset": "3"}, "offset: got '3', need a voltage or a resistance with its unit"),
     ):
-        assert refusal(path, gain=gain) == f"gain: {reason}"
-    for offset, reason in {
-        "3 ohm": "got '3 ohm', need a voltage, as the recording is one",
-        "3 mm": "got the unit 'mm', need one of voltage or resistance",
-        "3": "got '3', need a voltage or a resistance with its unit, such as '3 mV'",
-        np.nan: "got nan, need a finite number",
-    }.items():
-        assert refusal(path, offset=offset).startswith(f"offset: {reason}")
+        assert refusal(path, **options).startswith(reason)
 
 
 # Times

@@ -155,11 +155,11 @@ def test_a_part_of_a_turn_scatters_as_parts_of_the_realisations_do(busy, slip):
     shares = []
     for pair in (line_pair(lines, number) for number in range(study.realisations)):
         for begin in (0, half):
-            begun = [
+            begun = tuple(
                 np.roll(line, -int(np.floor(begin * ratio + 0.5)))
                 for line, ratio in zip(pair, ratios, strict=True)
-            ]
-            counts = scan_statistics(*begun, ratios, half, *points, factor)
+            )
+            counts = scan_statistics(begun, ratios, half, *points, factor)
             shares.append(counts[:, 1] / half)
     expected = np.var(shares, axis=0, ddof=1) / model[PROBABILITY].var("realisation", ddof=1)
     np.testing.assert_allclose(model["scatter_ratio"], expected, rtol=1e-9)

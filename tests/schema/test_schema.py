@@ -1,4 +1,4 @@
-"""The schema: labels are written last, and every departure from it is refused by name."""
+"""The tables of all files are complete, and every departure from them is refused by name."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.schema import ATTRIBUTES, COORDINATES, FILES, check, label
+from lube.schema.tables import read_table
 
 VARIABLES = [(kind, name) for kind in FILES for name in FILES[kind]]
 SIZE = 2
@@ -55,14 +56,28 @@ def test_label_writes_what_check_asks_for_in_place_of_other_attributes():
             assert untidy[name].attrs["units"] == "furlong"
 
 
-def test_every_variable_is_described():
-    for row in [*COORDINATES.values(), *(FILES[kind][name] for kind, name in VARIABLES)]:
-        assert row.long_name
-        assert row.kind in "fibU"
-        assert (row.units is None) == (row.kind == "U")
-        if "flag_values" in row.attributes:
-            meanings = row.attributes["flag_meanings"].split()
-            assert len(row.attributes["flag_values"]) == len(meanings)
+CONTENTS = {
+    *("coordinate", "modelResult", "qualityInformation"),
+    *("auxiliaryInformation", "referenceInformation", "record"),
+}
+
+
+def test_the_table_describes_each_variable_of_each_file_once():
+    rows = read_table("variables.csv")
+    named = [(file, row["name"]) for row in rows for file in row["files"].split()]
+    assert len(set(named)) == len(named)
+    assert {file for file, _ in named} == {"any", *FILES}
+    for row in rows:
+        assert row["long_name"]
+        assert row["content"] in CONTENTS
+        assert (row["units"] == "") == (row["type"] == "text")
+
+
+def test_the_values_of_a_flag_count_from_zero():
+    flag = FILES["film"]["in_validity_range"].attributes
+    assert flag["flag_meanings"] == "outside inside"
+    assert flag["flag_values"].dtype == np.int8
+    np.testing.assert_array_equal(flag["flag_values"], [0, 1])
 
 
 def test_the_cell_methods_of_a_mean_name_what_it_is_over():

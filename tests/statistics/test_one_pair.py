@@ -84,7 +84,7 @@ def test_drift_makes_the_turns_a_first_order_series():
 def test_equal_rollers_in_rolling_repeat_whatever_persists():
     for persistent in (0.0, 0.3, 1.0):
         for turns in (0.2, 1.0, 1.5, 3.75, 12.0, 1e6):
-            found = scatter_ratio(turns, ROLLING, POINTS, REACH, persistent)
+            found = scatter_ratio(turns, ROLLING, POINTS, REACH, persistent, 0.0)
             assert found == pytest.approx(repeat_factor(turns))
 
 
@@ -108,7 +108,7 @@ def test_new_alignments_average_out_all_but_what_persists():
     """s^2 (M) = s_inf^2 + (s_1^2 - s_inf^2) / M; either line alone is not quite at whole turns."""
     for case, alignments in zip(CASES[1:3], (4, 10), strict=True):
         for turns in (20, 200):
-            found = scatter_ratio(turns, *case, REACH, persistent=0.2)
+            found = scatter_ratio(turns, *case, REACH, 0.2, 0.0)
             assert found == pytest.approx(0.2 + 0.8 / alignments, rel=0.03)
 
 

@@ -137,7 +137,7 @@ def test_intervals_cover_the_mean_of_real_lines(make_spec, film):
     shares = []
     for realisation in range(1600):
         pair = draw_realisation(spec, 5, realisation)
-        counts = strip_statistics(*pair, (1.0, 1.0), 100_000, films, half_windows, factor)
+        counts = strip_statistics(pair, (1.0, 1.0), 100_000, films, half_windows, factor)
         shares.append(counts[:, :2] / 1e5)
     windows = 1e5 * spec.spacing / (2.0 * half_width + 2.0 * np.pi / spec.q_min)
     for column in np.array(shares).reshape(1600, -1).T:

@@ -9,18 +9,17 @@ import copy
 import json
 import math
 from collections import Counter
-from functools import reduce
+from functools import partial, reduce
 from operator import getitem
 
-import netCDF4
-import numpy as np
 import pytest
+import written_recordings
 import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from nptdms import ChannelObject, TdmsWriter
 from refusals import attempt, check_line, in_time
 from studies import CONFIG, SMOKE
+from written_recordings import write_csv, write_netcdf, write_tdms
 
 from lube.errors import LubeError
 from lube.recordings.manifest import read_manifest
@@ -45,12 +44,8 @@ def fuzz(mistakes, examples, check, path):
     """Check a file with so many contents, of which some must be read and some refused."""
     tally = Counter()
 
-    @settings(
-        max_examples=examples,
-        derandomize=examples == FEW,
-        database=None,
-        suppress_health_check=list(HealthCheck),
-    )
+    @settings(max_examples=examples, derandomize=examples == FEW, database=None)
+    @settings(suppress_health_check=list(HealthCheck))
     @given(mistakes)
     def run(content):
         path.write_bytes(content)
@@ -233,36 +228,17 @@ def test_a_mistaken_file_is_read_or_refused_in_one_line(tmp_path, examples, name
 
 # Measured records
 
-SAMPLES = 400
-
-
-def netcdf_bytes(folder):
-    path = folder / "whole.nc"
-    with netCDF4.Dataset(path, "w") as file:
-        file.createDimension("time", SAMPLES)
-        variable = file.createVariable("voltage", "f8", ("time",), fletcher32=True, zlib=True)
-        variable.setncatts({"units": "mV", "sampling_interval": "10 us"})
-        variable[:] = np.sin(np.arange(SAMPLES))
-    return path.read_bytes()
-
-
-def tdms_bytes(folder):
-    path = folder / "whole.tdms"
-    attributes = {"wf_increment": 1e-5, "unit_string": "V"}
-    with TdmsWriter(path) as file:
-        for part in np.array_split(np.sin(np.arange(SAMPLES)), 2):
-            file.write_segment([ChannelObject("rig", "U", part, attributes)])
-    return path.read_bytes()
-
-
-def csv_bytes(_):
-    rows = "".join(f"{1e-5 * n:.5f},{math.sin(n):.6f}\n" for n in range(SAMPLES))
-    return f"# rig\ntime [s],voltage [V]\n{rows}".encode()
+TIMES, VOLTS = written_recordings.TIMES[:400], written_recordings.VOLTS[:400]
+WRITERS = {
+    "csv": partial(write_csv, columns=[TIMES, VOLTS], header="time [s],voltage [V]"),
+    "nc": partial(write_netcdf, values=VOLTS, times=None, sampling_interval="20 us"),
+    "tdms": partial(write_tdms, values=VOLTS, segments=2, wf_increment=2e-5, unit_string="V"),
+}
 
 
 @cases
-@pytest.mark.parametrize("whole", [csv_bytes, netcdf_bytes, tdms_bytes])
-def test_a_spoilt_record_is_read_or_refused_in_one_line(tmp_path, examples, whole):
-    suffix = {csv_bytes: "csv", netcdf_bytes: "nc", tdms_bytes: "tdms"}[whole]
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_spoilt_record_is_read_or_refused_in_one_line(tmp_path, examples, kind):
     check = is_read(lambda path: sum(piece.size for piece in open_recording(path).pieces()))
-    fuzz(spoilt([whole(tmp_path)]), examples, check, tmp_path / f"run.{suffix}")
+    whole = WRITERS[kind](tmp_path / f"whole.{kind}").read_bytes()
+    fuzz(spoilt([whole]), examples, check, tmp_path / f"run.{kind}")

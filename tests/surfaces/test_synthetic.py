@@ -234,7 +234,7 @@ def rice_rate(spec, film):
 def count_runs(line, film):
     starts, stops = np.zeros(1, np.int64), np.full(1, line.size)
     capacity = line.size // 2 + 1
-    return find_runs(line, film, starts, stops, 1, *np.empty((2, capacity), np.int64))
+    return find_runs(line, film, (starts, stops), 1, tuple(np.empty((2, capacity), np.int64)))
 
 
 def test_segments_are_as_many_as_theory_and_their_points_too(composites):

@@ -75,6 +75,10 @@ def test_a_module_is_a_source_of_the_scripts_that_use_it():
     assert "figure" in users("workflow/notebooks")
 
 
+def test_the_tables_of_the_schema_are_sources_of_what_saves_a_dataset():
+    assert {"lube/schema/files.csv", "lube/schema/variables.csv"} <= set(script_sources("film"))
+
+
 def test_what_every_job_imports_is_a_source_of_all():
     for name in SCRIPTS:
         assert "lube/workflow/jobs.py" in script_sources(name)

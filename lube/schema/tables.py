@@ -1,0 +1,153 @@
+"""The variables of every file, read from the two tables beside this module.
+
+``variables.csv`` has one row per variable, in the order of the file. Its columns:
+
+=============  ==================================================================================
+files          files that hold the variable, separated by spaces; ``any`` for a coordinate that
+               means the same in every file that has it
+name           name of the variable
+dims           its dimensions, in order; none for a scalar
+units          unit in UDUNITS notation, ``1`` for a pure number or a flag, none for text
+type           ``float``, ``integer``, ``boolean`` (stored as int8) or ``text``
+content        ACDD's ``coverage_content_type``; ``record`` stands for ``physicalMeasurement`` if
+               the records are measured and ``modelResult`` if they are simulated
+cell_methods   CF attribute: what a mean is over
+flag_meanings  CF attribute: the meanings of the values 0, 1, ...
+long_name      what the variable is, in words that suit an axis
+comment        CF attribute
+=============  ==================================================================================
+
+``files.csv`` has one row per file: the global attributes that it must have, separated by spaces,
+and a summary of its content. A file without a summary is deleted at the end of a run.
+"""
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+_KINDS = {"float": "f", "integer": "i", "boolean": "b", "text": "U"}
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable or coordinate of a file.
+
+    Attributes
+    ----------
+    dims : tuple of str
+        Its dimensions, in order.
+    units : str or None
+        Unit in UDUNITS notation, ``"1"`` for a pure number or a flag, None for text.
+    long_name : str
+        What it is, in words that suit an axis.
+    kind : str
+        NumPy's letter of its type: ``f`` float, ``i`` integer, ``b`` boolean (stored as int8),
+        ``U`` text.
+    content : str
+        As in the table.
+    attributes : dict
+        Further CF attributes.
+    """
+
+    dims: tuple[str, ...]
+    units: str | None
+    long_name: str
+    kind: str
+    content: str
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+
+
+def read_table(name: str) -> list[dict[str, str]]:
+    """Read a table of the schema.
+
+    Parameters
+    ----------
+    name : str
+        File name, such as ``variables.csv``.
+
+    Returns
+    -------
+    list of dict
+        Its rows, each from column to text.
+    """
+    # Spreadsheets may begin a file with a byte order mark.
+    with open(Path(__file__).with_name(name), encoding="utf-8-sig", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def _variable(row):
+    attributes = {}
+    if meanings := row["flag_meanings"]:
+        attributes["flag_values"] = np.arange(len(meanings.split()), dtype="int8")
+    for name in ("flag_meanings", "cell_methods", "comment"):
+        if row[name]:
+            attributes[name] = row[name]
+    return Variable(
+        tuple(row["dims"].split()),
+        row["units"] or None,
+        row["long_name"],
+        _KINDS[row["type"]],
+        row["content"],
+        attributes,
+    )
+
+
+def _variables_by_file(rows):
+    found = {}
+    for row in rows:
+        for file in row["files"].split():
+            found.setdefault(file, {})[row["name"]] = _variable(row)
+    return found
+
+
+_FILES = read_table("files.csv")
+_VARIABLES = _variables_by_file(read_table("variables.csv"))
+
+COORDINATES = _VARIABLES["any"]
+"""Coordinates that mean the same in every file that has them, by name."""
+
+FILES = {row["file"]: _VARIABLES[row["file"]] for row in _FILES}
+"""Required variables of each kind of file, by the kind's name."""
+
+SUMMARIES = {row["file"]: row["summary"] for row in _FILES if row["summary"]}
+"""What each kind of file that is kept contains, in a sentence or two."""
+
+ATTRIBUTES = {row["file"]: tuple(row["attributes"].split()) for row in _FILES if row["attributes"]}
+"""Required global attributes, by kind of file."""
+
+OPERATING_DIMS = FILES["film"]["film_thickness"].dims
+"""Dimensions of a variable at the operating points of the grid, by every film formula."""
+
+CONTACT_DIMS = FILES["contact"]["breakthrough_probability_mean"].dims
+"""Dimensions of the contact model's results."""
+
+MASTER_DIMS = FILES["master"]["breakthrough_probability_mean"].dims
+"""Dimensions of the master map."""
+
+LAYER_DIMS = FILES["master"]["layer_breakthrough_probability"].dims[1:]
+"""Dimensions of the master map for weaker and stronger boundary layers, without `realisation`."""
+
+POINT_DIMS = FILES["film"]["moes_load"].dims
+"""Dimensions of a variable at the operating points that no film formula changes."""
+
+EXPERIMENT_DIMS = ("slide_to_roll_ratio", *POINT_DIMS)
+"""Operating variables of an experiment."""
+
+AT_RECORDS = (
+    *("force", "speed", "temperature", "slide_to_roll_ratio", "lubricant"),
+    *("force_level", "speed_level", "temperature_level", "pair", "duration"),
+)
+"""Measured conditions of each record, and the study's levels assigned to it."""
+
+LIMITS = ("", "_lower", "_upper")
+"""Suffixes of the variables that hold an estimate and the limits of its 95 % interval."""
+
+ORIGINS = ("measured", "simulated")
+"""Possible origins of the records."""
+
+REGIMES = tuple(FILES["film"]["regime"].attributes["flag_meanings"].split())
+"""Regimes of lubrication, in the order of their flags."""
