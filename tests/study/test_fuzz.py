@@ -44,8 +44,12 @@ def fuzz(mistakes, examples, check, path):
     """Check a file with so many contents, of which some must be read and some refused."""
     tally = Counter()
 
-    @settings(max_examples=examples, derandomize=examples == FEW, database=None)
-    @settings(suppress_health_check=list(HealthCheck))
+    @settings(
+        max_examples=examples,
+        derandomize=examples == FEW,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
     @given(mistakes)
     def run(content):
         path.write_bytes(content)
