@@ -6,6 +6,7 @@ import numpy as np
 
 Array = np.ndarray
 File = str | Path
+"""Path of a file or folder."""
 Pair = tuple[Array, Array]
 Points = tuple[int, int]
 Ratios = tuple[float, float]
