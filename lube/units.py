@@ -67,14 +67,12 @@ def parse_number(value: object) -> float:
     >>> parse_number("600/7")
     85.71428571428571
     """
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise LubeError(f"got {shown(value)}, need a number")
     try:
         numerator, _, denominator = str(value).partition("/")
         number = float(numerator) / float(denominator) if denominator else float(value)
-    except (ValueError, ZeroDivisionError, OverflowError):
-        raise LubeError(f"got {shown(value)}, need a number") from None
-    if not math.isfinite(number):
+    except (TypeError, ValueError, ZeroDivisionError, OverflowError):
+        number = math.nan
+    if isinstance(value, bool | bytes) or not math.isfinite(number):
         raise LubeError(f"got {shown(value)}, need a finite number")
     return number
 
@@ -177,9 +175,7 @@ def electrical_quantity(units: object) -> str:
         with contextlib.suppress(LubeError):
             convert(1.0, usual_spelling(units), target)
             return quantity
-    raise LubeError(
-        f"got the unit {shown(units)}, need one of voltage or resistance, such as 'mV' or 'kohm'"
-    )
+    raise LubeError(f"got the unit {shown(units)}, need one of voltage or resistance")
 
 
 def parse_quantity(value: object, target: str) -> float:

@@ -48,28 +48,21 @@ def test_a_quantity_is_converted_and_back(number, pair):
     converted = parse_quantity(f"{number!r} {units}", target)
     assert converted == pytest.approx(number * factor, rel=1e-12)
     assert convert(converted, target, units) == pytest.approx(number, rel=1e-12)
+    array = convert(np.array([1.0, number]), units, target)
+    np.testing.assert_allclose(array, [factor, converted], rtol=1e-12)
 
 
 @given(st.integers(-1000, 1000), st.integers(1, 1000))
 def test_a_fraction_is_the_nearest_float(numerator, denominator):
     assert parse_number(f"{numerator}/{denominator}") == numerator / denominator
     assert parse_quantity(f"{numerator}/{denominator} rpm", "rpm") == numerator / denominator
-
-
-def test_a_fraction_may_precede_another_unit():
     assert parse_quantity("1/3 km", "m") == pytest.approx(1000.0 / 3.0, rel=1e-15)
 
 
 def test_temperatures_are_points_on_a_scale_in_degrees_and_differences_in_kelvin():
     for text, celsius in [("40 degC", 40), ("313.15 K", 40), ("104 degF", 40), ("-40 degF", -40)]:
         assert parse_quantity(text, "degC") == pytest.approx(celsius, abs=1e-9)
-    for text, kelvin in [
-        ("1 degC", 1),
-        ("1 K", 1),
-        ("1 delta_degC", 1),
-        ("1 °C", 1),
-        ("9 degF", 5),
-    ]:
+    for text, kelvin in [("1 degC", 1), ("1 K", 1), ("1 delta_degC", 1), ("9 degF", 5)]:
         assert parse_quantity(text, "K") == pytest.approx(kelvin, rel=1e-12)
     assert "'delta_degC', need a unit" in refusal(parse_quantity, "1 delta_degC", "degC")
 
@@ -97,9 +90,8 @@ def test_a_unit_of_voltage_or_resistance_is_known_in_any_usual_spelling():
     for units in ("kOhm", "M\u2126", "MΩ"):
         assert electrical_quantity(units) == "resistance"
     for units in ("N", "wumpus", "dBm", "", "V/A/A", 7, None):
-        assert refusal(electrical_quantity, units) == (
-            f"got the unit {units!r}, need one of voltage or resistance, such as 'mV' or 'kohm'"
-        )
+        needed = f"got the unit {units!r}, need one of voltage or resistance"
+        assert refusal(electrical_quantity, units) == needed
 
 
 def test_a_voltage_or_resistance_says_which_it_is():
@@ -110,17 +102,11 @@ def test_a_voltage_or_resistance_says_which_it_is():
         assert "need" in refusal(parse_electrical, value)
 
 
-def test_an_array_is_converted_like_each_of_its_numbers():
-    converted = convert(np.array([1.0, 40.0]), "mm", "m")
-    np.testing.assert_allclose(converted, [1e-3, 40e-3], rtol=1e-15)
-
-
 def test_what_is_no_number_with_a_unit_is_refused_with_the_unit_that_is_needed():
     for value in [50, 50.0, True, None, [1], {"a": 1}, "", "50", "mm", "fifty mm"]:
         needed = f"got {value!r}, need a number with its unit, such as '1 m'"
         assert refusal(parse_quantity, value, "m") == needed
-    for value in ["nan mm", "inf mm", "1e999 mm"]:
-        assert "need a" in refusal(parse_quantity, value, "m")
+    assert refusal(parse_quantity, "1e999 mm", "m") == "got '1e999', need a finite number"
 
 
 def test_a_unit_of_another_dimension_or_none_is_refused_by_name():
@@ -135,32 +121,32 @@ def test_a_unit_of_another_dimension_or_none_is_refused_by_name():
 
 
 def test_what_is_no_finite_number_is_refused():
-    for value in [True, None, [1], "one", "1/0", "1/", "1/2/3", "1 m", ""]:
-        assert refusal(parse_number, value) == f"got {value!r}, need a number"
-    for value in ["nan", "inf", math.nan, -math.inf, "1e999"]:
+    for value in [
+        True,
+        None,
+        [1],
+        b"1",
+        "one",
+        "1/0",
+        "1/",
+        "1/2/3",
+        "1 m",
+        "",
+        "nan",
+        math.inf,
+        "1e999",
+    ]:
         assert refusal(parse_number, value) == f"got {value!r}, need a finite number"
 
 
 def test_a_number_is_printed_with_a_unit_that_is_easily_read():
     for value, unit, printed in [
-        (0.05, "m", "50 mm"),
-        (2e-7, "m", "0.2 µm"),
-        (5e-9, "m", "5 nm"),
-        (1e-12, "m", "1 pm"),
-        (4.2e-4, "m", "420 µm"),
-        (2.1e11, "Pa", "210 GPa"),
-        (100.0, "ohm", "100 Ω"),
-        (1e3, "ohm", "1 kΩ"),
-        (1.9999999999999998e-05, "V", "20 µV"),
-        (-0.05, "V", "-50 mV"),
-        (0.0, "s", "0 s"),
-        (1600.0, "N", "1600 N"),
-        (600 / 7, "rpm", "85.7143 r/min"),
-        (40.0, "degC", "40 °C"),
-        (3.35e-4, "m^2/s", "335 mm²/s"),
-        (1.6e-8, "1/Pa", "16 1/GPa"),
-        (0.16, "W/m/K", "0.16 W/m/K"),
-        (0.7, "", "0.7"),
+        *((0.05, "m", "50 mm"), (2e-7, "m", "0.2 µm"), (5e-9, "m", "5 nm"), (1e-12, "m", "1 pm")),
+        *((4.2e-4, "m", "420 µm"), (2.1e11, "Pa", "210 GPa"), (100.0, "ohm", "100 Ω")),
+        *((1e3, "ohm", "1 kΩ"), (1.9999999999999998e-05, "V", "20 µV"), (-0.05, "V", "-50 mV")),
+        *((0.0, "s", "0 s"), (1600.0, "N", "1600 N"), (600 / 7, "rpm", "85.7143 r/min")),
+        *((40.0, "degC", "40 °C"), (3.35e-4, "m^2/s", "335 mm²/s"), (0.16, "W/m/K", "0.16 W/m/K")),
+        *((1.6e-8, "1/Pa", "16 1/GPa"), (0.7, "", "0.7")),
     ]:
         assert with_unit(value, unit) == printed
 

@@ -9,25 +9,18 @@ import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import Field, StringConstraints, model_validator
+from pydantic import Field, model_validator
 
 from lube.errors import DataError, LubeError, shown
 from lube.recordings.signals import header_cell
 from lube.schema import ORIGINS
-from lube.study.field_types import (
-    StrictModel,
-    checked_text,
-    pure_number,
-    quantity,
-    validate,
-)
-from lube.study.small_csv import delimiter_of, numbered_lines, split_cells
+from lube.study.field_types import StrictModel, Text, checked_text, pure_number, quantity, validate
+from lube.study.small_csv import read_cells
 from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
 
-Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 Share = pure_number(least=0.0, most=1.0)
 
 _UNITS = (
@@ -97,8 +90,7 @@ class _Row(StrictModel):
         None, description="a ratio of the study; else 0, or the study's first if 0 is none of them"
     )
     pair: Text | None = Field(
-        None,
-        description="label of the measured pair of rollers; rows without it are of one pair",
+        None, description="label of the measured pair of rollers; rows without it are of one pair"
     )
     origin: Literal[ORIGINS] = Field(
         ORIGINS[0], description="where the values come from, the same in all rows"
@@ -213,14 +205,10 @@ def _yaml_rows(path):
 
 def _csv_rows(path):
     """Position and content of each row; for a row of the wrong length, the error."""
-    lines = numbered_lines(path, DataError)
-    if not lines:
-        raise DataError(f"{path}: empty, need a line of column names and rows of values")
-    (header_line, header), *rows = lines
-    delimiter = delimiter_of(header)
-    columns = _columns(split_cells(header, delimiter), f"{path}: line {header_line}")
-    for number, text in rows:
-        cells, where = split_cells(text, delimiter), f"{path.name}: line {number}"
+    (header_line, header), *rows = read_cells(path, DataError)
+    columns = _columns(header, f"{path}: line {header_line}")
+    for number, cells in rows:
+        where = f"{path.name}: line {number}"
         if len(cells) != len(columns):
             yield where, DataError(f"{where}: got {len(cells)} values, need {len(columns)}")
             continue

@@ -4,35 +4,37 @@ All three are files turned into frozen pydantic models: a strict base model, fie
 numbers but are written with their units, and the one line that reports a refused value.
 """
 
+import ast
 import difflib
+import inspect
 import operator
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import pairwise
-from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    StringConstraints,
-    ValidationError,
-    WithJsonSchema,
-)
+from pydantic import BaseModel, BeforeValidator, StringConstraints, ValidationError, WithJsonSchema
 
 from lube.errors import LubeError, shown
+from lube.types import File
 from lube.units import convert, parse_number, parse_quantity
 
-LEAST_MAGNITUDE, MOST_MAGNITUDE = 1e-30, 1e30
-"""Allowed magnitude of any SI input other than 0, so that no power of one overflows."""
+
+def _with_descriptions(schema, model):
+    """Add the text under each field of a model to its JSON schema.
+
+    Pydantic's own `use_attribute_docstrings` reads the source at every import, which is slow.
+    """
+    for base in model.__mro__[: model.__mro__.index(StrictModel)]:
+        for field, below in pairwise(ast.parse(inspect.getsource(base)).body[0].body):
+            match field, below:
+                case ast.AnnAssign(), ast.Expr(ast.Constant(str(text))):
+                    schema["properties"][field.target.id]["description"] = " ".join(text.split())
 
 
-class StrictModel(BaseModel):
-    """Frozen model that refuses unknown keys."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
+class StrictModel(BaseModel, extra="forbid", frozen=True, json_schema_extra=_with_descriptions):
+    """Frozen model that refuses unknown keys; the text under a field describes it."""
 
 
 @contextmanager
@@ -54,7 +56,7 @@ def collected(key: str = "", hint: str = "") -> Iterator[None]:
     try:
         yield
     except LubeError as error:
-        raise ValueError(f"{key}: {error}{hint}" if key else f"{error}{hint}") from None
+        raise ValueError(f"{key}: {error}{hint}".removeprefix(": ")) from None
 
 
 _LIMITS = {
@@ -73,6 +75,8 @@ def _in_words(limits):
 
 def bounded(number: float, units: str | None, **limits: float) -> float:
     """Return the number if it lies within its limits.
+
+    Its magnitude, unless it is 0, must be from 1e-30 to 1e30, so that no power of it overflows.
 
     Parameters
     ----------
@@ -99,52 +103,18 @@ def bounded(number: float, units: str | None, **limits: float) -> float:
     Traceback (most recent call last):
     lube.errors.LubeError: got 3, need a value above 0 and at most 2 mm
     """
-    if not all(_LIMITS[name][0](number, limit) for name, limit in limits.items()):
-        raise LubeError(f"got {number:g}, need a value {_in_words(limits)} {units or ''}".rstrip())
-    return number
+    within = all(_LIMITS[name][0](number, limit) for name, limit in limits.items())
+    if within and (number == 0.0 or 1e-30 <= abs(number) <= 1e30):
+        return number
+    needed = f"value {_in_words(limits)}" if not within else "magnitude from 1e-30 to 1e+30"
+    raise LubeError(f"got {number:g}, need a {needed} {units or ''}".rstrip())
 
 
-def _checked(number, units, limits):
-    """Check the limits of a number and, unless it is 0, its magnitude."""
-    bounded(number, units, **limits)
-    if number != 0.0 and not LEAST_MAGNITUDE <= abs(number) <= MOST_MAGNITUDE:
-        unit = f" {units}" if units else ""
-        raise LubeError(
-            f"got {number:g}{unit}, need a magnitude from {LEAST_MAGNITUDE:g} to {MOST_MAGNITUDE:g}"
-        )
-    return number
-
-
-def sensible_quantity(value: object, units: str, **limits: float) -> float:
-    """Read a number written with its unit, within limits and of an allowed magnitude.
-
-    Parameters
-    ----------
-    value : str
-        A number and its unit.
-    units : str
-        Unit of the returned number.
-    **limits : float
-        As in `bounded`, in `units`.
-
-    Returns
-    -------
-    float
-        The value in `units`.
-
-    Raises
-    ------
-    LubeError
-        If it is no such quantity, or outside its limits.
-    """
-    return _checked(parse_quantity(value, units), units, limits)
-
-
-def _field(kept, parse, kind, limits=None, shape="string"):
+def _field(kept, parse, kind, limits=None, shape="string", hint=""):
     """Field type: what is kept, its parser, and its JSON schema for the table of keys."""
     described = f"{kind}, {_in_words(limits)}" if limits else kind
     schema = {"type": shape, "format": described}
-    return Annotated[kept, BeforeValidator(collected()(parse)), WithJsonSchema(schema)]
+    return Annotated[kept, BeforeValidator(collected(hint=hint)(parse)), WithJsonSchema(schema)]
 
 
 def quantity(units: str, **limits: float) -> Any:
@@ -164,7 +134,7 @@ def quantity(units: str, **limits: float) -> Any:
     """
 
     def parse(value):
-        return sensible_quantity(value, units, **limits)
+        return bounded(parse_quantity(value, units), units, **limits)
 
     return _field(float, parse, f"quantity in {units}", limits)
 
@@ -184,7 +154,7 @@ def pure_number(**limits: float) -> Any:
     """
 
     def parse(value):
-        return _checked(parse_number(value), None, limits)
+        return bounded(parse_number(value), None, **limits)
 
     return _field(float, parse, "number", limits, "number")
 
@@ -212,6 +182,28 @@ def checked_text(check: Callable[[str], object], kind: str) -> Any:
     return _field(str, parse, kind)
 
 
+def length_or_words(accepts: Callable[..., bool], words: str) -> Any:
+    """Make a field type for a length in whose place words may stand, which are kept as written.
+
+    Parameters
+    ----------
+    accepts : callable
+        Whether what is written are such words; may raise LubeError.
+    words : str
+        What they are, for messages and for the JSON schema.
+
+    Returns
+    -------
+    type
+        An annotated float, m, or str.
+    """
+
+    def parse(value):
+        return value if accepts(value) else bounded(parse_quantity(value, "m"), "m", above=0.0)
+
+    return _field(float | str, parse, f"quantity in m, or {words}", hint=f", or {words}")
+
+
 def levels(units: str | None, **limits: float) -> Any:
     """Make a field type for the levels of an operating variable.
 
@@ -231,7 +223,7 @@ def levels(units: str | None, **limits: float) -> Any:
     """
 
     def parse(value):
-        numbers = tuple(_checked(number, units, limits) for number in _level_list(value, units))
+        numbers = tuple(bounded(one, units, **limits) for one in _level_list(value, units))
         for lower, upper in pairwise(numbers):
             if upper <= lower:
                 raise LubeError(f"got {upper:g} after {lower:g}, need rising levels, each once")
@@ -244,7 +236,7 @@ def levels(units: str | None, **limits: float) -> Any:
 def _level_list(value, target):
     match value:
         case [_, *_] if target is None:
-            return [parse_number(one) for one in value]
+            return map(parse_number, value)
         case {"values": [_, *_] as values, "units": str(units), **rest} if target and not rest:
             return [float(convert(parse_number(one), units, target)) for one in values]
     needed = f"values and their unit, such as {{values: [1, 2], units: {target}}}"
@@ -278,17 +270,15 @@ def each_once(values: tuple) -> tuple:
 Slug = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")]
 """Name of a folder and label in files: lower-case letters, digits, ``-`` and ``_``."""
 
+Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 Length = quantity("m", above=0.0)
 Pressure = quantity("Pa", above=0.0)
-Resistivity = quantity("ohm*m", above=0.0)
 
 
 Model = TypeVar("Model", bound=StrictModel)
 
 
-def validate(
-    model: type[Model], content: dict, where: str | Path, error_type: type[LubeError]
-) -> Model:
+def validate(model: type[Model], content: dict, where: File, error_type: type) -> Model:
     """Build a model from a mapping, or report the first mistake in one line.
 
     Parameters
@@ -341,11 +331,13 @@ def _in_one_line(mistake, model):
     """Say in one line which key is mistaken, what came and what is needed."""
     key, kind = ".".join(map(str, mistake["loc"])), mistake["type"]
     if kind in _UNKNOWN:
-        return f"{key}: unknown key, {_right_key(mistake['loc'], model)}"
+        # For YAML {name: Somebody, Else} has two keys, the second without a value.
+        hint = "; a text with a comma needs quotes" if mistake["input"] is None else ""
+        return f"{key}: unknown key, {_right_key(mistake['loc'], model)}{hint}"
     if kind == "missing":
         return f"{key}: missing, and it has no default"
     if kind == "value_error":
-        return f"{key}: {mistake['ctx']['error']}" if key else str(mistake["ctx"]["error"])
+        return f"{key}: {mistake['ctx']['error']}".removeprefix(": ")
     needed = mistake["msg"].replace("Input should be", "need")
     needed = _NEEDED.get(kind, needed).format(**mistake.get("ctx", {}))
     return f"{key}: got {shown(mistake['input'])}, {needed}"

@@ -9,40 +9,39 @@ are computed in `lube.stages.lubricant`.
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import Field, PrivateAttr, StringConstraints, model_validator
+from pydantic import PrivateAttr, model_validator
 
 from lube.errors import RangeError, RecordError, shown
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_range
 from lube.physics.viscosity import GOLD_BASES, VISCOSITY_LAWS, ZERO_CELSIUS
-from lube.study.field_types import Slug, StrictModel, quantity, validate
-from lube.study.small_csv import HEADER_CELL, delimiter_of, numbered_lines, split_cells
+from lube.study.field_types import Slug, StrictModel, Text, quantity, validate
+from lube.study.small_csv import HEADER_CELL, read_cells
 from lube.study.text_files import read_yaml
+from lube.types import File
 
 SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
 
 # Temperatures converted from K or degF to degC may miss a limit by rounding.
 _ROUNDING = 1e-6
 
-Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 OilTemperature = quantity("degC", above=-ZERO_CELSIUS, most=1000.0)
-KinematicViscosity = quantity("m^2/s", above=0.0)
-DynamicViscosity = quantity("Pa*s", above=0.0)
 
 
 class Sourced(StrictModel):
     """A section of a lubricant record, which must name the source of its values."""
 
-    source: Text = Field(description="where the values come from, or 'assumed: ...' and why")
+    source: Text
+    """where the values come from, or 'assumed: ...' and why"""
 
 
 class ViscosityPoint(StrictModel):
     """Viscosity at one temperature, kinematic or dynamic."""
 
     temperature: OilTemperature
-    kinematic_viscosity: KinematicViscosity | None = None
-    dynamic_viscosity: DynamicViscosity | None = None
+    kinematic_viscosity: quantity("m^2/s", above=0.0) | None = None
+    dynamic_viscosity: quantity("Pa*s", above=0.0) | None = None
 
     @model_validator(mode="after")
     def _check_one_viscosity(self):
@@ -54,11 +53,12 @@ class ViscosityPoint(StrictModel):
 class Viscosity(Sourced):
     """Where the viscosity comes from: points, a CSV file or a CoolProp fluid."""
 
-    points: tuple[ViscosityPoint, ...] | None = Field(
-        None, description="viscosities at two temperatures or more; from the CSV file, if any"
-    )
-    csv: Text | None = Field(None, description="CSV file in the record's folder")
-    coolprop_fluid: Text | None = Field(None, description="CoolProp's name of a pure fluid")
+    points: tuple[ViscosityPoint, ...] | None = None
+    """viscosities at two temperatures or more; from the CSV file, if any"""
+    csv: Text | None = None
+    """CSV file in the record's folder"""
+    coolprop_fluid: Text | None = None
+    """CoolProp's name of a pure fluid"""
 
     @model_validator(mode="after")
     def _check_one_way(self):
@@ -72,34 +72,36 @@ class Viscosity(Sourced):
 class Density(Sourced):
     """Density falling linearly with temperature about 15 degC."""
 
-    at_15_degC: quantity("kg/m^3", above=0.0) = Field(description="density at 15 degC")
-    thermal_coefficient: quantity("1/K", least=0.0, below=2e-3) = Field(
-        description="relative fall of the density per kelvin"
-    )
+    at_15_degC: quantity("kg/m^3", above=0.0)
+    """density at 15 degC"""
+    thermal_coefficient: quantity("1/K", least=0.0, below=2e-3)
+    """relative fall of the density per kelvin"""
+
+
+_DEFINITIONS = {
+    "slope-at-atmospheric": "slope of ln viscosity at atmospheric pressure",
+    "secant": "secant of ln viscosity from atmospheric pressure to {pressure:g} MPa",
+    "reciprocal-asymptotic": "reciprocal asymptotic isoviscous pressure",
+}
 
 
 class PressureViscosity(Sourced):
     """Pressure-viscosity coefficient: Gold's form, a measured value, or CoolProp's."""
 
-    gold_base: Literal[tuple(GOLD_BASES)] | None = Field(
-        None, description="base oil, for Gold's form alpha = s nu^t"
-    )
-    value: quantity("1/Pa", above=0.0) | None = Field(
-        None, description="measured coefficient, the same at all temperatures"
-    )
-    definition: Literal["slope-at-atmospheric", "secant", "reciprocal-asymptotic"] | None = Field(
-        None, description="definition of the measured, or CoolProp's, coefficient"
-    )
-    pressure: quantity("Pa", above=ATMOSPHERIC_PRESSURE) | None = Field(
-        None, description="pressure to which the secant runs"
-    )
+    gold_base: Literal[tuple(GOLD_BASES)] | None = None
+    """base oil, for Gold's form alpha = s nu^t"""
+    value: quantity("1/Pa", above=0.0) | None = None
+    """measured coefficient, the same at all temperatures"""
+    definition: Literal[tuple(_DEFINITIONS)] | None = None
+    """definition of the measured, or CoolProp's, coefficient"""
+    pressure: quantity("Pa", above=ATMOSPHERIC_PRESSURE) | None = None
+    """pressure to which the secant runs"""
 
     @model_validator(mode="after")
     def _check_definition(self):
-        if (self.gold_base is None) == (self.definition is None):
-            raise ValueError("need either gold_base, or definition")
-        if self.gold_base is not None and self.value is not None:
-            raise ValueError("need either gold_base or value, got both")
+        gold = self.gold_base is not None
+        if gold == (self.definition is not None) or (gold and self.value is not None):
+            raise ValueError("need either gold_base alone, or definition")
         if (self.pressure is None) == (self.definition == "secant"):
             raise ValueError("pressure: need it with definition 'secant', and only there")
         return self
@@ -110,20 +112,14 @@ class PressureViscosity(Sourced):
         if self.gold_base is not None:
             s, t = GOLD_BASES[self.gold_base]
             return f"Gold's form {s:g} nu^{t:g} 1/GPa, nu in mm2/s ({self.gold_base})"
-        if self.definition == "secant":
-            return (
-                f"secant of ln viscosity from atmospheric pressure to {self.pressure / 1e6:g} MPa"
-            )
-        return {
-            "slope-at-atmospheric": "slope of ln viscosity at atmospheric pressure",
-            "reciprocal-asymptotic": "reciprocal asymptotic isoviscous pressure",
-        }[self.definition]
+        return _DEFINITIONS[self.definition].format(pressure=(self.pressure or 0.0) / 1e6)
 
 
 class ThermalConductivity(Sourced):
     """Thermal conductivity, the same at all temperatures."""
 
-    value: quantity("W/m/K", above=0.0) = Field(description="thermal conductivity")
+    value: quantity("W/m/K", above=0.0)
+    """thermal conductivity"""
 
 
 class TemperatureRange(Sourced):
@@ -135,21 +131,20 @@ class TemperatureRange(Sourced):
     @model_validator(mode="after")
     def _check_order(self):
         if not self.lowest < self.highest:
-            raise ValueError(
-                f"highest: got {self.highest:g} degC, need more than lowest, {self.lowest:g} degC"
-            )
+            raise ValueError(f"got {self.lowest:g} to {self.highest:g} degC, need the lowest first")
         return self
 
 
 class LubricantRecord(StrictModel):
     """A lubricant, in SI units (but temperatures in degC). Read it with `load_record`."""
 
-    name: Slug = Field(description="label of the lubricant in all files")
-    title: Text = Field(description="name of the lubricant in figures")
+    name: Slug
+    """label of the lubricant in all files"""
+    title: Text
+    """name of the lubricant in figures"""
     viscosity: Viscosity
-    viscosity_law: Literal[tuple(VISCOSITY_LAWS)] | None = Field(
-        None, description="law that gives the viscosity between the data; by default astm-d341"
-    )
+    viscosity_law: Literal[tuple(VISCOSITY_LAWS)] | None = None
+    """law that gives the viscosity between the data; by default astm-d341"""
     density: Density | None = None
     pressure_viscosity: PressureViscosity
     thermal_conductivity: ThermalConductivity | None = None
@@ -159,30 +154,23 @@ class LubricantRecord(StrictModel):
 
     @model_validator(mode="after")
     def _check_sections(self):
-        fluid = self.viscosity.coolprop_fluid
+        fluid, alpha = self.viscosity.coolprop_fluid, self.pressure_viscosity
         measured = {
             "density": self.density,
             "thermal_conductivity": self.thermal_conductivity,
-            "pressure_viscosity.gold_base or value": self.pressure_viscosity.gold_base
-            or self.pressure_viscosity.value,
+            "pressure_viscosity.gold_base or value": alpha.gold_base or alpha.value,
         }
         for key, value in measured.items():
             if fluid is None and value is None:
                 raise ValueError(f"{key}: missing, need it unless CoolProp gives it")
+        for key, value in (measured | {"viscosity_law": self.viscosity_law}).items():
             if fluid is not None and value is not None:
                 raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
-        if fluid is not None:
-            self._check_coolprop_only()
-        return self
-
-    def _check_coolprop_only(self):
-        if self.viscosity_law is not None:
-            raise ValueError("viscosity_law: not allowed, CoolProp gives the viscosity")
-        if self.pressure_viscosity.definition == "reciprocal-asymptotic":
+        if fluid is not None and alpha.definition == "reciprocal-asymptotic":
             raise ValueError(
-                "pressure_viscosity.definition: got 'reciprocal-asymptotic', which needs "
-                "viscosities beyond CoolProp's pressures; need slope-at-atmospheric or secant"
+                "pressure_viscosity.definition: 'reciprocal-asymptotic' not allowed with CoolProp"
             )
+        return self
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -192,9 +180,8 @@ class LubricantRecord(StrictModel):
     @property
     def law_used(self) -> str:
         """Source of the viscosity between the data: ``coolprop``, or a key of `VISCOSITY_LAWS`."""
-        if self.viscosity.coolprop_fluid is not None:
-            return "coolprop"
-        return self.viscosity_law or "astm-d341"
+        law = self.viscosity_law or "astm-d341"
+        return law if self.viscosity.coolprop_fluid is None else "coolprop"
 
     @property
     def valid_temperatures(self) -> tuple[float, float]:
@@ -233,7 +220,7 @@ def is_record_path(name: object) -> bool:
     return isinstance(name, str | Path) and Path(name).suffix in (".yaml", ".yml")
 
 
-def load_record(name_or_path: str | Path, folder: str | Path = ".") -> LubricantRecord:
+def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
     """Read and check a lubricant record.
 
     Parameters
@@ -260,15 +247,13 @@ def load_record(name_or_path: str | Path, folder: str | Path = ".") -> Lubricant
     """
     path = _record_path(name_or_path, folder)
     record = validate(LubricantRecord, read_yaml(path, RecordError), path, RecordError)
-    files = (path,)
-    if record.viscosity.csv is not None:
-        data_path = _beside(path, record.viscosity.csv)
-        points = read_viscosity_csv(data_path)
-        viscosity = record.viscosity.model_copy(update={"points": points})
+    viscosity, files = record.viscosity, (path,)
+    if viscosity.csv is not None:
+        files += (_beside(path, viscosity.csv),)
+        viscosity = viscosity.model_copy(update={"points": read_viscosity_csv(files[1])})
         record = record.model_copy(update={"viscosity": viscosity})
-        files = (path, data_path)
-    if record.viscosity.points is not None:
-        _check_points(record.viscosity.points, files[-1])
+    if viscosity.points is not None:
+        _check_points(viscosity.points, files[-1])
     record._files = files
     return record
 
@@ -276,10 +261,10 @@ def load_record(name_or_path: str | Path, folder: str | Path = ".") -> Lubricant
 def _record_path(name_or_path, folder):
     if is_record_path(name_or_path):
         return Path(folder) / name_or_path
-    if name_or_path not in shipped_records():
+    names = shipped_records()
+    if name_or_path not in names:
         raise RecordError(
-            f"lubricant: got {shown(name_or_path)}, need one of "
-            f"{', '.join(shipped_records())}, or the path of a .yaml file"
+            f"got {shown(name_or_path)}, need one of {', '.join(names)}, or a path of a .yaml file"
         )
     return SHIPPED_FOLDER / f"{name_or_path}.yaml"
 
@@ -302,18 +287,17 @@ def _check_points(points, where):
     for kind in ("kinematic_viscosity", "dynamic_viscosity"):
         known = [point for point in points if getattr(point, kind) is not None]
         for cold, hot in pairwise(sorted(known, key=lambda point: point.temperature)):
-            rises = getattr(cold, kind) <= getattr(hot, kind)
-            if rises and cold.temperature < hot.temperature:
+            if cold.temperature < hot.temperature and getattr(cold, kind) <= getattr(hot, kind):
                 raise RecordError(
-                    f"{where}: viscosity: got no less at {hot.temperature:g} degC than at "
-                    f"{cold.temperature:g} degC, need a viscosity that falls with temperature"
+                    f"{where}: viscosity: need less at {hot.temperature:g} degC than at "
+                    f"{cold.temperature:g} degC"
                 )
 
 
 _COLUMNS = "temperature [degC] and kinematic_viscosity [mm^2/s] or dynamic_viscosity [mPa*s]"
 
 
-def read_viscosity_csv(path: str | Path) -> tuple[ViscosityPoint, ...]:
+def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
     """Read measured viscosities against temperature.
 
     The first line names the columns with their units: ``temperature [degC]`` and either
@@ -336,48 +320,31 @@ def read_viscosity_csv(path: str | Path) -> tuple[ViscosityPoint, ...]:
     RecordError
         Which line and column, what came, what is needed.
     """
-    lines = numbered_lines(path, RecordError)
-    if not lines:
-        raise RecordError(f"{path}: empty, need a line of column names and rows of values")
-    (header_line, header), *rows = lines
-    delimiter = delimiter_of(header)
-    columns = _csv_columns(split_cells(header, delimiter), f"{path}: line {header_line}")
-    decimal_comma = delimiter != "," and any("," in text for _, text in rows)
+    (header_line, header), *rows = read_cells(path, RecordError)
+    columns = _csv_columns(header, f"{path}: line {header_line}")
+    decimal_comma = any("," in cell for _, cells in rows for cell in cells)
     points = []
-    for number, text in rows:
+    for number, cells in rows:
         where = f"{path}: line {number}"
-        cells = split_cells(text, delimiter)
         if len(cells) != len(columns):
             raise RecordError(f"{where}: got {len(cells)} values, need {len(columns)}")
-        if decimal_comma:
-            cells = [_with_decimal_point(cell, where) for cell in cells]
-        content = {
-            name: f"{cell} {units}"
-            for (name, units), cell in zip(columns.items(), cells, strict=True)
-        }
+        with_points = [cell for cell in cells if "." in cell]
+        if decimal_comma and with_points:  # which separate thousands, or are mistakes
+            raise RecordError(
+                f"{where}: got {shown(with_points[0])} in a file with decimal commas, need no point"
+            )
+        pairs = zip(columns.items(), cells, strict=True)
+        content = {name: f"{cell.replace(',', '.')} {units}" for (name, units), cell in pairs}
         points.append(validate(ViscosityPoint, content, where, RecordError))
     return tuple(points)
 
 
-def _with_decimal_point(cell, where):
-    # Among decimal commas a point separates thousands, or is a mistake.
-    if "." in cell:
-        raise RecordError(
-            f"{where}: got {shown(cell)} in a file with decimal commas, need no point"
-        )
-    return cell.replace(",", ".")
-
-
 def _csv_columns(cells, where):
     """Units by column name, in the order of the columns."""
-    columns = {}
-    for cell in cells:
-        match = HEADER_CELL.fullmatch(cell)
-        if not match or match[1] not in ViscosityPoint.model_fields or match[1] in columns:
-            raise RecordError(f"{where}: got the column {shown(cell)}, need {_COLUMNS}")
-        columns[match[1]] = match[2]
-    if "temperature" not in columns or len(columns) != 2:
-        raise RecordError(f"{where}: got the columns {', '.join(columns)}, need {_COLUMNS}")
+    columns = dict(cell.groups() for cell in map(HEADER_CELL.fullmatch, cells) if cell)
+    ways = [{"temperature", "kinematic_viscosity"}, {"temperature", "dynamic_viscosity"}]
+    if len(cells) != 2 or set(columns) not in ways:
+        raise RecordError(f"{where}: got the columns {shown(', '.join(cells))}, need {_COLUMNS}")
     return columns
 
 
@@ -402,6 +369,5 @@ def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -
     for temperature in temperatures:
         if not lowest - _ROUNDING <= temperature <= highest + _ROUNDING:
             raise RangeError(
-                f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC, "
-                "the range of the record"
+                f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC"
             )

@@ -4,14 +4,7 @@ import datetime
 import re
 from typing import Annotated, Literal
 
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    Field,
-    StringConstraints,
-    field_validator,
-    model_validator,
-)
+from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints, field_validator
 
 from lube.errors import shown
 from lube.study.field_types import StrictModel, each_once
@@ -43,9 +36,7 @@ def _is_orcid(text):
     if not re.fullmatch(r"\d{4}-\d{4}-\d{4}-\d{3}[\dX]", text, re.ASCII):
         return False
     *digits, last = text.replace("-", "")
-    total = 0
-    for digit in digits:
-        total = 2 * (total + int(digit))
+    total = sum(int(digit) << (15 - place) for place, digit in enumerate(digits))
     return "0123456789X"[(12 - total % 11) % 11] == last
 
 
@@ -73,50 +64,43 @@ _Doi = _text(
 class Creator(StrictModel):
     """An author of a study."""
 
-    name: _Name = Field(description="as it is cited: `Family, Given`")
-    affiliation: _Line | None = Field(None, description="institution")
-    orcid: _Orcid | None = Field(None, description="ORCID iD, such as 0000-0002-1825-0097")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _check_quotes(cls, content):
-        # For YAML {name: Somebody, Else} has two keys, the second without a value.
-        if isinstance(content, dict):
-            for key in content:
-                if key not in cls.model_fields and content[key] is None:
-                    raise ValueError(
-                        f"got {shown(key)} without a value, need quotes where a name has a comma: "
-                        "{name: 'Family, Given'}"
-                    )
-        return content
+    name: _Name
+    """as it is cited: `Family, Given`"""
+    affiliation: _Line | None = None
+    """institution"""
+    orcid: _Orcid | None = None
+    """ORCID iD, such as 0000-0002-1825-0097"""
 
 
 class About(StrictModel):
     """Title, authors and licence of a study's results."""
 
-    title: _Line | None = Field(None, description="title of the results; else the study's name")
-    summary: _Line = Field(
+    title: _Line | None = None
+    """title of the results; else the study's name"""
+    summary: _Line = (
         "Share of time with metal contact between two rough rollers that roll under load with oil "
         "between them: elastohydrodynamic film thickness, rough lines by the Method of "
-        "Dimensionality Reduction, and the break-up of a boundary layer.",
-        description="what the results are, in a sentence or two",
+        "Dimensionality Reduction, and the break-up of a boundary layer."
     )
-    creators: tuple[Creator, ...] = Field(
-        (), description="who made them; an archive needs one at least"
-    )
-    licence: Literal[tuple(LICENCES)] = Field("CC-BY-4.0", description="licence of the results")
-    keywords: Annotated[tuple[_Line, ...], AfterValidator(each_once)] = Field(
+    """what the results are, in a sentence or two"""
+    creators: tuple[Creator, ...] = ()
+    """who made them; an archive needs one at least"""
+    licence: Literal[tuple(LICENCES)] = "CC-BY-4.0"
+    """licence of the results"""
+    keywords: tuple[_Line, ...] = Field(
         (
             *("tribology", "mixed lubrication", "boundary lubrication"),
             *("elastohydrodynamic lubrication", "rolling contact", "surface roughness"),
         ),
         min_length=1,
-        description="keywords",
     )
-    date: _Day | None = Field(
-        None, description="day of publication, for the archive; else that of the code's commit"
-    )
-    doi: _Doi | None = Field(None, description="DOI that the repository reserved for the archive")
+    """keywords"""
+    date: _Day | None = None
+    """day of publication, for the archive; else that of the code's commit"""
+    doi: _Doi | None = None
+    """DOI that the repository reserved for the archive"""
+
+    _each_once = field_validator("keywords")(each_once)
 
     @field_validator("creators")
     @classmethod

@@ -15,9 +15,10 @@ from ruamel.yaml import YAML
 from lube.errors import StudyError, shown
 from lube.study.lubricant_record import is_record_path
 from lube.study.text_files import read_yaml
+from lube.types import File
 
 
-def study_files(path: str | Path) -> list[Path]:
+def study_files(path: File) -> list[Path]:
     """List the file of a study and all files that it is based on.
 
     Parameters
@@ -35,12 +36,10 @@ def study_files(path: str | Path) -> list[Path]:
     StudyError
         If one of them cannot be read, or they are based on each other in a circle.
     """
-    return [file for file, _ in _chain(path)]
+    return [file for file, _ in _chain(Path(path))]
 
 
-def resolved_content(
-    path: str | Path, changes: dict | None = None, folder: str | Path | None = None
-) -> dict:
+def resolved_content(path: File, changes: dict | None = None, folder: File | None = None) -> dict:
     """Merge a study's file with the files that it is based on, and with changes.
 
     Parameters
@@ -67,16 +66,14 @@ def resolved_content(
     here = Path(path).parent
     folder = here if folder is None else Path(folder)
     content = {}
-    for file, own in reversed(_chain(path)):
+    for file, own in reversed(_chain(Path(path))):
         content = _on_top(content, _with_paths_from(own, file.parent, folder), f"{file}")
     if changes:
         content = _on_top(content, _with_paths_from(changes, here, folder), f"{path}: --config")
     return content
 
 
-def resolved_text(
-    path: str | Path, changes: dict | None = None, folder: str | Path | None = None
-) -> str:
+def resolved_text(path: File, changes: dict | None = None, folder: File | None = None) -> str:
     """Write a study as a single file, which is based on no other.
 
     Parameters
@@ -95,34 +92,26 @@ def resolved_text(
         As in `resolved_content`.
     """
     names = " based on ".join(file.name for file in study_files(path))
-    text = io.StringIO(f"# Resolved: {names}{', changed by --config' if changes else ''}.\n")
-    text.seek(0, io.SEEK_END)
     yaml = YAML()
     yaml.width = 200  # no text is broken
     yaml.representer.ignore_aliases = lambda _: True
+    text = io.StringIO()
     yaml.dump(resolved_content(path, changes, folder), text)
-    return text.getvalue()
+    return f"# Resolved: {names}{', changed by --config' if changes else ''}.\n{text.getvalue()}"
 
 
-def _chain(path):
+def _chain(path, above=()):
     """Files from the study's own to the last base, each with its content."""
-    chain, file = [], Path(path)
-    while file is not None:
-        names = [known.name for known, _ in chain]
-        if file.resolve() in [known.resolve() for known, _ in chain]:
-            circle = " -> ".join([*names, file.name])
-            raise StudyError(f"{path}: based_on: got the circle {circle}, need a last file")
-        content = read_yaml(file, StudyError)
-        base = content.pop("based_on", None)
-        chain.append((file, content))
-        file = None if base is None else _base_file(file, base)
-    return chain
-
-
-def _base_file(file, base):
-    if not isinstance(base, str) or not (file.parent / base).is_file():
-        raise StudyError(f"{file}: based_on: got {shown(base)}, need the path of a study's file")
-    return file.parent / base
+    if path.resolve() in [file.resolve() for file in above]:
+        circle = " -> ".join(file.name for file in (*above, path))
+        raise StudyError(f"{above[0]}: based_on: got the circle {circle}, need a last file")
+    content = read_yaml(path, StudyError)
+    base = content.pop("based_on", None)
+    if base is None:
+        return [(path, content)]
+    if not isinstance(base, str) or not (path.parent / base).is_file():
+        raise StudyError(f"{path}: based_on: got {shown(base)}, need the path of a study's file")
+    return [(path, content), *_chain(path.parent / base, (*above, path))]
 
 
 def _on_top(base, changes, where):

@@ -19,48 +19,37 @@ _Resistance = quantity("ohm", above=0.0)
 class Rig(StrictModel, validate_default=True):
     """Circuit, amplifier and sampling of a simulated twin-disc rig."""
 
-    bias_voltage: quantity("V", above=0.0) = Field(
-        "50 mV", description="voltage over rollers and series resistor"
-    )
-    series_resistance: _Resistance = Field(
-        "100 ohm", description="resistor in series with the rollers"
-    )
-    lead_resistance: quantity("ohm", least=0.0) = Field(
-        "0.2 ohm", description="leads and slip rings, known and subtracted"
-    )
-    leak_resistance: _Resistance = Field(
-        "1 Mohm", description="insulation in parallel with the contact"
-    )
-    oil_permittivity: pure_number(least=1.0) = Field(
-        2.2, description="relative permittivity, for the film's capacitance; typical of PAO"
-    )
-    amplifier_range: quantity("V", above=0.0) = Field(
-        "100 mV", description="largest voltage of either sign before saturation"
-    )
-    bandwidth: quantity("Hz", above=0.0) = Field(
-        "50 kHz", description="-3 dB frequency of the first-order low-pass"
-    )
-    sampling_rate: quantity("Hz", above=0.0) = Field("100 kHz", description="samples per second")
-    resolution: Annotated[StrictInt, Field(ge=2, le=32)] = Field(
-        16, description="bits of the converter, over the range of both signs"
-    )
-    noise: quantity("V", least=0.0) = Field(
-        "20 uV", description="rms noise at the amplifier's input"
-    )
-    revolutions: pure_number(least=0.01, most=1000.0) = Field(
-        12, description="of the roller with the faster surface in each simulated record"
-    )
-    pairs: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
-        1,
-        description="pairs of rollers that the simulated rig runs, one after the other; each "
-        "makes a record at every operating point",
-    )
-    drift: pure_number(least=0.0, most=1.0) = Field(
-        0,
-        description="share of the variance of the roughness that each revolution renews, of "
-        "the simulated rollers and, as an assumption, of measured ones; 0: the roughness stays "
-        "and each revolution repeats the last",
-    )
+    bias_voltage: quantity("V", above=0.0) = "50 mV"
+    """voltage over rollers and series resistor"""
+    series_resistance: _Resistance = "100 ohm"
+    """resistor in series with the rollers"""
+    lead_resistance: quantity("ohm", least=0.0) = "0.2 ohm"
+    """leads and slip rings, known and subtracted"""
+    leak_resistance: _Resistance = "1 Mohm"
+    """insulation in parallel with the contact"""
+    oil_permittivity: pure_number(least=1.0) = 2.2
+    """relative permittivity, for the film's capacitance; typical of PAO"""
+    amplifier_range: quantity("V", above=0.0) = "100 mV"
+    """largest voltage of either sign before saturation"""
+    bandwidth: quantity("Hz", above=0.0) = "50 kHz"
+    """-3 dB frequency of the first-order low-pass"""
+    sampling_rate: quantity("Hz", above=0.0) = "100 kHz"
+    """samples per second"""
+    resolution: Annotated[StrictInt, Field(ge=2, le=32)] = 16
+    """bits of the converter, over the range of both signs"""
+    noise: quantity("V", least=0.0) = "20 uV"
+    """rms noise at the amplifier's input"""
+    revolutions: pure_number(least=0.01, most=1000.0) = 12
+    """of the roller with the faster surface in each simulated record"""
+    pairs: Annotated[StrictInt, Field(ge=1, le=1000)] = 1
+    """pairs of rollers that the simulated rig runs, one after the other; each makes a record at
+    every operating point
+    """
+    drift: pure_number(least=0.0, most=1.0) = 0
+    """share of the variance of the roughness that each revolution renews, of the simulated
+    rollers and, as an assumption, of measured ones; 0: the roughness stays and each
+    revolution repeats the last
+    """
 
     @property
     def resolved_voltage(self) -> float:
@@ -71,31 +60,23 @@ class Rig(StrictModel, validate_default=True):
 class Experiment(StrictModel, validate_default=True):
     """Source of the rig's records, and the criterion of contact."""
 
-    manifest: str | None = Field(
-        None, description="CSV or YAML list of measured records; without it the rig is simulated"
-    )
+    manifest: str | None = None
+    """CSV or YAML list of measured records; without it the rig is simulated"""
     thresholds: levels("ohm", above=0.0) = Field(
-        {"values": [10, 30, 100, 300, 1000], "units": "ohm"},
-        description="resistances below which a record shows contact",
+        {"values": [10, 30, 100, 300, 1000], "units": "ohm"}
     )
-    threshold: _Resistance = Field(
-        "100 ohm",
-        description="the one of `thresholds` that is compared with the simulation (the paper's)",
-    )
-    force_tolerance: pure_number(above=0.0, most=1.0) = Field(
-        0.01, description="relative deviation of a record's force from a level of the grid, at most"
-    )
-    speed_tolerance: pure_number(above=0.0, most=1.0) = Field(
-        0.01,
-        description="the same for its rotation speed; also the largest deviation of that speed "
-        "from the one at which the record repeats itself",
-    )
-    temperature_tolerance: quantity("K", above=0.0) = Field(
-        "1 K", description="deviation of a record's temperature from a level of the grid, at most"
-    )
-    release_ratio: pure_number(least=1.0) = Field(
-        1, description="contact ends at this multiple of the threshold; 1 is no hysteresis"
-    )
-    debounce: quantity("s", least=0.0) = Field(
-        "0 s", description="shortest time that a change must last to count"
-    )
+    """resistances below which a record shows contact"""
+    threshold: _Resistance = "100 ohm"
+    """the one of `thresholds` that is compared with the simulation (the paper's)"""
+    force_tolerance: pure_number(above=0.0, most=1.0) = 0.01
+    """relative deviation of a record's force from a level of the grid, at most"""
+    speed_tolerance: pure_number(above=0.0, most=1.0) = 0.01
+    """the same for its rotation speed; also the largest deviation of that speed from the one at
+    which the record repeats itself
+    """
+    temperature_tolerance: quantity("K", above=0.0) = "1 K"
+    """deviation of a record's temperature from a level of the grid, at most"""
+    release_ratio: pure_number(least=1.0) = 1
+    """contact ends at this multiple of the threshold; 1 is no hysteresis"""
+    debounce: quantity("s", least=0.0) = "0 s"
+    """shortest time that a change must last to count"""

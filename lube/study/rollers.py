@@ -5,10 +5,10 @@ Written in YAML with units, kept in SI. A notebook makes them in the same way:
 """
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
-from pydantic import BeforeValidator, Field, StrictInt, WithJsonSchema
+from pydantic import Field, StrictInt
 
 from lube.errors import StudyError
 from lube.physics.hertz import contact_half_width, reduced_modulus, reduced_radius
@@ -17,9 +17,8 @@ from lube.study.field_types import (
     Pressure,
     StrictModel,
     bounded,
-    collected,
+    length_or_words,
     pure_number,
-    sensible_quantity,
 )
 from lube.study.size_limits import MOST_POINTS
 from lube.units import parse_number
@@ -30,16 +29,21 @@ AUTOMATIC_WAVELENGTH = "contact width at the largest force"
 class Roller(StrictModel):
     """One roller: a cylinder of some material with a rough surface."""
 
-    radius: Length = Field(description="radius of the cylinder")
-    young_modulus: Pressure = Field(description="Young's modulus")
-    poisson_ratio: pure_number(least=0.0, most=0.5) = Field(description="Poisson's ratio")
-    rms_roughness: Length = Field(description="rms height of the roughness")
+    radius: Length
+    """radius of the cylinder"""
+    young_modulus: Pressure
+    """Young's modulus"""
+    poisson_ratio: pure_number(least=0.0, most=0.5)
+    """Poisson's ratio"""
+    rms_roughness: Length
+    """rms height of the roughness"""
 
 
 class RollerPair(StrictModel):
     """Two rollers in line contact."""
 
-    length: Length = Field(description="length L' of the line contact")
+    length: Length
+    """length L' of the line contact"""
     first: Roller
     second: Roller
 
@@ -51,11 +55,9 @@ class RollerPair(StrictModel):
     @property
     def reduced_modulus(self) -> float:
         """Reduced modulus E*, Pa."""
+        one, other = self.first, self.second
         return reduced_modulus(
-            self.first.young_modulus,
-            self.first.poisson_ratio,
-            self.second.young_modulus,
-            self.second.poisson_ratio,
+            one.young_modulus, one.poisson_ratio, other.young_modulus, other.poisson_ratio
         )
 
     @property
@@ -68,17 +70,8 @@ class RollerPair(StrictModel):
         return contact_half_width(force, self.length, self.reduced_radius, self.reduced_modulus)
 
 
-@collected(hint=f", or the words {AUTOMATIC_WAVELENGTH!r}")
-def _longest_wavelength(value):
-    return value if value == AUTOMATIC_WAVELENGTH else sensible_quantity(value, "m", above=0.0)
-
-
-@collected(hint=", or a number of grid points such as '10 points'")
-def _shortest_wavelength(value):
-    if isinstance(value, str) and value.endswith(" points"):
-        _points_of(value)
-        return value
-    return sensible_quantity(value, "m", above=0.0)
+def _is_points(value):
+    return isinstance(value, str) and value.endswith(" points") and bool(_points_of(value))
 
 
 def _points_of(wavelength):
@@ -90,36 +83,30 @@ def _points_of(wavelength):
 class Roughness(StrictModel):
     """Statistics and grid of the random roughness lines of both rollers."""
 
-    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)] = Field(
-        description="points N around the first roller"
+    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
+    """points N around the first roller"""
+    hurst_exponent: pure_number(above=0.0, below=1.0)
+    """Hurst exponent H"""
+    longest_wavelength: length_or_words(
+        lambda text: text == AUTOMATIC_WAVELENGTH, f"the words `{AUTOMATIC_WAVELENGTH}`"
     )
-    hurst_exponent: pure_number(above=0.0, below=1.0) = Field(description="Hurst exponent H")
-    longest_wavelength: Annotated[
-        float | Literal[AUTOMATIC_WAVELENGTH],
-        BeforeValidator(_longest_wavelength),
-        WithJsonSchema(
-            {"type": "string", "format": f"quantity in m, or the words `{AUTOMATIC_WAVELENGTH}`"}
-        ),
-    ] = Field(
-        description="2 pi / q_min; with the automatic choice a larger force level redraws all "
-        "lines and changes the probability at all points: adding 3200 N to the paper's study "
-        "multiplies it by 0.86 to 0.61"
-    )
-    shortest_wavelength: Annotated[
-        float | str,
-        BeforeValidator(_shortest_wavelength),
-        WithJsonSchema({"type": "string", "format": "quantity in m, or as in `10 points`"}),
-    ] = Field(description="2 pi / q_max; the break-up of the boundary layer depends on it")
-    height_step: Length = Field(
-        description="heights and films are whole multiples of this length, so sums are exact"
-    )
+    """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
+    the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
+    0.61
+    """
+    shortest_wavelength: length_or_words(_is_points, "as in `10 points`")
+    """2 pi / q_max; the break-up of the boundary layer depends on it"""
+    height_step: Length
+    """heights and films are whole multiples of this length, so sums are exact"""
 
 
 class BoundaryLayer(StrictModel):
     """The adsorbed boundary layer, which breaks at metal contact (the paper's Eqs. 4 and 6)."""
 
-    critical_thickness: Length = Field(description="critical thickness h_c")
-    shear_strength: Pressure = Field(description="limiting shear stress tau0")
+    critical_thickness: Length
+    """critical thickness h_c"""
+    shear_strength: Pressure
+    """limiting shear stress tau0"""
 
 
 class LineSpec(StrictModel):
@@ -190,39 +177,29 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
         q_max=2.0 * math.pi / shortest,
         height_step=roughness.height_step,
     )
-    _check_waves(spec, roughness, longest, shortest)
+    _check_waves(spec, longest, shortest)
     _check_height_step(spec)
     return spec
 
 
-def _check_waves(spec, roughness, longest, shortest):
+def _check_waves(spec, longest, shortest):
     if shortest < 2.0 * spec.spacing * (1.0 - 1e-9):
         raise StudyError(
             f"roughness.points: got {spec.points[0]}, too coarse a grid: its spacing is "
             f"{spec.spacing:.3g} m, need at most half the shortest wavelength, {shortest:.3g} m"
         )
-    if shortest >= longest and shortest == roughness.shortest_wavelength:
-        raise StudyError(
-            f"roughness.shortest_wavelength: got {shortest:.3g} m, need less than the longest "
-            f"wavelength, {longest:.3g} m"
-        )
     if shortest >= longest:
         least = math.ceil(spec.points[0] * shortest / longest) + 1
         raise StudyError(
-            f"roughness.points: got {spec.points[0]}, too coarse a grid: the shortest wavelength, "
-            f"{shortest:.3g} m, is not below the longest, {longest:.3g} m; need {least} or more"
+            f"roughness.shortest_wavelength: got {shortest:.3g} m, need less than the longest, "
+            f"{longest:.3g} m; if it is given in points, need {least} roughness.points or more"
         )
     for roller, points in zip(("first", "second"), spec.points, strict=True):
         perimeter = points * spec.spacing
-        if perimeter < longest:
+        if perimeter < longest or math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
             raise StudyError(
-                f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short, "
-                f"need at least the longest wavelength, {longest:.3g} m"
-            )
-        if math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
-            raise StudyError(
-                f"rollers.{roller}.radius: no whole number of waves between {shortest:.3g} "
-                f"and {longest:.3g} m long goes round its perimeter, {perimeter:.3g} m"
+                f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short, need a "
+                f"whole number of waves between {shortest:.3g} and {longest:.3g} m long around it"
             )
 
 

@@ -5,41 +5,40 @@ Errors name the line in the file, which pandas does not report, so the lines are
 
 import csv
 import re
-from pathlib import Path
 
-from lube.errors import LubeError
 from lube.study.text_files import read_text
+from lube.types import File
 
 HEADER_CELL = re.compile(r"(\w+)\s*\[\s*([^\]\s](?:[^\]]*[^\]\s])?)\s*\]")
 """A column's name and unit: ``temperature [degC]``."""
 
 
-def numbered_lines(path: str | Path, error_type: type[LubeError]) -> list[tuple[int, str]]:
-    """Read the lines of a text file that are neither blank nor a comment.
+def read_cells(path: File, error_type: type) -> list[tuple[int, list[str]]]:
+    """Read the cells of a CSV file, the first line with the names of the columns.
 
     Parameters
     ----------
     path : str or Path
-        The file, UTF-8 text; lines that begin with ``#`` are comments.
+        The file, UTF-8 text; empty lines and lines that begin with ``#`` are ignored.
     error_type : type
         The subclass of LubeError to raise.
 
     Returns
     -------
     list of tuple
-        Number in the file, from 1 on, and text of each line.
+        Number in the file, from 1 on, and cells of each line.
 
     Raises
     ------
     LubeError
-        Of `error_type`, if the file cannot be read or is not UTF-8 text.
+        Of `error_type`, if the file cannot be read, is not UTF-8 text or is empty.
     """
     numbered = enumerate(read_text(path, error_type).splitlines(), start=1)
-    return [
-        (number, line)
-        for number, line in numbered
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
+    lines = [(number, line) for number, line in numbered if line.strip() and line.strip()[0] != "#"]
+    if not lines:
+        raise error_type(f"{path}: empty, need a line of column names and rows of values")
+    delimiter = delimiter_of(lines[0][1])
+    return [(number, split_cells(line, delimiter)) for number, line in lines]
 
 
 def delimiter_of(header: str) -> str:
@@ -53,7 +52,7 @@ def delimiter_of(header: str) -> str:
     return next((sign for sign in "\t;" if sign in header), ",")
 
 
-def split_cells(line: str, delimiter: str, blanks: str | None = None) -> list[str]:
+def split_cells(line: str, delimiter: str) -> list[str]:
     """Split a line into cells, without the blanks and quotes around them.
 
     Parameters
@@ -62,8 +61,6 @@ def split_cells(line: str, delimiter: str, blanks: str | None = None) -> list[st
         One line of the file.
     delimiter : str
         The character between cells.
-    blanks : str, optional
-        Characters that count as blanks; else all white space of Unicode.
 
     Returns
     -------
@@ -79,4 +76,4 @@ def split_cells(line: str, delimiter: str, blanks: str | None = None) -> list[st
         cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
     except csv.Error:  # a cell of more than 100 000 characters: no table
         cells = [line]
-    return [cell.strip(blanks) for cell in cells]
+    return [cell.strip() for cell in cells]

@@ -11,7 +11,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, StrictInt, model_validator
+from pydantic import AfterValidator, Field, StrictInt, field_validator, model_validator
 from pydantic_core import to_jsonable_python
 
 from lube.errors import LubeError, StudyError, shown
@@ -20,7 +20,6 @@ from lube.physics.electrical import divider_voltage
 from lube.physics.film_formulas import formula
 from lube.schema.stages import STAGES, forerunners
 from lube.study.field_types import (
-    Resistivity,
     Slug,
     StrictModel,
     collected,
@@ -36,6 +35,7 @@ from lube.study.resolve import resolved_content
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.rollers import BoundaryLayer, LineSpec, RollerPair, Roughness, line_spec
 from lube.study.size_limits import check_sizes
+from lube.types import File
 
 
 @collected()
@@ -46,71 +46,73 @@ def _known_formula(name):
 class OperatingGrid(StrictModel):
     """Levels of the operating variables; every combination is an operating point."""
 
-    force: levels("N", above=0.0) = Field(description="normal forces")
-    speed: levels("rpm", above=0.0) = Field(
-        description="rotation speeds of the first roller when it rolls without slip"
-    )
-    temperature: levels("degC", above=-273.15) = Field(
-        description="temperatures of rollers and oil"
-    )
-    slide_to_roll_ratio: levels(None, least=-2.0, most=2.0) = Field(
-        description="(v1 - v2) / mean surface speed; 0 is pure rolling"
-    )
+    force: levels("N", above=0.0)
+    """normal forces"""
+    speed: levels("rpm", above=0.0)
+    """rotation speeds of the first roller when it rolls without slip"""
+    temperature: levels("degC", above=-273.15)
+    """temperatures of rollers and oil"""
+    slide_to_roll_ratio: levels(None, least=-2.0, most=2.0)
+    """(v1 - v2) / mean surface speed; 0 is pure rolling"""
+
+
+_TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "speed", "force")
 
 
 class TracePoint(StrictModel):
     """An operating point at which the contact is kept at every time step."""
 
-    force: quantity("N") = Field(description="a force of the grid")
-    speed: quantity("rpm") = Field(description="a speed of the grid, the same for all traces")
-    temperature: quantity("degC") = Field(description="a temperature of the grid")
-    lubricant: str | None = Field(None, description="a lubricant of the study; else its first")
-    film_formula: str | None = Field(None, description="a formula of the study; else its first")
-    slide_to_roll_ratio: pure_number() | None = Field(
-        None, description="a ratio of the grid; else its first"
-    )
+    force: quantity("N")
+    """a force of the grid"""
+    speed: quantity("rpm")
+    """a speed of the grid, the same for all traces"""
+    temperature: quantity("degC")
+    """a temperature of the grid"""
+    lubricant: str | None = None
+    """a lubricant of the study; else its first"""
+    film_formula: str | None = None
+    """a formula of the study; else its first"""
+    slide_to_roll_ratio: pure_number() | None = None
+    """a ratio of the grid; else its first"""
 
 
 class Study(StrictModel):
     """A whole study, checked, in SI units (except rpm and degC)."""
 
-    name: Slug = Field(description="results go to results/<name>")
-    about: About = Field(default_factory=About, description="title, authors and licence")
-    seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)] = Field(
-        description="seed of all randomness"
-    )
-    realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
-        description="number of pairs of roughness lines"
-    )
-    revolutions: Annotated[StrictInt, Field(ge=1, le=1000)] = Field(
-        description="of the roller with the faster surface; equal rollers without slip repeat "
-        "themselves after one"
-    )
-    batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)] = Field(
-        description="realisations per job; changes no result"
-    )
-    kept_realisations: Annotated[
-        tuple[Annotated[StrictInt, Field(ge=0)], ...], AfterValidator(each_once)
-    ] = Field(description="realisations whose lines stay in roughness.nc, 0 among them")
+    name: Slug
+    """results go to results/<name>"""
+    about: About = Field(default_factory=About)
+    """title, authors and licence"""
+    seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)]
+    """seed of all randomness"""
+    realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
+    """number of pairs of roughness lines"""
+    revolutions: Annotated[StrictInt, Field(ge=1, le=1000)]
+    """of the roller with the faster surface; equal rollers without slip repeat themselves after
+    one
+    """
+    batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
+    """realisations per job; changes no result"""
+    kept_realisations: tuple[Annotated[StrictInt, Field(ge=0)], ...]
+    """realisations whose lines stay in roughness.nc, 0 among them"""
     rollers: RollerPair
-    lubricants: tuple[LubricantRecord, ...] = Field(
-        min_length=1,
-        description="names of shipped records, or paths of your own YAML records",
-    )
-    film_formulas: Annotated[
-        tuple[Annotated[str, AfterValidator(_known_formula)], ...], AfterValidator(each_once)
-    ] = Field(min_length=1, description="names from the registry of film formulas")
+    lubricants: tuple[LubricantRecord, ...] = Field(min_length=1)
+    """names of shipped records, or paths of your own YAML records"""
+    film_formulas: tuple[Annotated[str, AfterValidator(_known_formula)], ...] = Field(min_length=1)
+    """names from the registry of film formulas"""
     operating_grid: OperatingGrid
     roughness: Roughness
     boundary_layer: BoundaryLayer
-    resistivity: Resistivity = Field(description="resistivity of the rollers' material (Eq. 1)")
-    traces: tuple[TracePoint, ...] = Field(
-        min_length=1, description="operating points recorded over one revolution"
-    )
-    rig: Rig = Field(default_factory=Rig, description="the rig, simulated or measured on")
-    experiment: Experiment = Field(
-        default_factory=Experiment, description="its records and their evaluation"
-    )
+    resistivity: quantity("ohm*m", above=0.0)
+    """resistivity of the rollers' material (Eq. 1)"""
+    traces: tuple[TracePoint, ...] = Field(min_length=1)
+    """operating points recorded over one revolution"""
+    rig: Rig = Field(default_factory=Rig)
+    """the rig, simulated or measured on"""
+    experiment: Experiment = Field(default_factory=Experiment)
+    """its records and their evaluation"""
+
+    _each_once = field_validator("kept_realisations", "film_formulas")(each_once)
 
     @property
     def line_spec(self) -> LineSpec:
@@ -159,15 +161,11 @@ class Study(StrictModel):
             With the contact width, and what is needed.
         """
         spec, width = self.line_spec, 2.0 * self.rollers.contact_half_width(force)
-        if width >= min(spec.points) * spec.spacing:
+        least, most = 2.0 * spec.spacing, min(spec.points) * spec.spacing
+        if not least <= width < most:
             raise StudyError(
-                f"operating_grid.force: the contact at {force:g} N is {width:.3g} m wide, "
-                "need less than a roller's perimeter"
-            )
-        if width < 2.0 * spec.spacing:
-            raise StudyError(
-                f"roughness.points: the contact at {force:g} N is {width:.3g} m wide, "
-                f"need at least two grid spacings of {spec.spacing:.3g} m"
+                f"operating_grid.force: the contact at {force:g} N is {width:.3g} m wide, need at "
+                f"least two grid spacings of {least:.3g} m, and less than a perimeter, {most:.3g} m"
             )
 
     @property
@@ -176,9 +174,8 @@ class Study(StrictModel):
 
         A measured file is identified by its contents, wherever it lies.
         """
-        return self.experiment.model_dump(mode="json") | {
-            "manifest": self.experiment.manifest is not None
-        }
+        values = self.experiment.model_dump(mode="json")
+        return values | {"manifest": self.experiment.manifest is not None}
 
     def stage_inputs(self, stage: str) -> dict:
         """Return the values of the study that a stage depends on, as plain data.
@@ -212,27 +209,12 @@ class Study(StrictModel):
         return {name: self.stage_inputs(name) for name in (*forerunners(stage), stage)}
 
     @model_validator(mode="after")
-    def _check_lubricants(self):
+    def _check_levels(self):
         with collected("lubricants"):
             each_once(tuple(record.name for record in self.lubricants))
         with collected("operating_grid.temperature"):
             for record in self.lubricants:
                 check_temperatures(record, self.operating_grid.temperature)
-        return self
-
-    @model_validator(mode="after")
-    def _check_realisations(self):
-        if 0 not in self.kept_realisations:
-            raise ValueError("kept_realisations: need 0 among them, the traces use it")
-        if max(self.kept_realisations) >= self.realisations:
-            raise ValueError(
-                f"kept_realisations: got {max(self.kept_realisations)}, need realisations from 0 "
-                f"to {self.realisations - 1}"
-            )
-        return self
-
-    @model_validator(mode="after")
-    def _check_lines(self):
         with collected():
             for force in self.operating_grid.force:
                 self.check_window(force)
@@ -241,22 +223,23 @@ class Study(StrictModel):
 
     @model_validator(mode="after")
     def _check_traces(self):
-        points = self.trace_points
-        # All traces share one time axis, whose step is set by the faster surface.
-        if len({(point["speed"], point["slide_to_roll_ratio"]) for point in points}) > 1:
+        if 0 not in self.kept_realisations or max(self.kept_realisations) >= self.realisations:
             raise ValueError(
-                "traces: need one speed and one slide-to-roll ratio for all, as they share a "
-                "time axis"
+                f"kept_realisations: got {shown(self.kept_realisations)}, need 0, which the traces "
+                f"use, and none above {self.realisations - 1}"
             )
+        # All traces share one time axis, whose step is set by the faster surface.
+        axes = {(point["speed"], point["slide_to_roll_ratio"]) for point in self.trace_points}
+        if len(axes) > 1:
+            raise ValueError("traces: need the same speed and slide-to-roll ratio for all")
         return self
 
     @model_validator(mode="after")
     def _check_rig(self):
         if self.experiment.threshold not in self.experiment.thresholds:
-            known = ", ".join(f"{threshold:g}" for threshold in self.experiment.thresholds)
             raise ValueError(
                 f"experiment.threshold: got {self.experiment.threshold:g} ohm, need one of "
-                f"experiment.thresholds: {known} ohm"
+                f"experiment.thresholds: {shown(self.experiment.thresholds)} ohm"
             )
         largest = max(self.experiment.thresholds) * self.experiment.release_ratio
         voltage = divider_voltage(largest, self.rig)
@@ -274,24 +257,20 @@ class Study(StrictModel):
 
     def _trace_point(self, number, point):
         """Levels of the study that a trace names, the first of those that it does not name."""
-        levels_of = {
-            "slide_to_roll_ratio": self.operating_grid.slide_to_roll_ratio,
+        available = dict(self.operating_grid) | {
             "lubricant": [record.name for record in self.lubricants],
             "film_formula": self.film_formulas,
-            "temperature": self.operating_grid.temperature,
-            "speed": self.operating_grid.speed,
-            "force": self.operating_grid.force,
         }
         found = {}
-        for variable, available in levels_of.items():
-            wanted = getattr(point, variable)
-            index = 0 if wanted is None else level_index(available, wanted, SAME)
+        for variable in _TRACED:
+            wanted, given = getattr(point, variable), available[variable]
+            index = 0 if wanted is None else level_index(given, wanted, SAME)
             if index is None:
                 raise ValueError(
                     f"traces.{number}.{variable}: got {wanted}, need one of the study's: "
-                    f"{', '.join(str(level) for level in available)}"
+                    f"{', '.join(map(str, given))}"
                 )
-            found[variable] = available[index]
+            found[variable] = given[index]
         return found
 
 
@@ -302,7 +281,7 @@ def _plain(study, values):
     return to_jsonable_python(attrgetter(values)(study))
 
 
-def load_study(path: str | Path, changes: dict | None = None) -> Study:
+def load_study(path: File, changes: dict | None = None) -> Study:
     """Read and check a study.
 
     Parameters
@@ -326,30 +305,18 @@ def load_study(path: str | Path, changes: dict | None = None) -> Study:
         If a lubricant record that the study names cannot be used.
     """
     content = resolved_content(path, changes)
+    folder = Path(path).parent
     if isinstance(content.get("lubricants"), list):
-        content = content | {"lubricants": _records(content["lubricants"], path)}
-    return _with_manifest_found(validate(Study, content, path, StudyError), path)
-
-
-def _with_manifest_found(study, path):
-    """Complete the manifest's path, which starts from the study's folder."""
+        try:
+            records = tuple(load_record(name, folder) for name in content["lubricants"])
+        except LubeError as error:
+            raise type(error)(f"{path}: lubricants: {error}") from None
+        content = content | {"lubricants": records}
+    study = validate(Study, content, path, StudyError)
     if study.experiment.manifest is None:
         return study
-    manifest = Path(path).parent / study.experiment.manifest
+    manifest = folder / study.experiment.manifest
     if not manifest.is_file():
         raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that exists")
     experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
     return study.model_copy(update={"experiment": experiment})
-
-
-def _records(names, path):
-    """Load the lubricant records of a study; their paths start from its folder."""
-    for name in names:
-        if not isinstance(name, str):
-            raise StudyError(
-                f"{path}: lubricants: got {shown(name)}, need names or paths of records"
-            )
-    try:
-        return tuple(load_record(name, Path(path).parent) for name in names)
-    except LubeError as error:
-        raise type(error)(f"{path}: lubricants: {error}") from None

@@ -5,7 +5,7 @@ from pathlib import Path
 from ruamel.yaml import YAML
 from ruamel.yaml.constructor import SafeConstructor
 
-from lube.errors import LubeError
+from lube.types import File
 
 
 class _Constructor(SafeConstructor):
@@ -17,7 +17,7 @@ _Constructor.add_constructor("tag:yaml.org,2002:timestamp", SafeConstructor.cons
 _YAML_KINDS = {dict: "a mapping of keys to values", list: "a list of mappings"}
 
 
-def read_text(path: str | Path, error_type: type[LubeError]) -> str:
+def read_text(path: File, error_type: type) -> str:
     """Read a text file.
 
     Parameters
@@ -39,13 +39,12 @@ def read_text(path: str | Path, error_type: type[LubeError]) -> str:
     """
     try:
         return Path(path).read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise error_type(f"{path}: cannot be read: it is not UTF-8 text") from None
-    except OSError as error:
-        raise error_type(f"{path}: cannot be read: {error.strerror}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", "it is not UTF-8 text")
+        raise error_type(f"{path}: cannot be read: {reason}") from None
 
 
-def read_yaml(path: str | Path, error_type: type[LubeError], kind: type = dict) -> dict | list:
+def read_yaml(path: File, error_type: type, kind: type = dict) -> dict | list:
     """Read a YAML file (version 1.2) that contains one mapping, or one list.
 
     Parameters

@@ -181,7 +181,7 @@ ENTRIES = [
     (SHARE | {"forse": "8 N"}, "forse: unknown key, did you mean 'force'?"),
     (OPERATING_POINT | {"file": 7}, "file: got 7, need text"),
     (RECORDING | {"gain": "0/3"}, "gain: got 0, need a value other than 0"),
-    (RECORDING | {"gain": "10 V"}, "gain: got '10 V', need a number"),
+    (RECORDING | {"gain": "10 V"}, "gain: got '10 V', need a finite number"),
     (RECORDING | {"offset": "3"}, f"offset: got '3', {NEEDS_OFFSET}"),
     (RECORDING | {"offset": "3 mm"}, "offset: got the unit 'mm', need one of voltage or resist"),
     (RECORDING | {"unit": "N"}, "unit: got the unit 'N', need one of voltage or resistance"),

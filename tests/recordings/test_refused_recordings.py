@@ -206,7 +206,7 @@ def test_gains_and_offsets(tmp_path):
     for options, reason in (
         ({"gain": 0}, "gain: got 0, need a value other than 0"),
         ({"gain": np.nan}, "gain: got nan, need a finite number"),
-        ({"gain": "ten"}, "gain: got 'ten', need a number"),
+        ({"gain": "ten"}, "gain: got 'ten', need a finite number"),
         ({"offset": "3 ohm"}, "offset: got '3 ohm', need a voltage, as the recording is one"),
         ({"offset": "3 mm"}, "offset: got the unit 'mm', need one of voltage or resistance"),
         ({"offset": "3"}, "offset: got '3', need a voltage or a resistance with its unit"),

@@ -9,18 +9,17 @@ import copy
 import json
 import math
 from collections import Counter
-from functools import reduce
+from functools import partial, reduce
 from operator import getitem
 
-import netCDF4
-import numpy as np
 import pytest
+import written_recordings
 import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from nptdms import ChannelObject, TdmsWriter
 from refusals import attempt, check_line, in_time
 from studies import CONFIG, SMOKE
+from written_recordings import write_csv, write_netcdf, write_tdms
 
 from lube.errors import LubeError
 from lube.recordings.manifest import read_manifest
@@ -122,23 +121,7 @@ def rescaled(value, factor):
         return value
 
 
-FRAGMENTS = [
-    "\t",
-    "\ufeff",
-    "'",
-    '"',
-    "{",
-    "[",
-    "]",
-    ": ",
-    "- ",
-    "#",
-    "&a ",
-    "*a",
-    "? ",
-    "|\n",
-    "%",
-]
+FRAGMENTS = ["\t", "\ufeff", "'", '"', *"{[]#%", ": ", "- ", "&a ", "*a", "? ", "|\n"]
 FRAGMENTS += ["---\n", "...\n", "<<: *a\n", "<<: {seed: 1}\n", "!!str ", "!!int ''", "!!binary é"]
 FRAGMENTS += ["!!python/object/apply:os.getcwd []", "? !!set {a}\n: 1\n", "name: again\n", "=: 1\n"]
 FRAGMENTS += ["yes", "2018-11-09", "2018-02-30", "1e400", "\x85", "é", ";", ",", "based_on: x\n"]
@@ -229,68 +212,37 @@ def is_read(read):
     return lambda path: attempt(read, path) is not None
 
 
-YAML_FILES = {
-    "study.yaml": (STUDIES, study_is_valid),
-    "oil.yaml": (RECORDS, record_is_valid),
-    "list.yaml": ([ROWS], manifest_is_read),
-}
-TEXT_FILES = {
-    "study.yaml": ([resolved_text(SMOKE).encode()], study_is_valid),
-    "oil.yaml": ([path.read_bytes() for path in SHIPPED], record_is_valid),
-    "viscosity.csv": (
-        [TABLE, TABLE.replace(b".", b",").replace(b", ", b";")],
-        is_read(read_viscosity_csv),
-    ),
-    "list.csv": ([LIST], manifest_is_read),
-}
+CSV_TABLES = [TABLE, TABLE.replace(b".", b",").replace(b", ", b";")]
+FILES = [
+    ("study.yaml", mistaken(STUDIES), study_is_valid),
+    ("study.yaml", spoilt([resolved_text(SMOKE).encode()]), study_is_valid),
+    ("oil.yaml", mistaken(RECORDS), record_is_valid),
+    ("oil.yaml", spoilt([path.read_bytes() for path in SHIPPED]), record_is_valid),
+    ("viscosity.csv", spoilt(CSV_TABLES), is_read(read_viscosity_csv)),
+    ("list.yaml", mistaken([ROWS]), manifest_is_read),
+    ("list.csv", spoilt([LIST]), manifest_is_read),
+]
 
 
 @cases
-@pytest.mark.parametrize("name", YAML_FILES)
-def test_a_file_with_mistaken_values_is_read_or_refused_in_one_line(tmp_path, examples, name):
-    contents, check = YAML_FILES[name]
-    fuzz(mistaken(contents), examples, check, tmp_path / name)
-
-
-@cases
-@pytest.mark.parametrize("name", TEXT_FILES)
-def test_a_file_with_spoilt_text_is_read_or_refused_in_one_line(tmp_path, examples, name):
-    texts, check = TEXT_FILES[name]
-    fuzz(spoilt(texts), examples, check, tmp_path / name)
+@pytest.mark.parametrize(("name", "mistakes", "check"), FILES)
+def test_a_mistaken_file_is_read_or_refused_in_one_line(tmp_path, examples, name, mistakes, check):
+    fuzz(mistakes, examples, check, tmp_path / name)
 
 
 # Measured records
 
-SAMPLES = 400
-
-
-def netcdf_bytes(folder):
-    path = folder / "whole.nc"
-    with netCDF4.Dataset(path, "w") as file:
-        file.createDimension("time", SAMPLES)
-        variable = file.createVariable("voltage", "f8", ("time",), fletcher32=True, zlib=True)
-        variable.setncatts({"units": "mV", "sampling_interval": "10 us"})
-        variable[:] = np.sin(np.arange(SAMPLES))
-    return path.read_bytes()
-
-
-def tdms_bytes(folder):
-    path = folder / "whole.tdms"
-    attributes = {"wf_increment": 1e-5, "unit_string": "V"}
-    with TdmsWriter(path) as file:
-        for part in np.array_split(np.sin(np.arange(SAMPLES)), 2):
-            file.write_segment([ChannelObject("rig", "U", part, attributes)])
-    return path.read_bytes()
-
-
-def csv_bytes(_):
-    rows = "".join(f"{1e-5 * n:.5f},{math.sin(n):.6f}\n" for n in range(SAMPLES))
-    return f"# rig\ntime [s],voltage [V]\n{rows}".encode()
+TIMES, VOLTS = written_recordings.TIMES[:400], written_recordings.VOLTS[:400]
+WRITERS = {
+    "csv": partial(write_csv, columns=[TIMES, VOLTS], header="time [s],voltage [V]"),
+    "nc": partial(write_netcdf, values=VOLTS, times=None, sampling_interval="20 us"),
+    "tdms": partial(write_tdms, values=VOLTS, segments=2, wf_increment=2e-5, unit_string="V"),
+}
 
 
 @cases
-@pytest.mark.parametrize("whole", [csv_bytes, netcdf_bytes, tdms_bytes])
-def test_a_spoilt_record_is_read_or_refused_in_one_line(tmp_path, examples, whole):
-    suffix = {csv_bytes: "csv", netcdf_bytes: "nc", tdms_bytes: "tdms"}[whole]
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_spoilt_record_is_read_or_refused_in_one_line(tmp_path, examples, kind):
     check = is_read(lambda path: sum(piece.size for piece in open_recording(path).pieces()))
-    fuzz(spoilt([whole(tmp_path)]), examples, check, tmp_path / f"run.{suffix}")
+    whole = WRITERS[kind](tmp_path / f"whole.{kind}").read_bytes()
+    fuzz(spoilt([whole]), examples, check, tmp_path / f"run.{kind}")

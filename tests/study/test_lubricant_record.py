@@ -92,13 +92,6 @@ def test_xmp_320_has_the_values_of_physics_section_2_in_si():
     assert record.valid_temperatures == (40.0, 100.0)
 
 
-def test_a_relative_path_starts_from_the_given_folder(write, tmp_path):
-    path = write(OIL)
-    record = load_record("my-oil.yaml", folder=tmp_path)
-    assert record.name == "my-oil"
-    assert record.files == (path,)
-
-
 def test_an_unknown_name_and_a_missing_file_are_refused(tmp_path):
     with pytest.raises(RecordError, match=r"got 'mobil-1', need one of mobilgear.*n-dodecane"):
         load_record("mobil-1")
@@ -113,59 +106,44 @@ MISTAKES = [
     ("kinematic_viscosity: 11 ", "viscosity: 11 ", "viscosity.points.1.viscosity: unknown key"),
     ("gold_base: mineral", "gold_base: olive", "pressure_viscosity.gold_base: got 'olive'"),
     ("  source: data sheet\n", "", "density.source: missing"),
-    ("source: data sheet", "source: ''", "density.source: got ''"),
     ('source: "assumed: Gold"', "source: '  '", "pressure_viscosity.source: got '  '"),
     ("100 mm^2/s}", "100}", "points.0.kinematic_viscosity: got 100, need a number with its"),
-    ("100 mm^2/s}", "100 mPa*s}", "points.0.kinematic_viscosity: wrong dimension"),
-    ("40 degC", "-300 degC", "points.0.temperature: got -300, need a value above -273.15"),
-    ("880 kg/m^3", "880", "density.at_15_degC: got 880, need a number with its unit"),
     (OIL[OIL.index("density:") : OIL.index("pressure_v")], "", "density: missing"),
     (OIL[OIL.index("thermal_conductivity") :], "", "thermal_conductivity: missing"),
     (POINTS, "", "viscosity: got none, need one of points, csv, coolprop_fluid"),
     (POINTS, POINTS + "  csv: a.csv\n", "viscosity: got points and csv, need one of"),
     (POINTS, "  points: []\n", "viscosity: need values at two temperatures or more"),
     ("100 degC", "40 degC", "viscosity: need values at two temperatures or more"),
-    ("11 mm^2/s", "110 mm^2/s", "got no less at 100 degC than at 40 degC"),
-    (
-        "100 mm^2/s}",
-        "100 mm^2/s, dynamic_viscosity: 9 mPa*s}",
-        "viscosity.points.0: need either kinematic_viscosity or dynamic_viscosity",
-    ),
+    ("11 mm^2/s", "110 mm^2/s", "viscosity: need less at 100 degC than at 40 degC"),
+    ("100 mm^2/s}", "100 mm^2/s, dynamic_viscosity: 9 mPa*s}", "viscosity.points.0: need either k"),
     ("title: My oil", "title: My oil\nviscosity_law: walther", "viscosity_law: got 'walther'"),
-    (GOLD, "", "pressure_viscosity: need either gold_base, or definition"),
-    (GOLD, GOLD + "  value: 20 1/GPa\n", "need either gold_base or value, got both"),
+    (GOLD, "", "pressure_viscosity: need either gold_base alone, or definition"),
+    (GOLD, GOLD + "  value: 20 1/GPa\n", "need either gold_base alone, or definition"),
     (GOLD, "  definition: secant\n", "pressure: need it with definition 'secant'"),
     (GOLD, GOLD + "  pressure: 200 MPa\n", "pressure: need it with definition 'secant', and"),
     (GOLD, "  definition: reciprocal-asymptotic\n", "gold_base or value: missing"),
     (
         "title: My oil",
         "title: x\ntemperature_range: {source: x, lowest: 40 degC, highest: 30 degC}",
-        "highest: got 30 degC, need more than lowest, 40 degC",
+        "temperature_range: got 40 to 30 degC, need the lowest first",
     ),
     ("name: my-oil", "name: my-oil\nname: my-oil", 'at line 2: found duplicate key "name"'),
 ]
 
 # What CoolProp gives may not be written too.
+SLOPE, RANGE = "slope-at-atmospheric", "temperature_range:"
+DENSITY = OIL[OIL.index("density:") : OIL.index("pressure_v")]
 COOLPROP_MISTAKES = [
-    ("temperature_range:", "viscosity_law: vogel\ntemperature_range:", "viscosity_law: not"),
+    (RANGE, f"viscosity_law: vogel\n{RANGE}", "viscosity_law: not allowed"),
+    (RANGE, DENSITY + RANGE, "density: not allowed, CoolProp gives it for n-Decane"),
+    (SLOPE, "reciprocal-asymptotic", "'reciprocal-asymptotic' not allowed"),
     (
-        "temperature_range:",
-        "density: {source: x, at_15_degC: 730 kg/m^3, thermal_coefficient: 1e-3 1/K}\n"
-        "temperature_range:",
-        "density: not allowed, CoolProp gives it for n-Decane",
+        SLOPE,
+        f"{SLOPE}\n  value: 12 1/GPa",
+        "gold_base or value: not allowed, CoolProp gives it for",
     ),
-    ("slope-at-atmospheric", "reciprocal-asymptotic", "got 'reciprocal-asymptotic'"),
-    (
-        "slope-at-atmospheric",
-        "slope-at-atmospheric\n  value: 12 1/GPa",
-        "gold_base or value: not allowed, CoolProp gives it for n-Decane",
-    ),
-    ("  definition: slope-at-atmospheric", "  gold_base: ester", "or value: not allowed"),
-    (
-        "slope-at-atmospheric",
-        "secant\n  pressure: 0.1 MPa",
-        "pressure_viscosity.pressure: got 100000, need a value above 101325",
-    ),
+    (f"  definition: {SLOPE}", "  gold_base: ester", "or value: not allowed"),
+    (SLOPE, "secant\n  pressure: 0.1 MPa", "pressure: got 100000, need a value above 101325"),
 ]
 
 
@@ -174,11 +152,6 @@ def test_each_mistake_in_a_record_is_refused_by_key_and_value(write):
         for old, new, message in mistakes:
             assert text.count(old) == 1
             assert message in refusal(write(text.replace(old, new)))
-
-
-def test_a_truncated_record_is_refused_wherever_it_is_cut(write):
-    for length in range(0, len(OIL) - len("W/m/K\n"), 5):
-        refusal(write(OIL[:length]))
 
 
 # Viscosities in a CSV file
@@ -191,6 +164,7 @@ def test_csv_variants_give_the_same_points(write, tmp_path):
     for text in (
         "temperature [degC],kinematic_viscosity [mm^2/s]\n40,100.5\n100,11.25\n",
         "temperature [degC];kinematic_viscosity [mm^2/s]\n40;100,5\n100;11,25\n",
+        "temperature [degC];kinematic_viscosity [mm^2/s]\n40;1.005e2\n100;11.25\n",
         '"temperature [degC]","kinematic_viscosity [cSt]"\n40,100.5\n100,11.25\n',
         "kinematic_viscosity [ mm^2/s ] , temperature [K]\n100.5, 313.15\n11.25, 373.15\n",
         "\ufeff# our rheometer\n\ntemperature[degC],kinematic_viscosity[mm^2/s]\r\n"
@@ -210,43 +184,38 @@ def test_csv_may_contain_dynamic_viscosity_and_a_temperature_twice(write):
     text = "temperature [degC],dynamic_viscosity [mPa*s]\n40,85\n100,9\n100,9.1\n"
     points = read_viscosity_csv(write(text, "data.csv"))
     assert [point.dynamic_viscosity for point in points] == pytest.approx([0.085, 0.009, 0.0091])
-    assert points[0].kinematic_viscosity is None
-    write(HEADER + "20,460\n40,100\n40,101\n", "data.csv")
-    assert len(load_record(write(CSV_OIL)).viscosity.points) == 3
+    assert load_record(write(CSV_OIL)).viscosity.points == points
 
 
 def test_each_mistake_in_a_csv_file_is_refused_by_line_and_column(write):
     for text, message in [
         ("", "data.csv: empty, need a line of column names"),
-        ("temperature,viscosity\n40,100\n", "line 1: got the column 'temperature', need"),
-        ("temperature [degC],nu [mm^2/s]\n40,1\n", "line 1: got the column 'nu [mm^2/s]'"),
-        ("temperature [degC]\n40\n", "line 1: got the columns temperature, need"),
-        ("temperature [degC],temperature [K]\n", "line 1: got the column 'temperature [K]'"),
         (
-            "temperature [degC],kinematic_viscosity [mm^2/s],dynamic_viscosity [mPa*s]\n",
-            "line 1: got the columns temperature, kinematic_viscosity, dynamic_viscosity",
+            "temperature,viscosity\n40,100\n",
+            "line 1: got the columns 'temperature, viscosity', need",
         ),
+        (
+            "temperature [degC],nu [mm^2/s]\n40,1\n",
+            "line 1: got the columns 'temperature [degC], nu",
+        ),
+        ("temperature [degC]\n40\n", "line 1: got the columns 'temperature [degC]', need"),
+        ("temperature [degC],temperature [K]\n", "line 1: got the columns 'temperature [degC], t"),
+        (HEADER.strip() + ",dynamic_viscosity [mPa*s]\n", "line 1: got the columns 'temperature"),
         ("temperature [s],kinematic_viscosity [mm^2/s]\n40,100\n", "line 2: temperature: wrong"),
         (HEADER + "40,100\n# pause\n100,eleven\n", "line 4: kinematic_viscosity: got 'eleven mm"),
         (HEADER + "40,\n", "line 2: kinematic_viscosity: got ' mm^2/s'"),
         (HEADER + "40,100\n100,0\n", "line 3: kinematic_viscosity: got 0, need a value above 0"),
         (HEADER + "40,0,100,5\n", "line 2: got 4 values, need 2"),
         (HEADER + "40,100\n", "data.csv: viscosity: need values at two temperatures or more"),
-        (HEADER + "40,10\n100,100\n", "got no less at 100 degC than at 40 degC"),
-        (HEADER + "20,460\n40,100\n30,50\n", "got no less at 40 degC than at 30 degC"),
+        (HEADER + "40,10\n100,100\n", "need less at 100 degC than at 40 degC"),
+        (HEADER + "20,460\n40,100\n30,50\n", "need less at 40 degC than at 30 degC"),
         (
             HEADER.replace(",", ";") + "20;1.100\n40;46,2\n",
-            "line 2: got '1.100' in a file with decimal commas, need no point",
+            "line 2: got '1.100' in a file with dec",
         ),
     ]:
         write(text, "data.csv")
         assert message in refusal(write(CSV_OIL))
-
-
-def test_semicolons_alone_do_not_mean_decimal_commas(write):
-    write(HEADER.replace(",", ";") + "20;1.1e3\n40;46.2\n", "data.csv")
-    viscosity = load_record(write(CSV_OIL)).viscosity.points[0].kinematic_viscosity
-    assert viscosity == pytest.approx(1.1e-3)
 
 
 def test_a_csv_file_must_exist_in_the_records_folder(write):

@@ -3,13 +3,11 @@
 import re
 from functools import partial
 
-import yaml
 from refusals import NEEDED, one_line
-from studies import OIL, PAPER_CONTENT, REMOVED, with_value
+from studies import OIL, PAPER_CONTENT, REMOVED
 
 from lube.errors import LubeError
 from lube.report.key_tables import study_keys
-from lube.study.lubricant_record import SHIPPED_FOLDER
 from lube.study.rollers import AUTOMATIC_WAVELENGTH
 from lube.study.study import load_study
 
@@ -21,41 +19,24 @@ UNKNOWN_KEYS = [
     ("sede", 1, "sede: unknown key, did you mean 'seed'?"),
     ("about.licens", 1, "about.licens: unknown key, did you mean 'licence'?"),
     ("about.creators.0.orchid", 1, "about.creators.0.orchid: unknown key, did you mean 'orcid'?"),
-    ("rollers.third", 1, "rollers.third: unknown key, need one of length, first, second"),
-    ("rollers.first.radios", 1, "rollers.first.radios: unknown key, did you mean 'radius'?"),
     ("operating_grid.load", 1, "operating_grid.load: unknown key, need one of force, speed, "),
-    ("roughness.hurst_exp", 1, "unknown key, did you mean 'hurst_exponent'?"),
-    ("boundary_layer.strength", 1, "unknown key, did you mean 'shear_strength'?"),
     ("traces.0.load", "800 N", "traces.0.load: unknown key, need one of force, speed, "),
-    ("rig.noize", 1, "rig.noize: unknown key, did you mean 'noise'?"),
     ("experiment.treshold", 1, "experiment.treshold: unknown key, did you mean 'threshold'?"),
 ]
 
 PURE_NUMBERS = [
     ("rollers.first.poisson_ratio", -0.1, "got -0.1, need a value at least 0 and at most 0.5"),
-    ("rollers.second.poisson_ratio", 0.51, "got 0.51, need a value at least 0 and at most 0.5"),
     ("roughness.hurst_exponent", 0, "got 0, need a value above 0 and below 1"),
     ("rig.oil_permittivity", 0.5, "got 0.5, need a value at least 1"),
     ("rig.noise", "-1 uV", "got -1e-06, need a value at least 0 V"),
-    ("rig.lead_resistance", "-1 ohm", "got -1, need a value at least 0 ohm"),
-    (
-        "rig.amplifier_range",
-        "20 mV",
-        "rig.amplifier_range: got 0.02 V, need more than the 0.0455 V",
-    ),
+    ("rig.amplifier_range", "20 mV", "got 0.02 V, need more than the 0.0455 V"),
     ("experiment.release_ratio", 0.9, "got 0.9, need a value at least 1"),
     ("experiment.debounce", "-1 s", "got -1, need a value at least 0 s"),
-    ("experiment.threshold", "50 ohm", "got 50 ohm, need one of experiment.thresholds: 10, "),
+    ("experiment.threshold", "50 ohm", "got 50 ohm, need one of experiment.thresholds: (10.0, "),
     ("experiment.manifest", "none.csv", "need a file that exists"),
-    (
-        "roughness.shortest_wavelength",
-        "1.9 points",
-        "got 1.9, need a value at least 2 and at most 1.67772e+07 points",
-    ),
+    ("roughness.shortest_wavelength", "1.9 points", "got 1.9, need a value at least 2 and at most"),
     ("operating_grid.slide_to_roll_ratio", [2.5], "got 2.5, need a value at least -2 and at most"),
     ("operating_grid.slide_to_roll_ratio", [], "need a list such as [0, 0.1]"),
-    ("operating_grid.slide_to_roll_ratio", [0, 0], "got 0 after 0, need rising levels"),
-    ("operating_grid.slide_to_roll_ratio", 0, "got 0, need a list"),
 ]
 
 COUNTS = [
@@ -69,20 +50,26 @@ COUNTS = [
     ("batch_size", True, "got True, need a whole number"),
     ("roughness.points", 10, "got 10, need at least 64"),
     ("roughness.points", 1e6, "got 1000000.0, need a whole number"),
-    ("kept_realisations", [0, 64], "got 64, need realisations from 0 to 63"),
+    ("kept_realisations", [0, 64], "got (0, 64), need 0, which the traces use, and none above 63"),
     ("kept_realisations", [-1, 0], "kept_realisations.0: got -1, need at least 0"),
     ("kept_realisations", [0, 0], "0 is repeated, need each once"),
-    ("kept_realisations", [1], "need 0 among them"),
-    ("kept_realisations", [], "need 0 among them"),
-    ("kept_realisations", 0, "got 0, need a list"),
+    ("kept_realisations", [1], "got (1,), need 0, which the traces use"),
+    ("kept_realisations", [], "got (), need 0"),
 ]
 
 GRIDS = [
-    ("roughness.points", 5000, "got 5000, too coarse a grid"),
-    ("roughness.longest_wavelength", "1 um", "got 1000000, too coarse a grid"),
+    ("roughness.points", 5000, "need 7478 roughness.points or more"),
+    ("roughness.longest_wavelength", "1 um", "need less than the longest, 1e-06 m; if it is"),
     ("roughness.shortest_wavelength", "1 mm", "got 0.001 m, need less than the longest"),
     ("roughness.shortest_wavelength", "1e308 points", "got 1e+308, need a value at least 2 and at"),
+    ("roughness.longest_wavelength", "long", f", or the words `{AUTOMATIC_WAVELENGTH}`"),
     ("roughness.longest_wavelength", "1 m", "the perimeter, 0.314 m, is too short"),
+    (
+        "operating_grid.temperature",
+        {"values": [39], "units": "degC"},
+        "got 39 degC, need 40 to 100",
+    ),
+    ("operating_grid.temperature", {"values": [101], "units": "degC"}, f"{OIL}: got 101 degC"),
     ("roughness.height_step", "1 nm", "got 1e-09 m, need 2e-14 to 2e-10 m"),
 ]
 
@@ -91,25 +78,29 @@ NAMES = [
     ("lubricants", ["nope.yaml"], "nope.yaml: cannot be read"),
     ("lubricants", [], "got (), need at least 1"),
     ("lubricants", OIL, f"got '{OIL}', need a list"),
-    ("lubricants", [3], "got 3, need names or paths of records"),
-    ("lubricants", [{"name": "inline"}], "need names or paths of records"),
+    ("lubricants", [3], "lubricants: got 3, need one of "),
+    ("lubricants", [{"name": "inline"}], "got {'name': 'inline'}, need one of "),
     ("lubricants", [OIL, OIL], f"{OIL} is repeated, need each once"),
     ("film_formulas", ["nope"], "film_formulas.0: unknown film formula 'nope', need one of paper"),
     ("film_formulas", [], "got [], need at least 1"),
     ("film_formulas", ["paper", "paper"], "paper is repeated, need each once"),
-    ("film_formulas", "paper", "got 'paper', need a list"),
     ("name", "My study", "got 'My study', need lower-case letters"),
-    ("name", "../elsewhere", "got '../elsewhere', need lower-case letters"),
     ("name", 3, "got 3, need text"),
     ("rollers", 3, "got 3, need keys with their values"),
 ]
 
+TRACE = {"force": "800 N", "speed": "150 rpm", "temperature": "40 degC"}
 TRACES = [
     ("traces.0.force", "300 N", "got 300.0, need one of the study's: 100.0, 200.0"),
     ("traces.0.speed", "101 rpm", "got 101.0, need one of the study's: 85.7"),
     ("traces.0.lubricant", "nope", f"got nope, need one of the study's: {OIL}"),
     ("traces.0.film_formula", "nope", "got nope, need one of the study's: paper"),
     ("traces", [], "got [], need at least 1"),
+    (
+        "traces",
+        [TRACE, TRACE | {"speed": "100 rpm"}],
+        "need the same speed and slide-to-roll ratio",
+    ),
 ]
 
 
@@ -123,20 +114,15 @@ def test_a_mistake_is_refused_by_key_value_and_what_is_needed(paper_with):
             assert f"mine.yaml: {key}" in message
 
 
-def keys_with_units(kind):
-    """Keys of a study whose values carry a unit, with that unit, from its JSON schema."""
-    found = {}
-    for cell, value, _ in study_keys():
-        key = cell.strip("`").replace("[]", ".0")
-        match = re.match(rf"{kind} in ([^ ,(]+)(, above 0)?", value)
-        if match and not key.startswith("lubricants"):
-            found[key] = match.groups()
-    return found.items()
-
-
 def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
-    assert len(keys_with_units("quantity")) >= 20
-    for key, (units, positive) in keys_with_units("quantity"):
+    tested = 0
+    for cell, value, _ in study_keys():  # of the JSON schema
+        key = cell.strip("`").replace("[]", ".0")
+        match = re.match(r"quantity in ([^ ,(]+)(, above 0)?", value)
+        if match is None:
+            continue
+        tested += 1
+        units, positive = match.groups()
         bare = refusal(paper_with((key, 50)))
         assert f"mine.yaml: {key}: got 50, need a number with its unit, such as '1 {units}'" in bare
         wrong = refusal(paper_with((key, "50 kg")))
@@ -144,76 +130,23 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
         if positive:
             negative = refusal(paper_with((key, f"-0.5 {units}")))
             assert f"mine.yaml: {key}: got -0.5, need a value above 0" in negative
-
-
-def test_levels_rise_and_have_a_unit_of_their_dimension(paper_with):
-    assert len(keys_with_units("values and units")) == 4
-    for key, (units, _) in keys_with_units("values and units"):
-        for value, needed in [
-            ([50, 60], f"need values and their unit, such as {{values: [1, 2], units: {units}}}"),
-            ({"values": [60, 50], "units": units}, "need rising levels, each once"),
-            ({"values": [50], "units": "kg"}, f"need a unit of the kind '{units}'"),
-            ({"values": [-500], "units": units}, "need a value above"),
-        ]:
-            message = refusal(paper_with((key, value)))
-            assert f"mine.yaml: {key}: " in message
-            assert needed in message
-
-
-def test_temperatures_outside_the_lubricants_range_are_refused(paper_with):
-    for temperature in (39, 101):
-        value = {"values": [temperature], "units": "degC"}
-        message = refusal(paper_with(("operating_grid.temperature", value)))
-        assert f"{OIL}: got {temperature} degC, need 40 to 100 degC" in message
+    assert tested >= 20
 
 
 def test_every_key_without_a_default_is_needed(paper_with):
-    sections = ("rollers", "rollers.first", "operating_grid", "roughness", "boundary_layer")
     keys = [key for key in PAPER_CONTENT if key not in ("about", "rig", "experiment")]
-    for section in sections:
-        content = PAPER_CONTENT
-        for part in section.split("."):
-            content = content[part]
-        keys += [f"{section}.{key}" for key in content]
-    for key in keys:
+    for section in ("rollers", "operating_grid", "roughness", "boundary_layer"):
+        keys += [f"{section}.{key}" for key in PAPER_CONTENT[section]]
+    for key in [*keys, "rollers.first.radius", "rollers.second.rms_roughness"]:
         assert f"{key}: missing" in refusal(paper_with((key, REMOVED)))
 
 
 def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_with):
-    for changes, message in [
-        (
-            {"operating_grid.force.values": [1e-3, 1600], "traces.0.force": "1600 N"},
-            "roughness.points: the contact at 0.001 N",
-        ),
-        (
-            {"operating_grid.force.values": [1600, 1e10], "traces.0.force": "1600 N"}
-            | {"roughness.longest_wavelength": "0.4 mm"},
-            "operating_grid.force: the contact at 1e+10 N",
-        ),
-        (
-            {"rollers.second.radius": "25 mm", "roughness.longest_wavelength": "0.2 m"},
-            "rollers.second.radius: the perimeter, 0.157 m, is too short",
-        ),
-        ({"traces.1.speed": "150 rpm"}, "traces: need one speed"),
+    forces, trace = "operating_grid.force.values", ("traces.0.force", "1600 N")
+    longest = "roughness.longest_wavelength"
+    for *changes, message in [
+        ((forces, [1e-3, 1600]), trace, "operating_grid.force: the contact at 0.001 N"),
+        ((forces, [1600, 1e10]), trace, (longest, "0.4 mm"), "force: the contact at 1e+10 N"),
+        (("rollers.second.radius", "25 mm"), (longest, "0.2 m"), "the perimeter, 0.157 m, is too"),
     ]:
-        assert message in refusal(paper_with(*changes.items()))
-
-
-def test_a_lubricant_record_without_sources_is_refused(paper_with):
-    path = paper_with(("lubricants", ["oil.yaml"]))
-    record = yaml.safe_load((SHIPPED_FOLDER / f"{OIL}.yaml").read_text(encoding="utf-8"))
-    for section in [key for key, value in record.items() if isinstance(value, dict)]:
-        text = yaml.safe_dump(with_value(record, f"{section}.source", REMOVED))
-        (path.parent / "oil.yaml").write_text(text, encoding="utf-8")
-        assert f"{section}.source: missing" in refusal(path)
-
-
-def test_the_automatic_wavelength_is_offered_where_a_length_is_refused(paper_with):
-    message = refusal(paper_with(("roughness.longest_wavelength", "as long as can be")))
-    assert AUTOMATIC_WAVELENGTH in message
-
-
-def test_a_file_that_is_no_study_is_named(tmp_path):
-    assert "absent.yaml: cannot be read" in refusal(tmp_path / "absent.yaml")
-    (tmp_path / "empty.yaml").touch()
-    assert "empty.yaml: need a mapping" in refusal(tmp_path / "empty.yaml")
+        assert message in refusal(paper_with(*changes))
