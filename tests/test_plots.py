@@ -135,17 +135,6 @@ def shown(study):
     return xr.Dataset(attrs=global_attributes(study, "film"))
 
 
-def test_a_figure_is_saved_as_the_same_bytes_each_time(tmp_path, shown):
-    plots.use_style()
-    for name in ("one", "two"):
-        figure, axes = plt.subplots()
-        axes.plot([1, 2], [1, 4])
-        plots.save_figure(figure, tmp_path / name, shown)
-    for suffix in ("png", "pdf"):
-        one, two = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("one", "two"))
-        assert one == two
-
-
 def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
     plots.use_style()
     for footnote in (False, True):
@@ -168,32 +157,8 @@ def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
         assert picture.text["Description"] == stamp([shown])
 
 
-def test_without_a_path_a_figure_is_stamped_but_not_written(tmp_path, shown, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    figure, _ = plt.subplots()
-    plots.save_figure(figure, None, shown)
-    assert [written.get_text() for written in figure.texts] == [stamp([shown])]
-    assert plt.fignum_exists(figure.number)  # for Jupyter to show
-    assert not list(tmp_path.iterdir())
-
-
 def test_a_figure_of_no_dataset_is_refused(tmp_path):
     figure, _ = plt.subplots()
     with pytest.raises(DataError, match="a figure needs the datasets that it shows"):
         plots.save_figure(figure, tmp_path / "figure")
     assert not list(tmp_path.iterdir())
-
-
-def test_a_figure_that_cannot_be_written_leaves_the_old_one(tmp_path, shown, monkeypatch):
-    figure, _ = plt.subplots()
-    plots.save_figure(figure, tmp_path / "figure", shown)
-    before = (tmp_path / "figure.png").read_bytes()
-
-    def fail(*arguments):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.replace", fail)
-    with pytest.raises(DataError, match=r"figure.png: cannot be written: No space left"):
-        plots.save_figure(figure, tmp_path / "figure", shown)
-    assert (tmp_path / "figure.png").read_bytes() == before
-    assert len(list(tmp_path.iterdir())) == 2

@@ -10,8 +10,6 @@ from studies import ROOT, SMOKE
 
 from lube.archive.build import VALUES, archive_contents, exact_versions, make_archive, written_files
 from lube.errors import DataError, StudyError
-from lube.schema import DATASETS
-from lube.storage.provenance import config_text, digest
 from lube.study.study import load_study
 
 
@@ -61,21 +59,6 @@ def test_a_study_is_archived_with_all_its_files_and_loads_from_there(own, archiv
     assert study_file == "studies/study.yaml"
     archived = load_study(tmp_path / "archive/study" / study_file)
     assert archived.stage_inputs("film") == load_study(own).stage_inputs("film")
-
-
-def test_results_and_values_are_archived(study, archive):
-    results = archive.parents[1]
-    contents = archive_contents(study, SMOKE, results, ["fig02_film"])
-    assert contents["data/film.nc"] == results / "film.nc"
-    drawn = [f"figures/fig02_film.{suffix}" for suffix in ("png", "pdf", "json")]
-    for name in (*drawn, "notebooks/fig02_film.ipynb"):
-        assert contents[name] == results / name
-    values = json.loads(contents[VALUES])
-    merged = {}
-    for kind in DATASETS:
-        merged |= json.loads(config_text(study, kind))
-    assert values["values"] == merged
-    assert values["config_sha256"]["film"] == digest(config_text(study, "film"))
 
 
 def test_paths_that_would_not_resolve_in_an_archive_are_refused(own, tmp_path):

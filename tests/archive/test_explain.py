@@ -79,17 +79,6 @@ def test_mean_and_interval_are_computed_again_at_every_point(folder):
         assert results <= set(result.again.data_vars)
 
 
-def test_stored_results_are_not_used(folder, copied):
-    path, change = copied
-    with xr.open_dataset(path) as contact:
-        names = list(contact.data_vars)
-    change(**dict.fromkeys(names, np.nan))
-    expected = explain(folder / "contact.nc", None, **POINT).again
-    result = explain(path, None, **POINT)
-    xr.testing.assert_identical(result.again, expected)
-    assert set(result.differing) == set(expected.data_vars)
-
-
 def test_a_changed_number_is_found(copied):
     path, change = copied
     with xr.open_dataset(path) as contact:

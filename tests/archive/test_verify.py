@@ -176,16 +176,3 @@ def test_a_damaged_zip_is_found(archive, tmp_path):
             unpacked(path),
         ):
             pass
-
-
-def test_what_is_no_archive_is_refused(tmp_path):
-    path = tmp_path / "some.zip"
-    with pytest.raises(DataError, match="no such archive; `snakemake archive`"), unpacked(path):
-        pass
-    path.write_bytes(b"not a zip")
-    with pytest.raises(DataError, match="neither a folder nor a whole zip"), unpacked(path):
-        pass
-    with zipfile.ZipFile(path, "w") as packed:
-        packed.writestr("README.md", "empty")
-    with pytest.raises(DataError, match="not an archive: SHA256SUMS is missing"), unpacked(path):
-        pass

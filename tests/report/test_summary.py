@@ -44,67 +44,30 @@ def test_unequal_rollers_many_levels_and_measured_records_are_told(study):
 
 
 @pytest.fixture
-def datasets(study):
-    """Film, contact and comparison of the study, with probabilities of ours."""
-    grid = study.operating_grid
-    coords = {
-        "slide_to_roll_ratio": list(study.slips),
-        "lubricant": [record.name for record in study.lubricants],
-        "film_formula": list(study.film_formulas),
-        "temperature": list(grid.temperature),
-        "speed": list(grid.speed),
-        "force": list(grid.force),
-    }
-    filled = xr.DataArray(0.0, coords, list(coords))
-    mean = filled.copy()
+def results(study, datasets):
+    """Film, contact and comparison of the study, with chosen values."""
+    film, contact = datasets["film"].copy(deep=True), datasets["contact"].copy(deep=True)
+    film["film_thickness"][:], film["lambda_ratio"][:] = 2.834e-7, 1.002
+    film["in_validity_range"][:] = film["temperature"] + 0.0 * film["film_thickness"] == 40.0
+    mean = 0.0 * contact["breakthrough_probability_mean"]
     mean.loc[{"force": 1600, "temperature": 80, "speed": 100, "film_formula": "paper"}] = 0.4321
-    contact = xr.Dataset(
-        {
-            "breakthrough_probability_mean": mean,
-            "breakthrough_probability_lower": 0.5 * mean,
-            "breakthrough_probability_upper": 2.0 * mean + 1e-4,
-        }
-    )
-    filled = filled.isel(slide_to_roll_ratio=0, drop=True)
-    film = xr.Dataset(
-        {
-            "film_thickness": filled + 2.834e-7,
-            "lambda_ratio": filled + 1.002,
-            "in_validity_range": filled.temperature + filled == 40.0,
-        }
-    )
-    # Two records of the point with contact, one near no level.
-    records = {
-        "force": [1600.0] * 3,
-        "speed": [100.0] * 3,
-        "temperature": [80.0, 80.0, np.nan],
-    }
-    agreement = xr.DataArray(
-        np.full((2, 3), -0.012), {"film_formula": coords["film_formula"],
-                                  "threshold": list(study.experiment.thresholds)}
-    )  # fmt: skip
-    comparison = xr.Dataset(
-        {
-            **{f"{name}_level": ("record", levels) for name, levels in records.items()},
-            "lubricant": ("record", coords["lubricant"] * 3),
-            "slide_to_roll_ratio": ("record", [0.0] * 3),
-            "measured_share": ("record", [0.4421, 0.4321, 0.2]),
-            "bias": agreement,
-            "rms_difference": -2.0 * agreement,
-            "overlap_share": agreement + 0.762,
-            "overlap_share_expected_lower": ("film_formula", [0.6, 0.6]),
-            "overlap_share_expected_upper": ("film_formula", [1.0, 1.0]),
-            "compared_records": 3 + 0 * agreement.astype(int),
-            "pairs": 1,
-            "comparison_threshold": study.experiment.threshold,
-        },
-        {"origin": "simulated"},
-    )
-    return film, contact, comparison  # fmt: skip
+    for name, values in (("mean", mean), ("lower", 0.5 * mean), ("upper", 2.0 * mean + 1e-4)):
+        contact[f"breakthrough_probability_{name}"] = values
+    # Two records of the point with contact, and one near no level.
+    comparison = datasets["comparison"].isel(record=[0, 0, 0]).copy(deep=True)
+    levels = {"force": 1600.0, "speed": 100.0, "temperature": [80.0, 80.0, np.nan]}
+    for name, values in levels.items():
+        comparison[f"{name}_level"][:] = values
+    comparison["measured_share"][:] = [0.4421, 0.4321, 0.2]
+    comparison["bias"][:], comparison["rms_difference"][:] = -0.012, 0.024
+    comparison["overlap_share"][:], comparison["compared_records"][:] = 0.75, 3
+    comparison["overlap_share_expected_lower"][:] = 0.6
+    comparison["overlap_share_expected_upper"][:] = 1.0
+    return film, contact, comparison
 
 
-def test_the_answers_are_those_of_the_datasets(study, datasets):
-    html = findings(study, *datasets)
+def test_the_answers_are_those_of_the_datasets(study, results):
+    html = findings(study, *results)
     assert "at 1 of 8 operating points; at the other 7 it was never seen" in html
     assert "<strong>43.2 %</strong> of the time, at 1600 N, 100 r/min, 80 °C" in html
     assert "4 of 8 operating points lie outside" in html
@@ -120,8 +83,8 @@ def test_the_answers_are_those_of_the_datasets(study, datasets):
     assert "<strong>0 %</strong> (0 % to 0.01 %)</td><td>–</td>" in rows[0]
 
 
-def test_a_study_without_contact_and_records_says_so(study, datasets):
-    film, contact, comparison = datasets
+def test_a_study_without_contact_and_records_says_so(study, results):
+    film, contact, comparison = results
     comparison["bias"][:] = np.nan
     comparison["measured_share"][:] = np.nan
     film["in_validity_range"][:] = True

@@ -180,18 +180,6 @@ def unequal(study):
     return study.model_copy(update={"rollers": rollers})
 
 
-def test_new_alignments_make_a_long_record_scatter_less(busy):
-    turns = np.array([1.0, 4.0, 40.0])
-    contact = busy.contact.isel(realisation=slice(16))
-    for study, slip in ((busy.study, 0.1), (unequal(busy.study), 0.0)):
-        experiment = experiment_off_the_grid([0, 0, 0], turns=turns, slide_to_roll_ratio=slip)
-        ratios = model_of_records(experiment, busy.film, contact, study)["scatter_ratio"].values.T
-        assert (ratios[1] < 0.7 * ratios[0]).all()
-        assert (ratios[2] <= ratios[1]).all()
-        # The effect of each line alone persists.
-        assert (ratios[2] > 0.02 * ratios[0]).all()
-
-
 @pytest.mark.parametrize(
     ("change", "slip", "turns"),
     [

@@ -51,11 +51,6 @@ def test_the_noise_has_its_rms_and_its_seed():
     assert abs(np.corrcoef(one, other)[0, 1]) < 0.03
 
 
-def test_an_amplifier_of_too_small_a_range_saturates():
-    voltage = logged(np.zeros(20_000), Rig(amplifier_range="10 mV", **QUIET))
-    np.testing.assert_allclose(voltage, 0.01, rtol=1e-6)
-
-
 def below(voltage, rig, threshold=100.0):
     return np.mean(voltage < divider_voltage(threshold, rig))
 
@@ -135,25 +130,6 @@ def test_its_contacts_are_those_of_the_contact_stage(
         touched[pair, number] += np.mean(revolution.contact > 0) / 2.0
     np.testing.assert_allclose(touched.ravel(), expected.values.ravel(), rtol=within, atol=2e-5)
     assert touched.max() > 0.01
-
-
-def test_rollers_repeat_themselves_in_rolling_but_not_with_slip(
-    lines_of, study, with_rig, points, slipping
-):
-    two = with_rig(study, revolutions=2)
-    lines = lines_of(two)
-    for among, alike in ((points, True), (slipping, False)):
-        contacts = [r.contact for _, number, r in run(lines, two, among) if number == 1]
-        assert np.array_equal(*contacts) == alike
-
-
-def test_pairs_differ_and_do_not_depend_on_how_many_there_are(lines_of, study, with_rig, points):
-    one, two = (with_rig(study, pairs=pairs, revolutions=1) for pairs in (1, 2))
-    alone, both = (run(lines_of(each), each, points) for each in (one, two))
-    for (_, _, here), (_, _, there) in zip(alone, both, strict=False):
-        np.testing.assert_array_equal(here.contact, there.contact)
-        np.testing.assert_array_equal(here.voltage(study.rig), there.voltage(study.rig))
-    assert not np.array_equal(both[0][2].contact, both[len(points)][2].contact)
 
 
 @pytest.mark.parametrize(("drift", "kept"), [(0.3, 0.7**0.5), (1.0, 0.0)])

@@ -73,13 +73,6 @@ def test_the_table_describes_each_variable_of_each_file_once():
         assert (row["units"] == "") == (row["type"] == "text")
 
 
-def test_the_values_of_a_flag_count_from_zero():
-    flag = FILES["film"]["in_validity_range"].attributes
-    assert flag["flag_meanings"] == "outside inside"
-    assert flag["flag_values"].dtype == np.int8
-    np.testing.assert_array_equal(flag["flag_values"], [0, 1])
-
-
 def test_the_cell_methods_of_a_mean_name_what_it_is_over():
     words = ("mean ", "share of time", "breakthrough probability", "probability of", "rms diff")
     for kind, name in VARIABLES:
@@ -131,21 +124,8 @@ def test_a_missing_attribute_is_refused(labelled):
             assert repr(name) in refusal(dataset, kind)
 
 
-def test_a_file_of_another_kind_and_an_empty_dataset_are_refused(labelled):
-    for kind, dataset in labelled.items():
-        assert "is missing" in refusal(xr.Dataset(), kind)
-        for other in FILES.keys() - {kind}:
-            refusal(dataset, other)
-
-
 @pytest.mark.parametrize("origin", ["measured", "simulated"])
 def test_a_record_is_a_measurement_only_if_it_was_measured(origin):
     dataset = label(example("experiment").assign(origin=origin), "experiment")
     word = dataset["repeatability"].attrs["coverage_content_type"]
     assert word == {"measured": "physicalMeasurement", "simulated": "modelResult"}[origin]
-
-
-def test_truth_values_may_be_stored_as_small_integers(labelled):
-    dataset = labelled["film"].copy()
-    dataset["in_validity_range"] = dataset["in_validity_range"].astype("int8")
-    check(label(dataset, "film"), "film")

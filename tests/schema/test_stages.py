@@ -2,7 +2,6 @@
 
 import json
 
-import pytest
 from studies import ROOT, SMOKE
 
 from lube.schema import DATASETS, FILES, MEASURED, STAGES, SUMMARIES, forerunners
@@ -27,21 +26,6 @@ def test_stages_stand_after_those_they_depend_on():
     names = list(STAGES)
     for name in names:
         assert set(forerunners(name)) <= set(names[: names.index(name)])
-
-
-@pytest.mark.parametrize(
-    ("stage", "expected"),
-    [
-        ("lubricant", set()),
-        ("film", {"lubricant"}),
-        ("contact", {"lubricant", "film", "roughness"}),
-        ("experiment", {"lubricant", "film", "roughness"}),
-        ("rig", {"lubricant", "film", "roughness", "experiment"}),
-        ("gauge", set(DATASETS) - {"trace", "rig", "gauge"}),
-    ],
-)
-def test_values_follow_from_all_stages_before(stage, expected):
-    assert set(forerunners(stage)) == expected
 
 
 def test_every_value_of_a_row_is_one_of_the_study_and_plain():

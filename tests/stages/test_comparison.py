@@ -61,16 +61,6 @@ def test_level_means_are_over_the_records_near_a_level(at_grid, members, mean):
             assert means[f"simulated_mean_by_{level}"] == pytest.approx(mean[here].mean())
 
 
-def test_the_order_of_the_records_changes_nothing(compared, members, busy):
-    experiment = experiment_at(busy.study.operating_grid.model_dump(), members[5])
-    order = np.random.default_rng(1).permutation(12)
-    there, back = compared(experiment.isel(record=order)), compared(experiment)
-    for name in ("predicted_share_lower", "within_prediction", "simulated_probability"):
-        np.testing.assert_array_equal(there[name], back[name].isel(record=order))
-    for name in FIGURES:
-        np.testing.assert_allclose(there[name], back[name], rtol=1e-12)
-
-
 # The prediction of one pair's record
 
 

@@ -10,9 +10,8 @@ import scipy.stats
 import xarray as xr
 
 from lube import BoundaryLayer, contact_map, contact_statistics, gather_map, roughness_lines
-from lube.grid.discretise import line_pair, speed_ratios
+from lube.grid.discretise import line_pair
 from lube.kernels.layer import layer_factor
-from lube.kernels.scan import scan_statistics
 from lube.kernels.strips import strip_statistics
 from lube.schema import OPERATING_DIMS
 from lube.stages.film import film_table
@@ -33,21 +32,8 @@ def layer(study):
 
 
 @pytest.fixture(scope="module")
-def weak_layer():
-    """A layer so weak that even on a coarse grid some segments break and some do not."""
-    return BoundaryLayer.model_construct(critical_thickness=5e-9, shear_strength=1e4)
-
-
-@pytest.fixture(scope="module")
 def contact(lines, film, layer):
     return contact_statistics(lines, film, layer)
-
-
-@pytest.fixture(scope="module")
-def slipping(coarse_lines, film, weak_layer):
-    """Rolling and slip either way, on a coarse grid and at few operating points."""
-    few = film.isel(temperature=[0, 3], speed=[0, 1], force=[1, 4])
-    return few, contact_statistics(coarse_lines, few, weak_layer, [-0.3, 0.0, 0.3])
 
 
 def same(left, right):
@@ -62,18 +48,18 @@ def points_of(film):
     ]
 
 
-def kernel_means(kernel, lines, realisation, point, layer, modulus, ratio=0.0, revolutions=1):
-    """Means of one operating point (film thickness and half-width), from a kernel's counts."""
+def kernel_means(lines, realisation, point, layer, modulus):
+    """Means of one operating point (film thickness and half-width) in rolling, by the kernel."""
     spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
     film, half_width = point
-    pair, ratios = line_pair(lines, realisation), speed_ratios(ratio)
-    steps = revolutions * pair[0].size
+    pair = line_pair(lines, realisation)
+    steps = pair[0].size
     factor = layer_factor(
         modulus, layer.critical_thickness, layer.shear_strength, spacing, height_step
     )
     films = np.array([round(film / height_step)])
     half_windows = np.array([math.floor(half_width / spacing)])
-    counts = kernel(pair, ratios, steps, films, half_windows, factor)[0]
+    counts = strip_statistics(pair, (1.0, 1.0), steps, films, half_windows, factor)[0]
     touching, breaking, points, overlap = (int(count) / steps for count in counts)
     return [touching, breaking, points * spacing, modulus * spacing * overlap * height_step]
 
@@ -87,25 +73,11 @@ def test_every_value_is_the_kernels_at_the_labelled_point(lines, film, layer, co
     modulus, distinct = film["reduced_modulus"].item(), set()
     for realisation, point in product((0, 1), points_of(film)):
         here = point_at(film, point)
-        expected = kernel_means(strip_statistics, lines, realisation, here, layer, modulus)
+        expected = kernel_means(lines, realisation, here, layer, modulus)
         found = contact.sel(realisation=realisation, slide_to_roll_ratio=0.0, **point)
         assert [found[name].item() for name in MEANS] == pytest.approx(expected, rel=1e-13)
         distinct.add(tuple(expected))
     assert len(distinct) > 150  # of 240: mixed-up points would show
-
-
-def test_every_value_with_slip_is_the_scans_at_the_labelled_point(
-    coarse_lines, weak_layer, slipping
-):
-    film, contact = slipping
-    modulus = film["reduced_modulus"].item()
-    twice = contact_statistics(coarse_lines, film, weak_layer, (0.3,), revolutions=2)
-    for results, ratio, revolutions in [(contact, -0.3, 1), (contact, 0.3, 1), (twice, 0.3, 2)]:
-        for point in points_of(film):
-            run = (coarse_lines, 0, point_at(film, point), weak_layer, modulus)
-            expected = kernel_means(scan_statistics, *run, ratio, revolutions)
-            found = results.sel(realisation=0, slide_to_roll_ratio=ratio, **point)
-            assert [found[name].item() for name in MEANS] == pytest.approx(expected, rel=1e-13)
 
 
 def naive_means(pair, ratio, film, half_width, modulus, layer, spacing, height_step):
@@ -197,14 +169,6 @@ def test_contact_falls_with_the_film_and_rises_with_the_width(lines, film, layer
     assert (breaking.isel(force=slice(1, None), speed=[0, 1, 2]).diff("force") > 0.0).all()
 
 
-def test_breakthrough_is_never_more_than_geometric_contact(contact, slipping):
-    for results in (contact, slipping[1]):
-        breaking, touching = (results[name] for name in MEANS[1::-1])
-        assert (breaking <= touching).all()
-        assert ((touching >= 0.0) & (touching <= 1.0)).all()
-        assert ((breaking > 0.0) & (breaking < touching)).any()
-
-
 def test_load_share_is_the_force_over_the_load_of_a_patch(lines, contact, film, study, layer):
     """F_N 2a/L'; rollers twice as long under twice the force have the same share."""
     width = 2.0 * study.rollers.contact_half_width(film["force"])
@@ -241,16 +205,12 @@ def test_springs_pressed_flat_carry_what_their_stiffness_says(film, layer):
     np.testing.assert_allclose(share, force / load, rtol=1e-9)
 
 
-def test_slip_changes_which_asperities_meet_and_next_to_none_changes_nothing(
-    lines, film, layer, slipping
-):
+def test_slip_changes_which_asperities_meet_and_next_to_none_changes_nothing(lines, film, layer):
     """In one revolution 1e-9 of slip is less than a grid point."""
     few = film.isel(temperature=[2], speed=[0, 1], force=[2, 4])
-    contact = contact_statistics(lines, few, layer, [-1e-9, 0.0, 1e-9])
-    back, rolling, forth = (contact.isel(slide_to_roll_ratio=number) for number in range(3))
+    contact = contact_statistics(lines, few, layer, [-1e-9, 0.0, 1e-9, 0.3])
+    back, rolling, forth, slip = (contact.isel(slide_to_roll_ratio=number) for number in range(4))
     assert same(back, rolling) and same(forth, rolling)
-    _, contact = slipping
-    rolling, slip = (contact.sel(slide_to_roll_ratio=ratio) for ratio in (0.0, 0.3))
     assert not same(slip, rolling)
 
 
@@ -328,7 +288,7 @@ def test_every_value_of_the_map_is_the_kernels(mapped, lines, film, layer):
     roughness, modulus = film["composite_rms_roughness"].item(), film["reduced_modulus"].item()
     for ratio, width in product(mapped["lambda_ratio"].values, mapped["contact_width"].values):
         point = ratio * roughness, width / 2.0
-        expected = kernel_means(strip_statistics, lines, 1, point, layer, modulus)
+        expected = kernel_means(lines, 1, point, layer, modulus)
         found = mapped.sel(realisation=1, lambda_ratio=ratio, contact_width=width)
         assert [found[name].item() for name in MEANS[:2]] == expected[:2]
 
@@ -347,7 +307,7 @@ def test_every_layer_of_the_map_is_run_as_a_layer_of_its_own(mapped, lines, film
         here = mapped.isel(layer_strength=number, layer_lambda_ratio=level, layer_contact_width=-1)
         thickness = here["layer_lambda_ratio"].item() * roughness
         point = thickness, here["layer_contact_width"].item() / 2.0
-        expected = kernel_means(strip_statistics, lines, 1, point, other, modulus)[1]
+        expected = kernel_means(lines, 1, point, other, modulus)[1]
         found = here["layer_breakthrough_probability"].sel(realisation=1)
         assert found == pytest.approx(expected, abs=2e-5)
     breaking = mapped["layer_breakthrough_probability"]

@@ -190,15 +190,6 @@ def test_a_factor_is_known_better_from_more_pairs_but_not_from_more_records_of_o
     assert many / alone == pytest.approx(np.sqrt((1 / 16 + 1 / 32) / (1 + 1 / 32)), rel=0.05)
 
 
-def test_electrical_noise_of_the_records_widens_the_interval_of_a_factor(busy, own):
-    widths = []
-    for noise in (0.0, 0.05):
-        noisy = own.assign(share_error=own["share_error"].copy(data=np.full(12, noise)))
-        found = fit_alpha(busy.master, busy.contact, noisy).sel(FORMULA)
-        widths.append(np.log(found["alpha_factor_upper"] / found["alpha_factor_lower"]).item())
-    assert widths[1] > 1.2 * widths[0]
-
-
 def test_each_lubricant_has_its_own_fit(busy, own):
     contact = xr.concat([busy.contact] * 2, "lubricant", data_vars="minimal")
     oil = busy.contact["lubricant"].values.tolist()

@@ -95,13 +95,6 @@ def test_xmp_320_gives_the_figures_of_physics_section_2(xmp):
     assert "Gold" in str(table.pressure_viscosity_definition.values)
 
 
-def test_two_point_fits_leave_no_residual_and_curves_pass_through_the_data(xmp):
-    table = lubricant_table([xmp], STUDY).isel(lubricant=0)
-    np.testing.assert_allclose(table.fit_residual, 0.0, atol=1e-10)
-    at_100 = table.fitted_kinematic_viscosity.sel(fit_temperature=100.0)
-    np.testing.assert_allclose(at_100, 38.3e-6, rtol=1e-9)
-
-
 def test_table_is_labelled_and_keeps_the_order_of_lubricants_and_temperatures(xmp, dodecane):
     table = lubricant_table([dodecane, xmp], [60.0, 40.0])
     assert check(table, "lubricant") is table

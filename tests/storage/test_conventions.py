@@ -26,14 +26,6 @@ def test_xarray_alone_gives_metres_and_labels(datasets, files):
                     np.testing.assert_array_equal(array.values, datasets[kind][name].values)
 
 
-def test_an_operating_point_is_selected_by_its_coordinates(files, study):
-    point = {"force": 800, "speed": 100, "temperature": 40}
-    with xr.open_dataset(files / "contact.nc") as contact:
-        chosen = contact["breakthrough_probability_mean"].sel(point)
-        assert chosen.sizes["film_formula"] == len(study.film_formulas)
-        assert chosen.notnull().all()
-
-
 @pytest.fixture(scope="module")
 def checker():
     """The compliance checker, its conventions loaded."""

@@ -1,7 +1,5 @@
 """NetCDF in and out: exact, the same bytes each time, whole or not there at all."""
 
-import shutil
-
 import netCDF4
 import numpy as np
 import pytest
@@ -34,13 +32,6 @@ def test_heights_are_exact_after_packing_and_padding_stays_missing(datasets, fil
     np.testing.assert_array_equal(loaded, heights)
     with netCDF4.Dataset(files / "roughness.nc") as raw:
         assert raw["height"].dtype == np.int32
-
-
-def test_a_loaded_dataset_does_not_need_its_file(files, tmp_path):
-    path = shutil.copy(files / "film.nc", tmp_path / "film.nc")
-    film = load(path, "film")
-    path.unlink()
-    assert np.isfinite(film["film_thickness"].values).all()
 
 
 def test_a_dataset_saved_twice_or_loaded_and_saved_again_is_the_same(
