@@ -7,7 +7,6 @@ import xarray as xr
 from PIL import Image
 
 from lube import plots
-from lube.errors import DataError
 from lube.storage.provenance import global_attributes
 from lube.workflow.stamps import stamp
 
@@ -155,10 +154,3 @@ def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
         assert line.get_window_extent().y1 <= bottom
     with Image.open(tmp_path / "figure.png") as picture:
         assert picture.text["Description"] == stamp([shown])
-
-
-def test_a_figure_of_no_dataset_is_refused(tmp_path):
-    figure, _ = plt.subplots()
-    with pytest.raises(DataError, match="a figure needs the datasets that it shows"):
-        plots.save_figure(figure, tmp_path / "figure")
-    assert not list(tmp_path.iterdir())

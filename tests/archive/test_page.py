@@ -40,17 +40,12 @@ def test_every_dataset_and_the_code_are_named(study):
     assert "measured records" not in page
 
 
-def test_the_place_of_measured_records_is_named(study):
-    measured = study.experiment.model_copy(update={"manifest": "list.csv"})
-    page = page_of(study.model_copy(update={"experiment": measured}))
-    assert "measured records themselves are not in this archive" in page
-    assert "anew,\nput the measured records where their list expects them" in page
-
-
-def test_refused_records_are_named_with_their_reasons(study):
+def test_the_place_of_measured_records_is_named_and_refused_ones_with_their_reasons(study):
     measured = study.experiment.model_copy(update={"manifest": "list.csv"})
     study = study.model_copy(update={"experiment": measured})
     page = archive_page(study, "smoke.yaml", ["run_7.csv: line 3: got 'x', need y"])
+    assert "measured records themselves are not in this archive" in page
+    assert "anew,\nput the measured records where their list expects them" in page
     assert "refused, and are in no result" in page
     assert "run_7.csv: line 3: got 'x', need y" in unescape(shown(page))
 

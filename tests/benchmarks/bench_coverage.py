@@ -211,24 +211,12 @@ def model_of(experiment, ensemble, study):
 
 
 def judge(ensemble, comparison, shares):
-    """Judge each pair's records of one length.
+    """Judge each pair's records of one length by their shares, shape (pairs, points).
 
-    Parameters
-    ----------
-    ensemble : Ensemble
-        It judges.
-    comparison : xarray.Dataset
-        The model at these records.
-    shares : numpy.ndarray
-        Shape (pairs, points).
-
-    Returns
-    -------
-    dict of str to numpy.ndarray
-        ``probability`` and ``predicted``, the mean over the ensemble and the width of the
-        prediction, and ``inside``, whether a share is within it, shape (pairs, points); ``film``
-        with its limits, as logarithms of the lambda ratio, shape (pairs, points, 3); ``alpha``
-        and ``layer`` with theirs, as logarithms of their ratio to the truth, shape (pairs, 3).
+    Of the result, ``probability`` and ``predicted`` are the mean over the ensemble and the width
+    of the prediction, ``inside`` is whether a share is within it, and ``film``, ``alpha`` and
+    ``layer`` are values with their limits, as logarithms of the lambda ratio or of the ratio to
+    the truth.
     """
     one = comparison.isel(film_formula=0)
     lower, upper = (one[f"predicted_share_{side}"].values for side in ("lower", "upper"))
@@ -289,13 +277,7 @@ def join(judged):
 
 
 def figures(comparison, shares, judged):
-    """Coverage and widths of one scenario's records of one length.
-
-    Returns
-    -------
-    dict of str to float or numpy.ndarray
-        Variables of the ``coverage`` file; those over points as arrays.
-    """
+    """Coverage and widths of one scenario's records of one length, as in the ``coverage`` file."""
     probability, film, inside = (judged[name] for name in ("probability", "film", "inside"))
     counted = probability.mean(axis=0) > LEAST
     held = _holds(film, np.log(comparison["lambda_ratio"].isel(film_formula=0).values))

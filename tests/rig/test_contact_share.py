@@ -194,14 +194,6 @@ def test_a_short_last_block_counts_for_its_length_only():
     np.testing.assert_allclose(short, share_interval(below, sizes, 1e4), rtol=0.05)
 
 
-def test_limits_are_independent():
-    rng = np.random.default_rng(6)
-    below, sizes = rng.integers(0, 50, (4, 37)), np.full(37, 50)
-    together = np.array(share_interval(below, sizes, 40.0))
-    alone = [share_interval(row[None], sizes, 40.0) for row in below]
-    np.testing.assert_allclose(together, np.concatenate(alone, axis=1))
-
-
 # Records that repeat themselves
 
 
@@ -223,11 +215,6 @@ def test_more_revolutions_of_the_same_roughness_do_not_narrow_the_interval():
     folded = [folded_counts(*counts, 1.0, 200.0) for counts in (few, many)]
     assert width(*many, folded[1:]) == pytest.approx(width(*few, folded[:1]))
     assert width(*many) < 0.3 * width(*many, folded[1:])
-
-
-def test_folding_a_record_of_one_turn_changes_little():
-    one = repeated(1)
-    assert width(*one, [folded_counts(*one, 1.0, 200.0)]) == pytest.approx(width(*one), rel=0.6)
 
 
 def test_a_record_that_does_not_repeat_has_hardly_a_wider_interval_by_folding():

@@ -14,8 +14,6 @@ from lube.grid.discretise import line_pair
 from lube.kernels.layer import layer_factor
 from lube.kernels.strips import strip_statistics
 from lube.schema import OPERATING_DIMS
-from lube.stages.film import film_table
-from lube.stages.lubricant import lubricant_table
 from lube.surfaces.synthetic import draw_realisation
 
 MEANS = (
@@ -169,21 +167,13 @@ def test_contact_falls_with_the_film_and_rises_with_the_width(lines, film, layer
     assert (breaking.isel(force=slice(1, None), speed=[0, 1, 2]).diff("force") > 0.0).all()
 
 
-def test_load_share_is_the_force_over_the_load_of_a_patch(lines, contact, film, study, layer):
-    """F_N 2a/L'; rollers twice as long under twice the force have the same share."""
+def test_load_share_is_the_force_over_the_load_of_a_patch(contact, film, study):
+    """F_N 2a/L'."""
     width = 2.0 * study.rollers.contact_half_width(film["force"])
     load = film["force"] * width / study.rollers.length
     assert (contact["contact_load_share"] > 0.0).any()
     expected = contact["mean_contact_force"] / load
     np.testing.assert_allclose(contact["contact_load_share"], expected, rtol=1e-12)
-    oil = lubricant_table(study.lubricants, [80.0])
-    twice = study.rollers.model_copy(update={"length": 2.0 * study.rollers.length})
-    one, both = (
-        contact_statistics(lines, film_table(oil, rollers, [force], [100.0], ["paper"]), layer)
-        for rollers, force in ((study.rollers, 1600.0), (twice, 3200.0))
-    )
-    for name in (*MEANS, "contact_load_share"):
-        np.testing.assert_allclose(one[name], both[name], rtol=1e-12)
 
 
 def test_springs_pressed_flat_carry_what_their_stiffness_says(film, layer):

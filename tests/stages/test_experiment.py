@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from written_recordings import write_csv
 
 from lube.errors import DataError
 from lube.recordings.manifest import read_manifest
@@ -131,11 +132,7 @@ def test_less_than_a_turn_has_no_repeatability(simulated):
 
 
 def written(path, values, interval=1e-4, head="resistance [ohm]"):
-    rows = [
-        f"{number * interval!r},{value!r}"
-        for number, value in enumerate(np.asarray(values).tolist())
-    ]
-    path.write_text(f"time [s],{head}\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    write_csv(path, [np.arange(len(values)) * interval, values], f"time [s],{head}")
 
 
 def turning(speed, turns, interval=1e-3, seed=1):

@@ -1,47 +1,32 @@
 """The film stage: labels and alignment, then the figures of the paper's grid."""
 
-from types import SimpleNamespace
+import functools
 
 import numpy as np
 import pytest
 import xarray as xr
-from paper_grid import ALPHA, FORCE, SPEED, TEMPERATURE, VISCOSITY
+from paper_grid import FORCE, SPEED, TEMPERATURE
+from studies import PAPER
 
 from lube import schema
 from lube.errors import DataError, LubeError
 from lube.physics import film_formulas
 from lube.stages.film import film_at, film_table
+from lube.stages.lubricant import lubricant_table
+from lube.study.study import load_study
 
-ROLLERS = SimpleNamespace(
-    length=0.01,
-    first=SimpleNamespace(radius=0.05),
-    second=SimpleNamespace(radius=0.05),
-    reduced_radius=0.025,
-    reduced_modulus=210e9 / 0.91 / 2,
-    composite_rms_roughness=0.2e-6 * np.sqrt(2.0),
-)
+PAPERS = load_study(PAPER)
+ROLLERS = PAPERS.rollers
 
 
-def oils(names=("oil",), viscosity_factors=(1.0,)):
-    """Lubricants like Mobilgear SHC XMP 320 but for a factor on the viscosity."""
-    fall = -np.gradient(np.log(VISCOSITY), TEMPERATURE)
-    grid = ("lubricant", "temperature")
-    count = len(names)
-    dataset = xr.Dataset(
-        {
-            "dynamic_viscosity": (grid, np.outer(viscosity_factors, VISCOSITY)),
-            "pressure_viscosity_coefficient": (grid, np.tile(ALPHA, (count, 1))),
-            "temperature_viscosity_coefficient": (grid, np.tile(fall, (count, 1))),
-            "thermal_conductivity": ("lubricant", np.full(count, 0.14)),
-        },
-        coords={"lubricant": list(names), "temperature": TEMPERATURE},
-    )
-    dataset["dynamic_viscosity"].attrs["units"] = "Pa s"
-    return dataset
+@functools.cache
+def oil():
+    """The paper's oil at the paper's temperatures."""
+    return lubricant_table(PAPERS.lubricants, TEMPERATURE)
 
 
 def paper_table(names=tuple(film_formulas.FORMULAS)):
-    return film_table(oils(), ROLLERS, FORCE, SPEED, list(names))
+    return film_table(oil(), ROLLERS, FORCE, SPEED, list(names))
 
 
 @pytest.fixture(scope="module")
@@ -68,20 +53,20 @@ def test_any_subset_of_formulas_is_the_dimension_in_the_order_asked_for(table):
 
 def test_unknown_formulas_and_lubricants_without_temperatures_are_refused():
     with pytest.raises(LubeError, match="unknown film formula 'hamrock'"):
-        film_table(oils(), ROLLERS, FORCE, SPEED, ["paper", "hamrock"])
+        film_table(oil(), ROLLERS, FORCE, SPEED, ["paper", "hamrock"])
     with pytest.raises(DataError, match="temperature"):
-        film_table(oils().drop_vars("temperature"), ROLLERS, FORCE, SPEED, ["paper"])
+        film_table(oil().drop_vars("temperature"), ROLLERS, FORCE, SPEED, ["paper"])
 
 
 def test_every_point_agrees_with_the_plain_formula(table):
     """One point at a time, plain floats: nothing is transposed on the way."""
     modulus, radius = 2.0 * ROLLERS.reduced_modulus, ROLLERS.reduced_radius
-    oil = oils().isel(lubricant=0)
+    one = oil().isel(lubricant=0)
     for name, row in film_formulas.FORMULAS.items():
         for force, speed, temperature in [(100, 200, 40), (800, 100, 60), (1600, 600 / 7, 80)]:
             at = {"force": force, "speed": speed, "temperature": temperature}
             viscosity, alpha = (
-                float(oil[variable].sel(temperature=temperature))
+                float(one[variable].sel(temperature=temperature))
                 for variable in ("dynamic_viscosity", "pressure_viscosity_coefficient")
             )
             load = force / 0.01 / (modulus * radius)
@@ -95,8 +80,8 @@ def test_records_at_their_own_conditions_have_the_film_of_the_grid_there(table):
     """Force, speed and oil along one dimension, in place of three: to the last bit."""
     rows = [(800.0, 100.0, 40.0), (100.0, 200.0, 80.0), (800.0, 100.0, 60.0)]
     force, speed, temperature = (xr.DataArray(each, dims="record") for each in np.transpose(rows))
-    oil = oils().isel(lubricant=0).sel(temperature=temperature).reset_coords(drop=True)
-    found = film_at(oil, ROLLERS, force, speed, ["paper", "moes"])
+    one = oil().isel(lubricant=0).sel(temperature=temperature).reset_coords(drop=True)
+    found = film_at(one, ROLLERS, force, speed, ["paper", "moes"])
     for number, (here, turning, warm) in enumerate(rows):
         at = table.isel(lubricant=0).sel(force=here, speed=turning, temperature=warm)
         at = at.sel(film_formula=["paper", "moes"])
@@ -105,24 +90,20 @@ def test_records_at_their_own_conditions_have_the_film_of_the_grid_there(table):
             np.testing.assert_array_equal(record.values, at[name].values)
 
 
-def test_grids_may_have_one_value_and_any_order():
-    table = film_table(oils(), ROLLERS, [800.0], [200.0, 100.0], ["paper"])
-    assert table["film_thickness"].shape == (1, 1, 5, 2, 1)
-    assert table["speed"].values.tolist() == [200.0, 100.0]
-    reversed_ = film_table(oils(), ROLLERS, FORCE[::-1], SPEED, ["paper"])
-    xr.testing.assert_allclose(reversed_.sortby("force"), paper_table(["paper"]))
-
-
 def test_each_lubricant_has_its_own_film():
-    both = film_table(oils(["thin", "thick"], [0.5, 1.0]), ROLLERS, FORCE, SPEED, ["paper"])
+    thin = oil().assign(dynamic_viscosity=0.5 * oil()["dynamic_viscosity"])
+    thin["dynamic_viscosity"].attrs["units"] = "Pa s"
+    oils = xr.concat([thin.assign_coords(lubricant=["thin"]), oil()], "lubricant", data_vars="all")
+    both = film_table(oils, ROLLERS, FORCE, SPEED, ["paper"])
     thin, thick = both["film_thickness"]
-    np.testing.assert_allclose(thin.values / thick.values, 0.5**0.692)
+    np.testing.assert_allclose(thin.values / thick.values, 0.5**0.692, rtol=1e-5)
 
 
 def test_entrainment_speed_is_the_surface_speed_of_the_first_roller():
     for radius, expected in ((0.05, np.pi / 6.0), (0.025, np.pi / 12.0)):
-        rollers = SimpleNamespace(**{**vars(ROLLERS), "first": SimpleNamespace(radius=radius)})
-        table = film_table(oils(), rollers, FORCE, [100.0], ["paper"])
+        first = ROLLERS.first.model_copy(update={"radius": radius})
+        rollers = ROLLERS.model_copy(update={"first": first})
+        table = film_table(oil(), rollers, FORCE, [100.0], ["paper"])
         assert float(table["entrainment_speed"][0]) == pytest.approx(expected)
 
 

@@ -6,7 +6,7 @@ import xarray as xr
 from experiments import experiment_at, experiment_of
 
 from lube import contact_statistics, film_table
-from lube.rig.fits import ALPHA_FACTORS, fit_alpha, fit_layer_strength
+from lube.rig.fits import fit_alpha, fit_layer_strength
 from lube.rig.map_curves import curve_at
 from lube.schema import LIMITS, check, label
 from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
@@ -39,13 +39,6 @@ def test_a_share_of_the_maps_own_curve_is_gauged_back_to_its_film(busy, compared
             assert (gauged[f"gauged_lambda_ratio{limit}"].diff("record") > 0.0).all()
         assert (gauged["gauged_lambda_ratio_lower"] < ratios).all()
         assert (gauged["gauged_lambda_ratio_upper"] > ratios).all()
-
-
-def test_the_ensembles_own_mean_is_gauged_to_the_film_of_the_formula(busy, own):
-    """The map is read between its levels: a good interpolation."""
-    gauged = gauge_film(busy.master, own)
-    ratio = gauged["gauged_lambda_ratio"] / own["lambda_ratio"].sel(FORMULA)
-    np.testing.assert_allclose(ratio, 1.0, atol=0.02)
 
 
 def test_a_film_is_known_worse_from_short_and_noisy_records_but_not_better_from_long(
@@ -148,20 +141,6 @@ def test_a_changed_layer_is_found(busy, at_grid):
         found = fit_layer_strength(busy.master, busy.contact, comparison).sel(FORMULA)
         strength = factor * layer.shear_strength / layer.critical_thickness
         assert found["fitted_layer_strength"].item() == pytest.approx(strength, rel=0.06)
-
-
-def test_shares_read_off_the_map_at_a_factor_give_the_factor_back(busy, own):
-    """An exact inverse: the map itself is the rig, at the films of a factor among those tried."""
-    factor = ALPHA_FACTORS[120]
-    films = own["lambda_ratio"].sel(FORMULA).values
-    shares = np.empty(12)
-    for record, width in enumerate(2.0 * own["contact_half_width"].values):
-        # The formula's exponent of the material parameter G.
-        film = np.log(films[record]) + 0.47 * np.log(factor)
-        shares[record] = 1.0 / (1.0 + np.exp(-curve_at(busy.master, width).logit_at(film)))
-    comparison = own.assign(measured_share=own["measured_share"].copy(data=shares))
-    found = fit_alpha(busy.master, busy.contact, comparison).sel(FORMULA)
-    assert found["alpha_factor"].item() == pytest.approx(factor, rel=1e-6)
 
 
 def repeated(experiment, pairs):

@@ -17,14 +17,6 @@ def unequal(make_spec):
     return make_spec(50_000, second_radius=0.037, second_roughness=0.31e-6)
 
 
-def test_realisation_is_the_same_in_any_batch_and_any_order(make_spec):
-    spec = make_spec(5000, shortest_wavelength="3.0 points")
-    alone = np.array(draw_realisation(spec, SEED, 5))
-    for realisations in ([5], [5, 0], [0, 1, 2, 3, 4, 5], range(3, 7)):
-        batch = roughness_batch(spec, SEED, realisations).sel(realisation=5)
-        np.testing.assert_array_equal(batch["height"], alone)
-
-
 def test_both_datasets_hold_the_lines_drawn(unequal):
     lines = roughness_lines(unequal, SEED, [4, 2])
     batch = roughness_batch(unequal, SEED, [4, 2])

@@ -4,26 +4,11 @@ import json
 
 import cf_units
 import netCDF4
-import numpy as np
 import pytest
-import xarray as xr
 from compliance_checker.runner import CheckSuite, ComplianceChecker
 from every_kind import KINDS
 
-from lube.schema import check
 from lube.storage.provenance import global_attributes
-
-
-def test_xarray_alone_gives_metres_and_labels(datasets, files):
-    for kind in KINDS:
-        if kind.endswith("_batch"):
-            continue
-        with xr.open_dataset(files / f"{kind}.nc") as opened:
-            check(opened, kind)
-            for name, array in opened.variables.items():
-                if array.dtype.kind == "f":
-                    assert array.attrs["units"]
-                    np.testing.assert_array_equal(array.values, datasets[kind][name].values)
 
 
 @pytest.fixture(scope="module")

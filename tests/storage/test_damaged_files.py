@@ -2,7 +2,6 @@
 
 import shutil
 
-import pytest
 import xarray as xr
 from every_kind import KINDS
 from refusals import one_line
@@ -31,15 +30,10 @@ def test_a_truncated_file_is_refused(files, tmp_path):
             assert "not a whole NetCDF file" in refusal(path, kind)
 
 
-@pytest.mark.parametrize("content", [b"force,speed\n800,100\n", b"CDF\x01", b"\x89HDF\r\n\x1a\n"])
-def test_a_file_of_another_format_is_refused(tmp_path, content):
+def test_foreign_files_are_refused(tmp_path):
     path = tmp_path / "film.nc"
-    path.write_bytes(content * 100)
+    path.write_bytes(b"force,speed\n800,100\n")
     assert "not a whole NetCDF file" in refusal(path, "film")
-
-
-def test_foreign_netcdf_files_are_refused(tmp_path):
-    path = tmp_path / "film.nc"
     xr.Dataset({"sea_surface_temperature": ("time", [1.0, 2.0])}).to_netcdf(path)
     assert "not a film file" in refusal(path, "film")
     time = ("time", [0.0, 1.0], {"units": "days since yesterday"})

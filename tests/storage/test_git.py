@@ -6,7 +6,7 @@ import subprocess
 import pytest
 
 from lube.storage import git
-from lube.storage.git import changed_code, changed_since, code_files, commit, commit_date, text_in
+from lube.storage.git import changed_code, changed_since, code_files, commit, commit_date
 
 needs_git = pytest.mark.skipif(shutil.which("git") is None, reason="needs Git")
 
@@ -77,22 +77,6 @@ def test_changed_and_new_files_of_the_code_are_listed(folder):
     write(folder, "2", "notebooks/fig1.ipynb", "lube/gauge.py", "lube/new.py", "notes.txt", "more")
     run_git(folder, "add", "lube/gauge.py")
     assert changed_code() == ["lube/gauge.py", "lube/new.py", "notebooks/fig1.ipynb"]
-
-
-@needs_git
-def test_files_are_compared_with_any_commit(folder):
-    write(folder, "1 µm", "film.py", "plots.py")
-    first = commit_all(folder)
-    write(folder, "2", "film.py")
-    second = commit_all(folder)
-    write(folder, "3", "new.py")
-    names = ["film.py", "plots.py", "new.py"]
-    assert changed_since(first, names) == ["film.py", "new.py"]
-    assert changed_since(second, names) == ["new.py"]
-    assert changed_since(second, ["plots.py"]) == changed_since(second, []) == []
-    assert changed_since("unknown", names) is changed_since("0123456789abcdef", names) is None
-    assert (text_in(first, "film.py"), text_in(second, "film.py")) == ("1 µm", "2")
-    assert text_in(second, "new.py") is None
 
 
 def test_the_code_is_all_that_git_tracks_but_tests():

@@ -16,7 +16,6 @@ from lube.storage.provenance import (
     fingerprints,
     global_attributes,
     input_sums,
-    json_attribute,
     merged_config,
 )
 
@@ -79,12 +78,6 @@ def test_inputs_are_listed_by_name_and_sha256_wherever_they_are(study, tmp_path)
 def test_a_missing_input_is_named(tmp_path):
     with pytest.raises(DataError, match=r"gone.csv: cannot be read: No such file"):
         fingerprints([tmp_path / "gone.csv"])
-
-
-def test_a_file_that_does_not_state_its_origin_is_refused():
-    for attributes in ({}, {"config": "not JSON"}):
-        with pytest.raises(DataError, match=r"film.nc: its attribute 'config' is missing or dam"):
-            json_attribute(xr.Dataset(attrs=attributes), "config", "film.nc")
 
 
 def test_a_file_of_other_values_is_refused_with_the_first_difference(study, stronger):
