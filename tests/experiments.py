@@ -21,20 +21,21 @@ def experiment_of(shares, force, speed, temperature, **values):
     """
     count = len(shares)
     conditions = {"force": force, "speed": speed, "temperature": temperature}
-    records = (
-        {f"{name}_level": level for name, level in conditions.items()}
-        | {"lubricant": OIL, "slide_to_roll_ratio": 0.0, "pair": "1", "duration": 1.0}
-        | {"sampling_interval": 1e-5, "turns": 1.0, "revolution_period": 1.0}
-        | {
-            "repeatability": 1.0,
-            "speed_ratio": 1.0,
-            "share_error": 0.0,
-            "true_contact_share": np.asarray(shares),
-        }
-        | {"record": [f"record {number}" for number in range(count)]}
-        | conditions
-        | values
-    )
+    records = {f"{name}_level": level for name, level in conditions.items()} | {
+        "record": [f"record {number}" for number in range(count)],
+        "true_contact_share": np.asarray(shares),
+        "share_error": 0.0,
+        "lubricant": OIL,
+        "slide_to_roll_ratio": 0.0,
+        "speed_ratio": 1.0,
+        "pair": "1",
+        "duration": 1.0,
+        "turns": 1.0,
+        "revolution_period": 1.0,
+        "repeatability": 1.0,
+        "sampling_interval": 1e-5,
+    }
+    records |= conditions | values
     variables = {
         name: ("record", np.broadcast_to(value, count).copy()) for name, value in records.items()
     }

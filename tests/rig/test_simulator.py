@@ -29,11 +29,6 @@ def test_a_steady_contact_is_logged_with_its_resistance_and_none_as_the_leak():
         np.testing.assert_allclose(resistance, expected, rtol=1e-3, atol=1e-6)
 
 
-def test_a_revolution_has_as_many_samples_as_fit_into_it():
-    assert logged(np.zeros(100_000), Rig()).size == int(100_000 * TIME_STEP * 1e5) == 6_000
-    assert logged(np.zeros(3), Rig()).size == 1
-
-
 def test_voltages_are_whole_steps_of_the_converter_within_its_range():
     rig = Rig(resolution=8, amplifier_range="60 mV", noise="1 mV")
     voltage = logged(np.arange(30_000) // 900 % 2, rig)
