@@ -1,7 +1,6 @@
 """Notebooks: executed strictly, apart from this process, and the same whenever they are."""
 
 import os
-import sys
 from functools import partial
 
 import nbformat
@@ -79,14 +78,6 @@ plt.plot([1, 2])
     assert "image/png" in picture.data
     cell = nbformat.read(output, as_version=4).cells[-1]
     assert cell.execution_count == result.execution_count == 2
-
-
-def test_a_notebook_changes_nothing_in_this_process(write, output):
-    folder, modules = os.getcwd(), set(sys.modules)
-    code = "import os, sys, this\nos.environ['LEFT'] = 'x'\nos.chdir('/')\nsys.exit = None"
-    execute_notebook(write(code), output, {}, "")
-    assert (os.getcwd(), os.environ.get("LEFT"), sys.exit is None) == (folder, None, False)
-    assert "this" not in set(sys.modules) - modules
 
 
 def test_the_stamps_text_and_no_style_of_the_users_reach_the_notebook(
