@@ -8,7 +8,6 @@ import yaml
 from every_kind import datasets_of_every_kind
 from hypothesis import settings
 from studies import PAPER_CONTENT, SMOKE, with_value
-from xdist.scheduler import LoadScopeScheduling
 
 from lube import film_table, line_spec, load_study, roughness_lines
 from lube.stages.contact import contact_map, contact_statistics
@@ -21,17 +20,6 @@ from lube.study.metadata import About
 # The first example of a test may have to wait for its kernel to be compiled.
 settings.register_profile("lube", deadline=None)
 settings.load_profile("lube")
-
-
-class _FileByFile(LoadScopeScheduling):
-    """Give all tests of a file to one process."""
-
-    def _split_scope(self, nodeid):
-        return nodeid.split("::", 1)[0]
-
-
-def pytest_xdist_make_scheduler(config, log):
-    return _FileByFile(config, log)
 
 
 def pytest_collection_modifyitems(items):
@@ -213,10 +201,7 @@ def disk():
 
     def mount(folder, options):
         command = ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(folder)]
-        try:
-            finished = subprocess.run(command, capture_output=True, text=True, check=False)
-        except FileNotFoundError:
-            pytest.skip("no disk can be mounted here: no mount")
+        finished = subprocess.run(command, capture_output=True, text=True, check=False)
         if finished.returncode != 0:
             pytest.skip(f"no disk can be mounted here: {finished.stderr.strip()}")
         if "remount" not in options:

@@ -31,9 +31,19 @@ def write_csv(path, columns, header, delimiter=",", decimal=".", end="\n", befor
     return path
 
 
-def write_netcdf(path, values, units="V", times=TIMES, name="voltage", time_units="s", **more):
-    with netCDF4.Dataset(path, "w") as file:
-        file.createDimension("time", len(values))
+def write_netcdf(
+    path,
+    values,
+    units="V",
+    times=TIMES,
+    name="voltage",
+    time_units="s",
+    format="NETCDF4",
+    growing=False,
+    **more,
+):
+    with netCDF4.Dataset(path, "w", format=format) as file:
+        file.createDimension("time", None if growing else len(values))
         if times is not None:
             file.createVariable("time", "f8", ("time",))[:] = times
             if time_units is not None:

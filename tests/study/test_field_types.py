@@ -10,13 +10,11 @@ from lube.study.field_types import (
     Slug,
     StrictModel,
     bounded,
-    collected,
     levels,
     pure_number,
     quantity,
     validate,
 )
-from lube.study.lubricant_record import LubricantRecord
 
 NAN = float("nan")
 
@@ -55,8 +53,6 @@ def test_a_field_keeps_the_number_in_its_own_unit():
 
 
 def test_a_refused_number_is_shown_with_its_limits_and_unit():
-    for number in ("0", "-1"):
-        assert "need a value above 0" in refusal(Length, f"{number} mm")
     cold = refusal(quantity("degC", above=-273.15), "0 K")
     assert "got -273.15, need a value above -273.15 degC" in cold
     for zero in (0, 0.0, "-0.0", "0/7"):
@@ -96,7 +92,6 @@ def test_levels_are_refused():
         ({"values": [], "units": "N"}, "need values and their unit"),
         ({"values": [1, 1], "units": "N"}, "got 1 after 1, need rising levels"),
         ({"values": [0, 1], "units": "N"}, "need a value above 0"),
-        ({"values": [1, NAN], "units": "N"}, "need a finite number"),
         ({"values": [1, "two"], "units": "N"}, "got 'two', need a finite number"),
         ({"values": [1], "units": "mm"}, "need a unit of the kind 'N'"),
         ({"values": [1]}, "need values and their unit"),
@@ -121,17 +116,14 @@ def test_a_misspelt_key_is_refused_with_the_nearest_right_one():
     inner = model_of(radius=(Length, ...), length=(Length, ...))
     model = model_of(first=(inner, ...), others=(tuple[inner, ...] | None, None))
     roller = {"radius": "1 m", "length": "1 m"}
-    meant = (
-        "first.colour: unknown key, need one of radius, length; a text with a comma needs quotes"
-    )
+    keys = "need one of radius, length; a text with a comma needs quotes"
     for content, line in [
         ({"frist": roller}, "frist: unknown key, did you mean 'first'? (and 1 more)"),
         (
             {"first": roller, "others": [roller, roller | {"lenght": 1}]},
             "others.1.lenght: unknown key, did you mean 'length'?",
         ),
-        ({"first": roller | {"colour": None}}, meant),
-        ({"first": roller, "two\nlines": 1}, "two\\nlines: unknown key, need one of first, others"),
+        ({"first": roller | {"colour": None}}, f"first.colour: unknown key, {keys}"),
         ({"first": roller, 3: 1}, "3: unknown key, need one of first, others"),
     ]:
         with pytest.raises(StudyError) as caught:
@@ -143,14 +135,3 @@ def test_a_missing_key_is_named_and_further_mistakes_are_counted():
     with pytest.raises(RecordError) as caught:
         validate(model_of(one=(Length, ...), two=(Length, ...)), {}, "file.yaml", RecordError)
     assert str(caught.value) == "file.yaml: one: missing, and it has no default (and 1 more)"
-
-
-def test_an_error_about_a_key_is_one_that_pydantic_collects():
-    with pytest.raises(ValueError, match=r"^colour: too blue$"), collected("colour"):
-        raise LubeError("too blue")
-
-
-def test_the_text_under_a_field_describes_it_in_the_schema():
-    fields = LubricantRecord.model_json_schema()["$defs"]["Density"]["properties"]
-    assert fields["at_15_degC"]["description"] == "density at 15 degC"
-    assert fields["source"]["description"].startswith("where the values come from")  # inherited

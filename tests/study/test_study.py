@@ -1,21 +1,14 @@
 """A study: read whole, frozen, and what follows from its values."""
 
-import json
 import math
 
 import pytest
-from pydantic import ValidationError
 from studies import OIL, PAPER
 
 from lube.errors import StudyError
+from lube.schema import STAGES
 from lube.study.rig_settings import Experiment, Rig
 from lube.study.study import load_study
-
-STAGES = (
-    *("lubricant", "film", "roughness", "contact", "trace", "master"),
-    *("experiment", "rig", "comparison", "gauge", "speed", "reading", "coverage"),
-)
-
 
 # What the paper says
 
@@ -49,16 +42,6 @@ def test_the_defaults_of_the_rig_are_those_of_the_papers_study():
 
 
 # What follows from what is written
-
-
-def test_a_speed_in_turns_per_minute_is_the_same(tmp_path):
-    text = PAPER.read_text("utf-8").replace("units: rpm", "units: 1/min")
-    text = text.replace("speed: 100 rpm", "speed: 100 min^-1")
-    assert "rpm" not in text
-    (tmp_path / "study.yaml").write_text(text, "utf-8")
-    study, paper = load_study(tmp_path / "study.yaml"), load_study(PAPER)
-    assert study.operating_grid.speed == pytest.approx(paper.operating_grid.speed, rel=1e-15)
-    assert study.trace_points[0]["speed"] == pytest.approx(100.0, rel=1e-15)
 
 
 def test_the_rig_draws_one_realisation_a_pair_and_for_drift_one_a_turn(paper_with):
@@ -107,14 +90,6 @@ def test_a_trace_takes_levels_in_any_unit_and_the_first_of_what_it_does_not_name
     assert load_study(path).trace_points == load_study(PAPER).trace_points
 
 
-def test_a_study_is_frozen_in_all_its_parts():
-    study = load_study(PAPER)
-    for part in (study, study.rollers.first, study.traces[0], study.lubricants[0]):
-        field = next(iter(type(part).model_fields))
-        with pytest.raises(ValidationError, match="frozen"):
-            setattr(part, field, getattr(part, field))
-
-
 # What a stage depends on
 
 
@@ -128,9 +103,7 @@ def changed_stages(paper_with):
 
     def compare(*changes):
         before, after = load_study(PAPER), load_study(paper_with(*changes))
-        return {
-            stage for stage in STAGES if before.stage_inputs(stage) != after.stage_inputs(stage)
-        }
+        return {name for name in STAGES if before.stage_inputs(name) != after.stage_inputs(name)}
 
     return compare
 
@@ -145,16 +118,12 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
     for key, value, stages in [
         ("resistivity", "0.3 uohm*m", {"trace", "experiment"}),
         ("boundary_layer.critical_thickness", "6 nm", LAYER),
-        ("boundary_layer.shear_strength", "2 MPa", LAYER),
         ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS),
         ("revolutions", 3, {"contact"}),
         ("seed", 1, LINES),
         ("roughness.points", 500_000, LINES),
-        ("roughness.hurst_exponent", 0.8, LINES),
-        ("roughness.height_step", "2 pm", LINES),
         ("roughness.longest_wavelength", "0.4 mm", LINES),
         ("rollers.second.rms_roughness", "0.3 um", LINES | {"film"}),
-        ("rollers.first.young_modulus", "220 GPa", LINES | {"film"}),
         ("rollers.first.radius", "60 mm", LINES | {"film"}),
         ("film_formulas", ["paper"], {"film"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
@@ -162,7 +131,6 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("traces.1.temperature", "60 degC", {"trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"experiment"}),
         ("rig.drift", 0.1, {"experiment"}),
-        ("experiment.speed_tolerance", 0.02, {"experiment"}),
         ("experiment.threshold", "10 ohm", {"experiment"}),
         ("realisations", 128, {"coverage"}),
         ("batch_size", 16, set()),
@@ -181,13 +149,4 @@ def test_the_same_value_in_another_unit_changes_nothing(changed_stages):
 
 
 def test_a_lubricants_values_are_inputs_of_the_lubricant_stage_alone(changed_stages):
-    assert changed_stages(
-        ("lubricants", [OIL, "n-dodecane"]),
-        ("operating_grid.temperature", {"values": [40, 50, 60, 70, 80], "units": "degC"}),
-    ) == {"lubricant"}
-
-
-def test_stage_inputs_are_plain_data():
-    for stage in STAGES:
-        written = json.dumps(load_study(PAPER).stage_inputs(stage), allow_nan=False)
-        assert json.dumps(json.loads(written)) == written
+    assert changed_stages(("lubricants", [OIL, "n-dodecane"])) == {"lubricant"}

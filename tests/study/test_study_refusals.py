@@ -16,12 +16,8 @@ refusal = partial(one_line, LubeError, load_study)
 # Key, value, message
 
 UNKNOWN_KEYS = [
-    ("sede", 1, "sede: unknown key, did you mean 'seed'?"),
-    ("about.licens", 1, "about.licens: unknown key, did you mean 'licence'?"),
     ("about.creators.0.orchid", 1, "about.creators.0.orchid: unknown key, did you mean 'orcid'?"),
     ("operating_grid.load", 1, "operating_grid.load: unknown key, need one of force, speed, "),
-    ("traces.0.load", "800 N", "traces.0.load: unknown key, need one of force, speed, "),
-    ("experiment.treshold", 1, "experiment.treshold: unknown key, did you mean 'threshold'?"),
 ]
 
 PURE_NUMBERS = [
@@ -47,14 +43,10 @@ COUNTS = [
     ("realisations", 1_000_001, "got 1000001, need at most 1000000"),
     ("revolutions", 0, "got 0, need at least 1"),
     ("batch_size", 0, "got 0, need at least 1"),
-    ("batch_size", True, "got True, need a whole number"),
     ("roughness.points", 10, "got 10, need at least 64"),
-    ("roughness.points", 1e6, "got 1000000.0, need a whole number"),
     ("kept_realisations", [0, 64], "got (0, 64), need 0, which the traces use, and none above 63"),
-    ("kept_realisations", [-1, 0], "kept_realisations.0: got -1, need at least 0"),
     ("kept_realisations", [0, 0], "0 is repeated, need each once"),
     ("kept_realisations", [1], "got (1,), need 0, which the traces use"),
-    ("kept_realisations", [], "got (), need 0"),
 ]
 
 GRIDS = [
@@ -64,11 +56,6 @@ GRIDS = [
     ("roughness.shortest_wavelength", "1e308 points", "got 1e+308, need a value at least 2 and at"),
     ("roughness.longest_wavelength", "long", f", or the words `{AUTOMATIC_WAVELENGTH}`"),
     ("roughness.longest_wavelength", "1 m", "the perimeter, 0.314 m, is too short"),
-    (
-        "operating_grid.temperature",
-        {"values": [39], "units": "degC"},
-        "got 39 degC, need 40 to 100",
-    ),
     ("operating_grid.temperature", {"values": [101], "units": "degC"}, f"{OIL}: got 101 degC"),
     ("roughness.height_step", "1 nm", "got 1e-09 m, need 2e-14 to 2e-10 m"),
 ]
@@ -79,11 +66,9 @@ NAMES = [
     ("lubricants", [], "got (), need at least 1"),
     ("lubricants", OIL, f"got '{OIL}', need a list"),
     ("lubricants", [3], "lubricants: got 3, need one of "),
-    ("lubricants", [{"name": "inline"}], "got {'name': 'inline'}, need one of "),
     ("lubricants", [OIL, OIL], f"{OIL} is repeated, need each once"),
     ("film_formulas", ["nope"], "film_formulas.0: unknown film formula 'nope', need one of paper"),
     ("film_formulas", [], "got [], need at least 1"),
-    ("film_formulas", ["paper", "paper"], "paper is repeated, need each once"),
     ("name", "My study", "got 'My study', need lower-case letters"),
     ("name", 3, "got 3, need text"),
     ("rollers", 3, "got 3, need keys with their values"),
@@ -96,11 +81,7 @@ TRACES = [
     ("traces.0.lubricant", "nope", f"got nope, need one of the study's: {OIL}"),
     ("traces.0.film_formula", "nope", "got nope, need one of the study's: paper"),
     ("traces", [], "got [], need at least 1"),
-    (
-        "traces",
-        [TRACE, TRACE | {"speed": "100 rpm"}],
-        "need the same speed and slide-to-roll ratio",
-    ),
+    ("traces", [TRACE, TRACE | {"speed": "100 rpm"}], "need the same speed and slide-to-roll rat"),
 ]
 
 

@@ -4,8 +4,9 @@ import json
 
 import nbformat
 import pytest
-from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+from nbformat.v4 import new_notebook
 from studies import ROOT
+from written_notebooks import write_notebook
 
 from lube.errors import LubeError
 from lube.workflow.cells import cells_of, datasets_of, parameters_of, python_of
@@ -16,21 +17,12 @@ NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 @pytest.fixture
 def write(tmp_path):
     """Write a notebook with the given parameters cell, and return its path."""
-
-    def write_notebook(parameters):
-        cells = [new_markdown_cell("# A figure")]
-        cells.append(new_code_cell(parameters, metadata={"tags": ["parameters"]}))
-        cells.append(new_code_cell('film = "../results/paper/film.nc"'))
-        path = tmp_path / "figure.ipynb"
-        nbformat.write(new_notebook(cells=cells), path)
-        return path
-
-    return write_notebook
+    code = 'film = "../results/paper/film.nc"'
+    return lambda parameters: write_notebook(tmp_path / "a.ipynb", code, parameters=parameters)
 
 
-@pytest.mark.parametrize(
-    ("code", "named"),
-    [
+def test_a_parameter_is_a_dataset_if_its_value_is_the_path_of_one(write):
+    for code, named in [
         ('x = "../results/paper/film.nc"', {"x": "film"}),
         ('film = "../results/paper/contact.nc"', {"film": "contact"}),
         ('film = "film.nc"', {"film": "film"}),
@@ -43,10 +35,8 @@ def write(tmp_path):
         ('film = "thick"\nmaster = "film.csv"\nrig = "my-film.nc"', {}),
         ('film = ["../film.nc"]', {}),
         ('film = "../film.nc"\nfilm = 3', {}),
-    ],
-)
-def test_a_parameter_is_a_dataset_if_its_value_is_the_path_of_one(write, code, named):
-    assert datasets_of(write(code)) == named
+    ]:
+        assert datasets_of(write(code)) == named
 
 
 def test_parameters_have_their_values_if_these_are_constants(write):

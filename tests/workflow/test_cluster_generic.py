@@ -9,8 +9,9 @@ echo $!
 
 
 @pytest.mark.slow
-def test_jobs_submitted_by_a_script_make_the_same_bytes(smoke):
+def test_jobs_submitted_by_a_script_in_other_batches_make_the_same_bytes(smoke):
     first = smoke.products()
+    study = smoke.with_values(batch_size=3)
     submit = smoke / "submit"
     submit.write_text(SUBMIT, encoding="utf-8")
     submit.chmod(0o755)
@@ -19,6 +20,7 @@ def test_jobs_submitted_by_a_script_make_the_same_bytes(smoke):
             *("--executor", "cluster-generic", "--jobs", "2"),
             *("--cluster-generic-submit-cmd", str(submit), "--seconds-between-status-checks", "1"),
             *("results/smoke/contact.nc", "results/smoke/trace.nc"),
+            study=study,
         )
         away = smoke.products()
     assert said.count("Submitted job") == 7

@@ -1,25 +1,20 @@
 """The figures of a study, from their notebooks: what each needs, and what it says."""
 
-import nbformat
 import pytest
-from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+from written_notebooks import write_notebook
 
 from lube.workflow.figure_list import chapters, study_figures
 
 
 @pytest.fixture
 def write(tmp_path):
-    """Write a notebook; `tags` are those of its first cell."""
+    """Write a notebook and return its folder; `tags` are those of its first cell."""
 
-    def write_notebook(name, code="film = '../film.nc'", words="# Film\n\nSome *words*.", tags=()):
-        cells = [
-            new_markdown_cell(words, metadata={"tags": list(tags)}),
-            new_code_cell(code, metadata={"tags": ["parameters"]}),
-        ]
-        nbformat.write(new_notebook(cells=cells), tmp_path / f"{name}.ipynb")
+    def write_figure(name, code="film = '../film.nc'", words="# Film\n\nSome *words*.", tags=()):
+        write_notebook(tmp_path / f"{name}.ipynb", words=words, parameters=code, of=tags)
         return tmp_path
 
-    return write_notebook
+    return write_figure
 
 
 def test_a_figure_says_what_it_needs(write, study):

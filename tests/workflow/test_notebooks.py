@@ -1,11 +1,11 @@
 """Notebooks: executed strictly, apart from this process, and the same whenever they are."""
 
 import os
-import sys
+from functools import partial
 
 import nbformat
 import pytest
-from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+from written_notebooks import write_notebook
 
 from lube.errors import LubeError
 from lube.workflow.notebooks import execute_notebook
@@ -17,16 +17,7 @@ PARAMETERS = 'film = "somewhere"\nfigure = None'
 @pytest.fixture
 def write(tmp_path):
     """Write a notebook of a parameters cell and the given code, and return its path."""
-
-    def write_notebook(*codes, parameters=PARAMETERS, tags=("parameters",)):
-        cells = [new_markdown_cell("# A figure")]
-        cells.append(new_code_cell(parameters, metadata={"tags": list(tags)}))
-        cells.extend(new_code_cell(code) for code in codes)
-        path = tmp_path / "figure.ipynb"
-        nbformat.write(new_notebook(cells=cells), path)
-        return path
-
-    return write_notebook
+    return partial(write_notebook, tmp_path / "figure.ipynb", parameters=PARAMETERS)
 
 
 @pytest.fixture
@@ -87,14 +78,6 @@ plt.plot([1, 2])
     assert "image/png" in picture.data
     cell = nbformat.read(output, as_version=4).cells[-1]
     assert cell.execution_count == result.execution_count == 2
-
-
-def test_a_notebook_changes_nothing_in_this_process(write, output):
-    folder, modules = os.getcwd(), set(sys.modules)
-    code = "import os, sys, this\nos.environ['LEFT'] = 'x'\nos.chdir('/')\nsys.exit = None"
-    execute_notebook(write(code), output, {}, "")
-    assert (os.getcwd(), os.environ.get("LEFT"), sys.exit is None) == (folder, None, False)
-    assert "this" not in set(sys.modules) - modules
 
 
 def test_the_stamps_text_and_no_style_of_the_users_reach_the_notebook(
@@ -180,7 +163,7 @@ def test_a_killed_kernel_is_reported(write, output):
 
 def test_what_is_not_a_notebook_with_the_wanted_parameters_is_refused(write, output):
     cases = [
-        ({"tags": ()}, {"film": "film.nc"}, "no cell is tagged 'parameters'"),
+        ({"tag": "another"}, {"film": "film.nc"}, "no cell is tagged 'parameters'"),
         ({"parameters": "film ="}, {}, "got 'film =', which is not Python"),
         ({}, {"trace": "trace.nc"}, "parameter 'trace' is not in its parameters cell, which has"),
     ]

@@ -88,12 +88,6 @@ def test_saved_outputs_rerun_nothing_and_a_changed_cell_its_figure_alone(spare):
     assert spare.planned() == products_of(figure)
 
 
-def test_a_new_notebook_makes_its_own_figure(spare):
-    text = (spare / f"notebooks/{spare.notebooks[0]}.ipynb").read_text("utf-8")
-    (spare / "notebooks/fig99_mine.ipynb").write_text(text, encoding="utf-8")
-    assert spare.planned() == products_of("fig99_mine")
-
-
 # Which study
 
 

@@ -119,19 +119,6 @@ def test_a_clone_runs_its_own_lube_and_not_the_installed_one(spare):
     assert "in this Snakefile" in spare.snakemake("--dry-run").stdout
 
 
-@pytest.mark.slow
-def test_another_batch_size_on_one_core_makes_the_same_bytes(smoke):
-    first = smoke.products()
-    study = smoke.with_values(batch_size=3)
-    targets = [f"results/smoke/{kind}.nc" for kind in DATASETS]
-    targets += ["results/smoke/figures/fig07_probability.png"]
-    with smoke.clean_slate():
-        smoke.run("--cores", "1", *targets, study=study)
-        again = smoke.products()
-    assert again == {name: first[name] for name in again}
-    assert len(again) == len(DATASETS) + 4
-
-
 # What the terminal says
 
 

@@ -5,7 +5,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
 from repository import ROOT
 
 BIN = Path(sys.executable).parent
@@ -19,26 +18,13 @@ def test_snakemakes_lint_asks_for_environments_and_nothing_else(smoke):
     assert set(lints) == {ONE_ENVIRONMENT}
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
+def test_the_sources_are_tidy():
+    for program, *arguments in (
         ("ruff", "check", "."),
         ("ruff", "format", "--check", "."),
         ("snakefmt", "--check", "Snakefile", "workflow", "profiles"),
-    ],
-    ids=" ".join,
-)
-def test_the_sources_are_tidy(command):
-    program, *arguments = command
-    finished = subprocess.run(
-        [BIN / program, *arguments],
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        check=False,
-    )
-    assert finished.returncode == 0, finished.stdout
+    ):
+        assert subprocess.run([BIN / program, *arguments], cwd=ROOT, check=False).returncode == 0
 
 
 def test_every_rule_has_a_message_a_log_a_benchmark_and_a_script_of_its_name():
