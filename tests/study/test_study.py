@@ -133,7 +133,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("rig.drift", 0.1, {"experiment"}),
         ("experiment.threshold", "10 ohm", {"experiment"}),
         ("realisations", 128, {"coverage"}),
-        ("batch_size", 16, set()),
+        ("batch_size", 8, set()),
         ("kept_realisations", [0, 1], set()),
         ("name", "another", set()),
         # Of the forces, the largest sets the lines by its contact width.

@@ -94,7 +94,7 @@ def test_saved_outputs_rerun_nothing_and_a_changed_cell_its_figure_alone(spare):
 def test_bare_snakemake_is_the_papers_study(spare):
     announced = spare.run("--dry-run", study=None)
     assert "results/paper" in announced and "results/smoke" not in announced
-    assert re.search(r"^batch +8$", announced, re.MULTILINE)
+    assert re.search(r"^batch +4$", announced, re.MULTILINE)
 
 
 def test_values_on_the_command_line_make_a_study_of_their_own(spare):
