@@ -79,7 +79,7 @@ def over_grid(dataset: xr.Dataset) -> xr.Dataset:
     xarray.Dataset
         Its variables over (slide_to_roll_ratio, lubricant, temperature, speed, force, repeat)
         instead of ``record``, NaN where there is no record; ``repeat`` numbers the records of one
-        operating point. Records near no level are left out.
+        operating point. Records not at a level are left out.
     """
     levels = {name: dataset[f"{name}_level"].values for name in ("temperature", "speed", "force")}
     names = {name: dataset[name].values for name in ("slide_to_roll_ratio", "lubricant")}

@@ -190,7 +190,7 @@ def _failure(executed, exit_code):
     number = max(n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time)
     if exit_code != _CELL_FAILED:
         return f"its kernel was killed in cell {number}, perhaps because memory ran out"
-    error = cells[number - 1].outputs[-1]
+    error = next(each for each in cells[number - 1].outputs if each.output_type == "error")
     traceback = _COLOUR.sub("", "\n".join(error.traceback))
     for n, cell in enumerate(cells, 1):
         traceback = traceback.replace(f"Cell In[{cell.get('execution_count')}]", f"Cell {n}")

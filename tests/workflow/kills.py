@@ -132,7 +132,7 @@ def run_and_kill(repository, targets, victim, delay, chance):
 
 
 def jobs_of(running):
-    """Processes of the running jobs, and of their notebooks' kernels; none if the run is over."""
+    """Processes of the running jobs, and those that execute notebooks; none if the run is over."""
     deadline = time.monotonic() + PATIENCE
     while running.poll() is None and time.monotonic() < deadline:
         with suppress(psutil.NoSuchProcess):
@@ -144,13 +144,13 @@ def jobs_of(running):
 
 
 def name_of(job):
-    """Rule whose script a process runs, or `kernel`; empty if it has not begun or has ended."""
+    """Rule whose script a process runs; empty if it has not begun or has ended."""
     try:
         command = " ".join(job.cmdline())
     except psutil.Error:
         return ""
     script = re.search(r"scripts/tmp\w+\.(\w+)\.py", command)
-    return script[1] if script else "kernel" * ("ipykernel" in command)
+    return script[1] if script else ""
 
 
 def differences(repository, whole, targets):
