@@ -147,10 +147,11 @@ def film_interval(
     Returns
     -------
     film, lower, upper : float
-        Logarithms of the lambda ratio. A limit is -inf or +inf if the record is compatible with
-        the curve up to its end; the film is -inf or +inf if the share lies beyond the curve. If no
-        film of the curve is compatible with the record, the finite limit is the curve's end. All
-        are NaN if the share is NaN or the curve has fewer than two levels.
+        Logarithms of the lambda ratio. The film is -inf or +inf if the share lies beyond the
+        range of the curve. A limit is -inf or +inf if even the last film of the curve on that
+        side agrees with the record. If no film of the curve agrees with it, the finite limit is
+        the last film of the curve. All three are NaN if the share is NaN or the curve has fewer
+        than two levels.
 
     Examples
     --------

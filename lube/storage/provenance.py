@@ -282,8 +282,8 @@ def fingerprints(paths: Files) -> dict[str, str]:
     Returns
     -------
     dict
-        From file name to SHA-256, sorted by name. Different files of the same name are told
-        apart by the first digits, as in ``run.csv#1f0c6a97bd``.
+        From file name to SHA-256, sorted by name. Where different files have the same
+        name, the first digits of the sum follow it, as in ``run.csv#1f0c6a97bd``.
     """
     found = sorted({(Path(path).name, fingerprint(path)) for path in paths})
     count = Counter(name for name, _ in found)
