@@ -43,9 +43,9 @@ def model_at_records(
     -------
     xarray.Dataset
         The variables of `at_records`; ``breakthrough_probability`` over (realisation,
-        film_formula, record); ``scatter_ratio`` over (film_formula, record) and
-        ``record_deviation`` over all three, from `lube.rig.record_scatter.record_scatter`; and
-        the attributes ``travel`` and ``longest_wavelength``, both m, of one realisation.
+        film_formula, record); the results of `lube.rig.record_scatter.record_scatter` over the
+        same dimensions, most without realisation; and the attributes ``travel`` and
+        ``longest_wavelength``, both m, of one realisation.
 
         The probabilities are those of one revolution of pure rolling, because slip does not
         change the expected probability. It changes the scatter of a record.
@@ -54,17 +54,13 @@ def model_at_records(
     points = runs.points(at_records["film_thickness"], at_records["contact_half_width"])
     stored = _stored(runs, film, contact)
     probability = _probability(runs, points, stored, contact.sizes["realisation"])
-    ratio, deviation = record_scatter(at_records, experiment, probability, study)
+    scatter = record_scatter(at_records, experiment, probability, study)
     dims = ("film_formula", "record")
     shape = tuple(at_records.sizes[name] for name in dims)
-    by_realisation = ("realisation", *dims)
-    model = at_records.assign(
-        {
-            PROBABILITY: (by_realisation, probability.reshape(-1, *shape)),
-            "scatter_ratio": (dims, ratio.reshape(shape)),
-            "record_deviation": (by_realisation, deviation.reshape(-1, *shape)),
-        }
-    )
+    model = at_records.copy()
+    for name, values in {PROBABILITY: probability, **scatter}.items():
+        lead = ("realisation",) * (values.ndim - 1)
+        model[name] = (*lead, *dims), values.reshape(values.shape[:-1] + shape)
     model = model.assign_coords(realisation=contact["realisation"].values)
     attributes = {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
     return model.assign_attrs(attributes)

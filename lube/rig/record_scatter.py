@@ -13,15 +13,17 @@ deviates from that mean. The variance of the deviation depends on how the pair i
 """
 
 import logging
+from collections import deque
 
 import numpy as np
 import xarray as xr
 
 from lube.grid.discretise import revolution, speed_ratios
 from lube.rig.ensemble_runs import EnsembleRuns
+from lube.statistics.confidence import mean_over_first
 from lube.statistics.one_pair import persistent_share, scatter_ratio
 from lube.study.study import Study
-from lube.types import Array, Pair
+from lube.types import Array
 
 log = logging.getLogger(__name__)
 
@@ -31,14 +33,18 @@ MOST_PAIRS = 64
 """Largest number of pairs of lines that are run to estimate a scatter."""
 LINES_IN_MEMORY = 16
 """Number of first lines kept in memory while all second lines are drawn."""
+PAIRINGS = 4
+"""Number of second lines that each first line is paired with for the mean probability."""
 MOST_STRETCHES = 8
 """Largest number of stretches of one realisation that serve as short records."""
 ALIGNMENT_RATIOS = np.linspace(1.0, 3.5, 6)
 """Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare."""
 
 
-def record_scatter(model: Data, experiment: Data, probability: Array, study: Study) -> Pair:
-    """Scatter of the contact share of each record between pairs of rollers.
+def record_scatter(
+    model: Data, experiment: Data, probability: Array, study: Study
+) -> dict[str, Array]:
+    """Scatter of the contact share of each record between pairs of rollers, and its mean.
 
     Parameters
     ----------
@@ -54,12 +60,18 @@ def record_scatter(model: Data, experiment: Data, probability: Array, study: Stu
 
     Returns
     -------
-    ratio : numpy.ndarray
-        Variance of the record's share over that of one revolution of pure rolling, shape (P,).
-    deviation : numpy.ndarray
-        Deviation of each realisation in such a record, shape (R, P). They give the correlation
-        between records of one pair; their size has no meaning. NaN for realisations beyond
-        `MOST_PAIRS` where they were not run.
+    dict of str to numpy.ndarray
+        ``scatter_ratio``, variance of the record's share over that of one revolution of pure
+        rolling, shape (P,).
+
+        ``record_deviation``, deviation of each realisation in such a record, shape (R, P). They
+        give the correlation between records; their size has no meaning. NaN for realisations
+        beyond `MOST_PAIRS` where they were not run.
+
+        ``pooled_probability``, mean over the realisations, shape (P,), and ``pooled_error``, its
+        variance over that of the mean of R independent realisations. If records have several
+        alignments, each first line is paired with several second lines for this mean: otherwise
+        the error of the mean is a large part of the small scatter of such records.
     """
     runs = EnsembleRuns(study)
     points = runs.points(model["film_thickness"], model["contact_half_width"])
@@ -83,7 +95,15 @@ def record_scatter(model: Data, experiment: Data, probability: Array, study: Stu
     short = (turns < 1.0) & (variance > 0.0)
     scatter = _short_variance(runs, points[:, short], slips[short], turns[short], len(probability))
     ratio[short] = np.where(scatter > 0.0, scatter / variance[short], ratio[short])
-    return ratio, deviation
+    mean, error = mean_over_first(probability), np.ones(turns.size)
+    if line_effects is not None and len(probability) <= MOST_PAIRS:
+        mean, error = _pooled(runs, points, len(probability), mean, persistent)
+    return {
+        "scatter_ratio": ratio,
+        "record_deviation": deviation,
+        "pooled_probability": mean,
+        "pooled_error": error,
+    }
 
 
 def _variance(shares):
@@ -193,6 +213,21 @@ def _line_effects(runs, model, study, slips, turns, realisations):
     effects = _standardised(shares.mean(axis=1) + shares.mean(axis=0))
     rows = [np.interp(ratio, ALIGNMENT_RATIOS[known], row[known]) for row in (*effects, persistent)]
     return rows[-1], np.array(rows[:-1])
+
+
+def _pooled(runs, points, count, mean, persistent):
+    """Mean over several pairings of the lines, one of which is known, and its relative variance."""
+    pairings = min(PAIRINGS, count)
+    distinct, inverse = np.unique(points, axis=1, return_inverse=True)
+    shares, firsts = np.zeros(distinct.shape[1]), deque(maxlen=pairings - 1)
+    for number in range(count + pairings - 1):
+        first, second = runs.pair(number % count)
+        if number >= pairings - 1:
+            shares += sum(runs.share((other, second), 0.0, distinct) for other in firsts)
+        firsts.append(first)
+    log.info("each line paired with %d others: done", pairings - 1)
+    mean = (mean + shares[inverse.ravel()] / count) / pairings
+    return mean, persistent + (1.0 - persistent) / pairings
 
 
 def _crosswise(runs, count, levels):

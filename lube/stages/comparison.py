@@ -86,8 +86,10 @@ def _side_by_side(model, experiment):
     windows = windows_in(model, 2.0 * model["contact_half_width"].values)
     mean, *limits = probability_interval(probabilities, windows)
     size, noise = effective_sample_size(probabilities, windows), table["share_error"].values
-    ratio = model["scatter_ratio"].values
-    lower, upper = prediction_limits(mean, size, ratio, len(probabilities), noise)
+    pooled, ratio, error = (
+        model[name].values for name in ("pooled_probability", "scatter_ratio", "pooled_error")
+    )
+    lower, upper = prediction_limits(pooled, size, ratio, len(probabilities), noise, error)
     shares = at_comparison_threshold(experiment)
     shares = [shares[f"contact_share{limit}"].values for limit in LIMITS]
     by_formula = {
@@ -276,6 +278,6 @@ def _contradictions(table):
 def _half_widths(table, comparisons):
     """Half-width of each prediction interval of the first formula, for many comparisons at once."""
     first, count = table.isel(film_formula=0), table.sizes["realisation"]
-    mean = first["simulated_probability"].values
+    mean = first["pooled_probability"].values
     sides = [abs(first[f"predicted_share_{side}"].values - mean) for side in ("lower", "upper")]
     return np.maximum(*sides) * quantile(count, comparisons) / quantile(count)

@@ -214,7 +214,12 @@ def scatter_ratio(
 
 
 def prediction_limits(
-    mean: Array, sample_size: Values, ratio: Values, realisations: int, noise: Values = 0.0
+    mean: Array,
+    sample_size: Values,
+    ratio: Values,
+    realisations: int,
+    noise: Values = 0.0,
+    mean_error: Values = 1.0,
 ) -> Pair:
     r"""95 % prediction limits of the contact share of one pair's record.
 
@@ -236,6 +241,8 @@ def prediction_limits(
     noise : float or numpy.ndarray, optional
         Standard error of the record's share from causes other than the roughness, such as
         electrical noise.
+    mean_error : float or numpy.ndarray, optional
+        :math:`m`, variance of the mean over that of R independent realisations.
 
     Returns
     -------
@@ -252,18 +259,24 @@ def prediction_limits(
     never_met = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / (sample_size * realisations))
     likely = np.clip(mean, never_met, 1.0 - never_met)
     likely = np.where((mean == 0.0) | (mean == 1.0), likely, mean)
-    half = quantile(realisations) * standard_error(likely, sample_size, ratio, realisations, noise)
+    known = sample_size, ratio, realisations, noise, mean_error
+    half = quantile(realisations) * standard_error(likely, *known)
     lower = np.where(mean == 0.0, 0.0, np.maximum(likely - half, 0.0))
     upper = np.where(mean == 1.0, 1.0, np.minimum(likely + half, 1.0))
     return lower, upper
 
 
 def standard_error(
-    mean: Values, sample_size: Values, ratio: Values, realisations: int, noise: Values = 0.0
+    mean: Values,
+    sample_size: Values,
+    ratio: Values,
+    realisations: int,
+    noise: Values = 0.0,
+    mean_error: Values = 1.0,
 ) -> Array:
     r"""Calculate the standard error of one pair's share about the mean of the ensemble.
 
-    .. math:: \sigma^2 = p (1 - p) \left( \frac{v}{n} + \frac{1}{n R} \right) + \epsilon^2
+    .. math:: \sigma^2 = p (1 - p) \left( \frac{v}{n} + \frac{m}{n R} \right) + \epsilon^2
 
     The first term is the scatter of the record, the second that of the mean over the realisations.
 
@@ -273,6 +286,8 @@ def standard_error(
         :math:`p`, :math:`n`, :math:`v` and :math:`R`, as in `prediction_limits`.
     noise : float or numpy.ndarray, optional
         :math:`\epsilon`, as there.
+    mean_error : float or numpy.ndarray, optional
+        :math:`m`, as there.
 
     Returns
     -------
@@ -285,7 +300,7 @@ def standard_error(
     0.1
     """
     of_record = np.maximum(sample_size / ratio, 1.0)
-    variance = mean * (1.0 - mean) * (1.0 / of_record + 1.0 / (sample_size * realisations))
+    variance = mean * (1.0 - mean) * (1.0 / of_record + mean_error / (sample_size * realisations))
     return np.sqrt(variance + np.square(noise))
 
 

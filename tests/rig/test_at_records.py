@@ -1,5 +1,7 @@
 """The model at each record's own conditions: what the grid has, and what a literal run finds."""
 
+import itertools
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -9,6 +11,7 @@ from studies import OIL
 from lube import contact_statistics, film_table
 from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
 from lube.kernels.scan import scan_statistics
+from lube.rig.ensemble_runs import EnsembleRuns
 from lube.rig.record_scatter import combined_deviations
 from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch
@@ -208,6 +211,32 @@ def test_the_scatter_of_a_long_record_is_that_of_a_literal_run(busy, change, sli
     )
     # Two estimated variances of 48 pairs: known to some 20 % each.
     np.testing.assert_allclose(model["scatter_ratio"][:, 0], long / one, rtol=0.4)
+
+
+def test_the_pooled_mean_is_that_of_each_first_line_with_four_second_lines(busy):
+    """By a literal scan of every pairing; equal rollers in rolling have one alignment only."""
+    study = busy.study.model_copy(update={"realisations": 6})
+    contact = busy.contact.isel(realisation=slice(6))
+    experiment = experiment_off_the_grid([0, 3], turns=5.0, slide_to_roll_ratio=0.1)
+    model = model_of_records(experiment, busy.film, contact, study)
+    lines = roughness_batch(study.line_spec, study.seed, range(6))
+    factor = layer_factor_of(lines, study.rollers.reduced_modulus, study.boundary_layer)
+    points = EnsembleRuns(study).points(model["film_thickness"], model["contact_half_width"])
+    pairs = [line_pair(lines, number) for number in range(6)]
+    expected = np.zeros(points.shape[1])
+    for number, other in itertools.product(range(6), range(4)):
+        pair = pairs[number][0], pairs[(number + other) % 6][1]
+        steps = pair[0].size
+        expected += scan_statistics(pair, (1.0, 1.0), steps, *points, factor)[:, 1] / steps / 24
+    np.testing.assert_allclose(model["pooled_probability"].values.ravel(), expected, rtol=1e-12)
+    assert (model["pooled_error"] < 1.0).all() and (model["pooled_error"] >= 0.25).all()
+    rolling = model_of_records(
+        experiment_off_the_grid([0, 3], turns=5.0), busy.film, contact, study
+    )
+    np.testing.assert_array_equal(rolling["pooled_error"], 1.0)
+    np.testing.assert_allclose(
+        rolling["pooled_probability"], rolling[PROBABILITY].mean("realisation")
+    )
 
 
 def test_drift_makes_equal_rollers_scatter_less(few):

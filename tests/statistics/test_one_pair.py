@@ -143,6 +143,10 @@ def test_known_noise_of_the_record_widens_the_limits():
     assert predicted(40_000, 64, noise=0.03) == pytest.approx(0.95, abs=0.01)
     assert standard_error(0.5, 25.0, 1.0, 10**9, 0.0) == pytest.approx(0.1)
     assert standard_error(0.5, 25.0, 1.0, 10**9, 0.075) == pytest.approx(0.125)
+    # The mean of four realisations, a quarter as uncertain as that of independent ones.
+    assert standard_error(0.5, 25.0, 0.5, 4, 0.0, 0.25) == pytest.approx(
+        0.1 * np.sqrt(0.5 + 1 / 16)
+    )
 
 
 @given(st.floats(0.0, 1.0), st.floats(1e-2, 1e6), st.floats(1e-3, 1e3), st.integers(1, 100))
