@@ -12,7 +12,7 @@ import re
 import numpy as np
 
 from lube.errors import RangeError, RecordError
-from lube.physics.viscosity import ZERO_CELSIUS
+from lube.physics import ZERO_CELSIUS
 from lube.types import Array
 
 ATMOSPHERIC_PRESSURE = 101325.0
@@ -124,7 +124,8 @@ def liquid_property(
     temperature : numpy.ndarray, shape (n,)
         Temperatures, K.
     pressure : float, optional
-        Pressure, Pa. CoolProp knows for some fluids only whether the liquid freezes under it.
+        Pressure, Pa. Only for some fluids does CoolProp refuse a pressure under which they
+        freeze.
 
     Returns
     -------
