@@ -2,7 +2,7 @@
 
 CoolProp does not refuse states outside a fluid's range: it returns negative viscosities above the
 maximum pressure, and properties of the gas above the boiling point. Here the state is checked
-before the call and the result after it. CoolProp is imported on first use, because that takes a
+before the call, and the result after it. CoolProp is imported on first use, because that takes a
 second or two. Temperatures are in kelvin.
 """
 
@@ -137,7 +137,8 @@ def liquid_property(
     RecordError
         If CoolProp does not know the fluid, or this property of it.
     RangeError
-        If a state lies outside CoolProp's range for the fluid, or the result is not positive.
+        If a state lies outside CoolProp's range for the fluid, or CoolProp's value is not
+        positive.
 
     Examples
     --------
@@ -199,7 +200,8 @@ def initial_pressure_viscosity(fluid: str, temperature: Array) -> Array:
 
     .. math:: \alpha = \left. \frac{d \ln \eta}{d p} \right|_{p_0}
 
-    Two secants, one twice as long as the other, are extrapolated to length zero.
+    The slopes of two secants, one over twice the pressure step of the other, are extrapolated to
+    a step of zero.
 
     Parameters
     ----------
