@@ -78,7 +78,7 @@ def dimensionless_speed(
 
 
 def dimensionless_material(pressure_viscosity_coefficient: Values, film_modulus: float) -> Values:
-    r"""Material parameter G of a line contact.
+    r"""Materials parameter G of a line contact.
 
     .. math:: G = \alpha E'
 
@@ -92,7 +92,7 @@ def dimensionless_material(pressure_viscosity_coefficient: Values, film_modulus:
     Returns
     -------
     float or numpy.ndarray
-        Material parameter :math:`G`.
+        Materials parameter :math:`G`.
 
     Examples
     --------

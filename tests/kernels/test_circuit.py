@@ -1,4 +1,4 @@
-"""The circuit, step by step: steady states, time constants, and a naive second way."""
+"""The circuit: a naive second implementation, steady states and time constants."""
 
 import numpy as np
 import pytest
@@ -55,7 +55,7 @@ def test_a_steady_contact_gives_a_steady_voltage():
     np.testing.assert_allclose(sampled(np.ones(50)), 0.8 * TOUCHING + 0.1, rtol=1e-12)
 
 
-def test_the_low_pass_forgets_exponentially():
+def test_the_low_pass_filter_approaches_its_input_exponentially():
     contact = np.r_[np.ones(1), np.zeros(40)]
     after = sampled(contact, decays=(0.0, 0.0), filter_decay=0.8)
     final = 0.8 * OPEN + 0.1
@@ -64,7 +64,7 @@ def test_the_low_pass_forgets_exponentially():
     )
 
 
-def test_an_amplifier_saturates_before_the_low_pass():
+def test_the_amplifier_saturates_before_the_low_pass_filter():
     record = sampled(np.zeros(20), limit=0.3)
     np.testing.assert_allclose(record, 0.3)
 

@@ -1,4 +1,4 @@
-"""Compiled kernels are as new as all the files they are made of."""
+"""A change of any file of the kernels reaches all compiled kernels."""
 
 import os
 import shutil

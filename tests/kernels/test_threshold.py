@@ -1,4 +1,4 @@
-"""Samples below limits: exact against a trigger and a filter of runs written the plain way."""
+"""Samples below limits, against a plain implementation: a trigger, then a filter of short runs."""
 
 from itertools import groupby
 
