@@ -63,7 +63,7 @@ def revolution(pair: tuple[np.ndarray, np.ndarray], ratios: tuple[float, float])
     Returns
     -------
     int
-        Points around that roller; around the first roller where both are equally fast.
+        Points around that roller; around the first roller if both are equally fast.
 
     Examples
     --------
@@ -119,7 +119,7 @@ def line_pair(lines: xr.Dataset, realisation: int) -> tuple[np.ndarray, np.ndarr
 
 
 def layer_factor_of(lines: xr.Dataset, reduced_modulus: float, boundary_layer: Layer) -> float:
-    """Apply `lube.kernels.layer.layer_factor` to a dataset of lines.
+    """Compute `lube.kernels.layer.layer_factor` for a dataset of lines.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def whole_numbers(
     >>> whole_numbers([1e-9], [3.9e-6], lines)
     (array([1000]), array([3]))
     """
-    # No line reaches 2**40 steps, and 2**63 would overflow.
+    # No sum of lines reaches 2**40 steps, and larger films could overflow int64.
     steps = np.minimum(np.asarray(film_thickness) / lines.attrs["height_step"], 2.0**40)
     films = np.rint(steps)
     half_windows = np.floor(np.asarray(half_width) / lines.attrs["spacing"])

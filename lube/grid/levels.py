@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 NEAR = 0.005
-"""Relative tolerance for numbers that people write: 86 r/min stands for 600/7."""
+"""Relative tolerance for numbers that people write: 86 r/min stands for 600/7 r/min."""
 SAME = 1e-9
 """Relative tolerance for numbers that differ by rounding only."""
 

@@ -20,7 +20,7 @@ def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tupl
     Parameters
     ----------
     entrainment_speed : float
-        Mean surface speed :math:`v`, in any unit of speed.
+        Entrainment speed :math:`v`, the mean of both, in any unit of speed.
     slide_to_roll_ratio : float
         Slide-to-roll ratio :math:`S`, from -2 to 2.
 
@@ -45,7 +45,7 @@ class OperatingPoint:
     Attributes
     ----------
     slide_to_roll_ratio : float
-        (v1 - v2) / v, with the surface speeds v1 and v2 and their mean v.
+        (v1 - v2) / v, with the surface speeds v1 and v2 and the entrainment speed v.
     lubricant : str
         Name of the lubricant.
     temperature, speed, force : float
@@ -53,7 +53,7 @@ class OperatingPoint:
     film_thickness, contact_half_width : float
         h0 and a, m.
     entrainment_speed : float
-        Mean surface speed v, m/s.
+        Entrainment speed v, m/s.
     reduced_modulus : float
         E*, Pa.
     """

@@ -1,8 +1,10 @@
 """Compiler flags of all kernels, and the folder that keeps their machine code.
 
 Numba compiles a cached function anew when the function's own file has changed, but not when a
-helper compiled into it, from another file, has: a new criterion in `layer.py` would silently go on
-giving the old results. So every version of the kernels' sources gets a cache folder of its own.
+helper from another file, compiled into it, has: after a change of the criterion in `layer.py` the
+kernels would silently give the old results. So every version of the kernels' sources gets its own
+cache folder. Each edit of the kernels leaves an old one of about 3 MB behind, which may be deleted
+at any time.
 """
 
 import hashlib
@@ -14,7 +16,7 @@ import numba
 
 
 def _cache_folder(sources: Path) -> str:
-    """Cache folder for the present version of the sources; Numba's own if they are read-only."""
+    """Cache folder of the present version of the sources; Numba's own if they are read-only."""
     if not os.access(sources, os.W_OK):
         return numba.config.CACHE_DIR
     text = b"".join(path.read_bytes() for path in sorted(sources.glob("*.py")))
@@ -38,10 +40,10 @@ def kernel(function: Callable, **options) -> Callable:
     Returns
     -------
     callable
-        The compiled function. Its machine code is cached on disk; it releases Python's global
-        lock; arithmetic is strict IEEE (no fast-math), and a division by zero gives infinity.
+        The compiled function. Its machine code is cached on disk. It releases Python's global
+        lock. Arithmetic is strict IEEE (no fast-math), and a division by zero gives infinity.
     """
-    # Numba reads this setting while it decorates. Put back at once, it concerns no other function.
+    # Numba reads this setting while it decorates. It is restored at once, for all other functions.
     users_folder = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = _CACHE_FOLDER
     try:
@@ -51,5 +53,5 @@ def kernel(function: Callable, **options) -> Callable:
 
 
 def inlined(function: Callable) -> Callable:
-    """Compile a small helper into each kernel that calls it; else as `kernel`."""
+    """Compile a small helper into each kernel that calls it, with the options of `kernel`."""
     return kernel(function, inline="always")

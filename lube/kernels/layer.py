@@ -12,7 +12,7 @@ def layer_factor(
     spacing: float,
     height_step: float,
 ) -> float:
-    r"""Gather the constants of Eqs. 5 and 6 into the one factor that decides on break-up.
+    r"""Combine the constants of Eqs. 5 and 6 into the one factor that decides on break-up.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 """Runs of points at which the sum of two rough lines lies above a film.
 
 Points are searched in blocks, and blocks that cannot reach above the film are skipped. In pure
-rolling the two lines keep one alignment for the whole revolution, so their sum is computed once
-and the maximum of each block taken. With slip an alignment lasts for a few time steps only. There
-the maxima of two blocks bound the maximum of their sum: they are computed once for blocks that
-begin at any point, and most windows are excluded before a single pair of heights is added.
+rolling the two lines keep one alignment for the whole revolution, so their sum is computed once,
+and then the maximum of each block. With slip an alignment lasts for a few time steps only. There
+the maxima of two blocks together are an upper limit of their sum. They are computed once, for
+blocks that begin at any point, and exclude most windows before any heights are added.
 """
 
 import numpy as np
@@ -18,14 +18,14 @@ BLOCK = 32
 
 @kernel
 def add_lines(lines: Pair, first_1: int, first_2: int, line: Array) -> None:
-    """Add two periodic lines, each from its own first point on.
+    """Add two periodic lines, starting from a given point of each.
 
     Parameters
     ----------
     lines : tuple of numpy.ndarray
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     first_1, first_2 : int
-        Indices of the first points, any whole numbers.
+        Indices of these points, any whole numbers.
     line : numpy.ndarray
         Shape (L,), int32; filled with the sum, height steps.
 
@@ -39,7 +39,7 @@ def add_lines(lines: Pair, first_1: int, first_2: int, line: Array) -> None:
     line_1, line_2 = lines
     i, k = first_1 % line_1.size, first_2 % line_2.size
     done = 0
-    while done < line.size:  # in stretches without wrap-around, which the compiler vectorises
+    while done < line.size:  # in pieces without wrap-around, which the compiler vectorises
         stretch = min(line_1.size - i, line_2.size - k, line.size - done)
         for n in range(stretch):
             line[done + n] = line_1[i + n] + line_2[k + n]
@@ -50,7 +50,7 @@ def add_lines(lines: Pair, first_1: int, first_2: int, line: Array) -> None:
 
 @kernel
 def _high_stretches(line, film, stretches):
-    """Find the stretches of successive blocks in each of which a point lies above a film.
+    """Find the stretches of successive blocks that each have a point above a film.
 
     Parameters
     ----------
@@ -94,14 +94,14 @@ def _high_stretches(line, film, stretches):
 
 @kernel
 def block_maxima(line: Array, reach: int) -> Array:
-    """Maximum of each block of a periodic line, for blocks that begin at any point.
+    """Compute the maximum of each block of a periodic line, for blocks that begin at any point.
 
     Parameters
     ----------
     line : numpy.ndarray
         Heights of a periodic line, shape (N,), int32 height steps.
     reach : int
-        Number of points beyond the end of the line, wrapped around, to take in.
+        Number of points to include beyond the end of the line, wrapped around.
 
     Returns
     -------
@@ -142,7 +142,7 @@ def _possible_stretches(maxima, first_1, first_2, size, film, stretches):
     Parameters
     ----------
     maxima : tuple of numpy.ndarray
-        From `block_maxima`, of either line.
+        From `block_maxima`, for each line.
     first_1, first_2 : int
         Indices of the first points, zero or more.
     size : int
@@ -196,14 +196,14 @@ def _possible_stretches(maxima, first_1, first_2, size, film, stretches):
 def fill_high_stretches(
     lines: Pair, maxima: Pair, first_1: int, first_2: int, film: int, line: Array, stretches: Pair
 ) -> int:
-    """Add two lines in all stretches of blocks in which their sum may lie above a film.
+    """Add two lines in all stretches of blocks where their sum may lie above a film.
 
     Parameters
     ----------
     lines : tuple of numpy.ndarray
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     maxima : tuple of numpy.ndarray
-        From `block_maxima`, of either line; empty to add the lines everywhere, which is faster
+        From `block_maxima`, for each line; empty to add the lines everywhere, which is faster
         where one sum serves many time steps.
     first_1, first_2 : int
         Indices of the first points, within the lines.

@@ -1,6 +1,6 @@
 """The literal scan: the paper's model step by step and point by point.
 
-It costs O(time steps x window points) and is the reference for every faster method. It holds
+It costs O(time steps x window points) and is the reference for every faster method. It is valid
 for any two surface speeds.
 """
 
@@ -9,16 +9,16 @@ import numpy as np
 from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
-from lube.types import Array, Pair, Points, Ratios
+from lube.types import Array, Pair, Ratios
 
 
 @kernel
 def scan_window(
-    lines: Pair, firsts: Points, width: int, film: int, factor: float
+    lines: Pair, first_1: int, first_2: int, width: int, film: int, factor: float
 ) -> tuple[int, int, int]:
     r"""Find the segments in one contact window, and those whose boundary layer breaks.
 
-    A segment is a maximal run of points with positive overlap
+    A segment is the longest possible run of neighbouring points with positive overlap
 
     .. math:: \Delta z = z_1 + z_2 - h_0 > 0 ,
 
@@ -28,8 +28,8 @@ def scan_window(
     ----------
     lines : tuple of numpy.ndarray
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
-    firsts : tuple of int
-        Indices of the window's first point on either line.
+    first_1, first_2 : int
+        Indices of the window's first point on the two lines.
     width : int
         Number of points in the window.
     film : int
@@ -51,13 +51,13 @@ def scan_window(
     Two segments, of one and of two points; the layer breaks on the first only:
 
     >>> line = np.array([5, 0, 2, 2, 0], np.int32)
-    >>> scan_window((line, np.zeros_like(line)), (0, 0), 5, 1, 1.0)
+    >>> scan_window((line, np.zeros_like(line)), 0, 0, 5, 1, 1.0)
     (3, 1, 6)
     """
     contact_points = broken_points = total_overlap = 0
     segment_points = segment_overlap = 0
     line_1, line_2 = lines
-    i, k = firsts
+    i, k = first_1, first_2
     for point in range(width + 1):
         overlap = np.int64(line_1[i]) + line_2[k] - film
         if point == width:
@@ -84,7 +84,7 @@ def scan_window(
 def scan_trace(
     lines: Pair, speed_ratios: Ratios, steps: int, film: int, half_window: int, factor: float
 ) -> Array:
-    """Contact at every time step of one operating point.
+    """Compute the contact at every time step of one operating point.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def scan_trace(
     for step in range(steps):
         first_1 = (surface_position(step, speed_ratios[0]) - half_window) % lines[0].size
         first_2 = (surface_position(step, speed_ratios[1]) - half_window) % lines[1].size
-        trace[step] = scan_window(lines, (first_1, first_2), width, film, factor)
+        trace[step] = scan_window(lines, first_1, first_2, width, film, factor)
     return trace
 
 
@@ -128,7 +128,7 @@ def scan_trace(
 def scan_statistics(
     lines: Pair, speed_ratios: Ratios, steps: int, films: Array, half_windows: Array, factor: float
 ) -> Array:
-    """Contact statistics of many operating points by the literal scan.
+    """Compute the contact statistics of many operating points by the literal scan.
 
     Parameters
     ----------

@@ -3,9 +3,9 @@
 While both surfaces advance by one point per time step their alignment stays the same, and the
 window slides along one fixed line, the sum of the two. Such a sequence of time steps is a *strip*:
 the whole revolution in pure rolling, about 1 / slip steps at small slip, a single step at large
-slip. On a strip the windows meet every run of points above the film in the same three ways: its
+slip. On a strip the windows pass every run of points above the film in the same three phases: its
 beginning enters at the right edge, it lies inside the window (or fills it), and its end leaves at
-the left edge. So each run is visited once, point by point, whatever the window's width. The search
+the left edge. So each run is visited once, point by point, for any width of the window. The search
 for runs is shared by all operating points: the runs of a thicker film lie within those of a
 thinner one.
 """
@@ -19,7 +19,7 @@ from lube.kernels.runs import block_maxima, fill_high_stretches, find_runs
 from lube.types import Array, Pair, Ratios
 
 LONGEST_STRIP = 2**14
-"""Longer strips are cut, so that the data of one strip stay in the processor's cache."""
+"""Time steps in the longest strip; the data of one strip stay in the processor's cache."""
 
 
 @kernel
@@ -84,7 +84,7 @@ def _mark_step(step, points, broken, lengths):
 
 @kernel
 def _mark_steps(first, last, points, broken, lengths):
-    """Mark the time steps first .. last in the same way; return n for each of them."""
+    """Mark the time steps first .. last in the same way; return n times their number."""
     broken[first : last + 1] = 1
     if lengths is not None:
         lengths[first : last + 1] += points
@@ -93,7 +93,7 @@ def _mark_steps(first, last, points, broken, lengths):
 
 @kernel
 def _visit_run(line, start, stop, film, width, factor, broken, lengths):
-    """Pass all windows of a strip over one run, and mark where its boundary layer breaks.
+    """Pass all windows of a strip over one run, and mark the steps at which the layer breaks on it.
 
     The window at the strip's time step t covers the indices t .. t + width - 1 of `line`.
 
@@ -113,7 +113,7 @@ def _visit_run(line, start, stop, film, width, factor, broken, lengths):
         Shape (T,), uint8; set to one at the time steps where the layer breaks.
     lengths : numpy.ndarray or None
         Shape (T,), int32; the broken points are added at each time step. With None they are
-        not counted step by step, and numba compiles a kernel without them.
+        not counted step by step, and Numba compiles a kernel without them.
 
     Returns
     -------
@@ -217,7 +217,7 @@ def _strip_point(line, runs, found, film, width, factor, broken, lengths, counts
 
 @kernel
 def _steps_of(lengths, point, begin, end):
-    """Slice one operating point's lengths at the time steps of a strip, if they are wanted."""
+    """Return one operating point's lengths at the time steps of a strip, or None."""
     if lengths is None:
         return None
     return lengths[point, begin:end]
@@ -242,10 +242,8 @@ def _run_strips(
         end = strip_end(begin, steps, speed_ratios)
         line, broken = buffer[: end - begin + 2 * margin], marks[: end - begin]
         position_1, position_2 = _positions(begin, speed_ratios)
-        first_1, first_2 = (
-            (position_1 - margin) % lines[0].size,
-            (position_2 - margin) % lines[1].size,
-        )
+        first_1 = (position_1 - margin) % lines[0].size
+        first_2 = (position_2 - margin) % lines[1].size
         thinnest = films[thinnest_first[0]]
         found = fill_high_stretches(lines, maxima, first_1, first_2, thinnest, line, runs)
         for point in thinnest_first:
@@ -264,7 +262,7 @@ def _run_strips(
 def strip_statistics(
     lines: Pair, speed_ratios: Ratios, steps: int, films: Array, half_windows: Array, factor: float
 ) -> Array:
-    """Contact statistics of many operating points at any slip.
+    """Compute the contact statistics of many operating points at any slip.
 
     Equal to `lube.kernels.scan.scan_statistics` to the last bit.
 
@@ -295,14 +293,14 @@ def strip_statistics(
     >>> strip_statistics(lines, (1.0, 1.0), 5, films, np.array([1, 1]), 1.0).tolist()
     [[3, 3, 3, 6], [0, 0, 0, 0]]
     """
-    points = films, half_windows
-    return _run_strips(lines, speed_ratios, steps, *points, factor, *_plan(*points), None)
+    order, margin = _plan(films, half_windows)
+    return _run_strips(lines, speed_ratios, steps, films, half_windows, factor, order, margin, None)
 
 
 def strip_trace(
     lines: Pair, speed_ratios: Ratios, steps: int, films: Array, half_windows: Array, factor: float
 ) -> Array:
-    """Broken points at every time step of many operating points, at any slip.
+    """Count the broken points at every time step of many operating points, at any slip.
 
     Equal to the broken points of `lube.kernels.scan.scan_trace`.
 
@@ -324,13 +322,13 @@ def strip_trace(
     [[1, 1, 0, 0, 1]]
     """
     lengths = np.zeros((films.size, steps), np.int32)
-    points = films, half_windows
-    _run_strips(lines, speed_ratios, steps, *points, factor, *_plan(*points), lengths)
+    order, margin = _plan(films, half_windows)
+    _run_strips(lines, speed_ratios, steps, films, half_windows, factor, order, margin, lengths)
     return lengths
 
 
 def _plan(films, half_windows):
-    """Order the operating points by rising film; take the margin of the widest window.
+    """Return the operating points in the order of rising films, and the widest half-window.
 
     Not compiled, because compiling a sort takes longer than compiling the kernel.
     """

@@ -7,10 +7,10 @@ import numpy as np
 from lube.kernels.compiler import kernel
 
 PHASES = 2**16
-"""Number of equally spaced phases that the phasors are drawn from."""
+"""Number of equally spaced phases from which the phasors are drawn."""
 
 _ANGLES = 2.0 * math.pi * np.arange(PHASES) / PHASES
-# Rounded to single precision this table is the same on every machine; sines and cosines computed
+# Rounded to single precision, this table is the same on every machine. Sines and cosines computed
 # for each line would not be.
 _PHASORS = (np.cos(_ANGLES) + 1j * np.sin(_ANGLES)).astype(np.complex64)
 

@@ -1,16 +1,16 @@
 """Counts of a record's samples below limits, block by block.
 
-The blocks of a record are equally long, a power of two of samples: sample n is in block
+All blocks of a record have the same number of samples, a power of two: sample n is in block
 n >> doublings.
 """
 
 import numpy as np
 
 from lube.kernels.compiler import kernel
-from lube.types import Array, Pair
+from lube.types import Array
 
 CHUNK = 4096
-"""Values compared with all limits at a time: so many stay in the first-level cache."""
+"""Number of values compared with all limits together; they fit into the first-level cache."""
 
 
 @kernel
@@ -22,9 +22,9 @@ def count_below(values: Array, seen: int, doublings: int, limits: Array, counts:
     values : numpy.ndarray
         Shape (N,), the piece.
     seen : int
-        Samples of the record before this piece.
+        Number of samples of the record before this piece.
     doublings : int
-        Binary logarithm of the samples in a block.
+        Binary logarithm of the number of samples in a block.
     limits : numpy.ndarray
         Shape (K,), in the unit of `values`.
     counts : numpy.ndarray
@@ -54,22 +54,29 @@ def count_below(values: Array, seen: int, doublings: int, limits: Array, counts:
 
 @kernel
 def follow_contact(
-    values: Array, seen: int, doublings: int, limits: Pair, hold: int, states: Array, counts: Array
+    values: Array,
+    seen: int,
+    doublings: int,
+    limits: Array,
+    releases: Array,
+    hold: int,
+    states: Array,
+    counts: Array,
 ) -> None:
     """Count the samples of a piece of a record in contact, with hysteresis and hold time.
 
     A trigger closes where a value is below the limit, and opens where a value is not below the
-    release. Contact follows the trigger if its change lasts `hold` samples, and then from the
-    first of them on. Before the record there is no contact.
+    release. A change of the trigger becomes a change of contact if it lasts `hold` samples, and
+    then from the first of them on. Before the record there is no contact.
 
     Parameters
     ----------
     values, seen, doublings
         As in `count_below`.
-    limits : tuple of numpy.ndarray
-        Limits and releases, shape (K,) each, in the unit of `values`.
+    limits, releases : numpy.ndarray
+        Shape (K,) each, in the unit of `values`.
     hold : int
-        Samples that a change must last; 0 and 1 have the same effect.
+        Number of samples that a change must last; 0 and 1 have the same effect.
     states : numpy.ndarray
         Shape (K, 3), int64, zeros before the record, updated in place: trigger closed, in
         contact, and samples since the two differ.
@@ -82,16 +89,15 @@ def follow_contact(
 
     >>> counts, states = np.zeros((1, 3), np.int64), np.zeros((1, 3), np.int64)
     >>> values, limits = np.array([9.0, 0.5, 1.5, 2.0, 1.5]), np.array([1.0])
-    >>> follow_contact(values, 0, 1, (limits, 2.0 * limits), 0, states, counts)
+    >>> follow_contact(values, 0, 1, limits, 2.0 * limits, 0, states, counts)
     >>> counts
     array([[1, 1, 0]])
     """
-    lower, upper = limits
-    for k in range(lower.size):
+    for k in range(limits.size):
         closed, contact, lasting = states[k]
         for i in range(values.size):
             sample = seen + i
-            closed = np.int64(values[i] < (upper[k] if closed else lower[k]))
+            closed = np.int64(values[i] < (releases[k] if closed else limits[k]))
             counts[k, sample >> doublings] += contact
             lasting = lasting + 1 if closed != contact else 0
             if lasting > 0 and lasting >= hold:

@@ -2,7 +2,7 @@
 
 CoolProp does not refuse states outside a fluid's range: it returns negative viscosities above the
 maximum pressure, and properties of the gas above the boiling point. Here the state is checked
-before the call and the result after it. CoolProp is imported on first use, because that takes a
+before the call, and the result after it. CoolProp is imported on first use, because that takes a
 second or two. Temperatures are in kelvin.
 """
 
@@ -12,7 +12,7 @@ import re
 import numpy as np
 
 from lube.errors import RangeError, RecordError
-from lube.physics.viscosity import ZERO_CELSIUS
+from lube.physics import ZERO_CELSIUS
 from lube.types import Array
 
 ATMOSPHERIC_PRESSURE = 101325.0
@@ -124,7 +124,8 @@ def liquid_property(
     temperature : numpy.ndarray, shape (n,)
         Temperatures, K.
     pressure : float, optional
-        Pressure, Pa. CoolProp knows for some fluids only whether the liquid freezes under it.
+        Pressure, Pa. Only for some fluids does CoolProp refuse a pressure under which they
+        freeze.
 
     Returns
     -------
@@ -136,7 +137,8 @@ def liquid_property(
     RecordError
         If CoolProp does not know the fluid, or this property of it.
     RangeError
-        If a state lies outside CoolProp's range for the fluid, or the result is not positive.
+        If a state lies outside CoolProp's range for the fluid, or CoolProp's value is not
+        positive.
 
     Examples
     --------
@@ -198,7 +200,8 @@ def initial_pressure_viscosity(fluid: str, temperature: Array) -> Array:
 
     .. math:: \alpha = \left. \frac{d \ln \eta}{d p} \right|_{p_0}
 
-    Two secants, one twice as long as the other, are extrapolated to length zero.
+    The slopes of two secants, one over twice the pressure step of the other, are extrapolated to
+    a step of zero.
 
     Parameters
     ----------

@@ -8,8 +8,8 @@ speeds), the reduced radius :math:`R^*` and :math:`E' = 2 E^*` (twice the reduce
 
     W = \frac{w'}{E' R^*}, \qquad U = \frac{\eta_0 v}{E' R^*}, \qquad G = \alpha E'
 
-The film thickness over :math:`R^* \sqrt{2U}` depends on only two combinations of these, Moes'
-:math:`M` and :math:`L`.
+The film thickness over :math:`R^* \sqrt{2U}` depends on only two combinations of these, the Moes
+numbers :math:`M` and :math:`L`.
 """
 
 import numpy as np
@@ -49,7 +49,7 @@ def dimensionless_load(
 def dimensionless_speed(
     viscosity: Values, entrainment_speed: Values, film_modulus: float, reduced_radius: float
 ) -> Values:
-    r"""Speed parameter U of a line contact, made with the mean of the surface speeds.
+    r"""Speed parameter U of a line contact, from the entrainment speed.
 
     .. math:: U = \frac{\eta_0 v}{E' R^*}, \qquad v = \frac{v_1 + v_2}{2}
 
@@ -58,7 +58,7 @@ def dimensionless_speed(
     viscosity : float or numpy.ndarray
         Dynamic viscosity :math:`\eta_0` at ambient pressure, Pa s.
     entrainment_speed : float or numpy.ndarray
-        Mean surface speed :math:`v`, m/s.
+        Entrainment speed :math:`v`, m/s.
     film_modulus : float
         :math:`E' = 2 E^*`, Pa.
     reduced_radius : float
@@ -103,15 +103,15 @@ def dimensionless_material(pressure_viscosity_coefficient: Values, film_modulus:
 
 
 def moes_numbers(load: Values, speed: Values, material: Values) -> tuple[Values, Values]:
-    r"""Moes' load number M and material number L.
+    r"""Moes numbers: dimensionless load M and material parameter L.
 
     .. math:: M = \frac{W}{\sqrt{2U}}, \qquad L = G\,(2U)^{1/4}
 
     Parameters
     ----------
     load, speed, material : float or numpy.ndarray
-        :math:`W`, :math:`U` and :math:`G`. Moes' own speed parameter is made with the sum of the
-        surface speeds, twice the mean; hence :math:`2U`.
+        :math:`W`, :math:`U` and :math:`G`. Moes defines his speed parameter with the sum of the
+        surface speeds, twice their mean; hence :math:`2U`.
 
     Returns
     -------

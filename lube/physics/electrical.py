@@ -18,7 +18,7 @@ class Circuit(Protocol):
     bias_voltage : float
         Voltage U of the source, V.
     series_resistance, lead_resistance : float
-        R_s of the resistor and R_l of the leads, ohm.
+        Resistances R_s of the resistor and R_l of the leads, ohm.
     """
 
     bias_voltage: float
@@ -27,14 +27,14 @@ class Circuit(Protocol):
 
 
 def contact_resistance(contact_length: Values, resistivity: float) -> Values:
-    r"""Resistance of all contact spots in parallel (paper, Eq. 1).
+    r"""Resistance of all broken segments in parallel (paper, Eq. 1).
 
     .. math:: \frac{1}{R_c} = \frac{L_{con}}{\rho}
 
     Parameters
     ----------
     contact_length : float or numpy.ndarray
-        Sum of the contact diameters :math:`L_{con}`, m.
+        Contact length :math:`L_{con}`, the sum of the lengths of all broken segments, m.
     resistivity : float
         Resistivity :math:`\rho` of the rollers' material, ohm m.
 
@@ -53,7 +53,7 @@ def contact_resistance(contact_length: Values, resistivity: float) -> Values:
 
 
 def divider_voltage(resistance: Values, circuit: Circuit) -> Values:
-    r"""Voltage over leads and contact, as logged, at a steady contact resistance.
+    r"""Voltage logged over leads and contact at a steady contact resistance.
 
     .. math:: V = U \frac{R_l + R}{R_s + R_l + R}
 
@@ -76,8 +76,8 @@ def divider_voltage(resistance: Values, circuit: Circuit) -> Values:
     >>> divider_voltage(np.array([100.0, np.inf]), circuit).tolist()
     [0.5, 1.0]
     """
-    past = circuit.series_resistance / (np.asarray(resistance, float) + circuit.lead_resistance)
-    return circuit.bias_voltage / (1.0 + past)
+    ratio = circuit.series_resistance / (np.asarray(resistance, float) + circuit.lead_resistance)
+    return circuit.bias_voltage / (1.0 + ratio)
 
 
 def resistance_from_voltage(voltage: Values, circuit: Circuit) -> Values:
@@ -106,15 +106,15 @@ def resistance_from_voltage(voltage: Values, circuit: Circuit) -> Values:
     [0.0, 100.0, inf]
     """
     voltage = np.asarray(voltage, float)
-    rest = np.maximum(circuit.bias_voltage - voltage, 0.0)
+    drop = np.maximum(circuit.bias_voltage - voltage, 0.0)  # over the series resistor
     with np.errstate(divide="ignore"):
-        return circuit.series_resistance * voltage / rest - circuit.lead_resistance
+        return circuit.series_resistance * voltage / drop - circuit.lead_resistance
 
 
 def film_capacitance(
     film_thickness: Values, half_width: Values, length: float, permittivity: float
 ) -> Values:
-    r"""Capacitance of the oil film, taken as a plate capacitor over the contact strip.
+    r"""Capacitance of the oil film, modelled as a plate capacitor over the contact strip.
 
     .. math:: C = \varepsilon_0 \varepsilon_r \frac{2 a L'}{h_0}
 

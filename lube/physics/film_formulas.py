@@ -136,7 +136,7 @@ def _register(name, thickness, source, remark, **limits):
     "paper",
     "central",
     "the paper, Eq. 3",
-    "-6 to +13 %; 2.4 % above pan-hamrock by a digit transposed in print",
+    "-6 to +13 %; 2.4 % above pan-hamrock: two digits are transposed in print",
     moes_load=(1.5, 100.0),
 )
 def paper(load: Values, speed: Values, material: Values) -> Values:
@@ -158,6 +158,11 @@ def pan_hamrock(load: Values, speed: Values, material: Values) -> Values:
 
     .. math:: h_0 / R^* = 2.922\, G^{0.470}\, U^{0.692}\, W^{-0.166}
 
+    References
+    ----------
+    P. Pan and B. J. Hamrock, Simple formulas for performance parameters used in
+    elastohydrodynamically lubricated line contacts, J. Tribol. 111 (1989) 246-251.
+
     Examples
     --------
     >>> f"{pan_hamrock(1.39e-5, 2.52e-11, 3696.0):.3g}"
@@ -168,7 +173,7 @@ def pan_hamrock(load: Values, speed: Values, material: Values) -> Values:
 
 @_register("pan-hamrock-minimum", "minimum", _PAN_HAMROCK, "-13 to +3 %", moes_load=(1.0, 100.0))
 def pan_hamrock_minimum(load: Values, speed: Values, material: Values) -> Values:
-    r"""Minimum film of Pan and Hamrock, at the outlet constriction.
+    r"""Minimum film of Pan and Hamrock, at the outlet constriction; source as in `pan_hamrock`.
 
     .. math:: h_{min} / R^* = 1.714\, G^{0.568}\, U^{0.694}\, W^{-0.128}
 
@@ -193,6 +198,11 @@ def dowson_toyoda(load: Values, speed: Values, material: Values) -> Values:
 
     .. math:: h_0 / R^* = 3.06\, G^{0.56}\, U^{0.69}\, W^{-0.10}
 
+    References
+    ----------
+    D. Dowson and S. Toyoda, A central film thickness formula for elastohydrodynamic line contacts,
+    Proc. 5th Leeds-Lyon Symposium on Tribology (1978).
+
     Examples
     --------
     >>> f"{dowson_toyoda(1.39e-5, 2.52e-11, 3696.0):.3g}"
@@ -212,6 +222,11 @@ def dowson_higginson_minimum(load: Values, speed: Values, material: Values) -> V
     r"""Minimum film of Dowson and Higginson.
 
     .. math:: h_{min} / R^* = 2.65\, G^{0.54}\, U^{0.7}\, W^{-0.13}
+
+    References
+    ----------
+    D. Dowson and G. R. Higginson, Elasto-hydrodynamic Lubrication, Pergamon Press, 1966;
+    D. Dowson, Elastohydrodynamics, Proc. Inst. Mech. Eng. 182 (1968).
 
     Examples
     --------

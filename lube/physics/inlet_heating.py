@@ -9,7 +9,7 @@ def inlet_shear_heating_factor(
     entrainment_speed: Values,
     thermal_conductivity: Values,
 ) -> Values:
-    r"""Film reduction by shear heating in the inlet.
+    r"""Factor by which shear heating in the inlet thins the film.
 
     .. math:: C = \frac{1}{1 + 0.254\, Q^{0.62}}, \qquad Q = \frac{\eta \beta v^2}{k}
 
@@ -18,9 +18,9 @@ def inlet_shear_heating_factor(
     viscosity : float or numpy.ndarray
         Dynamic viscosity :math:`\eta` at ambient pressure, Pa s.
     temperature_viscosity_coefficient : float or numpy.ndarray
-        Relative fall of viscosity with temperature :math:`\beta = -d(\ln \eta)/dT`, 1/K.
+        Temperature-viscosity coefficient :math:`\beta = -d(\ln \eta)/dT`, 1/K.
     entrainment_speed : float or numpy.ndarray
-        Mean surface speed :math:`v`, m/s.
+        Entrainment speed :math:`v`, m/s.
     thermal_conductivity : float or numpy.ndarray
         Thermal conductivity of the oil :math:`k`, W/(m K).
 

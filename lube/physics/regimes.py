@@ -1,7 +1,8 @@
-"""The four regimes of lubrication: the film that each alone would give, and which one holds.
+"""The four regimes of lubrication: the asymptotic film of each, and which one holds.
 
 The rollers stay rigid or deform elastically, and the oil's viscosity rises with pressure or not.
-Moes' M and L (`lube.physics.dimensionless`) alone decide which of the four combinations holds.
+Which of the four combinations holds depends on the Moes numbers alone
+(`lube.physics.dimensionless`).
 """
 
 import numpy as np

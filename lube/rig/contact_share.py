@@ -95,12 +95,19 @@ class ContactShare:
                 self._merge()
 
     def _count(self, values):
-        piece = values, self._samples, self._doublings
         if self._remembers:
-            limits = self._limits, self._releases
-            follow_contact(*piece, limits, self._hold, self._states, self._counts)
+            follow_contact(
+                values,
+                self._samples,
+                self._doublings,
+                self._limits,
+                self._releases,
+                self._hold,
+                self._states,
+                self._counts,
+            )
         else:
-            count_below(*piece, self._limits, self._counts)
+            count_below(values, self._samples, self._doublings, self._limits, self._counts)
 
     def _merge(self):
         self._counts[:, : BLOCKS // 2] = _pairs(self._counts)

@@ -232,12 +232,15 @@ def logged_voltage(
     feed = rig.series_resistance + rig.lead_resistance
     conductance = 1.0 / contact_resistance(points, spot_resistance) + 1.0 / rig.leak_resistance
     targets = rig.bias_voltage / (1.0 + feed * conductance)
-    memories = np.exp(-time_step * (conductance + 1.0 / feed) / capacitance)
+    decays = np.exp(-time_step * (conductance + 1.0 / feed) / capacitance)
     gain = rig.series_resistance / feed
     voltage = sampled_voltage(
         contact,
-        (targets, memories),
-        (gain, rig.bias_voltage * (1.0 - gain), rig.amplifier_range),
+        targets,
+        decays,
+        gain,
+        rig.bias_voltage * (1.0 - gain),
+        rig.amplifier_range,
         np.exp(-2.0 * np.pi * rig.bandwidth * time_step),
         1.0 / (rig.sampling_rate * time_step),
         int(contact.size * time_step * rig.sampling_rate) or 1,

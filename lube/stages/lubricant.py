@@ -1,7 +1,7 @@
 """The lubricant stage: from lubricant records and temperatures to a table of properties.
 
-Inside this module temperatures are in kelvin and viscosities in SI units, while the laws of
-`lube.physics.viscosity` take mm2/s. The temperatures of the dataset are in degC.
+Inside this module temperatures are in kelvin and viscosities in SI units, while the viscosity laws,
+the viscosity index and Gold's form take mm2/s. The temperatures of the dataset are in degC.
 """
 
 import math
@@ -12,20 +12,17 @@ import numpy.typing as npt
 import xarray as xr
 
 from lube.errors import RangeError, RecordError
+from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import (
     initial_pressure_viscosity,
     liquid_property,
     liquid_range,
     secant_pressure_viscosity,
 )
-from lube.physics.viscosity import (
-    PARAMETER_UNITS,
-    VISCOSITY_LAWS,
-    ZERO_CELSIUS,
-    gold_pressure_viscosity,
-    linear_density,
-    viscosity_index,
-)
+from lube.physics.density import linear_density
+from lube.physics.pressure_viscosity import gold_pressure_viscosity
+from lube.physics.viscosity_index import viscosity_index
+from lube.physics.viscosity_laws import PARAMETER_UNITS, VISCOSITY_LAWS
 from lube.schema import label
 from lube.study.lubricant_record import LubricantRecord, check_temperatures
 

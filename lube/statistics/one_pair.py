@@ -136,8 +136,8 @@ def drift_factor(turns: float, drift: float) -> float:
 
     References
     ----------
-    H. Gebelein, Das statistische Problem der Korrelation als Variations- und
-    Eigenwertproblem, Z. Angew. Math. Mech. 21 (1941) 364-379.
+    H. Gebelein, Das statistische Problem der Korrelation als Variations- und Eigenwertproblem und
+    sein Zusammenhang mit der Ausgleichsrechnung, Z. Angew. Math. Mech. 21 (1941) 364-379.
 
     Examples
     --------

@@ -14,8 +14,10 @@ from typing import Literal
 from pydantic import PrivateAttr, model_validator
 
 from lube.errors import RangeError, RecordError, shown
+from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_range
-from lube.physics.viscosity import GOLD_BASES, VISCOSITY_LAWS, ZERO_CELSIUS
+from lube.physics.pressure_viscosity import GOLD_BASES
+from lube.physics.viscosity_laws import VISCOSITY_LAWS
 from lube.study.field_types import Slug, StrictModel, Text, quantity, validate
 from lube.study.small_csv import HEADER_CELL, read_cells
 from lube.study.text_files import read_yaml

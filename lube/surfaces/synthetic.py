@@ -10,8 +10,8 @@ by the power spectrum (paper, section 2):
     q_{min} \le q_k = \frac{2 \pi k}{N \Delta x} \le q_{max}
 
 With fixed amplitudes the rms height of every line is exactly that of the roller, up to the
-rounding to height steps; with random amplitudes it would be so in expectation only. The paper does
-not say which of the two it used.
+rounding to height steps; with random amplitudes it would be that of the roller in expectation
+only. The paper does not say which of the two it uses.
 """
 
 import functools
@@ -23,6 +23,7 @@ import scipy.fft
 from lube.kernels.synthesis import random_phasors, whole_steps
 
 ROLLERS = (1, 2)
+"""Labels of the two rollers in files."""
 
 
 class LineSpecLike(Protocol):
@@ -68,7 +69,8 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     Returns
     -------
     first_wave : int
-        Number of waves around the circumference to which the first amplitude belongs.
+        Number of waves around the circumference for the first amplitude; the others follow in
+        steps of one.
     amplitudes : numpy.ndarray
         Shape (modes,), m.
 
@@ -92,10 +94,10 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     """
     perimeter = spec.points[roller] * spec.spacing
     turn = perimeter / (2.0 * np.pi)
-    # Limits that are a whole number of waves belong to the band in spite of rounding.
+    # A limit that is a whole number of waves belongs to the band, despite rounding.
     first_wave = int(np.ceil(spec.q_min * turn * (1.0 - 1e-9)))
     last_wave = int(np.floor(spec.q_max * turn * (1.0 + 1e-9)))
-    # Excludes the wave of two points, whose rms height on the grid would depend on its phase.
+    # Leave out the wave of two points: its rms height on the grid would depend on its phase.
     last_wave = min(last_wave, (spec.points[roller] - 1) // 2)
     waves = np.arange(first_wave, last_wave + 1)
     shape = (waves / first_wave) ** (-spec.hurst_exponent - 0.5)
@@ -105,7 +107,7 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
 
 @functools.lru_cache(maxsize=4)
 def _spectrum(spec, roller):
-    """Amplitudes in the form of an inverse real FFT, in height steps, single precision."""
+    """Amplitudes scaled for the inverse real FFT, in height steps, single precision."""
     first_wave, amplitudes = wave_amplitudes(spec, roller)
     points = spec.points[roller]
     scaled = 0.5 * points / spec.height_step * amplitudes
@@ -149,7 +151,7 @@ def draw_realisation(
     seed : int
         Seed of the study.
     realisation : int
-        Number of the realisation. The lines depend on this and the seed only, not on the batch
+        Number of the realisation. The lines depend on it and the seed only, not on the batch
         or the order in which they are drawn.
 
     Returns
@@ -179,8 +181,8 @@ def draw_realisation(
 def line_moments(line: np.ndarray, spacing: float) -> dict[str, float]:
     """Moments of one periodic line.
 
-    Slope and curvature are differences of neighbouring points, the finest that the contact
-    model resolves.
+    Slope and curvature are finite differences of neighbouring points, the finest scale that the
+    contact model resolves.
 
     Parameters
     ----------
@@ -248,7 +250,7 @@ def power_spectrum(line: np.ndarray, spacing: float) -> tuple[np.ndarray, np.nda
 
 
 def spectrum_moments(spec: LineSpecLike, roller: int) -> dict[str, float]:
-    r"""Moments of a line expected from its spectrum, for the same differences of neighbours.
+    r"""Moments of a line expected from its spectrum, comparable to those of `line_moments`.
 
     .. math::
 

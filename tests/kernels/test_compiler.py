@@ -1,4 +1,4 @@
-"""Compiled kernels are as new as all the files they are made of."""
+"""A change of any file of the kernels reaches all compiled kernels."""
 
 import os
 import shutil
@@ -16,7 +16,7 @@ SCAN = """
 import numpy as np
 from lube.kernels.scan import scan_window
 line = np.array([3, 3, 0], np.int32)
-print(*scan_window((line, line), (0, 0), 3, 0, 1.0))
+print(*scan_window((line, line), 0, 0, 3, 0, 1.0))
 """
 
 

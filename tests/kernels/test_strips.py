@@ -86,7 +86,7 @@ def test_strips_equal_the_scan_on_the_papers_roughness(make_spec, points, second
     widest = int(np.pi / spec.q_min / spec.spacing)
     at = [(250_000, widest), (250_000, widest // 4), (600_000, widest), (900_000, widest // 2)]
     fast = assert_equals_the_scan(*pair, at, factor, points, ratios)
-    assert (fast[:3, :2] > 0).all()  # and there was something to compare
+    assert (fast[:3, :2] > 0).all()  # otherwise there is nothing to compare
     assert (fast[0, :2] < points).all()
 
 

@@ -1,4 +1,4 @@
-"""Samples below limits: exact against a trigger and a filter of runs written the plain way."""
+"""Samples below limits, against a plain implementation: a trigger, then a filter of short runs."""
 
 from itertools import groupby
 
@@ -48,7 +48,7 @@ def in_blocks(contact, doublings, blocks):
 def test_contact_is_a_trigger_whose_short_runs_are_filtered(values, limit, gap, hold):
     counts, states = np.zeros((1, 8), np.int64), np.zeros((1, 3), np.int64)
     limits, releases = np.array([float(limit)]), np.array([float(limit + gap)])
-    follow_contact(values, 0, 3, (limits, releases), hold, states, counts)
+    follow_contact(values, 0, 3, limits, releases, hold, states, counts)
     expected = plain_contact(values, limit, limit + gap, hold)
     assert counts[0].tolist() == in_blocks(expected, 3, 8)
 
@@ -58,7 +58,7 @@ def test_without_hysteresis_and_hold_both_kernels_count_the_same(values):
     limits = np.array([1.0, 2.0, 5.5])
     plain, followed = np.zeros((2, 3, 8), np.int64)
     count_below(values, 0, 3, limits, plain)
-    follow_contact(values, 0, 3, (limits, limits), 0, np.zeros((3, 3), np.int64), followed)
+    follow_contact(values, 0, 3, limits, limits, 0, np.zeros((3, 3), np.int64), followed)
     np.testing.assert_array_equal(plain, followed)
     assert plain.sum(axis=1).tolist() == [np.count_nonzero(values < limit) for limit in limits]
 

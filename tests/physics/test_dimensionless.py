@@ -1,4 +1,4 @@
-"""Dimensionless groups: without units, and made of the speeds as they say."""
+"""Dimensionless groups: independent of units, and made of mean or sum of the speeds."""
 
 import pytest
 from hypothesis import given

@@ -208,7 +208,7 @@ def slow(*points):
     ],
 )
 def test_formulas_hold_where_the_grid_is_in_their_range(point):
-    """With 0.5 % to spare: the ranges were found at neighbouring levels of M and L."""
+    """With a margin of 0.5 %: the ranges were found at neighbouring levels of M and L."""
     central, minimum = numerical_film(*point)
     valid = [row for row in ROWS if row.holds(*dimensionless.moes_numbers(*groups_at(*point)))]
     assert valid
@@ -220,7 +220,7 @@ def test_formulas_hold_where_the_grid_is_in_their_range(point):
 @pytest.mark.slow
 @every_row
 def test_formula_holds_in_its_range_and_fails_at_lower_loads(row):
-    """At four fifths of its least M it is beyond the tolerance at some L of its range."""
+    """At 0.8 of its lowest M the error exceeds the tolerance at some L of its range."""
     corners = list(product(row.moes_load, row.moes_material))
     middle = (np.sqrt(np.prod(row.moes_load)), np.sqrt(np.prod(row.moes_material)))
     errors = [relative_errors(*at, *OILS[1])[row.name] for at in [*corners, middle]]

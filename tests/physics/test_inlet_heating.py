@@ -1,4 +1,4 @@
-"""Inlet shear heating: none at rest, and the power of its loading."""
+"""Inlet shear heating: none at rest, then a power of the speed."""
 
 import pytest
 from paper_grid import log_slope
@@ -6,7 +6,7 @@ from paper_grid import log_slope
 from lube.physics.inlet_heating import inlet_shear_heating_factor
 
 
-def test_inlet_shear_heating_vanishes_at_rest_and_grows_as_the_power_of_its_loading():
+def test_inlet_shear_heating_vanishes_at_rest_and_grows_with_the_right_power_of_speed():
     assert inlet_shear_heating_factor(0.3, 0.05, 0.0, 0.14) == 1.0
 
     def loss(speed):

@@ -12,7 +12,7 @@ from lube.physics.coolprop_fluids import (
     liquid_range,
     secant_pressure_viscosity,
 )
-from lube.physics.viscosity import VISCOSITY_LAWS
+from lube.physics.viscosity_laws import VISCOSITY_LAWS
 from lube.schema import check
 from lube.stages.lubricant import lubricant_table
 from lube.study.lubricant_record import load_record

@@ -1,4 +1,4 @@
-"""Roughness lines: what theory demands of the spectrum, then independence, then stored numbers."""
+"""Roughness lines: spectrum by theory, then independence, then stored numbers."""
 
 import numpy as np
 import pytest
@@ -56,7 +56,7 @@ def four_standard_errors(values):
 # --- Spectrum ----------------------------------------------------------------------------
 
 
-def test_rms_height_is_the_rollers_exactly_and_the_mean_zero_but_for_rounding(spec, unequal):
+def test_rms_height_is_exactly_the_rollers_and_the_mean_is_zero_up_to_rounding(spec, unequal):
     for each in (spec, unequal):
         for realisation in range(5):
             for line, rms in zip(
@@ -68,7 +68,7 @@ def test_rms_height_is_the_rollers_exactly_and_the_mean_zero_but_for_rounding(sp
                 assert abs(line.mean()) < 5.0 * np.sqrt(1.0 / 12.0 / line.size)
 
 
-def test_every_wave_of_the_band_has_its_amplitude_and_no_other_wave_any(spec, unequal):
+def test_waves_within_the_band_have_their_amplitudes_and_all_others_are_zero(spec, unequal):
     for each, roller in ((spec, 0), (unequal, 0), (unequal, 1)):
         inside, radius = band(each, roller)
         power_law = (inside / radius) ** (-2.0 * each.hurst_exponent - 1.0)  # C1D
@@ -153,7 +153,7 @@ def test_moments_are_those_of_the_heights_and_of_the_spectrum(unequal):
 # --- Distribution and independence -------------------------------------------------------
 
 
-def test_heights_are_as_gaussian_as_so_many_waves_allow(spec, pairs):
+def test_heights_are_as_gaussian_as_the_number_of_waves_allows(spec, pairs):
     # The fourth cumulant of a cos(phase) is -3/8 a^4, and cumulants of independent waves add.
     _, amplitudes = wave_amplitudes(spec, 0)
     expected = 3.0 - 0.375 * np.sum(amplitudes**4) / spec.rms_height[0] ** 4
@@ -180,7 +180,7 @@ def test_rollers_and_realisations_are_independent(spec, pairs):
         assert found.std() == pytest.approx(scatter, rel=4.0 / np.sqrt(2.0 * found.size))
 
 
-def test_realisation_depends_on_the_pair_of_seeds_only(make_spec):
+def test_realisation_depends_on_study_seed_and_its_number_only(make_spec):
     spec = make_spec(5000, shortest_wavelength="3.0 points")
     children = np.random.SeedSequence((SEED, 5)).spawn(2)
     for roller, line in enumerate(draw_realisation(spec, SEED, 5)):
@@ -195,7 +195,7 @@ def test_lines_close_around_the_roller_without_a_step(pairs, spec):
 
 
 def test_stored_realisation(make_spec):
-    # Drawn when the tests were written: if it changes, so do the results of every study.
+    # Drawn when this test was written: if it changes, so do the results of every study.
     first, second = draw_realisation(make_spec(20_000), SEED, 0)
     np.testing.assert_allclose(first[:4], [-113239, -60932, -200, 50661], rtol=0, atol=2)
     np.testing.assert_allclose(second[:4], [-205523, -128052, -17898, 106735], rtol=0, atol=2)
@@ -237,7 +237,7 @@ def count_runs(line, film):
     return find_runs(line, film, (starts, stops), 1, tuple(np.empty((2, capacity), np.int64)))
 
 
-def test_segments_are_as_many_as_theory_and_their_points_too(composites):
+def test_number_of_segments_and_their_mean_length_agree_with_theory(composites):
     spec, lines = composites
     perimeter = spec.points[0] * spec.spacing
     for film in (0.0, 0.3e-6, 0.6e-6, 0.8e-6):
@@ -253,7 +253,7 @@ def test_segments_are_as_many_as_theory_and_their_points_too(composites):
         assert excess.mean() == pytest.approx(0.0, abs=four_standard_errors(excess))  # mean length
 
 
-def test_segments_per_revolution_are_those_of_another_implementation(composites):
+def test_number_of_segments_agrees_with_another_implementation(composites):
     # physics.md, section 6: 40 seeds of another implementation, and Rice's formula.
     spec, lines = composites
     for film, measured, predicted in ((3e5, 2741, 2753), (6e5, 506, 509), (8e5, 87, 88)):

@@ -1,11 +1,11 @@
-"""Viscosity, density and pressure-viscosity coefficient of an oil.
+"""Viscosity-temperature laws: the viscosity of an oil at any temperature, from a few data points.
 
 Temperatures are absolute, in kelvin. Kinematic viscosities are in mm2/s, not in SI units, because
-the constants of ASTM D341, ASTM D2270 and Gold's form hold for mm2/s only. Callers convert.
+the constants of ASTM D341 hold for mm2/s only. Callers convert.
 
-The viscosity-temperature laws are listed in the registry `VISCOSITY_LAWS`. Each is a straight line
-in suitable coordinates, and is fitted by linear least squares in these: exactly through two points,
-with the least squared residuals through more.
+The laws are listed in the registry `VISCOSITY_LAWS`. Each is a straight line in suitable
+coordinates, and is fitted to the data in these coordinates by linear least squares. Through two
+points the fit is exact.
 """
 
 from collections.abc import Callable
@@ -14,16 +14,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from lube.errors import RangeError
+from lube.physics import ZERO_CELSIUS
 from lube.types import Array, Values
 
-ZERO_CELSIUS = 273.15
-DENSITY_REFERENCE = ZERO_CELSIUS + 15.0
-
-# Cameron's convention for Vogel's law with only two data points: nu = a exp(b/(theta + 95)),
-# theta in degC.
 CAMERON_POLE = ZERO_CELSIUS - 95.0
+"""Cameron's convention for Vogel's law through two points only, nu = a exp(b/(theta + 95)), K."""
 
 ASTM_D341_LEAST = 0.21
+"""Viscosity above which ASTM D341 holds, mm2/s."""
+
 _NEWTON_STEPS = 8
 _POLE_GRID = 200
 
@@ -36,7 +35,7 @@ def _straight_line(x, y):
 
 
 def _data(temperature, kinematic_viscosity, least=0.0):
-    """Return the data as float arrays; refuse those that no law can be fitted to."""
+    """Return the data as float arrays; refuse data that no law can be fitted to."""
     temperature = np.asarray(temperature, dtype=float)
     viscosity = np.asarray(kinematic_viscosity, dtype=float)
     if np.unique(temperature).size < 2:
@@ -47,7 +46,7 @@ def _data(temperature, kinematic_viscosity, least=0.0):
 
 
 def _low_viscosity_term(kinematic_viscosity):
-    """C of ASTM D341, with the natural base; it matters below 2 mm2/s only."""
+    """Exponential term of Z in ASTM D341; it matters below 2 mm2/s only."""
     return np.exp(-1.47 - 1.84 * kinematic_viscosity - 0.51 * kinematic_viscosity**2)
 
 
@@ -96,7 +95,7 @@ def evaluate_astm_d341(temperature: Values, a: float, b: float) -> Values:
     temperature : float or numpy.ndarray
         Absolute temperature, K.
     a, b : float
-        A and B of `fit_astm_d341`.
+        From `fit_astm_d341`.
 
     Returns
     -------
@@ -150,10 +149,10 @@ def fit_vogel(temperature: Array, kinematic_viscosity: Array) -> tuple[float, fl
     Notes
     -----
     With two temperatures the pole c is Cameron's: T - c = theta + 95, with theta in degC. With
-    more, ln nu is a straight line in 1/(T - c) for any pole. The pole with the least squared
-    residuals in ln nu is searched between 0 K, where the law becomes Andrade's, and 1 K below
-    the lowest temperature: first on a grid, then by bounded minimisation, so that the result
-    does not depend on a starting value.
+    more, ln nu is fitted by a straight line in 1/(T - c), and the pole is the one that gives the
+    smallest sum of squared residuals. It is searched between 0 K, where the law becomes
+    Andrade's, and 1 K below the lowest temperature: first on a grid, then by bounded
+    minimisation, so that the result does not depend on a starting value.
 
     References
     ----------
@@ -182,7 +181,7 @@ def fit_vogel(temperature: Array, kinematic_viscosity: Array) -> tuple[float, fl
 
 
 def _best_pole(temperature, log_viscosity):
-    """Find the pole c of Vogel's law with the least squared residuals in ln nu, K."""
+    """Find the pole c of Vogel's law with the smallest squared residuals in ln nu, K."""
     from scipy.optimize import minimize_scalar  # on first use: Snakemake imports this module
 
     def squared_residuals(pole):
@@ -206,7 +205,7 @@ def evaluate_vogel(temperature: Values, a: float, b: float, c: float) -> Values:
     temperature : float or numpy.ndarray
         Absolute temperature, K.
     a, b, c : float
-        As of `fit_vogel`.
+        From `fit_vogel`.
 
     Returns
     -------
@@ -324,159 +323,3 @@ VISCOSITY_LAWS = {
 
 PARAMETER_UNITS = {"A": "1", "B": "1", "a": "mm2 s-1", "b": "K", "c": "K"}
 """Units of the laws' parameters; parameters of the same name have the same unit in every law."""
-
-# Quadratic fits of the standard to its table of reference oils: from Y = KV100 upwards,
-# L = a Y^2 + b Y + c and H = d Y^2 + e Y + f. The last row is an equation in its text.
-_REFERENCE_OILS = np.array(
-    [
-        # Y        a         b         c        d        e        f
-        [2.0, 1.14673, 1.7576, -0.109, 0.84155, 1.5521, -0.077],
-        [3.8, 3.38095, -15.4952, 33.196, 0.78571, 1.7929, -0.183],
-        [4.4, 2.50000, -7.2143, 13.812, 0.82143, 1.5679, 0.119],
-        [5.0, 0.10100, 16.6350, -45.469, 0.04985, 9.1613, -18.557],
-        [6.4, 3.35714, -23.5643, 78.466, 0.22619, 7.7369, -16.656],
-        [7.0, 0.01191, 21.4750, -72.870, 0.79762, -0.7321, 14.610],
-        [7.7, 0.41858, 16.1558, -56.040, 0.05794, 10.5156, -28.240],
-        [9.0, 0.88779, 7.5527, -16.600, 0.26665, 6.7015, -10.810],
-        [12.0, 0.76720, 10.7972, -38.180, 0.20073, 8.4658, -22.490],
-        [15.0, 0.97305, 5.3135, -2.200, 0.28889, 5.9741, -4.930],
-        [18.0, 0.97256, 5.2500, -0.980, 0.24504, 7.4160, -16.730],
-        [22.0, 0.91413, 7.4759, -21.820, 0.20323, 9.1267, -34.230],
-        [28.0, 0.87031, 9.7157, -50.770, 0.18411, 10.1015, -46.750],
-        [40.0, 0.84703, 12.6752, -133.310, 0.17029, 11.4866, -80.620],
-        [55.0, 0.85921, 11.1009, -83.190, 0.17130, 11.3680, -76.940],
-        [70.0, 0.83530, 14.6700, -216.000, 0.16840, 11.8500, -97.000],
-    ]
-)
-
-
-def reference_oils(viscosity_100: float) -> tuple[float, float]:
-    """Viscosities at 40 degC of the reference oils of VI 0 and VI 100 (ASTM D2270).
-
-    Parameters
-    ----------
-    viscosity_100 : float
-        Kinematic viscosity of the reference oils at 100 degC, 2 mm2/s or more.
-
-    Returns
-    -------
-    tuple of float
-        L of the oil of viscosity index 0 and H of the oil of viscosity index 100, mm2/s, by the
-        standard's quadratic fits, which agree with its table within 0.2 %.
-
-    Raises
-    ------
-    RangeError
-        Below 2 mm2/s, where the viscosity index is not defined.
-
-    Examples
-    --------
-    >>> low, high = reference_oils(10.0)
-    >>> f"{low:.1f}", f"{high:.2f}"
-    ('147.7', '82.87')
-    """
-    if not viscosity_100 >= 2.0:
-        raise RangeError(
-            f"got {viscosity_100:g} mm2/s at 100 degC, the viscosity index needs 2 mm2/s or more"
-        )
-    row = np.searchsorted(_REFERENCE_OILS[:, 0], viscosity_100, side="right") - 1
-    of_low, of_high = _REFERENCE_OILS[row, 1:].reshape(2, 3)
-    return float(np.polyval(of_low, viscosity_100)), float(np.polyval(of_high, viscosity_100))
-
-
-def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:
-    r"""Viscosity index by ASTM D2270, procedure A up to 100 and procedure B above.
-
-    .. math::
-
-        VI = 100 \frac{L - Y_{40}}{L - H} \quad (Y_{40} \ge H), \qquad
-        VI = 100 + \frac{10^N - 1}{0.00715}, \;
-        N = \frac{\ln(H / Y_{40})}{\ln Y_{100}} \quad (Y_{40} < H)
-
-    Parameters
-    ----------
-    viscosity_40, viscosity_100 : float
-        Kinematic viscosities :math:`Y_{40}` and :math:`Y_{100}` at 40 and at 100 degC, mm2/s.
-
-    Returns
-    -------
-    float
-        Viscosity index, not rounded to the whole number that the standard reports.
-
-    Raises
-    ------
-    RangeError
-        Below 2 mm2/s at 100 degC.
-
-    Examples
-    --------
-    >>> f"{viscosity_index(335.0, 38.3):.1f}"
-    '164.4'
-    """
-    low, high = reference_oils(viscosity_100)
-    if viscosity_40 >= high:
-        return 100.0 * (low - viscosity_40) / (low - high)
-    exponent = float(np.log(high / viscosity_40) / np.log(viscosity_100))
-    return (10.0**exponent - 1.0) / 0.00715 + 100.0
-
-
-GOLD_BASES = {
-    "mineral": (9.904, 0.1390),
-    "polyalphaolefin": (7.382, 0.1335),
-    "ester": (6.605, 0.1360),
-    "polyglycol": (5.489, 0.1485),
-}
-"""Gold's s and t by base oil (Gold et al., J. Synth. Lubr. 18, 2001)."""
-
-
-def gold_pressure_viscosity(kinematic_viscosity: Values, base: str) -> Values:
-    r"""Pressure-viscosity coefficient by Gold's form.
-
-    .. math:: \alpha = s\, \nu^t \times 10^{-9}\ \mathrm{Pa}^{-1}
-
-    Parameters
-    ----------
-    kinematic_viscosity : float or numpy.ndarray
-        Kinematic viscosity :math:`\nu` at the temperature of interest, mm2/s.
-    base : str
-        A key of `GOLD_BASES`.
-
-    Returns
-    -------
-    float or numpy.ndarray
-        Pressure-viscosity coefficient :math:`\alpha`, 1/Pa.
-
-    Examples
-    --------
-    >>> f"{gold_pressure_viscosity(335.0, 'polyalphaolefin'):.3g}"
-    '1.6e-08'
-    """
-    s, t = GOLD_BASES[base]
-    return s * np.asarray(kinematic_viscosity, dtype=float) ** t * 1e-9
-
-
-def linear_density(temperature: Values, density_15: float, thermal_coefficient: float) -> Values:
-    r"""Density, falling linearly with temperature.
-
-    .. math:: \rho = \rho_{15}\, (1 - \kappa\, (T - 288.15\ \mathrm{K}))
-
-    Parameters
-    ----------
-    temperature : float or numpy.ndarray
-        Absolute temperature :math:`T`, K.
-    density_15 : float
-        Density :math:`\rho_{15}` at 15 degC, kg/m3.
-    thermal_coefficient : float
-        Relative fall of density :math:`\kappa` per kelvin, 1/K.
-
-    Returns
-    -------
-    float or numpy.ndarray
-        Density :math:`\rho`, kg/m3.
-
-    Examples
-    --------
-    >>> f"{linear_density(313.15, 860.0, 6.4e-4):.1f}"
-    '846.2'
-    """
-    return density_15 * (1.0 - thermal_coefficient * (temperature - DENSITY_REFERENCE))

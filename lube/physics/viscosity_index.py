@@ -1,0 +1,104 @@
+"""Viscosity index of an oil by ASTM D2270.
+
+Kinematic viscosities are in mm2/s, not in SI units, because the standard's constants hold for
+mm2/s only. Callers convert.
+"""
+
+import numpy as np
+
+from lube.errors import RangeError
+
+# The standard's quadratic fits to its table of reference oils: L = a Y^2 + b Y + c and
+# H = d Y^2 + e Y + f, where Y is the viscosity at 100 degC. Each row holds up to the Y of the next
+# one; the last row is an equation in the standard's text.
+_REFERENCE_OILS = np.array(
+    [
+        # Y        a         b         c        d        e        f
+        [2.0, 1.14673, 1.7576, -0.109, 0.84155, 1.5521, -0.077],
+        [3.8, 3.38095, -15.4952, 33.196, 0.78571, 1.7929, -0.183],
+        [4.4, 2.50000, -7.2143, 13.812, 0.82143, 1.5679, 0.119],
+        [5.0, 0.10100, 16.6350, -45.469, 0.04985, 9.1613, -18.557],
+        [6.4, 3.35714, -23.5643, 78.466, 0.22619, 7.7369, -16.656],
+        [7.0, 0.01191, 21.4750, -72.870, 0.79762, -0.7321, 14.610],
+        [7.7, 0.41858, 16.1558, -56.040, 0.05794, 10.5156, -28.240],
+        [9.0, 0.88779, 7.5527, -16.600, 0.26665, 6.7015, -10.810],
+        [12.0, 0.76720, 10.7972, -38.180, 0.20073, 8.4658, -22.490],
+        [15.0, 0.97305, 5.3135, -2.200, 0.28889, 5.9741, -4.930],
+        [18.0, 0.97256, 5.2500, -0.980, 0.24504, 7.4160, -16.730],
+        [22.0, 0.91413, 7.4759, -21.820, 0.20323, 9.1267, -34.230],
+        [28.0, 0.87031, 9.7157, -50.770, 0.18411, 10.1015, -46.750],
+        [40.0, 0.84703, 12.6752, -133.310, 0.17029, 11.4866, -80.620],
+        [55.0, 0.85921, 11.1009, -83.190, 0.17130, 11.3680, -76.940],
+        [70.0, 0.83530, 14.6700, -216.000, 0.16840, 11.8500, -97.000],
+    ]
+)
+
+
+def reference_oils(viscosity_100: float) -> tuple[float, float]:
+    """Viscosities at 40 degC of the reference oils of VI 0 and VI 100 (ASTM D2270).
+
+    Parameters
+    ----------
+    viscosity_100 : float
+        Kinematic viscosity of the reference oils at 100 degC, 2 mm2/s or more.
+
+    Returns
+    -------
+    tuple of float
+        L of the oil of viscosity index 0 and H of the oil of viscosity index 100, mm2/s, by the
+        standard's quadratic fits, which agree with its table within 0.2 %.
+
+    Raises
+    ------
+    RangeError
+        Below 2 mm2/s, where the viscosity index is not defined.
+
+    Examples
+    --------
+    >>> low, high = reference_oils(10.0)
+    >>> f"{low:.1f}", f"{high:.2f}"
+    ('147.7', '82.87')
+    """
+    if not viscosity_100 >= 2.0:
+        raise RangeError(
+            f"got {viscosity_100:g} mm2/s at 100 degC, the viscosity index needs 2 mm2/s or more"
+        )
+    row = np.searchsorted(_REFERENCE_OILS[:, 0], viscosity_100, side="right") - 1
+    of_low, of_high = _REFERENCE_OILS[row, 1:].reshape(2, 3)
+    return float(np.polyval(of_low, viscosity_100)), float(np.polyval(of_high, viscosity_100))
+
+
+def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:
+    r"""Viscosity index by ASTM D2270, procedure A up to 100 and procedure B above.
+
+    .. math::
+
+        VI = 100 \frac{L - Y_{40}}{L - H} \quad (Y_{40} \ge H), \qquad
+        VI = 100 + \frac{10^N - 1}{0.00715}, \;
+        N = \frac{\ln(H / Y_{40})}{\ln Y_{100}} \quad (Y_{40} < H)
+
+    Parameters
+    ----------
+    viscosity_40, viscosity_100 : float
+        Kinematic viscosities :math:`Y_{40}` and :math:`Y_{100}` at 40 and at 100 degC, mm2/s.
+
+    Returns
+    -------
+    float
+        Viscosity index, not rounded to the whole number that the standard reports.
+
+    Raises
+    ------
+    RangeError
+        Below 2 mm2/s at 100 degC.
+
+    Examples
+    --------
+    >>> f"{viscosity_index(335.0, 38.3):.1f}"
+    '164.4'
+    """
+    low, high = reference_oils(viscosity_100)
+    if viscosity_40 >= high:
+        return 100.0 * (low - viscosity_40) / (low - high)
+    exponent = float(np.log(high / viscosity_40) / np.log(viscosity_100))
+    return (10.0**exponent - 1.0) / 0.00715 + 100.0
