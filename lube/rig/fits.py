@@ -209,11 +209,14 @@ def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[fl
         From `lube.statistics.curves.fit_factor`.
     """
     logits, comparison, probabilities, size = _usable(logits, comparison)
+    logits = logits + _pooled_shift(comparison)
     deviations = comparison["record_deviation"].values
     # Only the first realisations were run as records of several revolutions.
     deviations = deviations[np.isfinite(deviations).all(axis=1)]
     covariance = realisation_correlation(deviations) * _pair_scatter(comparison)
-    covariance += realisation_correlation(probabilities) / len(probabilities)
+    error = np.sqrt(comparison["pooled_error"].values)
+    of_mean = realisation_correlation(probabilities) * (error[:, None] * error)
+    covariance += of_mean / len(probabilities)
     shares, noise = comparison["measured_share"].values, comparison["share_error"].values
     return fit_factor(log_factors, logits, shares, size, covariance, len(probabilities), noise)
 
@@ -229,6 +232,14 @@ def _usable(logits, comparison):
     windows = windows_in(comparison, 2.0 * comparison["contact_half_width"].values)
     size = effective_sample_size(probabilities, windows)
     return logits[:, used], comparison, probabilities, size
+
+
+def _pooled_shift(comparison):
+    """Logits of the pooled probability less those of the mean, 0 where one has none."""
+    pooled, mean = (comparison[f"{name}_probability"].values for name in ("pooled", "simulated"))
+    with np.errstate(invalid="ignore"):
+        shift = scipy.special.logit(pooled) - scipy.special.logit(mean)
+    return np.where(np.isfinite(shift), shift, 0.0)
 
 
 def _pair_scatter(comparison):
