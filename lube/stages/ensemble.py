@@ -27,7 +27,7 @@ ATTRIBUTES = ("travel", "longest_wavelength")
 
 
 def independent_windows(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
-    """Count the independent contact windows in one realisation, for each force and slip.
+    """Count the independent contact windows in one realisation.
 
     Two windows see independent roughness where they are a longest wavelength apart on both
     surfaces. So the travel of the slower surface counts: if one roller stands still, all
