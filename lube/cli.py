@@ -1,4 +1,4 @@
-"""The command ``lube``: check an archive, draw its figures again, trace a number.
+"""The command lube: check an archive, draw its figures again, trace a number.
 
 See ``lube --help``.
 """

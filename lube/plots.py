@@ -372,7 +372,7 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     Raises
     ------
     DataError
-        If the datasets are not of one study, or a file cannot be written.
+        As from `lube.workflow.stamps.stamp`, or if a file cannot be written.
     """
     line = stamp(shown)
     _write_below(figure, line)

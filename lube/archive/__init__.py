@@ -1,1 +1,1 @@
-"""A study for others: built, checked, drawn again, explained."""
+"""The archive of a study: making it, checking it, drawing its figures again."""

@@ -66,7 +66,7 @@ def make_archive(study: Study, path: File, results: File, figures: list[str], fo
     contents = archive_contents(study, path, results, figures)
     new, packed = (folder.with_name(folder.name + end) for end in (".part", ".zip"))
     try:
-        shutil.rmtree(new, ignore_errors=True)  # of a killed process
+        shutil.rmtree(new, ignore_errors=True)  # left by a killed process
         _fill(new, contents, study)
         _zip(new, packed, folder.name)
         shutil.rmtree(folder, ignore_errors=True)

@@ -72,7 +72,7 @@ def citation_file(study: Study) -> str:
     str
         YAML.
     """
-    about, makers = study.about, [{"name": "The authors of lube"}]
+    about, authors = study.about, [{"name": "The authors of lube"}]
     content = {
         "cff-version": "1.2.0",
         "message": "If you use these results, please cite them and the paper whose model they use.",
@@ -86,7 +86,12 @@ def citation_file(study: Study) -> str:
         **({"doi": about.doi} if about.doi else {}),
         "references": [
             {"type": "article", "title": PAPER, "authors": [{"name": "The authors of the paper"}]},
-            {"type": "software", "title": "lube", "version": version("lube"), "authors": makers},
+            {
+                "type": "software",
+                "title": "lube",
+                "version": version("lube"),
+                "authors": authors,
+            },
         ],
     }
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=90)

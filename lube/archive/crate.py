@@ -17,7 +17,7 @@ from lube.study.metadata import LICENCES
 from lube.study.study import Study
 
 CATALOGUE = "ro-crate-metadata.json"
-"""Name of the catalogue, as the RO-Crate specification demands it."""
+"""Name of the catalogue, given by the RO-Crate specification."""
 RO_CRATE = "1.3"
 """Version of the RO-Crate specification that the archive follows."""
 
@@ -95,7 +95,7 @@ def _person(crate, number, creator):
 
 
 def _one_or_all(entities):
-    """Replace a list of one entity by the entity, as RO-Crate demands it."""
+    """Replace a list of one entity by the entity, as RO-Crate requires."""
     return entities[0] if len(entities) == 1 else entities
 
 

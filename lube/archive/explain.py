@@ -63,7 +63,7 @@ def explain(path: File, realisation: int | None = 0, **levels: float | str) -> E
     Parameters
     ----------
     path : str or Path
-        A contact.nc, with the film.nc and lubricant.nc that it was made from beside it.
+        A contact.nc, in one folder with the film.nc and lubricant.nc that it was made from.
     realisation : int or None, optional
         The realisation to compute again; None for all of them, with their mean and interval.
     **levels
@@ -104,7 +104,7 @@ def explain(path: File, realisation: int | None = 0, **levels: float | str) -> E
 
 
 def _input_of(dataset, path, kind):
-    """Load the file beside a dataset's that it was made from."""
+    """Load one of the files that a dataset was made from, from the same folder."""
     other = path.with_name(f"{kind}.nc")
     loaded = load(other, kind)
     if fingerprint(other) not in input_sums(dataset, path).get(other.name, ()):
@@ -134,7 +134,7 @@ def _level(coordinate, path, wanted):
 
 
 def _computed_again(stored, film, run):
-    """Draw the roughness again and run the contact model on it; of `stored`, use levels only."""
+    """Draw the roughness again and run the contact model on it; use only the levels of `stored`."""
     spec = LineSpec(**run["lines"])
     layer = BoundaryLayer.model_construct(**run["boundary_layer"])
     ratios, parts = stored["slide_to_roll_ratio"].values.tolist(), []
@@ -170,7 +170,7 @@ def in_words(explanation: Explanation) -> str:
 
 
 def _stated(array):
-    """Value of a variable with a single one, in words or with its unit."""
+    """Return the single value of a variable, in words or with its unit."""
     value, unit = array.values.item(), array.attrs.get("units", "1")
     if "flag_meanings" in array.attrs:
         value = array.attrs["flag_meanings"].split()[int(value)]

@@ -1,4 +1,4 @@
-"""The inputs of the Snakemake rule `archive`, imported lightly because each start needs them."""
+"""The inputs of the Snakemake rule `archive`. Heavy imports wait: each start needs this module."""
 
 from lube.errors import LubeError
 from lube.workflow.study_files import StudyFiles, input_paths, one_line_errors
@@ -6,13 +6,13 @@ from lube.workflow.study_files import StudyFiles, input_paths, one_line_errors
 
 @one_line_errors()
 def archived_texts(files: StudyFiles) -> list[str]:
-    """List what people wrote and an archive holds: study files, lubricant records, code.
+    """List the files of an archive that people wrote: study files, lubricant records, code.
 
     Parameters
     ----------
     files : StudyFiles
-        The study. Snakemake ends with one line if it cannot be archived: it has no makers, or
-        no file of its own because ``--config`` changes it.
+        The study. Snakemake ends with one line if it cannot be archived: it names no creators,
+        or ``--config`` changes it, so that no file holds its values.
 
     Returns
     -------

@@ -46,7 +46,7 @@ def redraw(folder: File, target: File, figures: list[str]) -> Iterator[tuple[str
         notebook = folder / "code/notebooks" / f"{figure}.ipynb"
         parameters = {**paths_for(notebook, datasets), "figure": str(target / figure)}
         changes = read_origin(figure, folder)["drawn_by"]
-        # Notebooks use the archived code, whatever else is installed.
+        # The notebook imports the archived code, not an installed one.
         execute_notebook(notebook, target / notebook.name, parameters, changes, folder / "code")
         for name in (f"{figure}.png", f"{figure}.pdf"):
             old, new = folder / "figures" / name, target / name

@@ -55,7 +55,7 @@ def unpacked(path: File) -> Iterator[Path]:
             shutil.unpack_archive(path, scratch, "zip")
         except (OSError, zipfile.BadZipFile, zlib.error) as error:
             raise DataError(f"{path}: neither a folder nor a whole zip ({error})") from None
-        # Whoever packed it, with its folder or without.
+        # It may have been packed with its folder or without.
         roots = sorted(Path(scratch).rglob(SUMS), key=lambda sums: len(sums.parts))
         if not roots:
             raise DataError(f"{path}: not an archive: {SUMS} is missing")
@@ -91,7 +91,7 @@ def verify_archive(folder: File) -> list[str]:
 
 
 def _sums(folder):
-    """SHA-256 by file, as stated by the archive."""
+    """SHA-256 sum of each file, as the archive states it."""
     lines = (folder / SUMS).read_text(encoding="utf-8", errors="replace").splitlines()
     return {name: sha for sha, _, name in (line.partition("  ") for line in lines)}
 

@@ -1,1 +1,1 @@
-"""What people read of a study: pages, tables, answers."""
+"""The report of a study and the tables of the documentation."""

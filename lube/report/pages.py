@@ -64,12 +64,12 @@ def percent(share: float) -> str:
     return f"{100.0 * share:.3g} %" if math.isfinite(share) else "–"
 
 
-def count(number: int, noun: str) -> str:
+def count(number: float, noun: str) -> str:
     """Print a number of things.
 
     Parameters
     ----------
-    number : int or float
+    number : float
         How many.
     noun : str
         In the singular; the plural is formed with s.

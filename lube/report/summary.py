@@ -16,7 +16,7 @@ _AGREEMENT = (
     *("bias", "rms_difference", "overlap_share", "compared_records", "pairs", "origin"),
     *("overlap_share_expected_lower", "overlap_share_expected_upper"),
 )
-"""What the start page says of the agreement between simulation and rig."""
+"""Measures of agreement between simulation and rig that the start page states."""
 _LIMITS = ("mean", "lower", "upper")
 
 
@@ -113,10 +113,10 @@ def _at(variable, point):
 
 
 def _agreement(comparison, chosen):
-    """Figures of agreement between simulation and rig; None if there is no record."""
+    """Measures of agreement between simulation and rig; None if there is no record."""
     chosen = chosen | {"threshold": comparison["comparison_threshold"].item()}
-    figures = {name: _at(comparison[name], chosen).item() for name in _AGREEMENT}
-    return figures if math.isfinite(figures["bias"]) else None
+    measures = {name: _at(comparison[name], chosen).item() for name in _AGREEMENT}
+    return measures if math.isfinite(measures["bias"]) else None
 
 
 def _trace(point, film, contact, comparison):

@@ -59,8 +59,8 @@ def contact_statistics(
     Notes
     -----
     The force (Eq. 5) is that of one line, which represents a patch as long as it is wide: the
-    springs of a contact window are together as stiff as a disc of diameter 2a pressed into a
-    half-space, :math:`2 a E^*`, or a square of about that side. The share of the load is
+    springs of a contact window together have the stiffness of a disc of diameter 2a pressed into
+    a half-space, :math:`2 a E^*`, and about that of a square of side 2a. The share of the load is
     therefore the force over the load that a patch 2a x 2a carries on average,
 
     .. math:: F_N \frac{2 a}{L'}

@@ -1,13 +1,13 @@
 r"""The ensemble stage: from realisations to probabilities with 95 % intervals.
 
 The scatter between realisations determines the effective sample size n of an ensemble: the
-number of independent trials, each with contact at probability p, whose mean has the same
-variance,
+number of independent trials, each with contact at probability p, whose mean has the variance of
+the mean over the realisations,
 
-.. math:: s^2 = \frac{p (1 - p)}{n}
+.. math:: s_{\bar p}^2 = \frac{p (1 - p)}{n}
 
-With this n, Wilson's score interval stays within 0 and 1, is asymmetric near either end, and
-equals the usual interval, mean +- t s / sqrt(R), in between.
+With this n, Wilson's score interval stays within 0 and 1, is asymmetric near either end, and in
+between is close to the usual interval, :math:`p \pm t s_{\bar p}` with Student's t.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ ATTRIBUTES = ("travel", "longest_wavelength")
 
 
 def independent_windows(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
-    """Count the independent contact windows in one realisation, for each force and slip.
+    """Count the independent contact windows in one realisation.
 
     Two windows see independent roughness where they are a longest wavelength apart on both
     surfaces. So the travel of the slower surface counts: if one roller stands still, all
@@ -124,6 +124,11 @@ def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
     -------
     xarray.Dataset
         The ``contact`` file of `lube.schema`.
+
+    Raises
+    ------
+    DataError
+        As from `independent_windows`.
     """
     return _add_intervals(contact, independent_windows(contact, film), "contact")
 

@@ -1,4 +1,4 @@
-"""The experiment stage: the share of time that the rig's resistance is below a threshold.
+"""The experiment stage: the contact shares of measured or simulated records.
 
 All records of a file are measured, or all are simulated, as its coordinate ``origin`` says. Each
 record has its own operating conditions; the study's levels near them are labels.

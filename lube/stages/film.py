@@ -50,7 +50,7 @@ def film_table(
     StudyError
         If a film formula is unknown.
     DataError
-        If the lubricant dataset lacks a dimension or coordinate.
+        If a dimension of the lubricant dataset has no coordinate.
 
     Examples
     --------

@@ -14,19 +14,17 @@ from lube.physics.electrical import contact_resistance
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
 from lube.study.rollers import BoundaryLayer
 
-Data = xr.Dataset
-
 REALISATION = 0
 """The realisation that traces show."""
 
 
 def contact_trace(
-    lines: Data,
-    film: Data,
+    lines: xr.Dataset,
+    film: xr.Dataset,
     points: Sequence[Mapping[str, float | str]],
     boundary_layer: BoundaryLayer,
     resistivity: float,
-) -> Data:
+) -> xr.Dataset:
     """Contact at every time step of one revolution, at some operating points.
 
     Parameters
@@ -82,8 +80,12 @@ def _rows(film, points):
 
 
 def contact_window(
-    lines: Data, trace: Data, operating_point: int, step: int, reach: float | None = None
-) -> Data:
+    lines: xr.Dataset,
+    trace: xr.Dataset,
+    operating_point: int,
+    step: int,
+    reach: float | None = None,
+) -> xr.Dataset:
     r"""Heights and segments in the contact window at one time step of a trace.
 
     Parameters

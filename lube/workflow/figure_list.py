@@ -54,7 +54,7 @@ class Figure:
         return words.replace("-", " ").capitalize()
 
     def fits(self, study: Study) -> bool:
-        """Tell whether a study has what the figure compares.
+        """Whether a study has what the figure compares.
 
         Parameters
         ----------

@@ -33,7 +33,7 @@ def begin_job(log_file: File) -> None:
     """Set up the process of a job: messages go to its log and, occasionally, to the terminal.
 
     From here on an error that the user can correct is reported in one line, and a job that is
-    terminated removes its unfinished files. To be called in a process of the job's own only.
+    terminated removes its unfinished files. Call it only in a process that runs nothing else.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ def execute_notebook(
     parameters : dict
         Values for the names in the cell tagged ``parameters``.
     drawn_by : str
-        What the figures' stamps say of notebook and code, as from `lube.workflow.stamps.drawn_by`.
+        What the figure's stamp says of notebook and code, from `lube.workflow.stamps.drawn_by`.
     code : str or Path, optional
         Folder that holds the package ``lube`` for the notebook; if not given, this one is used.
 
@@ -93,7 +93,7 @@ def _execute_apart(*arguments):
     """Execute a notebook in a process forked from this one; return its exit code.
 
     The notebook cannot change this process or the next notebook, and if its memory runs out, this
-    process is still there to report it. All that is imported here need not be imported again.
+    process is still there to report it. What is imported here need not be imported again.
     """
     process = multiprocessing.get_context("fork").Process(
         target=_execute, args=arguments, daemon=True
@@ -125,7 +125,7 @@ def _execute(notebook, output, parameters, drawn_by, code):
 
 
 def _use_package_in(folder):
-    """Let this process import `lube` anew, from another folder."""
+    """Let this process import `lube` again, from another folder."""
     for name in [name for name in sys.modules if name.split(".")[0] == "lube"]:
         del sys.modules[name]
     sys.path.insert(0, str(folder))
@@ -134,16 +134,16 @@ def _use_package_in(folder):
 class _InProcess(Engine):
     """Engine of papermill that executes the cells in this process.
 
-    Papermill's own starts a second process, which takes longer than many a figure.
+    Papermill's own engine starts a second process, which takes longer than drawing most figures.
     """
 
     @classmethod
     def execute_managed_notebook(cls, nb_man, kernel_name, **options):
-        # The user's own history of IPython is left alone.
+        # Nothing is added to the user's history of IPython.
         config = Config({"HistoryManager": {"enabled": False}})
         manager = InProcessKernelManager(config=config)
         manager.start_kernel()
-        # Pictures appear below the cells, whatever style the user has set up for their own.
+        # Pictures appear below the cells, in Matplotlib's defaults, not in the user's own style.
         manager.kernel.shell.enable_matplotlib("inline")
         matplotlib.rcdefaults()
         client = manager.client()
@@ -187,10 +187,15 @@ def _failure(executed, exit_code):
     """Say in one line which cell fails, where and why; log the whole traceback."""
     cells = [cell for cell in executed.cells if not _ADDED & set(cell.metadata.get("tags", []))]
     # Counted from 1, text included, as a reader of the notebook counts.
-    number = max(n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time)
+    started = [n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time]
     if exit_code != _CELL_FAILED:
-        return f"its kernel was killed in cell {number}, perhaps because memory ran out"
-    error = next(each for each in cells[number - 1].outputs if each.output_type == "error")
+        return f"its kernel was killed in cell {started[-1]}, perhaps because memory ran out"
+    outputs = [(n, one) for n, cell in enumerate(cells, 1) for one in cell.get("outputs", ())]
+    errors = [(n, one) for n, one in outputs if one.output_type == "error"]
+    if not errors:
+        return f"cell {started[-1]} fails without an error message"
+    # Not always in the cell that ran last: a cell may show an error and go on.
+    number, error = errors[-1]
     traceback = _COLOUR.sub("", "\n".join(error.traceback))
     for n, cell in enumerate(cells, 1):
         traceback = traceback.replace(f"Cell In[{cell.get('execution_count')}]", f"Cell {n}")

@@ -9,9 +9,7 @@ import functools
 from pathlib import Path
 
 import lube
-
-ROOT = Path(lube.__file__).parents[1]
-"""Folder of the Snakefile that this package belongs to."""
+from lube.storage.git import ROOT
 
 _BY_VALUE = {"lube.study.study", "lube.schema.stages"}
 """Modules that reach a stage by the values they give it, which are parameters of its rule."""

@@ -127,11 +127,11 @@ class StudyFiles:
         Returns
         -------
         str
-            Of the values that the stages use, and of what a file says about its makers.
+            Of the values that the stages use, and of what a file says about its creators.
         """
         names = set(stages)
         for name in (name for stage in stages for name in STAGES[stage].same_values):
-            # Their files are not read, so that their forerunners' values do not come with them.
+            # The job does not read their files, so the values of their forerunners count too.
             names |= {*forerunners(name), name}
         values = [self.study.stage_inputs(name) for name in STAGES if name in names]
         return digest([*values, self.study.about.in_files])

@@ -16,7 +16,7 @@ def test_an_archive_is_made_from_the_study_its_bases_records_and_code(study):
     assert {"Snakefile", "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"} <= texts
 
 
-def test_a_study_without_makers_or_without_a_file_is_refused_in_one_line(study):
+def test_a_study_without_creators_or_without_a_file_is_refused_in_one_line(study):
     nobody = study.model_copy(update={"about": About(title="mine")})
     with pytest.raises(SystemExit, match=r"The study cannot start. about.creators: missing"):
         archived_texts(StudyFiles(nobody, SMOKE, {}))

@@ -25,8 +25,8 @@ def test_title_summary_and_creators_are_shown_as_written(study):
         creators = [{"name": "Oil Lab", "affiliation": words}]
         html = shown(page_of(study, title=words, summary=words, creators=creators))
         blocks = re.findall(r"<(?:h1|p)>(.*?)</(?:h1|p)>", html, re.DOTALL)
-        title, makers, licence, summary, model = map(unescape, blocks[:5])
-        assert [title, summary, makers] == [words, words, f"Oil Lab ({words})"]
+        title, creators_line, licence, summary, model = map(unescape, blocks[:5])
+        assert [title, summary, creators_line] == [words, words, f"Oil Lab ({words})"]
         assert licence.startswith("Licence of the results: <a href=")
         assert model.startswith("The model is that of the paper <em>")
         assert all(html.count(tag) == plain.count(tag) for tag in ("<p>", "<td>", "<pre>"))
@@ -45,7 +45,7 @@ def test_the_place_of_measured_records_is_named_and_refused_ones_with_their_reas
     study = study.model_copy(update={"experiment": measured})
     page = archive_page(study, "smoke.yaml", ["run_7.csv: line 3: got 'x', need y"])
     assert "measured records themselves are not in this archive" in page
-    assert "anew,\nput the measured records where their list expects them" in page
+    assert "again,\nput the measured records where their list expects them" in page
     assert "refused, and are in no result" in page
     assert "run_7.csv: line 3: got 'x', need y" in unescape(shown(page))
 

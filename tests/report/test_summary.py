@@ -7,7 +7,7 @@ import xarray as xr
 from lube.report.summary import facts, findings, notes
 
 
-def test_the_numbers_of_the_study_are_told(study):
+def test_the_numbers_of_the_study_are_stated(study):
     html = facts(study)
     for words in (
         "two alike, radius 50 mm, 210 GPa, Poisson's ratio 0.3, rms roughness 0.2 µm",
@@ -22,14 +22,14 @@ def test_the_numbers_of_the_study_are_told(study):
         assert words in html
 
 
-def test_several_pairs_and_their_drift_are_told(study):
+def test_several_pairs_and_their_drift_are_stated(study):
     rig = study.rig.model_copy(update={"pairs": 3, "drift": 0.3})
     html = facts(study.model_copy(update={"rig": rig}))
     assert "3 pairs of rollers turn 4 revolutions at every operating point" in html
     assert "renew 30 % of their roughness's variance each; below" in html
 
 
-def test_unequal_rollers_many_levels_and_measured_records_are_told(study):
+def test_unequal_rollers_many_levels_and_measured_records_are_stated(study):
     second = study.rollers.second.model_copy(update={"radius": 0.03})
     grid = study.operating_grid.model_copy(update={"force": tuple(map(float, range(1587, 1601)))})
     changes = {
@@ -68,13 +68,13 @@ def results(study, datasets):
 
 def test_the_answers_are_those_of_the_datasets(study, results):
     html = findings(study, *results)
-    assert "at 1 of 8 operating points; at the other 7 it was never seen" in html
+    assert "at 1 of 8 operating points; at the other 7 none was seen" in html
     assert "<strong>43.2 %</strong> of the time, at 1600 N, 100 r/min, 80 °C" in html
     assert "4 of 8 operating points lie outside" in html
     assert "Against a simulated rig (3 records of 1 pair of rollers) the simulation is on" in html
     assert "average 1.2 percentage points too low; the rms difference is 2.4 points." in html
-    assert "75 % of the records lie where 95 % of single pairs should; a right model" in html
-    assert "would have 60 % to 100 % of them there." in html
+    assert "75 % of the records lie within their 95 % prediction intervals; with a correct" in html
+    assert "model, 60 % to 100 % would." in html
     rows = [line for line in html.splitlines() if line.startswith("<tr><td>")]
     assert len(rows) == len(study.traces)
     contact = ("<strong>43.2 %</strong> (21.6 % to 86.4 %)", "43.2 % to 44.2 % (2 records)")
@@ -89,7 +89,7 @@ def test_a_study_without_contact_and_records_says_so(study, results):
     comparison["measured_share"][:] = np.nan
     film["in_validity_range"][:] = True
     html = findings(study, film, contact * 0.0, comparison)
-    assert "Metal touched metal at none of 8 operating points." in html
+    assert "No metal contact was seen at any of the 8 operating points." in html
     assert "rig the simulation" not in html and "<td>–</td>" in html
     assert "All operating points lie within" in html
 

@@ -85,7 +85,7 @@ def test_every_figure_has_the_words_of_its_notebook(smoke, held):
             assert to_html(text) in result["caption"]
 
 
-def test_the_start_page_tells_the_study_and_leads_to_every_figure(smoke, held):
+def test_the_start_page_describes_the_study_and_leads_to_every_figure(smoke, held):
     start = held["workflow-desc"]
     assert "system-message" not in start and "{{" not in start
     for words in ("<strong>smoke</strong>", "Mobilgear", "seed 20181109", "lambda ratio",
@@ -96,7 +96,7 @@ def test_the_start_page_tells_the_study_and_leads_to_every_figure(smoke, held):
         assert plain(first_cell(smoke, figure)[0]) in unescape(start)
 
 
-def test_the_pages_tell_configuration_assumptions_and_run_times(smoke, held):
+def test_the_pages_show_configuration_assumptions_and_run_times(smoke, held):
     assert "first.young_modulus</code></td><td>210 GPa</td>" in page(held, "configuration")
     text = (smoke / "docs/assumptions.md").read_text("utf-8")
     cells = [row.split("|")[1].strip() for row in text.splitlines() if row.startswith("|")][2:]

@@ -128,7 +128,7 @@ def test_each_job_says_in_words_what_is_made_and_nothing_alarms(smoke):
     assert len(messages) == int(re.search(r"^total +(\d+)$", said, re.MULTILINE)[1])
     for message in messages:
         assert re.match(
-            r"(Lubricant|Film|Roughness|Batch|Contact|Master curve|Trace|Rig|Experiment|Comparison"
+            r"(Lubricant|Film|Roughness|Batch|Contact|Master map|Trace|Rig|Experiment|Comparison"
             r"|Gauge|Figures?|Report|Done): \S+",
             message,
         )

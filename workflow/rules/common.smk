@@ -34,7 +34,7 @@ batch_limits = FILES.batch_limits
 
 
 onstart:
-    # Without this check Snakemake ends in a traceback.
+    # In a folder that cannot be written Snakemake itself ends in a traceback.
     with one_line_errors():
         check_writable(RESULTS)
 

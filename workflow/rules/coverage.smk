@@ -16,6 +16,6 @@ rule coverage:
         study=stage_inputs("coverage"),
         python=sys.executable,
     message:
-        "Coverage: how often intervals hold the truth for rollers never seen, some 30 minutes"
+        "Coverage: how often intervals contain the true value for new pairs of rollers, about 30 minutes"
     shell:
         "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"

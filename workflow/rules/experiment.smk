@@ -11,7 +11,7 @@ rule rig:
     params:
         study=stage_inputs("rig"),
     message:
-        "Rig: voltage and resistance at the trace points, and what narrower bands would show"
+        "Rig: voltage and resistance at the trace points, and contact shares by bandwidth"
     script:
         "../scripts/rig.py"
 
@@ -32,6 +32,6 @@ rule experiment:
     params:
         study=stage_inputs("experiment"),
     message:
-        "Experiment: share of time with contact, from the rig's records"
+        "Experiment: contact shares of the rig's records"
     script:
         "../scripts/experiment.py"

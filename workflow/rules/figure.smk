@@ -7,11 +7,11 @@ rule figure:
         ],
         sources=lambda wildcards: FIGURES[wildcards.figure].sources,
     output:
-        # The old figure stays until the new one is whole.
+        # The old figure stays until the new one is complete.
         in_report(update(result("figures/{figure}.png"))),
         in_report(update(result("figures/{figure}.pdf"))),
         notebook=update(result("notebooks/{figure}.ipynb")),
-        # This one goes first: what stays of a failed job would pass for new without it.
+        # Snakemake removes this one before the job: without it the old figure is not up to date.
         origin=result("figures/{figure}.json"),
     log:
         result("logs/{figure}.log"),
@@ -28,7 +28,7 @@ rule figure:
 
 
 onerror:
-    # The same for those who ask for nothing but the picture: it is older than the rule's script.
+    # Nor is it if a picture alone is asked for: dated 1970, it is older than the rule's inputs.
     for figure in FIGURES:
         if not Path(result(f"figures/{figure}.json")).exists():
             for product in map(Path, products([figure])):

@@ -10,6 +10,6 @@ rule master:
     benchmark:
         result("benchmarks/master.tsv")
     message:
-        "Master curve: probability over lambda ratio and contact width"
+        "Master map: probabilities over lambda ratio and contact width"
     script:
         "../scripts/master.py"

@@ -28,7 +28,7 @@ def in_report(path):
     )
 
 
-# What the report's templates are given.
+# Values for the report's templates.
 config["report"] = {
     "study": STUDY.name,
     "folder": result("report"),

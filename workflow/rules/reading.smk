@@ -16,6 +16,6 @@ rule reading:
         study=stage_inputs("reading"),
         python=sys.executable,
     message:
-        "Reading: records of the rig beside other readers of the same files, a few minutes"
+        "Reading: time to read records, against other readers of the same files, a few minutes"
     shell:
         "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"

@@ -1,4 +1,4 @@
-# Where the report has its pages, apart from the figures.
+# Chapter of the report that holds its pages.
 ABOUT_THE_STUDY = "About the study"
 TEMPLATES = sorted(map(str, Path("lube/report/templates").iterdir()))
 
@@ -44,7 +44,7 @@ rule pages:
     params:
         study=digest(STUDY.model_dump(mode="json")),
     message:
-        "Report: the study's numbers, answers, configuration and assumptions"
+        "Report: the study's numbers, results, configuration and assumptions"
     script:
         "../scripts/pages.py"
 

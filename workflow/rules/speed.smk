@@ -16,6 +16,6 @@ rule speed:
         study=stage_inputs("speed"),
         python=sys.executable,
     message:
-        "Speed: the study's kernels beside plain versions of the same work, a few minutes"
+        "Speed: the study's kernels against plain versions of the same work, a few minutes"
     shell:
         "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"

@@ -1,4 +1,4 @@
-"""Make experiment.nc: share of time with contact, from measured records or a simulated rig."""
+"""Make experiment.nc: contact shares of measured or simulated records."""
 
 from lube.recordings.manifest import read_manifest
 from lube.stages.experiment import measured_experiment, simulated_experiment

@@ -1,4 +1,4 @@
-"""Make master.nc: probability over lambda ratio and contact width, with intervals."""
+"""Make master.nc: probabilities over lambda ratio and contact width, with intervals."""
 
 from lube.stages.ensemble import gather_map
 from lube.storage.netcdf import load, save

@@ -1,4 +1,4 @@
-"""Write the report's text: parts of its start page, and pages of their own."""
+"""Write the report's text: the parts of its start page, and its further pages."""
 
 from pathlib import Path
 

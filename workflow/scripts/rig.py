@@ -1,4 +1,4 @@
-"""Make rig.nc: what the simulated rig logs at the trace points."""
+"""Make rig.nc: records of the simulated rig at the trace points, and shares by bandwidth."""
 
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch
