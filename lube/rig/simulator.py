@@ -1,4 +1,4 @@
-"""The simulated twin-disc rig: from the metallic contact of its rollers to the logged voltage.
+"""The simulated twin-disc rig: from the metal contact of its rollers to the logged voltage.
 
 Its rollers are realisations that no simulation of the study uses. One pair runs all operating
 points, turn after turn, as on a real rig. If the study says so, several pairs follow each other,
@@ -145,7 +145,7 @@ class Revolution:
     Attributes
     ----------
     contact : numpy.ndarray
-        Shape (T,), int32, grid points in metallic contact at each time step.
+        Shape (T,), int32, grid points in metal contact at each time step.
     point : OperatingPoint
         The operating point.
     time_step : float
@@ -211,7 +211,7 @@ def logged_voltage(
     Parameters
     ----------
     contact : numpy.ndarray
-        Shape (T,), grid points in metallic contact at each time step.
+        Shape (T,), grid points in metal contact at each time step.
     time_step : float
         Time between two steps, s.
     spot_resistance : float

@@ -40,7 +40,7 @@ class LineSpecLike(Protocol):
     hurst_exponent : float
         Hurst exponent H.
     q_min, q_max : float
-        Smallest and largest wave vector, rad/m.
+        Smallest and largest angular wavenumber, rad/m.
     height_step : float
         Height step, m.
     """
@@ -233,7 +233,7 @@ def power_spectrum(line: np.ndarray, spacing: float) -> tuple[np.ndarray, np.nda
     wave_vector : numpy.ndarray
         Shape (N // 2,), rad/m.
     density : numpy.ndarray
-        Shape (N // 2,), m^3; its integral over the wave vector is the mean square height.
+        Shape (N // 2,), m^3; its integral over the wavenumber is the mean square height.
 
     Examples
     --------
@@ -245,7 +245,7 @@ def power_spectrum(line: np.ndarray, spacing: float) -> tuple[np.ndarray, np.nda
     step = 2.0 * np.pi / (line.size * spacing)
     power = 2.0 * np.abs(scipy.fft.rfft(line)[1:] / line.size) ** 2
     if line.size % 2 == 0:
-        power[-1] /= 2.0  # the wave of two points has no partner of negative wave vector
+        power[-1] /= 2.0  # the wave of two points has no partner of negative wavenumber
     return step * np.arange(1, power.size + 1), power / step
 
 
@@ -290,7 +290,7 @@ def line_attributes(spec: LineSpecLike) -> dict[str, float | np.ndarray]:
     Returns
     -------
     dict
-        Attribute names and values; lengths in m, wave vectors in rad/m.
+        Attribute names and values; lengths in m, wavenumbers in rad/m.
     """
     return {
         "hurst": spec.hurst_exponent,
