@@ -88,8 +88,7 @@ def check(dataset: xr.Dataset, kind: str, where: str = "dataset") -> xr.Dataset:
             raise DataError(f"{refusal}: variable {name!r} is missing")
         _check_variable(dataset[name], name, expected, where)
     for name in dataset.dims:
-        # The positions of a batch of lines are not stored.
-        if name in COORDINATES and (name in dataset.coords or name != "position"):
+        if name in COORDINATES:
             _check_coordinate(dataset, name, where)
     for name in ATTRIBUTES.get(kind, ()):
         if name not in dataset.attrs:

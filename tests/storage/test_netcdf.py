@@ -4,14 +4,14 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
-from every_kind import KINDS
 
 from lube.errors import DataError
+from lube.schema import FILES
 from lube.storage.netcdf import load, save
 
 
 def test_what_is_saved_is_loaded_with_its_labels(datasets, files):
-    assert set(datasets) == set(KINDS)
+    assert set(datasets) == set(FILES)
     for kind, dataset in datasets.items():
         loaded = load(files / f"{kind}.nc", kind)
         for name in {"in_validity_range", "within_prediction"} & set(loaded):
