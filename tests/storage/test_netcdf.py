@@ -49,7 +49,7 @@ def test_a_dataset_saved_twice_or_loaded_and_saved_again_is_the_same(
 def test_a_file_of_other_values_than_the_studys_is_refused(files, study):
     load(files / "contact.nc", "contact", study)
     other = study.model_copy(update={"seed": 1})
-    expected = r"contact.nc: belongs to other values than this study's: .*seed is 20181109, need 1"
+    expected = r"contact.nc: made from other values than this study's: .*seed is 20181109, need 1"
     with pytest.raises(DataError, match=expected):
         load(files / "contact.nc", "contact", other)
 
