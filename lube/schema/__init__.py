@@ -1,11 +1,11 @@
 """The contents of every file of a study: names, dimensions, units and meaning.
 
-They stand in two tables, ``variables.csv`` and ``files.csv``; `lube.schema.tables` explains the
-columns.
+They are listed in two tables, ``variables.csv`` and ``files.csv``; `lube.schema.tables` explains
+the columns.
 
-Arithmetic on labelled arrays keeps the attributes of one operand, which are wrong for the result.
-So each stage writes the attributes last, with `label`; `check` refuses a dataset that does not
-fit its kind, before it is saved and after it is read.
+Arithmetic on labelled arrays keeps the attributes of one operand, which may be wrong for the
+result. So each stage writes the attributes last, with `label`. `check` refuses a dataset that does
+not fit its kind, before it is saved and when it is read.
 """
 
 from lube.schema.labels import check, label

@@ -1,4 +1,4 @@
-"""The registry of stages: the one place that says what each of them depends on.
+"""The registry of stages: the one place that says what each stage depends on.
 
 A stage makes one kind of file. Its row names the stages whose files it reads and the values of
 the study that it uses. From the rows follow the inputs and parameters of the Snakemake rules,
@@ -87,7 +87,7 @@ _ROWS = (
                 "temperature": "operating_grid.temperature",
             },
         },
-        same_values=("roughness",),  # it draws the lines of the rig's own rollers
+        same_values=("roughness",),  # it draws the lines of the simulated rig's rollers
     ),
     Stage("rig", inputs=("film",), values={"traces": "traces"}, same_values=("experiment",)),
     Stage("comparison", inputs=("film", "contact", "experiment")),
