@@ -26,7 +26,7 @@ class Stage:
         ``config`` to the dotted attribute of `lube.study.study.Study` that holds it.
     same_values : tuple of str
         Stages whose values it uses too, without reading their files.
-    measured : bool
+    benchmark : bool
         True for files that `snakemake benchmark` makes. They are not results of the study.
     """
 
@@ -34,7 +34,7 @@ class Stage:
     inputs: tuple[str, ...] = ()
     values: dict = field(default_factory=dict)
     same_values: tuple[str, ...] = ()
-    measured: bool = False
+    benchmark: bool = False
 
 
 _LINES = {"seed": "seed", "lines": "line_spec"}
@@ -96,19 +96,19 @@ _ROWS = (
         "coverage",
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),
-        measured=True,
+        benchmark=True,
     ),
-    Stage("speed", same_values=("contact",), measured=True),
-    Stage("reading", measured=True),
+    Stage("speed", same_values=("contact",), benchmark=True),
+    Stage("reading", benchmark=True),
 )
 
 STAGES = {row.name: row for row in _ROWS}
 """The registry: from name to `Stage`, each after those it depends on."""
 
-DATASETS = tuple(row.name for row in _ROWS if not row.measured)
+DATASETS = tuple(row.name for row in _ROWS if not row.benchmark)
 """The results of a study, one file each."""
 
-MEASURED = tuple(row.name for row in _ROWS if row.measured)
+BENCHMARKS = tuple(row.name for row in _ROWS if row.benchmark)
 """Files that `snakemake benchmark` makes; they are not among the results of a study."""
 
 
