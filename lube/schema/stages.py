@@ -23,7 +23,7 @@ class Stage:
         Stages whose files it reads.
     values : dict
         Values of the study that it uses: from the name of each value in the file's attribute
-        ``config`` to the dotted attribute of `lube.study.study.Study` that holds it.
+        ``config`` to the dotted attribute of `lube.study.study.Study`, or a mapping of such.
     same_values : tuple of str
         Stages whose values it uses too, without reading their files.
     benchmark : bool
@@ -62,10 +62,11 @@ _ROWS = (
     Stage("roughness", values=_LINES),
     Stage(
         "contact",
-        inputs=("film", "roughness"),
+        inputs=("film",),
         values=_LINES | _CONTACT | {"revolutions": "revolutions"},
+        same_values=("roughness",),  # each batch draws its lines itself
     ),
-    Stage("master", inputs=("film", "roughness"), values=_LINES | _LAYER),
+    Stage("master", inputs=("film",), values=_LINES | _LAYER, same_values=("roughness",)),
     Stage(
         "trace",
         inputs=("film", "roughness"),
