@@ -47,7 +47,7 @@ class Rig(StrictModel, validate_default=True):
     """
     drift: pure_number(least=0.0, most=1.0) = 0
     """share of the variance of the roughness that each revolution renews, of the simulated
-    rollers and, as an assumption, of measured ones; at 0 each revolution repeats the last
+    rollers and, as an assumption, of measured ones; at 0 the roughness stays the same
     """
 
     @property
