@@ -42,7 +42,7 @@ class LubeError(Exception):
     """
 
     def __init__(self, message: str) -> None:
-        escaped = (sign if sign.isprintable() else ascii(sign)[1:-1] for sign in message)
+        escaped = (char if char.isprintable() else ascii(char)[1:-1] for char in message)
         super().__init__("".join(escaped))
 
 
@@ -55,7 +55,7 @@ class RecordError(LubeError):
 
 
 class DataError(LubeError):
-    """A dataset is missing, damaged, of another origin, or does not fit its stage."""
+    """A dataset, recording or list of records is missing, damaged, or not the one needed."""
 
 
 class RangeError(LubeError):

@@ -25,11 +25,11 @@ _TURN = re.compile(r"(?<![A-Za-z])(?:U|r|rev)(?![A-Za-z])")
 _INVERSE = re.compile(r"(?<=[A-Za-z])-1(?!\d)")
 
 ELECTRICAL = {"voltage": "V", "resistance": "ohm"}
-"""Quantities that a record may hold, each with the unit in which its values are kept."""
+"""Quantities that a record may hold, each with the unit of its values in memory."""
 
 _LOOSE_UNIT = re.compile("(ohm|volt|second)s?$", re.IGNORECASE)
 
-# How a number is printed: with a prefix, in the customary unit, or with the unit's symbol.
+# How `with_unit` formats a number: with a prefix, in the customary unit, or with a symbol.
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _PREFIXED = {"m", "s", "Pa", "V", "Hz", "ohm", "ohm*m"}
 _CUSTOMARY = {"m^2/s": (1e6, "mm²/s"), "1/Pa": (1e9, "1/GPa")}
@@ -50,7 +50,7 @@ def parse_number(value: object) -> float:
     Parameters
     ----------
     value : int, float or str
-        The number as the YAML reader gave it.
+        The number, from a YAML or CSV file.
 
     Returns
     -------
@@ -121,31 +121,31 @@ def convert(number: float | np.ndarray, units: str, target: str) -> float | np.n
 
 
 def _in_turns(units):
-    """Name the turns of a speed of rotation: ``1/min``, ``Hz``, ``U/min`` and the like."""
+    """Write a speed of rotation such as ``1/min``, ``Hz`` or ``U/min`` in turns, as pint needs."""
     units = _INVERSE.sub("^-1", _TURN.sub("turn", units))
     return units if _ANGLE.search(units) else f"turn {units}"
 
 
-def usual_spelling(text: str) -> str:
-    """Spell a unit at the end of a text as `convert` knows it.
+def usual_spelling(units: str) -> str:
+    """Spell a unit as `convert` knows it.
 
     Parameters
     ----------
-    text : str
-        Such as ``kOhm``, ``Volts`` or ``3 MOhm``, with any of Unicode's signs for ohm and micro.
+    units : str
+        Such as ``kOhm`` or ``Volts``, with any of Unicode's characters for ohm and micro.
 
     Returns
     -------
     str
-        Such as ``kohm``, ``volts`` or ``3 Mohm``.
+        Such as ``kohm`` or ``volts``.
 
     Examples
     --------
-    >>> usual_spelling("3 MOhm")
-    '3 Mohm'
+    >>> usual_spelling("kOhm")
+    'kohm'
     """
-    text = unicodedata.normalize("NFKC", text.strip())
-    return _LOOSE_UNIT.sub(lambda match: match[0].lower(), text)
+    units = unicodedata.normalize("NFKC", units.strip())
+    return _LOOSE_UNIT.sub(lambda match: match[0].lower(), units)
 
 
 def electrical_quantity(units: object) -> str:
@@ -218,7 +218,7 @@ def parse_electrical(value: object) -> tuple[float, str]:
     Returns
     -------
     number : float
-        The value, V or ohm.
+        The value in V or ohm.
     quantity : str
         ``voltage`` or ``resistance``.
 
@@ -246,7 +246,7 @@ def _parts(value, needed):
 
 
 def with_unit(value: float, unit: str) -> str:
-    """Print a number with its unit, scaled so that it is easily read.
+    """Format a number with its unit, with a prefix or in the customary unit.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""One dataset of every kind that has a file, for tests of files."""
+"""One dataset of every kind, for tests of files."""
 
 import numpy as np
 import xarray as xr
@@ -15,8 +15,6 @@ from lube.stages.lubricant import lubricant_table
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
 from lube.stages.trace import contact_trace
-
-KINDS = [kind for kind in FILES if kind != "roughness_batch"]  # which stays in memory
 
 
 def measured_values(kind):

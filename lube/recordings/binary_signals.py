@@ -1,7 +1,7 @@
-"""Recordings as NetCDF and TDMS files, read in slices.
+"""Recordings in NetCDF and TDMS files, read in slices.
 
-A NetCDF file holds them as variables with ``units``, a TDMS file as channels with the property
-``unit_string`` or ``NI_UnitDescription``. Integers with a scale are converted to their values.
+In a NetCDF file they are variables with ``units``, in a TDMS file channels with the property
+``unit_string`` or ``NI_UnitDescription``. Scaled integers are converted to physical values.
 """
 
 import contextlib
@@ -21,11 +21,11 @@ from lube.recordings.signals import Channel, Signal, find_signals
 from lube.units import convert, parse_number, parse_quantity
 
 SLICE = 2**20
-"""Samples read at a time, about."""
+"""Approximate number of samples read at a time."""
 
 
 class _Array(NamedTuple):
-    """One array of a file: its description, its values to be sliced, and its attributes."""
+    """One array of a file: its description, its values (read when sliced), and its attributes."""
 
     channel: Channel
     values: Any
@@ -43,9 +43,9 @@ class BinarySignal:
     open_arrays : callable
         From the path to a context manager that gives the file's arrays.
     time : Signal or None
-        Array of the time.
+        The time, if the file has it.
     measured : Signal
-        Array of the voltage or resistance.
+        The voltage or resistance.
     sampling_interval : float or None
         Sampling interval stated in the file's attributes, s.
     """
@@ -57,7 +57,7 @@ class BinarySignal:
     sampling_interval: float | None
 
     def head(self) -> tuple[np.ndarray, np.ndarray | None] | None:
-        """Read the first samples and times, as of `parts`; None if there are none."""
+        """Read the first samples and times, as from `parts`; None if there are none."""
         return next(self.parts(), None)
 
     def parts(self) -> Iterator[tuple[np.ndarray, np.ndarray | None]]:
@@ -91,7 +91,7 @@ class BinarySignal:
 
 
 def _slice_length(values):
-    """Whole chunks of a NetCDF variable, so that none is unpacked twice."""
+    """Length of a slice: whole chunks of a NetCDF variable, so that none is unpacked twice."""
     chunks = values.chunking() if isinstance(values, netCDF4.Variable) else None
     if chunks in (None, "contiguous"):
         return SLICE
@@ -151,7 +151,7 @@ def _is_whole(path):
     with warnings.catch_warnings(action="ignore", category=RuntimeWarning):
         try:
             netcdf_file(path).close()
-        except Exception:  # of many kinds
+        except Exception:  # it raises many kinds for a damaged file
             return False
     return True
 
@@ -196,7 +196,7 @@ def open_netcdf(path: Path, channel: str | None = None, unit: str | None = None)
     path : Path
         The file.
     channel : str, optional
-        Name of the variable to read; else the first voltage or resistance.
+        Name of the variable to read; by default the first voltage or resistance.
     unit : str, optional
         Its unit; overrides the one in the file.
 
@@ -234,7 +234,7 @@ def _opened(path, open_arrays, interval_of, selected, unit):
             name = shown(channel.name)
             raise DataError(f"{path}: sampling interval of {name}: {error}") from None
         if time and interval is not None and channels[time.index].group != channel.group:
-            time = None  # a channel's own interval precedes the times of another group
+            time = None  # a channel's own interval takes precedence over another group's time
         return BinarySignal(path, open_arrays, time, measured, interval)
 
 

@@ -1,4 +1,4 @@
-"""Recordings as CSV files of any length, parsed by PyArrow in pieces of whole lines."""
+"""Recordings in CSV files of any length, parsed by PyArrow in pieces of whole lines."""
 
 import os
 import re
@@ -18,10 +18,10 @@ from lube.recordings.signals import Channel, Signal, find_signals, header_cell
 from lube.study.small_csv import delimiter_of, split_cells
 
 HEAD_BYTES = 2**20
-"""The first rows, which show decimal sign and sampling interval, are within so many bytes."""
+"""Bytes read first, to find the decimal separator and the sampling interval."""
 
 PIECE_BYTES = 2**22
-"""Text parsed at a time on each core."""
+"""Bytes parsed at a time on each core."""
 
 
 @dataclass(frozen=True)
@@ -36,21 +36,23 @@ class TextSignal:
         Number of the line of column names.
     begin : int
         Byte at which the first row begins.
-    delimiter, decimal_sign : str
-        Separators of the columns and of a number's decimals.
+    delimiter : str
+        Character between columns.
+    decimal_point : str
+        Decimal separator, ``.`` or ``,``.
     width : int
         Number of columns.
     time : Signal or None
-        Column of the time.
+        The time, if the file has it.
     measured : Signal
-        Column of the voltage or resistance.
+        The voltage or resistance.
     """
 
     path: Path
     header_line: int
     begin: int
     delimiter: str
-    decimal_sign: str
+    decimal_point: str
     width: int
     time: Signal | None
     measured: Signal
@@ -59,7 +61,7 @@ class TextSignal:
     sampling_interval = None
 
     def head(self) -> tuple[np.ndarray, np.ndarray | None] | None:
-        """Read the first samples and times, as of `parts`; None if there are none."""
+        """Read the first samples and times, as from `parts`; None if there are none."""
         return next(self._converted(map(self._parsed, self._pieces())), None)
 
     def parts(self) -> Iterator[tuple[np.ndarray, np.ndarray | None]]:
@@ -83,7 +85,7 @@ class TextSignal:
         return f"line {number}"
 
     def _pieces(self):
-        """Text of the rows, in pieces of whole lines; the first is small, and is soon read."""
+        """Text of the rows, in pieces of whole lines; the first is small, for `head`."""
         size = min(HEAD_BYTES, PIECE_BYTES)
         with open(self.path, "rb") as file:
             file.seek(self.begin)
@@ -105,12 +107,12 @@ class TextSignal:
                 include_columns=used,
                 column_types=dict.fromkeys(used, pyarrow.float64()),
                 null_values=[],
-                decimal_point=self.decimal_sign,
+                decimal_point=self.decimal_point,
             ),
         )
 
     def _converted(self, tables):
-        """Values and times of tables that are parsed one after the other."""
+        """Yield values and times of the parsed tables."""
         rows = 0
         try:
             for table in tables:
@@ -128,15 +130,15 @@ class TextSignal:
             return f"not a table of numbers, truncated or damaged ({reason})"
         number, line = self._row(rows_before + int(wrong[1]) - 1)
         quantities = [signal.quantity for signal in (self.time, self.measured) if signal]
-        commas = " with decimal commas" if self.decimal_sign == "," else ""
+        commas = " with decimal commas" if self.decimal_point == "," else ""
         return (
             f"line {number}: got {shown(line)}, need {self.width} values, "
             f"numbers{commas} for {' and '.join(quantities)}"
         )
 
     def _row(self, row):
-        """Line number and text of a row; lines that are empty are no rows."""
-        # Any of the usual ends of a line, as PyArrow has it.
+        """Line number and text of a row; empty lines are not rows."""
+        # Python and PyArrow recognise the same ends of a line.
         with open(self.path, encoding="utf-8-sig", errors="replace") as file:
             lines = ((number, line.rstrip("\n")) for number, line in enumerate(file, start=1))
             rows = (line for line in islice(lines, self.header_line, None) if line[1])
@@ -161,7 +163,8 @@ def open_text(path: Path, channel: str | None = None, unit: str | None = None) -
     """Find the recording in a CSV file.
 
     Empty lines and lines that begin with ``#`` may precede the line of column names. Columns are
-    separated by tabs, semicolons or commas; unless by commas, numbers may have decimal commas.
+    separated by tabs, semicolons or commas; with tabs or semicolons, numbers may have decimal
+    commas.
 
     Parameters
     ----------
@@ -186,13 +189,13 @@ def open_text(path: Path, channel: str | None = None, unit: str | None = None) -
         number, header = _header_line(file, path)
         begin = file.tell()
         rows = file.read(HEAD_BYTES)
-    # In a single column, a comma can only be a decimal sign.
+    # In a single column, a comma can only be a decimal comma.
     delimiter = delimiter_of(header) if "," in header else delimiter_of(header + ";")
     cells = split_cells(header, delimiter)
     columns = [Channel(*header_cell(cell), full_name=cell) for cell in cells]
     time, measured = find_signals(columns, f"{path}: line {number}", channel, unit)
-    sign = "," if delimiter != "," and b"," in rows else "."
-    return TextSignal(path, number, begin, delimiter, sign, len(cells), time, measured)
+    point = "," if delimiter != "," and b"," in rows else "."
+    return TextSignal(path, number, begin, delimiter, point, len(cells), time, measured)
 
 
 def _header_line(file, path):

@@ -1,7 +1,8 @@
-"""The manifest of an experiment: which recording, or contact share, has which operating conditions.
+"""The manifest of an experiment: a list of records with their operating conditions.
 
 A manifest is a CSV file with units in its column names, or a YAML list of mappings whose values
-have units. A row that cannot be used is refused in one line; the others are still read.
+have units. Each row names a recording or states a contact share. A row that cannot be used is
+refused in one line; the others are still read.
 """
 
 import os
@@ -11,7 +12,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from lube.errors import DataError, LubeError, shown
 from lube.recordings.signals import header_cell
@@ -29,7 +30,7 @@ _UNITS = (
     | {"temperature": "degC", "temperature_tolerance": "K"}
     | {"sampling_interval": "s", "offset": "mV"}
 )
-"""Columns whose header needs a unit, with an example; that of the offset may be ohm too."""
+"""Columns whose header needs a unit, with an example; an offset may also be in ohm."""
 
 _TEXTS = ("file", "channel", "unit", "lubricant", "pair", "origin")
 _OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval")
@@ -39,62 +40,52 @@ _OF_SHARES = ("lower", "upper")
 class _Row(StrictModel):
     """A row as it is written: operating conditions, and a recording or a contact share."""
 
-    file: Text | None = Field(
-        None, description="the recording, relative to the manifest's folder; this or `probability`"
-    )
-    channel: Text | None = Field(
-        None,
-        description="which column, variable or channel of the file, its name without the unit; in "
-        "TDMS also `group/channel`; else the first voltage or resistance",
-    )
-    unit: checked_text(electrical_quantity, "unit of voltage or resistance") | None = Field(
-        None,
-        description="unit of that channel; overrides the one in the file, and decides between "
-        "voltage and resistance where the channel's name does not",
-    )
-    gain: pure_number(other_than=0.0) = Field(
-        1.0,
-        description="factor of an amplifier between rig and recorder, below 0 if it inverts: "
-        "recorded = gain × true + offset",
-    )
-    offset: checked_text(parse_electrical, "quantity in V or ohm, as the record is") = Field(
-        0.0,
-        description="recorded value when the true value is 0, a voltage or resistance as the "
-        "channel is: true = (recorded - offset) / gain",
-    )
-    sampling_interval: quantity("s", above=0.0) | None = Field(
-        None, description="time between samples, for a file that does not state it"
-    )
-    probability: Share | None = Field(
-        None, description="contact share that you evaluated yourself, in place of `file`"
-    )
-    lower: Share | None = Field(None, description="lower limit of that share")
-    upper: Share | None = Field(None, description="upper limit of that share")
-    force: quantity("N", above=0.0) = Field(description="normal force")
-    speed: quantity("rpm", above=0.0) = Field(
-        description="rotation speed, as in the study; `1/min` and `Hz` count turns"
-    )
-    temperature: quantity("degC", above=-273.15) = Field(description="of rollers and oil")
-    force_tolerance: quantity("N", above=0.0) | None = Field(
-        None, description="how far the true force may be from the one stated"
-    )
-    speed_tolerance: quantity("rpm", above=0.0) | None = Field(
-        None, description="how far the true speed may be from the one stated"
-    )
-    temperature_tolerance: quantity("K", above=0.0) | None = Field(
-        None,
-        description="how far the true temperature may be from the one stated; 1 degC is 1 K here",
-    )
-    lubricant: Text | None = Field(None, description="a lubricant of the study; else its first")
-    slide_to_roll_ratio: pure_number(least=-2.0, most=2.0) | None = Field(
-        None, description="a ratio of the study; else 0, or the study's first if 0 is none of them"
-    )
-    pair: Text | None = Field(
-        None, description="label of the measured pair of rollers; rows without it are of one pair"
-    )
-    origin: Literal[ORIGINS] = Field(
-        ORIGINS[0], description="where the values come from, the same in all rows"
-    )
+    file: Text | None = None
+    """the recording, relative to the manifest's folder; this or `probability`"""
+    channel: Text | None = None
+    """name, without its unit, of the column, variable or channel to read; in TDMS also
+    `group/channel`; by default the first voltage or resistance
+    """
+    unit: checked_text(electrical_quantity, "unit of voltage or resistance") | None = None
+    """unit of that channel; overrides the one in the file, and decides between voltage and
+    resistance where the channel's name does not
+    """
+    gain: pure_number(other_than=0.0) = 1.0
+    """factor of an amplifier between rig and recorder, below 0 if it inverts: recorded = gain ×
+    true + offset
+    """
+    offset: checked_text(parse_electrical, "quantity in V or ohm, as the record is") = 0.0
+    """recorded value when the true value is 0, a voltage or a resistance as the channel is:
+    true = (recorded - offset) / gain
+    """
+    sampling_interval: quantity("s", above=0.0) | None = None
+    """time between samples, for a file that does not state it"""
+    probability: Share | None = None
+    """contact share that you evaluated yourself, in place of `file`"""
+    lower: Share | None = None
+    """lower limit of that share"""
+    upper: Share | None = None
+    """upper limit of that share"""
+    force: quantity("N", above=0.0)
+    """normal force"""
+    speed: quantity("rpm", above=0.0)
+    """rotation speed, as in the study; `1/min` and `Hz` count turns"""
+    temperature: quantity("degC", above=-273.15)
+    """of rollers and oil"""
+    force_tolerance: quantity("N", above=0.0) | None = None
+    """how far the true force may be from the one stated"""
+    speed_tolerance: quantity("rpm", above=0.0) | None = None
+    """how far the true speed may be from the one stated"""
+    temperature_tolerance: quantity("K", above=0.0) | None = None
+    """how far the true temperature may be from the one stated; 1 degC is 1 K here"""
+    lubricant: Text | None = None
+    """a lubricant of the study; by default its first"""
+    slide_to_roll_ratio: pure_number(least=-2.0, most=2.0) | None = None
+    """a ratio of the study; by default 0, or the study's first if 0 is not among them"""
+    pair: Text | None = None
+    """label of the pair of rollers measured; all rows without a label are of one pair"""
+    origin: Literal[ORIGINS] = ORIGINS[0]
+    """where the values come from, the same in all rows"""
 
     @model_validator(mode="after")
     def _check_file_or_probability(self):
@@ -204,7 +195,7 @@ def _yaml_rows(path):
 
 
 def _csv_rows(path):
-    """Position and content of each row; for a row of the wrong length, the error."""
+    """Position and content of each row; a row of the wrong length has an error as content."""
     (header_line, header), *rows = read_cells(path, DataError)
     columns = _columns(header, f"{path}: line {header_line}")
     for number, cells in rows:
@@ -217,7 +208,7 @@ def _csv_rows(path):
 
 
 def _columns(cells, where):
-    """Units, or None, by column name, in the order of the columns."""
+    """Units of the columns by name, None where there is none, in the order of the columns."""
     columns = {}
     for cell in cells:
         name, units = header_cell(cell)

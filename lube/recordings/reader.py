@@ -26,8 +26,8 @@ _KIND_OF_SUFFIX = (
 _KIND_OF_MARK = {b"\x89HDF": "NetCDF", b"CDF": "NetCDF", b"TDSm": "TDMS"}
 _OPENERS = {"text": open_text, "NetCDF": open_netcdf, "TDMS": open_tdms}
 
-_FIRST_STEPS = 1000  # their median is the sampling interval
-_AGREEMENT = 0.01  # the interval given and that of the file may differ by rounding
+_FIRST_STEPS = 1000  # time steps whose median is the sampling interval
+_AGREEMENT = 0.01  # relative; the interval given and that of the file may differ by rounding
 
 
 @dataclass(frozen=True)
@@ -110,8 +110,8 @@ def open_recording(
 ) -> Recording:
     """Open a measured recording, whose samples are read later.
 
-    An amplifier between test rig and recorder is taken into account: recorded = gain * true +
-    offset, so that the samples returned are true = (recorded - offset) / gain.
+    The samples are corrected for an amplifier between rig and recorder: with recorded = gain * true
+    + offset, true = (recorded - offset) / gain.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def open_recording(
     ------
     DataError
         If the file is missing, not of the kind its suffix says, empty or damaged; if it has no
-        voltage or resistance, or not the channel, or several of its name; if a unit is missing,
+        voltage or resistance, or not exactly one channel of the given name; if a unit is missing,
         unknown or contradicts the channel's name; if the gain is 0 or the offset is not of the
         recording's quantity; if the sampling interval is unknown, not positive, or not the one in
         the file.
@@ -174,7 +174,7 @@ def _kind(path):
     kinds = (kind for mark, kind in _KIND_OF_MARK.items() if first.startswith(mark))
     found = next(kinds, "unknown binary data" if b"\0" in first else "text")
     if found != claimed:
-        raise DataError(f"{path}: the suffix says {claimed}, the content is {found}; need one kind")
+        raise DataError(f"{path}: the suffix says {claimed}, the content is {found}; need the same")
     return claimed
 
 
@@ -201,7 +201,7 @@ def _offset(offset, quantity):
 
 
 def _interval_of(path, signal, times):
-    """Median of the first steps of time that rise, s."""
+    """Median of the first positive time steps, s."""
     if times.size == 1:
         raise DataError(f"{path}: got a single sample, need two or more to know the time between")
     steps = np.diff(times[: _FIRST_STEPS + 1])

@@ -1,4 +1,4 @@
-"""Which channel of a file is the time, which the voltage or resistance, and in which units.
+"""Find the time and the voltage or resistance among a file's channels, with their units.
 
 A channel is a column of a CSV file, a variable of a NetCDF file or a channel of a TDMS file. Its
 quantity follows from its name or its unit. The unit must be stated; it is never guessed.
@@ -41,7 +41,7 @@ class Channel:
     full_name : str
         A second name by which it can be selected: ``group/channel``, or the whole column header.
     group : str
-        Channels that were logged together have the same: a TDMS group or a NetCDF dimension.
+        Name shared by channels logged together: a TDMS group or a NetCDF dimension.
     size : int
         Number of samples; 0 for the columns of a table, which are equally long.
     """
@@ -64,9 +64,9 @@ class Signal:
     quantity : str
         ``time``, ``voltage`` or ``resistance``.
     factor : float
-        Multiplies the values of the file.
+        Factor by which the file's values are multiplied.
     shift : float
-        Added to the product, s, V or ohm.
+        Then added, s, V or ohm.
     """
 
     index: int
@@ -121,9 +121,9 @@ def find_signals(
 ) -> tuple[Signal | None, Signal]:
     """Find the time and the measured quantity among the channels of a file.
 
-    A channel's name tells its quantity; if no name does, units do. The first voltage or resistance
-    is taken unless a channel is selected. The time has as many samples as that channel; one of the
-    same group is preferred.
+    A channel's quantity follows from its name; if no name gives one, from the units. The first
+    voltage or resistance is taken unless a channel is selected. The time has as many samples as
+    that channel; one of the same group is preferred.
 
     Parameters
     ----------
@@ -156,9 +156,9 @@ def find_signals(
     >>> time.factor, measured.quantity
     (0.001, 'voltage')
     """
-    everywhere = range(len(channels))
+    indices = range(len(channels))
     if selected is None:
-        index = _first_of(ELECTRICAL, channels, everywhere)
+        index = _first_of(ELECTRICAL, channels, indices)
     else:
         index = _selected(channels, selected, where)
     if index is None:
@@ -169,12 +169,12 @@ def find_signals(
     channel = channels[index] if unit is None else replace(channels[index], units=unit)
     named = _quantity_of_name(channel)
     measured = _signal(index, channel, named if named in ELECTRICAL else None, where)
-    others = [at for at in everywhere if at != index and channels[at].size == channel.size]
-    own_group = [at for at in others if channels[at].group == channel.group]
+    others = [i for i in indices if i != index and channels[i].size == channel.size]
+    own_group = [i for i in others if channels[i].group == channel.group]
     for candidates in (own_group, others):
-        at = _first_of(["time"], channels, candidates)
-        if at is not None:
-            return _signal(at, channels[at], "time", where), measured
+        time = _first_of(["time"], channels, candidates)
+        if time is not None:
+            return _signal(time, channels[time], "time", where), measured
     return None, measured
 
 

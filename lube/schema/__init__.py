@@ -1,15 +1,15 @@
 """The contents of every file of a study: names, dimensions, units and meaning.
 
-They stand in two tables, ``variables.csv`` and ``files.csv``; `lube.schema.tables` explains the
-columns.
+They are listed in two tables, ``variables.csv`` and ``files.csv``; `lube.schema.tables` explains
+the columns.
 
-Arithmetic on labelled arrays keeps the attributes of one operand, which are wrong for the result.
-So each stage writes the attributes last, with `label`; `check` refuses a dataset that does not
-fit its kind, before it is saved and after it is read.
+Arithmetic on labelled arrays keeps the attributes of one operand, which may be wrong for the
+result. So each stage writes the attributes last, with `label`. `check` refuses a dataset that does
+not fit its kind, before it is saved and when it is read.
 """
 
 from lube.schema.labels import check, label
-from lube.schema.stages import DATASETS, MEASURED, STAGES, Stage, forerunners
+from lube.schema.stages import BENCHMARKS, DATASETS, STAGES, Stage, forerunners
 from lube.schema.tables import (
     AT_RECORDS,
     ATTRIBUTES,
@@ -31,6 +31,7 @@ from lube.schema.tables import (
 __all__ = [
     "ATTRIBUTES",
     "AT_RECORDS",
+    "BENCHMARKS",
     "CONTACT_DIMS",
     "COORDINATES",
     "DATASETS",
@@ -39,7 +40,6 @@ __all__ = [
     "LAYER_DIMS",
     "LIMITS",
     "MASTER_DIMS",
-    "MEASURED",
     "OPERATING_DIMS",
     "ORIGINS",
     "POINT_DIMS",

@@ -1,4 +1,4 @@
-"""Writing labels on a dataset, and checking a dataset against the schema."""
+"""Label a dataset as the schema says, and check it against the schema."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from lube.errors import DataError
 from lube.schema.tables import ATTRIBUTES, COORDINATES, FILES, Variable
+from lube.types import File
 
 if TYPE_CHECKING:  # Snakemake loads the schema at every start, without xarray
     import xarray as xr
@@ -56,7 +57,7 @@ def _content(content, dataset):
     return "physicalMeasurement" if measured else "modelResult"
 
 
-def check(dataset: xr.Dataset, kind: str, where: str = "dataset") -> xr.Dataset:
+def check(dataset: xr.Dataset, kind: str, where: File = "dataset") -> xr.Dataset:
     """Refuse a dataset whose variables, dimensions, types or units are not the schema's.
 
     Parameters
@@ -65,8 +66,8 @@ def check(dataset: xr.Dataset, kind: str, where: str = "dataset") -> xr.Dataset:
         Dataset to check.
     kind : str
         A key of `lube.schema.FILES`.
-    where : str, optional
-        Name of the dataset in an error message, for instance its path.
+    where : str or Path, optional
+        Name of the dataset in error messages, such as its path.
 
     Returns
     -------
@@ -76,8 +77,7 @@ def check(dataset: xr.Dataset, kind: str, where: str = "dataset") -> xr.Dataset:
     Raises
     ------
     DataError
-        At the first difference, with the name of the variable, what it is and what it should
-        be.
+        At the first difference, with the variable, what was found and what is needed.
     """
     refusal = f"{where}: not a {kind} file"
     for name in dataset.variables:
@@ -88,8 +88,7 @@ def check(dataset: xr.Dataset, kind: str, where: str = "dataset") -> xr.Dataset:
             raise DataError(f"{refusal}: variable {name!r} is missing")
         _check_variable(dataset[name], name, expected, where)
     for name in dataset.dims:
-        # The positions of a batch of lines are not stored.
-        if name in COORDINATES and (name in dataset.coords or name != "position"):
+        if name in COORDINATES:
             _check_coordinate(dataset, name, where)
     for name in ATTRIBUTES.get(kind, ()):
         if name not in dataset.attrs:

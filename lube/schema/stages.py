@@ -1,4 +1,4 @@
-"""The registry of stages: the one place that says what each of them depends on.
+"""The registry of stages: the one place that says what each stage depends on.
 
 A stage makes one kind of file. Its row names the stages whose files it reads and the values of
 the study that it uses. From the rows follow the inputs and parameters of the Snakemake rules,
@@ -23,10 +23,10 @@ class Stage:
         Stages whose files it reads.
     values : dict
         Values of the study that it uses: from the name of each value in the file's attribute
-        ``config`` to the dotted attribute of `lube.study.study.Study` that holds it.
+        ``config`` to the dotted attribute of `lube.study.study.Study`, or a mapping of such.
     same_values : tuple of str
         Stages whose values it uses too, without reading their files.
-    measured : bool
+    benchmark : bool
         True for files that `snakemake benchmark` makes. They are not results of the study.
     """
 
@@ -34,7 +34,7 @@ class Stage:
     inputs: tuple[str, ...] = ()
     values: dict = field(default_factory=dict)
     same_values: tuple[str, ...] = ()
-    measured: bool = False
+    benchmark: bool = False
 
 
 _LINES = {"seed": "seed", "lines": "line_spec"}
@@ -62,10 +62,11 @@ _ROWS = (
     Stage("roughness", values=_LINES),
     Stage(
         "contact",
-        inputs=("film", "roughness"),
+        inputs=("film",),
         values=_LINES | _CONTACT | {"revolutions": "revolutions"},
+        same_values=("roughness",),  # each batch draws its lines itself
     ),
-    Stage("master", inputs=("film", "roughness"), values=_LINES | _LAYER),
+    Stage("master", inputs=("film",), values=_LINES | _LAYER, same_values=("roughness",)),
     Stage(
         "trace",
         inputs=("film", "roughness"),
@@ -87,7 +88,7 @@ _ROWS = (
                 "temperature": "operating_grid.temperature",
             },
         },
-        same_values=("roughness",),  # it draws the lines of the rig's own rollers
+        same_values=("roughness",),  # it draws the lines of the simulated rig's rollers
     ),
     Stage("rig", inputs=("film",), values={"traces": "traces"}, same_values=("experiment",)),
     Stage("comparison", inputs=("film", "contact", "experiment")),
@@ -96,19 +97,19 @@ _ROWS = (
         "coverage",
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),
-        measured=True,
+        benchmark=True,
     ),
-    Stage("speed", same_values=("contact",), measured=True),
-    Stage("reading", measured=True),
+    Stage("speed", same_values=("contact",), benchmark=True),
+    Stage("reading", benchmark=True),
 )
 
 STAGES = {row.name: row for row in _ROWS}
 """The registry: from name to `Stage`, each after those it depends on."""
 
-DATASETS = tuple(row.name for row in _ROWS if not row.measured)
+DATASETS = tuple(row.name for row in _ROWS if not row.benchmark)
 """The results of a study, one file each."""
 
-MEASURED = tuple(row.name for row in _ROWS if row.measured)
+BENCHMARKS = tuple(row.name for row in _ROWS if row.benchmark)
 """Files that `snakemake benchmark` makes; they are not among the results of a study."""
 
 

@@ -18,7 +18,7 @@ comment        CF attribute
 =============  ==================================================================================
 
 ``files.csv`` has one row per file: the global attributes that it must have, separated by spaces,
-and a summary of its content. A file without a summary is deleted at the end of a run.
+and a summary of its content. A file without a summary is an intermediate result.
 """
 
 import csv
@@ -48,7 +48,7 @@ class Variable:
         NumPy's letter of its type: ``f`` float, ``i`` integer, ``b`` boolean (stored as int8),
         ``U`` text.
     content : str
-        As in the table.
+        As in the column ``content``.
     attributes : dict
         Further CF attributes.
     """
@@ -114,13 +114,13 @@ FILES = {row["file"]: _VARIABLES[row["file"]] for row in _FILES}
 """Required variables of each kind of file, by the kind's name."""
 
 SUMMARIES = {row["file"]: row["summary"] for row in _FILES if row["summary"]}
-"""What each kind of file that is kept contains, in a sentence or two."""
+"""What each kind of file contains, in a sentence or two; intermediate results have no entry."""
 
 ATTRIBUTES = {row["file"]: tuple(row["attributes"].split()) for row in _FILES if row["attributes"]}
 """Required global attributes, by kind of file."""
 
 OPERATING_DIMS = FILES["film"]["film_thickness"].dims
-"""Dimensions of a variable at the operating points of the grid, by every film formula."""
+"""Dimensions of a variable over the operating grid that depends on the film formula."""
 
 CONTACT_DIMS = FILES["contact"]["breakthrough_probability_mean"].dims
 """Dimensions of the contact model's results."""
@@ -132,7 +132,7 @@ LAYER_DIMS = FILES["master"]["layer_breakthrough_probability"].dims[1:]
 """Dimensions of the master map for weaker and stronger boundary layers, without `realisation`."""
 
 POINT_DIMS = FILES["film"]["moes_load"].dims
-"""Dimensions of a variable at the operating points that no film formula changes."""
+"""Dimensions of a variable over the operating grid that does not depend on the film formula."""
 
 EXPERIMENT_DIMS = ("slide_to_roll_ratio", *POINT_DIMS)
 """Operating variables of an experiment."""
@@ -141,7 +141,7 @@ AT_RECORDS = (
     *("force", "speed", "temperature", "slide_to_roll_ratio", "lubricant"),
     *("force_level", "speed_level", "temperature_level", "pair", "duration"),
 )
-"""Measured conditions of each record, and the study's levels assigned to it."""
+"""Variables that describe each record: its conditions, and the study's levels assigned to it."""
 
 LIMITS = ("", "_lower", "_upper")
 """Suffixes of the variables that hold an estimate and the limits of its 95 % interval."""

@@ -37,7 +37,7 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
         The ``roughness`` file of `lube.schema`. Heights are in m, exact multiples of the
         height step; where the rollers differ in size, the shorter line is padded with NaN.
     """
-    dataset = _lines_in_steps(spec, seed, realisations)
+    dataset = roughness_batch(spec, seed, realisations)
     steps = dataset["height"]
     heights = steps.where(steps != PADDING) * spec.height_step
     dataset = dataset.assign(height=heights)
@@ -62,7 +62,7 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
 
 
 def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> xr.Dataset:
-    """Draw realisations as whole height steps, the compact input of the contact stage.
+    """Draw realisations as whole height steps, which the other stages use without a file.
 
     Parameters
     ----------
@@ -72,16 +72,9 @@ def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
     Returns
     -------
     xarray.Dataset
-        The ``roughness_batch`` file of `lube.schema`: int32 heights in height steps, which the
-        attribute ``scale_factor`` converts into m.
+        ``height`` over (realisation, roller, position), int32, in height steps; the attribute
+        ``height_step`` is the step in m. The shorter line is padded with `PADDING`.
     """
-    dataset = label(_lines_in_steps(spec, seed, realisations), "roughness_batch")
-    dataset["height"].attrs["scale_factor"] = spec.height_step
-    return dataset
-
-
-def _lines_in_steps(spec, seed, realisations):
-    """Heights in height steps, int32, over (realisation, roller, position)."""
     heights = np.full((len(realisations), len(ROLLERS), max(spec.points)), PADDING, np.int32)
     for row, realisation in enumerate(realisations):
         for roller, line in enumerate(draw_realisation(spec, seed, realisation)):

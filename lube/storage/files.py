@@ -11,7 +11,7 @@ from lube.errors import DataError
 from lube.types import File
 
 _FULL = 0.5
-"""Free space below which a disk counts as full, MiB: the NetCDF library does not give a reason."""
+"""Free space below which a disk counts as full, MiB; the NetCDF library gives no reason."""
 
 
 @contextlib.contextmanager
@@ -44,7 +44,7 @@ def written_whole(path: File) -> Iterator[Path]:
             leftover.unlink()
         yield part
         os.replace(part, path)
-    except (OSError, RuntimeError) as error:  # the NetCDF library raises the latter
+    except (OSError, RuntimeError) as error:  # the NetCDF library raises RuntimeError
         raise DataError(f"{path}: cannot be written: {why_not(error, path)}") from error
     finally:
         with contextlib.suppress(OSError):

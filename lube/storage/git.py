@@ -9,7 +9,7 @@ from subprocess import DEVNULL, CalledProcessError, check_output
 ROOT = Path(__file__).parents[2]
 """Folder of the Snakefile, if the code runs from a clone or an unpacked archive."""
 
-# The user's own studies, records and notes may stand among these and do not belong to the code.
+# Named one by one, since the user's own studies, records and notes may lie beside them.
 _CODE = (
     *("Snakefile", "pyproject.toml", "LICENSE", "CITATION.cff"),
     *("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/**/*", "lube/**/*"),
@@ -65,13 +65,13 @@ def commit() -> str:
     return head + ("+changes" if changed else "")
 
 
-def changed_since(name: str, files: Iterable[str]) -> list[str] | None:
+def changed_since(revision: str, files: Iterable[str]) -> list[str] | None:
     """List the files that differ from a commit, new files included.
 
     Parameters
     ----------
-    name : str
-        The commit.
+    revision : str
+        The commit, by any name that Git knows.
     files : iterable of str
         Their paths below `ROOT`.
 
@@ -81,16 +81,16 @@ def changed_since(name: str, files: Iterable[str]) -> list[str] | None:
         None if there is no Git repository or no such commit.
     """
     files = set(files)
-    changed = _git("diff", "--name-only", "-z", name, "--")
+    changed = _git("diff", "--name-only", "-z", revision, "--")
     if changed is None:
         return None
     new = _git("ls-files", "--others", "--exclude-standard", "-z")
     return sorted(files & {*changed.split("\0"), *new.split("\0")})
 
 
-def text_in(name: str, file: str) -> str | None:
+def text_in(revision: str, file: str) -> str | None:
     """Text of a file, given by its path below `ROOT`, in a commit; None if it has no such file."""
-    return _git("show", f"{name}:{file}")
+    return _git("show", f"{revision}:{file}")
 
 
 @functools.cache

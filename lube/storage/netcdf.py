@@ -65,7 +65,7 @@ def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
     kind : str
         A key of `lube.schema.FILES`.
     study : Study, optional
-        If given, the file must follow from this study's values.
+        If given, the file must have been computed from this study's values.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
     Raises
     ------
     DataError
-        If the file is missing, truncated, damaged, not of this kind, or follows from other
+        If the file is missing, truncated, damaged, not of this kind, or computed from other
         values than the study's.
     """
     path = Path(path)
@@ -89,8 +89,9 @@ def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
             return dataset.load()
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         reason = (str(error) or type(error).__name__).splitlines()[0]
-        message = f"{path}: not a whole NetCDF file, truncated, damaged or foreign ({reason})"
-        raise DataError(message) from error
+        raise DataError(
+            f"{path}: not a whole NetCDF file, truncated, damaged or of another kind ({reason})"
+        ) from error
 
 
 def _encoding(dataset):

@@ -1,4 +1,4 @@
-"""The origin of a result, stored in its file so that others can check it years later.
+"""Provenance: what a result was computed from, stored in its file for checks years later.
 
 Every file states the values of the study that determine it, the SHA-256 sums of the files it was
 made from, and the code and libraries that made it. It holds no clock time: the same study gives
@@ -72,10 +72,8 @@ def descriptive_attributes(study: "Study", kind: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    study : Study
-        The study.
-    kind : str
-        A key of `lube.schema.FILES`.
+    study, kind
+        As in `global_attributes`.
 
     Returns
     -------
@@ -96,7 +94,7 @@ def descriptive_attributes(study: "Study", kind: str) -> dict[str, Any]:
 
 
 def _stage(kind):
-    """Name of the stage of a kind of file: batches go by their stage's name."""
+    """Name of the stage of a kind of file, which may be a batch."""
     return kind.removesuffix("_batch")
 
 
@@ -110,7 +108,7 @@ def _source(study, stage):
 
 
 def title_of(study: "Study") -> str:
-    """Title of a study's results: its own, or else one with the study's name."""
+    """Title of a study's results: as given, by default one with the study's name."""
     return study.about.title or f"Mixed lubrication study {study.name}"
 
 
@@ -119,22 +117,20 @@ def config_text(study: "Study", kind: str) -> str:
 
     Parameters
     ----------
-    study : Study
-        The study.
-    kind : str
-        A key of `lube.schema.FILES`.
+    study, kind
+        As in `global_attributes`.
 
     Returns
     -------
     str
-        A mapping from stage to its values, in SI units (but rpm and degC); the stages before it
-        are included.
+        A mapping from stage to its values, in SI units (except rpm and degC): this stage and
+        those it depends on.
     """
     return json.dumps(study.origin(_stage(kind)), sort_keys=True)
 
 
 def check_config(dataset: xr.Dataset, study: "Study", kind: str, where: File) -> None:
-    """Check that a file follows from a study's values.
+    """Check that a file was computed from a study's values.
 
     Parameters
     ----------
@@ -156,7 +152,7 @@ def check_config(dataset: xr.Dataset, study: "Study", kind: str, where: File) ->
     wanted = json.loads(config_text(study, kind))
     if came != wanted:
         difference = _difference(came, wanted)
-        raise DataError(f"{where}: belongs to other values than this study's: {difference}{REMEDY}")
+        raise DataError(f"{where}: made from other values than this study's: {difference}{REMEDY}")
 
 
 def merged_config(datasets: Iterable[xr.Dataset]) -> str:
@@ -170,7 +166,7 @@ def merged_config(datasets: Iterable[xr.Dataset]) -> str:
     Returns
     -------
     str
-        As from `config_text`; that of a single file is its own.
+        As from `config_text`; of a single file, its attribute ``config``.
 
     Raises
     ------

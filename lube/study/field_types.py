@@ -1,7 +1,7 @@
 """Field types shared by studies, lubricant records and manifests, and their error messages.
 
-All three are files turned into frozen pydantic models: a strict base model, fields that hold SI
-numbers but are written with their units, and the one line that reports a refused value.
+All three kinds of file become frozen pydantic models. Here are their strict base class, the types
+of fields that are written with a unit and kept in SI, and the one-line message on a refused value.
 """
 
 import ast
@@ -76,7 +76,7 @@ def _in_words(limits):
 def bounded(number: float, units: str | None, **limits: float) -> float:
     """Return the number if it lies within its limits.
 
-    Its magnitude, unless it is 0, must be from 1e-30 to 1e30, so that no power of it overflows.
+    Unless it is 0, its magnitude must be from 1e-30 to 1e30, so that no power of it overflows.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def pure_number(**limits: float) -> Any:
 
 
 def checked_text(check: Callable[[str], object], kind: str) -> Any:
-    """Make a field type for a text that is kept as written, once a function has accepted it.
+    """Make a field type for a text that a function accepts; it is kept as written.
 
     Parameters
     ----------
@@ -183,14 +183,14 @@ def checked_text(check: Callable[[str], object], kind: str) -> Any:
 
 
 def length_or_words(accepts: Callable[..., bool], words: str) -> Any:
-    """Make a field type for a length in whose place words may stand, which are kept as written.
+    """Make a field type for a length or, in its place, certain words, which are kept as written.
 
     Parameters
     ----------
     accepts : callable
-        Whether what is written are such words; may raise LubeError.
+        Takes the value and says whether it is such words; may raise LubeError.
     words : str
-        What they are, for messages and for the JSON schema.
+        What the words are, for messages and for the JSON schema.
 
     Returns
     -------
@@ -305,7 +305,7 @@ def validate(model: type[Model], content: dict, where: File, error_type: type) -
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        # A misspelt key comes first: the right one, which now is missing, follows from it.
+        # A misspelt key comes first: that the right one is missing only follows from it.
         mistakes = sorted(error.errors(), key=lambda mistake: mistake["type"] not in _UNKNOWN)
         more = f" (and {len(mistakes) - 1} more)" if len(mistakes) > 1 else ""
         raise error_type(f"{where}: {_in_one_line(mistakes[0], model)}{more}") from None

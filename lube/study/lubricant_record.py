@@ -56,7 +56,7 @@ class Viscosity(Sourced):
     """Where the viscosity comes from: points, a CSV file or a CoolProp fluid."""
 
     points: tuple[ViscosityPoint, ...] | None = None
-    """viscosities at two temperatures or more; from the CSV file, if any"""
+    """viscosities at two temperatures or more"""
     csv: Text | None = None
     """CSV file in the record's folder"""
     coolprop_fluid: Text | None = None
@@ -125,7 +125,7 @@ class ThermalConductivity(Sourced):
 
 
 class TemperatureRange(Sourced):
-    """Temperatures at which the lubricant record is valid, if not those of its data."""
+    """Temperatures at which the lubricant record is valid, in place of those of its data."""
 
     lowest: OilTemperature
     highest: OilTemperature
@@ -190,7 +190,7 @@ class LubricantRecord(StrictModel):
         """Lowest and highest temperature at which the lubricant record is valid, degC.
 
         From `temperature_range` if it is given, else from the data, else the liquid range of
-        CoolProp, which then is imported.
+        CoolProp, which is imported for it.
         """
         if self.temperature_range is not None:
             return self.temperature_range.lowest, self.temperature_range.highest
@@ -230,7 +230,7 @@ def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
     name_or_path : str or Path
         Name of a shipped record, or path of a ``.yaml`` file.
     folder : str or Path, optional
-        Folder that a relative path starts from.
+        Folder that a relative path starts from; by default the current one.
 
     Returns
     -------
@@ -304,7 +304,7 @@ def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
 
     The first line names the columns with their units: ``temperature [degC]`` and either
     ``kinematic_viscosity [mm^2/s]`` or ``dynamic_viscosity [mPa*s]``. Columns are separated by
-    commas, or by semicolons or tabs; with the latter two a decimal comma is understood. Empty
+    tabs, semicolons or commas; with tabs or semicolons, numbers may have decimal commas. Empty
     lines and lines that begin with ``#`` are ignored.
 
     Parameters
@@ -331,7 +331,7 @@ def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
         if len(cells) != len(columns):
             raise RecordError(f"{where}: got {len(cells)} values, need {len(columns)}")
         with_points = [cell for cell in cells if "." in cell]
-        if decimal_comma and with_points:  # which separate thousands, or are mistakes
+        if decimal_comma and with_points:  # thousands separators, or mistakes
             raise RecordError(
                 f"{where}: got {shown(with_points[0])} in a file with decimal commas, need no point"
             )
@@ -342,7 +342,7 @@ def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
 
 
 def _csv_columns(cells, where):
-    """Units by column name, in the order of the columns."""
+    """Units of the columns by name, in the order of the columns."""
     columns = dict(cell.groups() for cell in map(HEADER_CELL.fullmatch, cells) if cell)
     ways = [{"temperature", "kinematic_viscosity"}, {"temperature", "dynamic_viscosity"}]
     if len(cells) != 2 or set(columns) not in ways:
@@ -353,7 +353,7 @@ def _csv_columns(cells, where):
 def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -> None:
     """Refuse temperatures at which a lubricant record is not valid.
 
-    Cheap, unless the record names a CoolProp fluid and no range, which then is CoolProp's.
+    Cheap, unless the record names a CoolProp fluid and no range: CoolProp is imported to give one.
 
     Parameters
     ----------

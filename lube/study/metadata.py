@@ -76,7 +76,7 @@ class About(StrictModel):
     """Title, authors and licence of a study's results."""
 
     title: _Line | None = None
-    """title of the results; else the study's name"""
+    """title of the results; by default one with the study's name"""
     summary: _Line = (
         "Share of time with metal contact between two rough rollers that roll under load with oil "
         "between them: elastohydrodynamic film thickness, rough lines by the Method of "
@@ -84,7 +84,7 @@ class About(StrictModel):
     )
     """what the results are, in a sentence or two"""
     creators: tuple[Creator, ...] = ()
-    """who made them; an archive needs one at least"""
+    """who made them; an archive needs at least one"""
     licence: Literal[tuple(LICENCES)] = "CC-BY-4.0"
     """licence of the results"""
     keywords: tuple[_Line, ...] = Field(
@@ -96,7 +96,7 @@ class About(StrictModel):
     )
     """keywords"""
     date: _Day | None = None
-    """day of publication, for the archive; else that of the code's commit"""
+    """day of publication, for the archive; by default that of the code's commit"""
     doi: _Doi | None = None
     """DOI that the repository reserved for the archive"""
 
@@ -110,6 +110,6 @@ class About(StrictModel):
 
     @property
     def in_files(self) -> dict:
-        """The part that goes into every file; the rest concerns the archive alone."""
+        """What every file states; the rest is for the archive alone."""
         only_archived = {"date": True, "doi": True, "creators": {"__all__": {"orcid"}}}
         return self.model_dump(mode="json", exclude=only_archived)

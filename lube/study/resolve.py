@@ -47,10 +47,10 @@ def resolved_content(path: File, changes: dict | None = None, folder: File | Non
     path : str or Path
         YAML file of the study.
     changes : dict, optional
-        Values to change, nested as in the file, such as Snakemake's ``--config`` gives them.
+        Values to change, nested as in the file, as Snakemake's ``--config`` gives them.
         They must contain a new ``name``. Paths in them start from the study's folder.
     folder : str or Path, optional
-        Folder that the relative paths in the result start from; else the study's folder.
+        Folder that the relative paths in the result start from; by default the study's folder.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def resolved_content(path: File, changes: dict | None = None, folder: File | Non
 
 
 def resolved_text(path: File, changes: dict | None = None, folder: File | None = None) -> str:
-    """Write a study as a single file, which is based on no other.
+    """Write a study as the text of a single file, which is based on no other.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def resolved_text(path: File, changes: dict | None = None, folder: File | None =
     """
     names = " based on ".join(file.name for file in study_files(path))
     yaml = YAML()
-    yaml.width = 200  # no text is broken
+    yaml.width = 200  # columns, so that no text is wrapped
     yaml.representer.ignore_aliases = lambda _: True
     text = io.StringIO()
     yaml.dump(resolved_content(path, changes, folder), text)
@@ -104,7 +104,7 @@ def _chain(path, above=()):
     """Files from the study's own to the last base, each with its content."""
     if path.resolve() in [file.resolve() for file in above]:
         circle = " -> ".join(file.name for file in (*above, path))
-        raise StudyError(f"{above[0]}: based_on: got the circle {circle}, need a last file")
+        raise StudyError(f"{above[0]}: based_on: got the circle {circle}, need a chain that ends")
     content = read_yaml(path, StudyError)
     base = content.pop("based_on", None)
     if base is None:
@@ -115,7 +115,7 @@ def _chain(path, above=()):
 
 
 def _on_top(base, changes, where):
-    """Merge changes into the study below, if there is one and they have a new name."""
+    """Merge changes into the study below, if any; they must have a new name."""
     if base and changes.get("name") in (None, base.get("name")):
         raise StudyError(
             f"{where}: name: got {shown(changes.get('name'))}, need one other than "
@@ -131,7 +131,7 @@ def _merged(base, changes):
 
 
 def _with_paths_from(content, here, there):
-    """Rewrite the relative paths of a content from one folder to another."""
+    """Rewrite the relative paths in a study's content from one folder to another."""
     if here.resolve() == there.resolve():
         return content
 

@@ -1,6 +1,6 @@
 """The rig that measures contact by electrical resistance, and the evaluation of its records.
 
-Every default except the threshold of 100 ohm is assumed: the paper says nothing of the circuit.
+Every default except the threshold of 100 ohm is assumed: the paper says nothing about the circuit.
 Voltages far below a volt are usual, so that the film does not break down electrically.
 """
 
@@ -20,7 +20,7 @@ class Rig(StrictModel, validate_default=True):
     """Circuit, amplifier and sampling of a simulated twin-disc rig."""
 
     bias_voltage: quantity("V", above=0.0) = "50 mV"
-    """voltage over rollers and series resistor"""
+    """voltage across rollers and series resistor"""
     series_resistance: _Resistance = "100 ohm"
     """resistor in series with the rollers"""
     lead_resistance: quantity("ohm", least=0.0) = "0.2 ohm"
@@ -47,8 +47,7 @@ class Rig(StrictModel, validate_default=True):
     """
     drift: pure_number(least=0.0, most=1.0) = 0
     """share of the variance of the roughness that each revolution renews, of the simulated
-    rollers and, as an assumption, of measured ones; 0: the roughness stays and each
-    revolution repeats the last
+    rollers and, as an assumption, of measured ones; at 0 the roughness stays the same
     """
 
     @property
@@ -58,7 +57,7 @@ class Rig(StrictModel, validate_default=True):
 
 
 class Experiment(StrictModel, validate_default=True):
-    """Source of the rig's records, and the criterion of contact."""
+    """Source of the rig's records, and the criterion for contact."""
 
     manifest: str | None = None
     """CSV or YAML list of measured records; without it the rig is simulated"""
@@ -71,8 +70,8 @@ class Experiment(StrictModel, validate_default=True):
     force_tolerance: pure_number(above=0.0, most=1.0) = 0.01
     """relative deviation of a record's force from a level of the grid, at most"""
     speed_tolerance: pure_number(above=0.0, most=1.0) = 0.01
-    """the same for its rotation speed; also the largest deviation of that speed from the one at
-    which the record repeats itself
+    """the same for its rotation speed; also the largest relative deviation of that speed from the
+    one at which the record repeats itself
     """
     temperature_tolerance: quantity("K", above=0.0) = "1 K"
     """deviation of a record's temperature from a level of the grid, at most"""

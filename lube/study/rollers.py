@@ -62,7 +62,7 @@ class RollerPair(StrictModel):
 
     @property
     def composite_rms_roughness(self) -> float:
-        r"""Composite rms roughness :math:`\sqrt{h_1^2 + h_2^2}` of the independent lines, m."""
+        r"""Composite roughness :math:`(\sigma_1^2 + \sigma_2^2)^{1/2}` of independent lines, m."""
         return math.hypot(self.first.rms_roughness, self.second.rms_roughness)
 
     def contact_half_width(self, force: float | np.ndarray) -> float | np.ndarray:
@@ -75,7 +75,7 @@ def _is_points(value):
 
 
 def _points_of(wavelength):
-    """``"10 points"`` -> 10.0, at least the two that make a wave."""
+    """``"10 points"`` -> 10.0; a wave has at least two."""
     number = parse_number(wavelength.removesuffix(" points"))
     return bounded(number, "points", least=2.0, most=MOST_POINTS)
 
@@ -94,14 +94,14 @@ class Roughness(StrictModel):
     the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
     0.61
     """
-    shortest_wavelength: length_or_words(_is_points, "as in `10 points`")
+    shortest_wavelength: length_or_words(_is_points, "a number of grid points such as `10 points`")
     """2 pi / q_max; the break-up of the boundary layer depends on it"""
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
 
 
 class BoundaryLayer(StrictModel):
-    """The adsorbed boundary layer, which breaks at metal contact (the paper's Eqs. 4 and 6)."""
+    """Boundary layer on the rollers; metal contact is where it breaks (paper, Eqs. 4 and 6)."""
 
     critical_thickness: Length
     """critical thickness h_c"""
@@ -204,7 +204,7 @@ def _check_waves(spec, longest, shortest):
 
 
 def _check_height_step(spec):
-    """Heights must be many steps high, and their peaks must fit a 32-bit integer."""
+    """Rms heights must be many height steps, and peaks must fit a 32-bit integer."""
     for rms in spec.rms_height:
         if not 1e3 <= rms / spec.height_step <= 1e7:
             raise StudyError(

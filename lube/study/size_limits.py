@@ -15,14 +15,14 @@ MOST_POINTS = 2**24
 """Largest number of points around a roller: 19 nm apart on the paper's rollers."""
 
 MOST_BATCHES = 10_000
-"""Largest number of batches of realisations: Snakemake plans four jobs for each."""
+"""Largest number of batches of realisations: Snakemake plans a job for each."""
 
 FOLDED_NUMBERS = 10_000
-"""Approximate length of what is kept of each record: its folded revolution and its trace."""
+"""Approximate numbers kept of each record: its folded revolution and its trace."""
 
 
 def check_sizes(study: "Study") -> None:
-    """Refuse a study that a workstation cannot hold, or Snakemake not plan.
+    """Refuse a study too large for a workstation's memory or for Snakemake to plan.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def check_sizes(study: "Study") -> None:
 
 
 def _sizes(study):
-    """Key that decides, number, name and limit of what may become too large."""
+    """For each size: the key that decides it, the number, what it counts, and its limit."""
     rig, grid, points = study.rig, study.operating_grid, study.line_spec.points
     pair = 2 * max(points)
     levels = (grid.force, grid.speed, grid.temperature, study.slips, study.lubricants)

@@ -14,7 +14,7 @@ HEADER_CELL = re.compile(r"(\w+)\s*\[\s*([^\]\s](?:[^\]]*[^\]\s])?)\s*\]")
 
 
 def read_cells(path: File, error_type: type) -> list[tuple[int, list[str]]]:
-    """Read the cells of a CSV file, the first line with the names of the columns.
+    """Read the cells of a CSV file, whose first line names the columns.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def read_cells(path: File, error_type: type) -> list[tuple[int, list[str]]]:
     Returns
     -------
     list of tuple
-        Number in the file, from 1 on, and cells of each line.
+        Line number in the file, counted from 1, and cells of each line.
 
     Raises
     ------
@@ -49,18 +49,18 @@ def delimiter_of(header: str) -> str:
     >>> delimiter_of("time [s]; voltage [V]")
     ';'
     """
-    return next((sign for sign in "\t;" if sign in header), ",")
+    return next((char for char in "\t;" if char in header), ",")
 
 
 def split_cells(line: str, delimiter: str) -> list[str]:
-    """Split a line into cells, without the blanks and quotes around them.
+    """Split a line into cells, without the spaces and quotes around them.
 
     Parameters
     ----------
     line : str
         One line of the file.
     delimiter : str
-        The character between cells.
+        Character between cells.
 
     Returns
     -------

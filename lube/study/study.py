@@ -3,7 +3,7 @@
 The models below are the only description of the configuration. The documented table of keys
 follows from their JSON schema and the one-line errors from their validators.
 `Study.stage_inputs` gives the values that a stage depends on, so that a change re-runs that stage
-and no other.
+and those after it only.
 """
 
 import math
@@ -60,7 +60,7 @@ _TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "s
 
 
 class TracePoint(StrictModel):
-    """An operating point at which the contact is kept at every time step."""
+    """An operating point whose contact is kept at every time step of a revolution."""
 
     force: quantity("N")
     """a force of the grid"""
@@ -69,11 +69,11 @@ class TracePoint(StrictModel):
     temperature: quantity("degC")
     """a temperature of the grid"""
     lubricant: str | None = None
-    """a lubricant of the study; else its first"""
+    """a lubricant of the study; by default its first"""
     film_formula: str | None = None
-    """a formula of the study; else its first"""
+    """a formula of the study; by default its first"""
     slide_to_roll_ratio: pure_number() | None = None
-    """a ratio of the grid; else its first"""
+    """a ratio of the grid; by default its first"""
 
 
 class Study(StrictModel):
@@ -108,7 +108,7 @@ class Study(StrictModel):
     traces: tuple[TracePoint, ...] = Field(min_length=1)
     """operating points recorded over one revolution"""
     rig: Rig = Field(default_factory=Rig)
-    """the rig, simulated or measured on"""
+    """the simulated rig, and the drift assumed for measured records"""
     experiment: Experiment = Field(default_factory=Experiment)
     """its records and their evaluation"""
 
@@ -170,9 +170,9 @@ class Study(StrictModel):
 
     @property
     def evaluation(self) -> dict:
-        """Settings of the experiment; of the manifest only whether there is one.
+        """Settings of the experiment; for the manifest only whether there is one.
 
-        A measured file is identified by its contents, wherever it lies.
+        Measured files are identified by their contents, not by their paths.
         """
         values = self.experiment.model_dump(mode="json")
         return values | {"manifest": self.experiment.manifest is not None}
@@ -194,7 +194,7 @@ class Study(StrictModel):
         return _plain(self, STAGES[stage].values)
 
     def origin(self, stage: str) -> dict:
-        """Return all values that a stage's result follows from, its forerunners' included.
+        """Return all values that determine a stage's result, those of its forerunners included.
 
         Parameters
         ----------
@@ -252,11 +252,11 @@ class Study(StrictModel):
 
     @property
     def trace_points(self) -> list[dict]:
-        """Operating points of the traces, a list of dicts from coordinate to level."""
+        """Operating point of each trace: a dict from coordinate to level."""
         return [self._trace_point(number, point) for number, point in enumerate(self.traces)]
 
     def _trace_point(self, number, point):
-        """Levels of the study that a trace names, the first of those that it does not name."""
+        """Level of each variable at a trace: the named one, by default the study's first."""
         available = dict(self.operating_grid) | {
             "lubricant": [record.name for record in self.lubricants],
             "film_formula": self.film_formulas,
@@ -275,7 +275,7 @@ class Study(StrictModel):
 
 
 def _plain(study, values):
-    """Values at some dotted attributes of a study, as plain data."""
+    """Values of a study at dotted attributes, as plain data."""
     if isinstance(values, dict):
         return {name: _plain(study, value) for name, value in values.items()}
     return to_jsonable_python(attrgetter(values)(study))
@@ -289,7 +289,7 @@ def load_study(path: File, changes: dict | None = None) -> Study:
     path : str or Path
         YAML file of the study; it may be based on another, see `lube.study.resolve`.
     changes : dict, optional
-        Values to change, nested as in the file, such as Snakemake's ``--config`` gives them.
+        Values to change, nested as in the file, as Snakemake's ``--config`` gives them.
         They must contain a new ``name``.
 
     Returns

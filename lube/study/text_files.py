@@ -9,7 +9,7 @@ from lube.types import File
 
 
 class _Constructor(SafeConstructor):
-    """Dates stay text, so that a date that does not exist is refused with its key."""
+    """Keeps dates as text, so that a date that does not exist is refused with its key."""
 
 
 _Constructor.add_constructor("tag:yaml.org,2002:timestamp", SafeConstructor.construct_yaml_str)
@@ -72,10 +72,10 @@ def read_yaml(path: File, error_type: type, kind: type = dict) -> dict | list:
     text = read_text(path, error_type)
     try:
         content = yaml.load(text)
-    except Exception as error:  # not only the library's own: a tag's value may raise any
+    except Exception as error:  # besides the library's own: a tag's value may raise any
         mark = getattr(error, "problem_mark", None)
         line = f" at line {mark.line + 1}" if mark else ""
-        # Of a repeated key the library goes on to print both values, however long.
+        # For a repeated key the library also prints both values, however long they are.
         reason = str(getattr(error, "problem", error)).partition(" with value ")[0]
         raise error_type(f"{path}: not valid YAML{line}: {reason}") from None
     if not isinstance(content, kind):

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from lube.errors import LubeError
-from lube.schema import DATASETS, MEASURED
+from lube.schema import BENCHMARKS, DATASETS
 from lube.types import File
 
 
@@ -137,7 +137,7 @@ def datasets_of(notebook: File) -> dict[str, str]:
     LubeError
         As from `parameters_of`.
     """
-    kinds = {f"{kind}.nc": kind for kind in (*DATASETS, *MEASURED)}
+    kinds = {f"{kind}.nc": kind for kind in (*DATASETS, *BENCHMARKS)}
     values = parameters_of(notebook).items()
     names = {parameter: str(value).rsplit("/", 1)[-1] for parameter, value in values}
     return {parameter: kinds[name] for parameter, name in names.items() if name in kinds}

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lube.report.markdown import title_and_text
-from lube.schema import MEASURED
+from lube.schema import BENCHMARKS
 from lube.study.study import Study
 from lube.types import File
 from lube.workflow.cells import cells_of, datasets_of, python_of
@@ -43,9 +43,9 @@ class Figure:
     tags: list[str]
 
     @property
-    def measured(self) -> bool:
-        """Whether it shows measured times; such a figure is made on request only."""
-        return not set(self.datasets).isdisjoint(MEASURED)
+    def benchmark(self) -> bool:
+        """Whether it shows a benchmark; such a figure is made on request only."""
+        return not set(self.datasets).isdisjoint(BENCHMARKS)
 
     @property
     def chapter(self) -> str:
@@ -121,6 +121,6 @@ def chapters(figures: dict[str, Figure]) -> dict[str, str]:
         From each figure's name to its chapter, such as ``1 Oil and film``: in the order of the
         figures, measured times last.
     """
-    ordered = sorted(figures.values(), key=lambda figure: (figure.measured, figure.name))
+    ordered = sorted(figures.values(), key=lambda figure: (figure.benchmark, figure.name))
     names = list(dict.fromkeys(figure.chapter for figure in ordered))
     return {name: f"{1 + names.index(one.chapter)} {one.chapter}" for name, one in figures.items()}

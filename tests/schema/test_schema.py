@@ -23,7 +23,7 @@ def example(kind):
     """A dataset with the variables, dimensions and types of a kind, but no labels."""
     variables = {name: (row.dims, values_of(row)) for name, row in FILES[kind].items()}
     dims = {dim for row in FILES[kind].values() for dim in row.dims} & COORDINATES.keys()
-    coords = {dim: values_of(COORDINATES[dim]) for dim in dims if dim != "position"}
+    coords = {dim: values_of(COORDINATES[dim]) for dim in dims}
     return xr.Dataset(variables, coords, dict.fromkeys(ATTRIBUTES.get(kind, ()), 1.0))
 
 

@@ -20,7 +20,7 @@ def unequal(make_spec):
 def test_both_datasets_hold_the_lines_drawn(unequal):
     lines = roughness_lines(unequal, SEED, [4, 2])
     batch = roughness_batch(unequal, SEED, [4, 2])
-    assert batch["height"].attrs["scale_factor"] == unequal.height_step
+    assert batch.attrs["height_step"] == unequal.height_step
     for realisation in (4, 2):
         drawn = draw_realisation(unequal, SEED, realisation)
         for dataset in (lines, batch):

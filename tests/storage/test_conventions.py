@@ -6,8 +6,8 @@ import cf_units
 import netCDF4
 import pytest
 from compliance_checker.runner import CheckSuite, ComplianceChecker
-from every_kind import KINDS
 
+from lube.schema import FILES
 from lube.storage.provenance import global_attributes
 
 
@@ -32,7 +32,7 @@ def checker():
     ],
 )
 def test_files_follow_the_conventions(files, checker, tmp_path, convention, asked, allowed):
-    for kind in KINDS:
+    for kind in FILES:
         report = tmp_path / f"{kind}.json"
         _, broke = checker.run_checker(
             str(files / f"{kind}.nc"),
@@ -48,7 +48,7 @@ def test_files_follow_the_conventions(files, checker, tmp_path, convention, aske
 
 
 def test_variables_are_named_and_stored_as_the_conventions_ask(files, study):
-    for kind in KINDS:
+    for kind in FILES:
         with netCDF4.Dataset(files / f"{kind}.nc") as raw:
             assert raw.data_model == "NETCDF4"
             for name, value in global_attributes(study, kind).items():

@@ -3,10 +3,10 @@
 import shutil
 
 import xarray as xr
-from every_kind import KINDS
 from refusals import one_line
 
 from lube.errors import DataError
+from lube.schema import FILES
 from lube.storage.netcdf import load
 
 
@@ -22,7 +22,7 @@ def test_a_missing_file_and_a_folder_are_named(tmp_path):
 
 
 def test_a_truncated_file_is_refused(files, tmp_path):
-    for kind in KINDS:
+    for kind in FILES:
         whole = (files / f"{kind}.nc").read_bytes()
         path = tmp_path / f"{kind}.nc"
         for length in (0, 7, len(whole) // 100, len(whole) // 2, len(whole) - 1):
@@ -42,7 +42,7 @@ def test_foreign_files_are_refused(tmp_path):
 
 
 def test_a_file_of_another_kind_is_refused(files):
-    for kind in KINDS:
+    for kind in FILES:
         other = "film" if kind != "film" else "trace"
         assert f"not a {other} file" in refusal(files / f"{kind}.nc", other)
 

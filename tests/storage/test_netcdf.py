@@ -4,14 +4,14 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
-from every_kind import KINDS
 
 from lube.errors import DataError
+from lube.schema import FILES
 from lube.storage.netcdf import load, save
 
 
 def test_what_is_saved_is_loaded_with_its_labels(datasets, files):
-    assert set(datasets) == set(KINDS)
+    assert set(datasets) == set(FILES)
     for kind, dataset in datasets.items():
         loaded = load(files / f"{kind}.nc", kind)
         for name in {"in_validity_range", "within_prediction"} & set(loaded):
@@ -49,7 +49,7 @@ def test_a_dataset_saved_twice_or_loaded_and_saved_again_is_the_same(
 def test_a_file_of_other_values_than_the_studys_is_refused(files, study):
     load(files / "contact.nc", "contact", study)
     other = study.model_copy(update={"seed": 1})
-    expected = r"contact.nc: belongs to other values than this study's: .*seed is 20181109, need 1"
+    expected = r"contact.nc: made from other values than this study's: .*seed is 20181109, need 1"
     with pytest.raises(DataError, match=expected):
         load(files / "contact.nc", "contact", other)
 

@@ -82,7 +82,7 @@ def test_a_missing_input_is_named(tmp_path):
 
 def test_a_file_of_other_values_is_refused_with_the_first_difference(study, stronger):
     expected = (
-        r"contact.nc: belongs to other values than this study's: contact.boundary_layer."
+        r"contact.nc: made from other values than this study's: contact.boundary_layer."
         r"shear_strength is 2000000.0, need 1000000.0; delete it and run snakemake again"
     )
     check_config(made_by(study, "contact"), study, "contact", "contact.nc")

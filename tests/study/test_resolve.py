@@ -105,7 +105,7 @@ def test_a_circle_and_a_missing_base_are_refused(write):
     write("a.yaml", based_on="b.yaml", name="a")
     path = write("b.yaml", based_on="a.yaml", name="b")
     message = refusal(load_study, path)
-    assert message.endswith("based_on: got the circle b.yaml -> a.yaml -> b.yaml, need a last file")
+    assert message.endswith("got the circle b.yaml -> a.yaml -> b.yaml, need a chain that ends")
     for base in ("papers.yaml", 3, ["paper.yaml"], "."):
         path = write("mine.yaml", based_on=base, name="mine")
         needed = f"mine.yaml: based_on: got {base!r}, need the path of a study's file"

@@ -26,8 +26,6 @@ def test_every_dataset_fits_the_schema_and_says_what_it_was_made_from(smoke):
         assert attributes["source"].startswith("simulation by lube ")
         assert set(json.loads(attributes["config"])) == {*forerunners(kind), kind}
         read = {f"{name}.nc" for name in STAGES[kind].inputs}
-        # Each batch draws its lines itself.
-        read -= {"roughness.nc"} if kind in ("contact", "master") else set()
         made_from = set(json.loads(attributes["inputs_sha256"]))
         assert {name for name in made_from if name.endswith(".nc")} == read
 

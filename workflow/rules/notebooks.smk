@@ -6,7 +6,7 @@ with one_line_errors():
     FIGURES = study_figures(STUDY)
 
 # Figures of measured times are made by `snakemake benchmark` only.
-TIMINGS = [name for name, figure in FIGURES.items() if figure.measured]
+TIMINGS = [name for name, figure in FIGURES.items() if figure.benchmark]
 ARCHIVED = [name for name in FIGURES if name not in TIMINGS]
 CHAPTERS = chapters(FIGURES)
 
