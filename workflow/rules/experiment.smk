@@ -32,6 +32,6 @@ rule experiment:
     params:
         study=stage_inputs("experiment"),
     message:
-        "Experiment: share of time with contact, from the rig's records"
+        "Experiment: contact shares of the records"
     script:
         "../scripts/experiment.py"
