@@ -5,9 +5,9 @@ of 1, 2, 3 and 4, through a submit script as on a cluster, and in a second clone
 and compares the checksum of each dataset; the clone's figures and executed notebooks too, and all
 that the code and the study's file in the clone's archive make.
 
-So it does as if on lesser processors: NumPy without AVX2 and fused multiply-add, Numba without the
-processor's own instructions, OpenBLAS as on an early one. Last it tells, without a verdict, what
-NumPy's functions for AVX-512 would change, which the workflow switches off.
+It then compares runs as on older processors: NumPy without AVX2 and fused multiply-add, Numba
+without the processor's own instructions, OpenBLAS as on an early one. Last it prints what NumPy's
+functions for AVX-512 would change, which the workflow switches off; this is not a failure.
 It takes about ten minutes on two idle cores.
 """
 
