@@ -12,6 +12,6 @@ rule comparison:
     params:
         study=stage_inputs("comparison"),
     message:
-        "Comparison: breakthrough probabilities against the contact shares of the records"
+        "Comparison: simulated breakthrough against the rig's share of time in contact"
     script:
         "../scripts/comparison.py"

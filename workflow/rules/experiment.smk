@@ -32,6 +32,6 @@ rule experiment:
     params:
         study=stage_inputs("experiment"),
     message:
-        "Experiment: contact shares of the records"
+        "Experiment: share of time with contact, from the rig's records"
     script:
         "../scripts/experiment.py"
