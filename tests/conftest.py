@@ -23,7 +23,7 @@ settings.load_profile("lube")
 
 
 def pytest_collection_modifyitems(items):
-    """One process makes the smoke study first, while the other runs tests that need none."""
+    """Put tests of the smoke study first, in one process; the other begins with those without."""
 
     def rank(item):
         in_workflow = item.path.parent.name == "workflow"
@@ -60,7 +60,7 @@ def attributed_study(study):
 
 @pytest.fixture(scope="session")
 def make_spec(study):
-    """Roughness lines of the study's rollers on a grid of other fineness, or rougher, ..."""
+    """Maker of a line specification: the study's, with other points, radius or roughness."""
 
     def make(points, second_radius=None, second_roughness=None, **roughness):
         second = study.rollers.second

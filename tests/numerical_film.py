@@ -6,16 +6,16 @@ from paper_grid import LENGTH, MODULUS, RADIUS
 from lube.physics import dimensionless, film_formulas
 
 FLOODED = 1000.0
-"""Height of the inlet over the film: with 40 half-widths, less at low load, the film is up to
-8 % thinner (physics-beyond.md, section 10); with ten times the height, 0.1 % thicker."""
+"""Height of the gap at the inlet's end, over the film thickness. An inlet of 40 half-widths is
+lower at low load and thins the film by up to 8 %; ten times this height thickens it by 0.1 %."""
 
 
 class NumericalFilm:
     """Reynolds' equation with elastic rollers, solved by Newton's method.
 
-    Roelands viscosity and Dowson-Higginson density (physics.md, section 2), fully flooded,
-    p >= 0. Lengths over the Hertzian half-width a, pressures over p_H, films over a^2/R*.
-    Finite volumes with second-order upwind entrainment; constant pressure about a node.
+    Roelands viscosity and Dowson-Higginson density, fully flooded, p >= 0. Lengths over the
+    Hertzian half-width a, pressures over p_H, films over a^2/R*. Finite volumes with second-order
+    upwind entrainment; constant pressure about a node.
     The inlet sharpens as Moes' M rises, and the nodes move together. Still finer nodes thicken
     the film by 1 % at M = 100, by 0.3 to 0.7 % on the paper's grid.
     """

@@ -20,7 +20,7 @@ def check_line(message):
 
 
 def attempt(read, path):
-    """What is read of a file; None if it is refused in one line that begins with its name."""
+    """Read a file; None if it is refused in one line that begins with its name."""
     try:
         return read(path)
     except LubeError as error:

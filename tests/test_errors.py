@@ -1,4 +1,4 @@
-"""Errors are one line, whatever a file held."""
+"""Errors are one line for any content of a file."""
 
 from lube.errors import LONGEST_VALUE, LubeError, StudyError, shown
 

@@ -95,6 +95,8 @@ def loaded_after(statement):
     ("statement", "heavy"),
     [
         ("import lube", {"numpy", "xarray", "numba", "pydantic", "pint"}),
+        # The command switches off functions of NumPy, which must not be loaded by then.
+        ("import lube.cli", {"numpy"}),
         (
             "import lube.workflow.command_line, lube.workflow.study_files, lube.archive.inputs",
             {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp", "papermill"},

@@ -22,4 +22,4 @@ def test_the_stub_for_editors_lists_the_public_names():
 
 def test_the_version_is_that_of_the_distribution():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert project.get("version", lube.__version__) == lube.__version__
+    assert project["version"] == lube.__version__

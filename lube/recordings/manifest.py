@@ -233,7 +233,8 @@ def _check_units(name, units, where):
     target = _UNITS.get(name)
     if (units is None) != (target is None):
         needed = f"'{name} [{target}]'" if target else f"{name!r} without a unit"
-        raise DataError(f"{where}: {name}: got the unit {shown(units)}, need {needed}")
+        came = f"the unit {shown(units)}" if units else "no unit"
+        raise DataError(f"{where}: {name}: got {came}, need {needed}")
     try:
         if name == "offset":
             electrical_quantity(units)

@@ -110,16 +110,19 @@ def _chain(path, above=()):
     if base is None:
         return [(path, content)]
     if not isinstance(base, str) or not (path.parent / base).is_file():
-        raise StudyError(f"{path}: based_on: got {shown(base)}, need the path of a study's file")
+        raise StudyError(
+            f"{path}: based_on: got {shown(base)}, need the path from this file to a study's file"
+        )
     return [(path, content), *_chain(path.parent / base, (*above, path))]
 
 
 def _on_top(base, changes, where):
     """Merge changes into the study below, if any; they must have a new name."""
     if base and changes.get("name") in (None, base.get("name")):
+        came = f"got {shown(changes['name'])}" if changes.get("name") else "missing"
         raise StudyError(
-            f"{where}: name: got {shown(changes.get('name'))}, need one other than "
-            f"{base.get('name')!r}, or results of different values would be mixed"
+            f"{where}: name: {came}, need one other than {base.get('name')!r}, "
+            "or results of different values would be mixed"
         )
     return _merged(base, changes)
 

@@ -1,8 +1,7 @@
 """The environment of all jobs: the package of this folder, and the same digits everywhere."""
 
 import os
-
-from lube.types import File
+from pathlib import Path
 
 AVX512 = "X86_V4 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR"
 """NumPy's names for its AVX-512 functions, in version 2.4 and before."""
@@ -12,12 +11,13 @@ def compute_alike() -> None:
     """Make NumPy do without its functions for AVX-512, here and in processes started from here.
 
     They round the last digits differently from those for other processors. It takes effect where
-    NumPy has not been imported yet; a value set by the user is kept.
+    NumPy has not been imported yet, so this module and `lube.cli` import nothing that imports it; a
+    value set by the user is kept.
     """
     os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", AVX512)
 
 
-def use_package(root: File) -> None:
+def use_package(root: str | Path) -> None:
     """Make processes started from here import the package of one folder, not an installed one.
 
     Parameters

@@ -49,7 +49,7 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 
 
 class Skipped(Exception):
-    """Slurm cannot be had here."""
+    """Slurm is not available here."""
 
 
 class Failed(Exception):
@@ -57,7 +57,7 @@ class Failed(Exception):
 
 
 def main():
-    # So that an end by signal, too, shuts down what was started.
+    # A signal, too, must shut down what was started.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     os.environ.pop("SLURM_CONF", None)
     try:
@@ -201,7 +201,7 @@ def compare_runs(repository):
     local = timed_run("locally", repository)
     there = repository.products()
     with repository.clean_slate():
-        # The profile as it is, only asked for news more often.
+        # The profile as it is, except that it checks the status of jobs more often.
         often = ["--slurm-init-seconds-before-status-checks", "2", "--latency-wait", "10"]
         timed_run("through Slurm", repository, "--workflow-profile", "profiles/slurm", *often)
         here = repository.products()
@@ -231,8 +231,8 @@ def timed_run(how, repository, *arguments):
         raise Failed(f"the study {how} took over {RUN_SECONDS:.0f} s\n{late.stdout}") from None
     if finished.returncode != 0:
         logs = (repository / ".snakemake/slurm_logs").rglob("*.log")
-        told = "\n".join(path.read_text("utf-8") for path in logs)
-        raise Failed(f"the study {how} ended with {finished.returncode}\n{finished.stdout}\n{told}")
+        texts = [finished.stdout, *(path.read_text("utf-8") for path in logs)]
+        raise Failed("\n".join([f"the study {how} ended with {finished.returncode}", *texts]))
     print(f"The smoke study {how}: {time.monotonic() - began:.0f} s", flush=True)
     return finished.stdout
 

@@ -21,7 +21,7 @@ from kills import VICTIMS, Kill, finished, survive
 from repository import copy_of_the_repository
 
 FROM_NOTHING = 10
-"""Every so many runs begin with nothing."""
+"""One in this many runs begins with nothing."""
 LONGEST_DELAY = 6.0
 """Longest time to the kill of a run that begins with something, s."""
 

@@ -196,7 +196,7 @@ def test_an_entry_that_cannot_be_used_is_refused(folder):
 
 HEADERS = {
     "": "empty, need a line of column names",
-    "probability,force,speed [rpm],temperature [degC]": "force: got the unit None, need 'force",
+    "probability,force,speed [rpm],temperature [degC]": "force: got no unit, need 'force",
     "probability,force [m],speed [rpm],temperature [degC]": "force: wrong dimension",
     "probability [%],force [N],speed [rpm],temperature [degC]": "without a unit",
     "probability,force [N],speed [rpm]": "missing column 'temperature [degC]'",

@@ -5,9 +5,9 @@ of 1, 2, 3 and 4, through a submit script as on a cluster, and in a second clone
 and compares the checksum of each dataset; the clone's figures and executed notebooks too, and all
 that the code and the study's file in the clone's archive make.
 
-So it does as if on lesser processors: NumPy without AVX2 and fused multiply-add, Numba without the
-processor's own instructions, OpenBLAS as on an early one. Last it tells, without a verdict, what
-NumPy's functions for AVX-512 would change, which the workflow switches off.
+It then compares runs as on older processors: NumPy without AVX2 and fused multiply-add, Numba
+without the processor's own instructions, OpenBLAS as on an early one. Last it prints what NumPy's
+functions for AVX-512 would change, which the workflow switches off; this is not a failure.
 It takes about ten minutes on two idle cores.
 """
 
@@ -26,12 +26,12 @@ from lube.workflow.environment import AVX512
 
 BATCH_SIZES = (1, 2, 3, 4)
 
-LESSER = {
+OLDER = {
     "NumPy as without AVX2": {"NPY_DISABLE_CPU_FEATURES": f"X86_V3 AVX2 FMA3 {AVX512}"},
     "Numba as for any x86-64": {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""},
     "OpenBLAS as without AVX": {"OPENBLAS_CORETYPE": "Prescott"},
 }
-GREATER = {"NumPy with AVX-512, if it is here": {"NPY_DISABLE_CPU_FEATURES": ""}}
+NEWER = {"NumPy with AVX-512, if it is here": {"NPY_DISABLE_CPU_FEATURES": ""}}
 """Environments that hide some of the processor from the libraries, or none of it."""
 
 
@@ -45,15 +45,15 @@ def main():
         failed = 0
         for what, arguments, changes in ways(first):
             again = made(first, what, [*arguments, *targets], **changes)
-            failed += tell(again, {name: expected[name] for name in datasets})
+            failed += report(again, {name: expected[name] for name in datasets})
         second = copy_of_the_repository(Path(folder) / "second" / "deeper" / "repository")
-        failed += tell(made(second, "all, in a second clone", []), expected)
-        failed += tell(made_by_a_stranger(second, Path(folder) / "stranger"), expected)
-        for what, variables in (LESSER | GREATER).items():
+        failed += report(made(second, "all, in a second clone", []), expected)
+        failed += report(made_by_a_stranger(second, Path(folder) / "stranger"), expected)
+        for what, variables in (OLDER | NEWER).items():
             os.environ.update(variables)
             again = made(first, what, targets)
-            verdict = what in LESSER
-            failed += tell(again, {name: expected[name] for name in datasets}, verdict)
+            verdict = what in OLDER
+            failed += report(again, {name: expected[name] for name in datasets}, verdict)
             for name in variables:
                 del os.environ[name]
     print(f"{failed} runs differ" if failed else "one checksum for each dataset")
@@ -94,7 +94,7 @@ def made_by_a_stranger(repository, folder):
     return stranger.products()
 
 
-def tell(again, expected, verdict=True):
+def report(again, expected, verdict=True):
     """Say what differs; return whether that is a failure."""
     different = sorted(name for name in expected if again.get(name) != expected[name])
     print(f", different: {', '.join(different)}" if different else ", the same", flush=True)

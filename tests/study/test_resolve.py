@@ -91,14 +91,14 @@ def test_changes_come_on_top_and_need_a_new_name():
     assert load_study(SMOKE, {}) == load_study(SMOKE)
     for old in ({"seed": 3}, {"seed": 3, "name": "smoke"}):
         message = refusal(load_study, SMOKE, old)
-        came = repr(old.get("name"))
-        assert f"smoke.yaml: --config: name: got {came}, need one other than 'smoke'" in message
+        came = "got 'smoke'" if "name" in old else "missing"
+        assert f"smoke.yaml: --config: name: {came}, need one other than 'smoke'" in message
 
 
 def test_a_study_based_on_another_needs_a_name_of_its_own(write):
     for content in ({}, {"name": "paper"}):
         path = write("mine.yaml", based_on="paper.yaml", seed=3, **content)
-        assert "mine.yaml: name: got " in refusal(load_study, path)
+        assert "need one other than 'paper'" in refusal(load_study, path)
 
 
 def test_a_circle_and_a_missing_base_are_refused(write):
@@ -108,5 +108,5 @@ def test_a_circle_and_a_missing_base_are_refused(write):
     assert message.endswith("got the circle b.yaml -> a.yaml -> b.yaml, need a chain that ends")
     for base in ("papers.yaml", 3, ["paper.yaml"], "."):
         path = write("mine.yaml", based_on=base, name="mine")
-        needed = f"mine.yaml: based_on: got {base!r}, need the path of a study's file"
-        assert refusal(load_study, path).endswith(needed)
+        message = refusal(load_study, path)
+        assert f"mine.yaml: based_on: got {base!r}, need the path from this file" in message

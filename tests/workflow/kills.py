@@ -1,4 +1,4 @@
-"""Killing the smoke study at some moment, and taking it up again as the documentation says."""
+"""Kill the smoke study at some moment, and recover as the documentation says."""
 
 import os
 import random

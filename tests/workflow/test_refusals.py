@@ -35,7 +35,7 @@ def test_a_mistaken_command_is_refused_before_any_job(smoke):
     put_first = refusal(smoke, "--configfile", SMOKE, "archive", study=None)
     assert "`snakemake archive --configfile" in put_first
     unnamed = refusal(smoke, "--config", "seed=3", study=None)
-    assert "name: got None, need one other than 'paper'" in unnamed
+    assert "name: missing, need one other than 'paper'" in unnamed
 
 
 def test_a_notebook_that_is_no_figure_is_refused_before_any_job(spare):
