@@ -101,7 +101,10 @@ class Roughness(StrictModel):
 
 
 class BoundaryLayer(StrictModel):
-    """Boundary layer on the rollers; metal contact is where it breaks (paper, Eqs. 4 and 6)."""
+    """Boundary layer on the rollers; metal contact is where it breaks.
+
+    Equations 4 and 6 of the paper.
+    """
 
     critical_thickness: Length
     """critical thickness h_c"""
