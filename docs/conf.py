@@ -9,6 +9,7 @@ from docutils.writers._html_base import HTMLTranslator
 
 import lube
 from lube.report.markdown import title_and_text
+from lube.workflow.figure_list import FURTHER
 
 project = "lube"
 author = copyright = "The authors of lube"
@@ -70,12 +71,11 @@ def _mathml(translator, node):
 
 def _fill_gallery(app, page, source):
     if page == "gallery":
-        figures = "\n\n".join(_chapters(app.srcdir / RESULTS))
-        source[0] = source[0].replace("<!-- gallery -->", figures or "No study has been run here.")
+        source[0] += "\n\n".join(_chapters(app.srcdir / RESULTS))
 
 
 def _chapters(results):
-    """The executed notebooks of all figures, by chapters, in Markdown."""
+    """Write every chapter of the gallery, from the executed notebooks, in Markdown."""
     shown = {}
     for study in STUDIES:
         for path in sorted(results.glob(f"{study}/notebooks/*.ipynb")):
@@ -83,10 +83,11 @@ def _chapters(results):
                 shown.setdefault(path.stem, (study, nbformat.read(path, as_version=4).cells))
     chapters = {}
     for name, (study, cells) in sorted(shown.items()):
-        (tag,) = (tag for tag in cells[0].metadata.tags if tag.startswith("chapter-"))
-        chapters.setdefault(tag, []).append(_figure(name, study, cells))
-    for tag, figures in chapters.items():
-        heading = tag.removeprefix("chapter-").replace("-", " ").capitalize()
+        tags = [*cells[0].metadata.get("tags", ()), f"chapter-{FURTHER}"]
+        chapter = next(tag for tag in tags if tag.startswith("chapter-"))
+        chapters.setdefault(chapter, []).append(_figure(name, study, cells))
+    for chapter, figures in chapters.items():
+        heading = chapter.removeprefix("chapter-").replace("-", " ").capitalize()
         yield "\n\n".join([f"## {heading}", *figures])
 
 
@@ -96,7 +97,7 @@ def _figure(name, study, cells):
     blocks = [f"### {title}", f"![{title}]({image.as_posix()})", caption]
     blocks.append(f"````{{dropdown}} Notebook {name} of the study {study}")
     for cell in cells:
-        if cell.cell_type == "code" and not PARAMETERS & {*cell.metadata.tags}:
+        if cell.cell_type == "code" and not PARAMETERS & {*cell.metadata.get("tags", ())}:
             blocks.append(f"```python\n{cell.source}\n```")
             printed = [out.text for out in cell.outputs if out.output_type == "stream"]
             blocks += [f"```text\n{text.rstrip()}\n```" for text in printed]

@@ -1,7 +1,10 @@
-"""The examples of the documentation run, and print what it says they print."""
+"""The examples of the documentation run and print what it says; its site is complete."""
 
 import contextlib
 import io
+import re
+import subprocess
+import sys
 from doctest import NORMALIZE_WHITESPACE, OutputChecker
 
 import pytest
@@ -9,6 +12,7 @@ import xarray as xr
 from markdown_it import MarkdownIt
 from studies import ROOT
 
+import lube
 from lube import load_study
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md"))]
@@ -61,3 +65,21 @@ def test_studies_are_valid(page, folder):
         if language == "yaml" and content.startswith("based_on:"):
             (folder / "my-study.yaml").write_text(content, encoding="utf-8")
             load_study(folder / "my-study.yaml")
+
+
+def test_the_site_is_built_without_warnings_and_shows_everything(smoke, tmp_path):
+    command = [sys.executable, "-m", "sphinx", "-qW", "--keep-going", smoke / "docs", tmp_path]
+    built = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert built.returncode == 0, built.stderr
+    pages = {
+        path.relative_to(tmp_path).as_posix(): path.read_text(encoding="utf-8")
+        for path in tmp_path.rglob("*.html")
+    }
+    for name, text in pages.items():  # scripts, styles and pictures come without a network
+        assert not re.search(r'(src|<link [^>]*href)="(https?:)?//', text), name
+    assert pages["theory.html"].count("<math") > 80
+    for figure in smoke.notebooks:
+        assert f"{figure}.png" in pages["gallery.html"]
+    documented = "".join(text for name, text in pages.items() if name.startswith("api/"))
+    for name in {*lube.__all__} - {"__version__"}:
+        assert f'id="lube.{name}"' in documented, f"put {name} into docs/api/"
