@@ -77,7 +77,7 @@ def test_the_site_is_built_without_warnings_and_shows_everything(smoke, tmp_path
     }
     for name, text in pages.items():  # scripts, styles and pictures come without a network
         assert not re.search(r'(src|<link [^>]*href)="(https?:)?//', text), name
-    assert pages["theory.html"].count("<math") > 80
+    assert "<math" in pages["theory.html"] and "$" not in pages["theory.html"]
     for figure in smoke.notebooks:
         assert f"{figure}.png" in pages["gallery.html"]
     documented = "".join(text for name, text in pages.items() if name.startswith("api/"))
