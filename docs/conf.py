@@ -5,7 +5,7 @@ from pathlib import Path
 
 import nbformat
 from docutils.nodes import SkipChildren, SkipNode
-from docutils.writers._html_base import HTMLTranslator
+from docutils.writers.html5_polyglot import HTMLTranslator
 
 import lube
 from lube.report.markdown import title_and_text
