@@ -88,13 +88,15 @@ class Roughness(StrictModel):
     hurst_exponent: pure_number(above=0.0, below=1.0)
     """Hurst exponent H"""
     longest_wavelength: length_or_words(
-        lambda text: text == AUTOMATIC_WAVELENGTH, f"the words `{AUTOMATIC_WAVELENGTH}`"
+        lambda text: text == AUTOMATIC_WAVELENGTH,
+        f"the words `{AUTOMATIC_WAVELENGTH}`",
+        f"^{AUTOMATIC_WAVELENGTH}$",
     )
     """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
     the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
     0.61
     """
-    shortest_wavelength: length_or_words(_is_points, "as in `10 points`")
+    shortest_wavelength: length_or_words(_is_points, "as in `10 points`", " points$")
     """2 pi / q_max; the break-up of the boundary layer depends on it"""
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
