@@ -53,7 +53,7 @@ def editor_schema(kind: str) -> dict[str, Any]:
 
 
 def _study_schema():
-    """Schema of a whole study or, with `based_on`, of one where nothing but a name is required."""
+    """Require all keys of a whole study; of one with `based_on` its name alone."""
     whole = _plain_schema(Study)
     _give_examples(whole, resolved_content(ROOT / "workflow/config/paper.yaml"))
     whole["properties"] = {"based_on": _BASED_ON | {"type": ["string", "null"]}} | whole[
@@ -65,7 +65,7 @@ def _study_schema():
 
 
 def _row_schema():
-    """Schema of a row of a manifest: numbers may have decimal commas, and cells may be empty."""
+    """Allow decimal commas and empty cells in a row of a manifest."""
     row = _plain_schema(Row)
     text = json.dumps(row).replace(r"\\.", "[.,]").replace(r"[\\d.]", r"[\\d.,]")
     row = json.loads(text.replace(r"[\\d._eE+-]", r"[\\d.,_eE+-]"))

@@ -19,6 +19,9 @@ from snakemake_interface_logger_plugins.registry import LoggerPluginRegistry
 
 from lube.workflow.jobs import SILENT
 
+_SAID = (None, LogEvent.JOB_INFO)  # before the bar, or without one, as with `--quiet progress`
+_BESIDE = 66  # characters of a line that the bar, the counts and the times take
+
 
 def progress_bar() -> bool:
     """Make the bar known to Snakemake as the logger ``lube`` if a terminal can show it.
@@ -106,7 +109,7 @@ def reason_of_failure(logs: list[str]) -> str:
 
 
 class LogHandler(LogHandlerBase):
-    """The bar, with failures, warnings and the last message above it."""
+    """The bar, with failures, warnings and the last message above it; a dry run has none."""
 
     writes_to_stream = True
     writes_to_file = has_filter = has_formatter = needs_rulegraph = False
@@ -115,44 +118,62 @@ class LogHandler(LogHandlerBase):
         """Prepare the terminal."""
         from rich.console import Console
 
-        self._console = Console(stderr=not self.common_settings.stdout, highlight=False)
+        self._console = Console(stderr=True, highlight=False)
         self._bar, self._messages, self._failed = None, {}, set()
-        if not self.common_settings.dryrun:
+        if self.common_settings.dryrun:
+            from snakemake.logging import ColorizingTextHandler
+
+            self._plain = ColorizingTextHandler(self.common_settings.nocolor, sys.stdout)
+        else:
             os.environ[SILENT] = "1"
 
     def emit(self, record: LogRecord) -> None:
         """Show what Snakemake reports."""
         event = getattr(record, "event", None)
-        if self.common_settings.dryrun or record.levelno >= WARNING or event is None:
-            self._say(record, event)
+        if self.common_settings.dryrun:
+            self._plain.setFormatter(self.formatter)
+            self._plain.emit(record)
+        elif event == LogEvent.JOB_ERROR:
+            self._say_failure(record)
         elif event == LogEvent.RUN_INFO:
             self._begin({rule: n for rule, n in record.stats.items() if rule != "total"})
-        elif event == LogEvent.JOB_INFO:
+        elif event == LogEvent.JOB_INFO and self._bar is not None:
             self._start(record)
         elif event == LogEvent.JOB_FINISHED:
             self._remaining.finished(record.job_id, time.monotonic())
         elif event == LogEvent.PROGRESS:
             self._bar.update(self._task, completed=record.done)
+        elif record.levelno >= WARNING or (event in _SAID and self._bar is None):
+            style = "red" if record.levelno > WARNING else None
+            self._console.print(self.format(record), style=style, markup=False, soft_wrap=True)
 
     def close(self) -> None:
-        """Leave the bar as it is."""
+        """Leave the bar as it is, without an estimate."""
+        self._remaining = None
         if self._bar is not None:
+            self._bar.update(self._task, description="")
             self._bar.stop()
         super().close()
 
     def _begin(self, jobs):
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-        from rich.progress import ProgressColumn, TimeElapsedColumn
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            ProgressColumn,
+            TextColumn,
+            TimeElapsedColumn,
+        )
         from rich.text import Text
 
-        remaining = self._remaining = Remaining(jobs, time.monotonic())
-
         class Left(ProgressColumn):
-            def render(self, task):
-                return Text("" if task.finished else in_words(remaining.seconds(time.monotonic())))
+            def render(column, task):
+                left = self._remaining and self._remaining.seconds(time.monotonic())
+                return Text("" if left is None else in_words(left), no_wrap=True)
 
-        columns = (BarColumn(), MofNCompleteColumn(), TextColumn("jobs,"), TimeElapsedColumn())
-        columns += (Left(), TextColumn("[dim]{task.description}", markup=True))
+        self._remaining = Remaining(jobs, time.monotonic())
+        columns = (BarColumn(20), MofNCompleteColumn(), TextColumn("jobs,"), TimeElapsedColumn())
+        columns += (Left(), TextColumn("[dim]{task.description}"))
         self._bar = Progress(*columns, console=self._console, refresh_per_second=2)
         self._task = self._bar.add_task("", total=sum(jobs.values()))
         self._bar.start()
@@ -163,27 +184,24 @@ class LogHandler(LogHandlerBase):
         if message.startswith("Done"):
             self._console.print(message, style="bold green", markup=False)
         else:
-            self._bar.update(self._task, description=message.replace("[", "\\["))
+            room = max(self._console.width - _BESIDE, 0)
+            self._bar.update(self._task, description=message[:room].replace("[", r"\["))
 
-    def _say(self, record, event):
-        if event == LogEvent.JOB_ERROR:
-            if record.jobid not in self._failed:  # Snakemake repeats it at the end
-                self._failed.add(record.jobid)
-                job = self._messages.get(record.jobid, record.rule_name)
-                text = f"FAILED {job}: {reason_of_failure(record.log)}"
-                self._console.print(text, style="bold red", markup=False, soft_wrap=True)
-        elif self._bar is None or record.levelno >= WARNING:
-            style = "red" if record.levelno > WARNING else None
-            self._console.print(self.format(record), style=style, markup=False, soft_wrap=True)
+    def _say_failure(self, record):
+        if record.jobid not in self._failed:  # Snakemake repeats it at the end
+            self._failed.add(record.jobid)
+            job = self._messages.get(record.jobid, record.rule_name)
+            text = f"FAILED {job}: {reason_of_failure(record.log)}"
+            self._console.print(text, style="bold red", markup=False, soft_wrap=True)
 
 
-def in_words(seconds: float | None) -> str:
+def in_words(seconds: float) -> str:
     """Say how long a run will still take.
 
     Parameters
     ----------
-    seconds : float or None
-        The estimate; None if there is none yet.
+    seconds : float
+        The estimate.
 
     Returns
     -------
@@ -195,8 +213,6 @@ def in_words(seconds: float | None) -> str:
     >>> in_words(200.0)
     'about 3 min left'
     """
-    if seconds is None:
-        return ""
     if seconds >= 5400.0:
         return f"about {seconds / 3600.0:.1f} h left"
     if seconds >= 90.0:

@@ -16,9 +16,9 @@ from operator import getitem
 import pytest
 import written_recordings
 import yaml
+from editors import check_schema
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from editors import check_schema
 from refusals import attempt, check_line
 from studies import CONFIG, SMOKE
 from written_recordings import write_csv, write_netcdf, write_tdms
