@@ -3,8 +3,9 @@
 import csv
 import math
 from collections.abc import Sequence
-from pathlib import Path
+from contextlib import suppress
 
+from lube.commands.run import repository
 from lube.errors import LubeError
 from lube.types import File
 from lube.workflow.command_line import changes_of, study_of_command
@@ -51,7 +52,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
         "contact runs": " × ".join([f"{runs:,} = {points:,}", *more]),
         "records": records,
         "results": folder,
-        "last run": _last_run(Path(folder)),
+        "last run": _last_run(folder),
     }
     return [f"{name:18}{text}" for name, text in lines.items()], refused
 
@@ -95,7 +96,9 @@ def _read(entry, study):
 
 def _last_run(results):
     """Say how long the jobs of the study's last run took, by Snakemake's benchmarks."""
-    files = list(results.glob("benchmarks/*.tsv"))
+    files = []
+    with suppress(LubeError):  # without a clone there is no run
+        files = list((repository() / results).glob("benchmarks/*.tsv"))
     if not files:
         return "none, so its time is not known"
     seconds = sum(map(_seconds, files))

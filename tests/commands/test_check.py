@@ -14,6 +14,10 @@ from lube.errors import StudyError
 
 @pytest.fixture(autouse=True)
 def elsewhere(tmp_path, monkeypatch):
+    """A folder whose Snakefile runs no study yet."""
+    (tmp_path / "workflow/rules").mkdir(parents=True)
+    for name in ("Snakefile", "workflow/rules/study.smk"):
+        (tmp_path / name).touch()
     monkeypatch.chdir(tmp_path)
 
 
