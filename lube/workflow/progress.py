@@ -144,8 +144,7 @@ class LogHandler(LogHandlerBase):
         elif event == LogEvent.PROGRESS:
             self._bar.update(self._task, completed=record.done)
         elif record.levelno >= WARNING or (event in _SAID and self._bar is None):
-            style = "red" if record.levelno > WARNING else None
-            self._console.print(self.format(record), style=style, markup=False, soft_wrap=True)
+            self._print(self.format(record), "red" if record.levelno > WARNING else "")
 
     def close(self) -> None:
         """Leave the bar as it is, without an estimate."""
@@ -154,6 +153,11 @@ class LogHandler(LogHandlerBase):
             self._bar.update(self._task, description="")
             self._bar.stop()
         super().close()
+
+    def _print(self, text, style):
+        from rich.text import Text
+
+        self._console.print(Text(text, style), soft_wrap=True)
 
     def _begin(self, jobs):
         from rich.progress import (
@@ -182,7 +186,7 @@ class LogHandler(LogHandlerBase):
         message = self._messages[record.jobid] = record.rule_msg or record.rule_name
         self._remaining.started(record.jobid, record.rule_name, time.monotonic())
         if message.startswith("Done"):
-            self._console.print(message, style="bold green", markup=False)
+            self._print(message, "bold green")
         else:
             room = max(self._console.width - _BESIDE, 0)
             self._bar.update(self._task, description=message[:room].replace("[", r"\["))
@@ -192,7 +196,7 @@ class LogHandler(LogHandlerBase):
             self._failed.add(record.jobid)
             job = self._messages.get(record.jobid, record.rule_name)
             text = f"FAILED {job}: {reason_of_failure(record.log)}"
-            self._console.print(text, style="bold red", markup=False, soft_wrap=True)
+            self._print(text, "bold red")
 
 
 def in_words(seconds: float) -> str:
