@@ -1,4 +1,4 @@
-"""The command lube: check an archive, draw its figures again, trace a number.
+"""The command lube: write, check and run studies, compare results, check archives.
 
 See ``lube --help``.
 """
@@ -7,6 +7,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+import lube
 from lube.errors import LubeError
 from lube.workflow.environment import compute_alike
 
@@ -22,12 +23,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 if all is well, 1 if something is wrong, 2 if the command could not be carried out.
+        0 if all is well, 1 if something is wrong or differs, 2 if the command could not be carried
+        out.
     """
-    options = _parser().parse_args(arguments)
+    parser = _parser()
+    options = parser.parse_args(arguments)
     compute_alike()
     try:
-        code = options.run(options)
+        code = options.run(options) if hasattr(options, "run") else parser.print_help() or 0
         sys.stdout.flush()
         return code
     except LubeError as error:
@@ -41,15 +44,82 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _parser():
     parser = argparse.ArgumentParser(prog="lube", description=__doc__.splitlines()[0])
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    parser.add_argument("--version", action="version", version=f"lube {lube.__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND")
+    for add in (_add_new, _add_check, _add_run, _add_compare, _add_schema):
+        add(commands)
+    for add in (_add_explain, _add_verify, _add_figures):
+        add(commands)
+    return parser
+
+
+def _add_new(commands):
+    new = commands.add_parser("new", help="write a study, based on the paper's")
+    new.add_argument("study", help="YAML file to write; results go to results/<its stem>")
+    for name, example in (
+        ("radius", "50 mm, or 50 30 mm for the first and the second roller"),
+        ("roughness", "rms height of each roller: 0.2 um"),
+        ("force", "levels: 400 800 N"),
+        ("speed", "levels: 100 200 rpm"),
+        ("temperature", "levels: 40 80 degC"),
+    ):
+        new.add_argument(f"--{name}", nargs="+", metavar="NUMBERS UNIT", help=example)
+    new.add_argument("--oil", nargs="+", default=[], help="lubricants: shipped names or records")
+    new.add_argument("--realisations", type=int, help="pairs of rollers")
+    new.add_argument("--records", help="list of measured records; a new one is written if missing")
+    new.set_defaults(run=_new)
+
+
+def _add_check(commands):
+    check = commands.add_parser("check", help="check a study and its records without running it")
+    check.add_argument("study", help="its YAML file")
+    help_text = "changes key=value, as with snakemake"
+    check.add_argument("--config", "-C", nargs="+", default=[], help=help_text)
+    check.set_defaults(run=_check)
+
+
+def _add_run(commands):
+    run = commands.add_parser(
+        "run",
+        help="run a study: snakemake, from any folder",
+        usage="lube run [STUDY] [targets and options of snakemake]",
+        add_help=False,
+        prefix_chars="\0",  # all options are Snakemake's
+    )
+    run.add_argument("arguments", nargs=argparse.REMAINDER)
+    run.set_defaults(run=_run)
+
+
+def _add_compare(commands):
+    compare = commands.add_parser("compare", help="say what differs between two results")
+    compare.add_argument("first", help="a folder of results, an archive's folder, or a dataset")
+    compare.add_argument("second", help="another one of the same kind")
+    compare.set_defaults(run=_compare)
+
+
+def _add_schema(commands):
+    from lube.study.schema_files import KINDS
+
+    schema = commands.add_parser("schema", help="print the JSON Schema of a kind of file")
+    schema.add_argument("kind", nargs="?", choices=KINDS, default=KINDS[0], help="default: study")
+    schema.set_defaults(run=_schema)
+
+
+def _add_verify(commands):
     verify = commands.add_parser("verify", help="check an archive")
     verify.add_argument("path", help="its folder or zip")
     verify.set_defaults(run=_verify)
+
+
+def _add_figures(commands):
     figures = commands.add_parser("figures", help="draw an archive's figures again and compare")
     figures.add_argument("path", help="its folder or zip")
     figures.add_argument("figure", nargs="*", help="such as fig02_film; by default all")
     figures.add_argument("--to", required=True, help="folder for the new figures")
     figures.set_defaults(run=_figures)
+
+
+def _add_explain(commands):
     explain = commands.add_parser("explain", help="trace and recompute a number of contact.nc")
     explain.add_argument("path", help="a contact.nc, with its film.nc and lubricant.nc beside it")
     units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
@@ -61,12 +131,56 @@ def _parser():
     help_text = "its number, or `all` for the mean and its interval; by default 0"
     explain.add_argument("--realisation", type=number_or_all, default=0, help=help_text)
     explain.set_defaults(run=_explain)
-    return parser
 
 
 def number_or_all(text: str) -> int | None:
     """Parse the number of a realisation, or None for all; argparse prints this function's name."""
     return None if text == "all" else int(text)
+
+
+def _new(options):
+    from lube.commands.new import OF_GRID, OF_ROLLERS, new_study
+
+    given = {name: getattr(options, name) for name in OF_ROLLERS | OF_GRID}
+    texts = {name: " ".join(words) for name, words in given.items() if words}
+    for path in new_study(options.study, texts, options.oil, options.realisations, options.records):
+        print(f"Written: {path}")
+    print(f"Next: lube check {options.study}")
+    return 0
+
+
+def _check(options):
+    from lube.commands.check import check_study
+
+    summary, refused = check_study(options.study, options.config)
+    for line in (*summary, *(f"Refused: {line}" for line in refused)):
+        print(line)
+    return 1 if refused else 0
+
+
+def _run(options):
+    from lube.commands.run import run
+
+    run(options.arguments)
+
+
+def _compare(options):
+    from lube.commands.compare import compare_results
+
+    differ = False
+    for line in compare_results(options.first, options.second):
+        print(line, flush=True)
+        differ = True
+    if not differ:
+        print("The same")
+    return 1 if differ else 0
+
+
+def _schema(options):
+    from lube.study.schema_files import schema_file
+
+    print(schema_file(options.kind).read_text(encoding="utf-8"), end="")
+    return 0
 
 
 def _verify(options):

@@ -1,11 +1,13 @@
 """The command `lube`: what it refuses, in a line. Its work is tested on a real archive."""
 
+import json
 import os
 import subprocess
 import sys
 
 import pytest
 
+import lube
 from lube.cli import main
 
 
@@ -37,3 +39,19 @@ def test_a_reader_that_stops_is_no_error(tmp_path):
     finished = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, check=False)
     os.close(write)
     assert (finished.stderr, finished.returncode) == (b"", 2)
+
+
+def test_the_bare_command_helps(capsys):
+    assert main([]) == 0
+    assert "compare" in capsys.readouterr().out
+
+
+def test_the_version_is_that_of_the_package(capsys):
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert capsys.readouterr().out == f"lube {lube.__version__}\n"
+
+
+def test_a_schema_is_printed(capsys):
+    assert main(["schema", "lubricant"]) == 0
+    assert json.loads(capsys.readouterr().out)["title"] == "A lubricant of lube"

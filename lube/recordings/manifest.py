@@ -37,7 +37,7 @@ _OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval")
 _OF_SHARES = ("lower", "upper")
 
 
-class _Row(StrictModel):
+class Row(StrictModel):
     """A row as it is written: operating conditions, and a recording or a contact share."""
 
     file: Text | None = None
@@ -106,7 +106,7 @@ class _Row(StrictModel):
         return self
 
 
-class Entry(_Row):
+class Entry(Row):
     """One usable row of a manifest: its columns, and the two attributes below.
 
     Attributes
@@ -185,7 +185,7 @@ def read_manifest(path: str | Path) -> Manifest:
 
 def manifest_schema() -> dict:
     """JSON schema of a manifest's row: each column, or key, with its meaning."""
-    return _Row.model_json_schema()
+    return Row.model_json_schema()
 
 
 def _yaml_rows(path):
@@ -212,12 +212,12 @@ def _columns(cells, where):
     columns = {}
     for cell in cells:
         name, units = header_cell(cell)
-        if name not in _Row.model_fields:
-            nearest = get_close_matches(name, _Row.model_fields, n=1)
+        if name not in Row.model_fields:
+            nearest = get_close_matches(name, Row.model_fields, n=1)
             hint = f"did you mean {nearest[0]!r}? need" if nearest else "need"
             raise DataError(
                 f"{where}: unknown column {shown(cell)}, {hint} some of "
-                f"{', '.join(_Row.model_fields)}, with units such as 'force [N]'"
+                f"{', '.join(Row.model_fields)}, with units such as 'force [N]'"
             )
         if name in columns:
             raise DataError(f"{where}: column {name!r} is repeated")
@@ -255,7 +255,7 @@ def _entry(content, where, folder):
         for key, value in content.items()
         if value is not None
     }
-    row = validate(_Row, content, where, DataError)
+    row = validate(Row, content, where, DataError)
     file = None if row.file is None else folder / row.file
     if file is not None and not os.path.isfile(file):
         raise DataError(f"{where}: file: got {shown(row.file)}, no such file")

@@ -120,9 +120,7 @@ def _keys(schema, path="", definitions=None, section=""):
     for name, field in schema["properties"].items():
         inner, many = _resolve(field, definitions)
         required = name in schema.get("required", [])
-        if name == "lubricants":  # records have a table of their own
-            rows.append((f"`{path}{name}`", "list of names or paths", field["description"]))
-        elif "properties" in inner:
+        if "properties" in inner and "format" not in inner:
             optional = "" if required else " (section optional)"
             key = f"{path}{name}{'[]' if many else ''}."
             rows += _keys(inner, key, definitions, section or optional)
@@ -137,6 +135,8 @@ def _resolve(field, definitions):
     """Follow references, optional fields and lists to the innermost field; and whether a list."""
     many = False
     while True:
+        if "format" in field:  # says in words what is needed
+            return field, many
         if "$ref" in field:
             field = definitions[field["$ref"].split("/")[-1]]
         elif "anyOf" in field:
@@ -148,10 +148,10 @@ def _resolve(field, definitions):
 
 
 def _value(field, inner):
-    if "enum" in inner:
+    if "enum" in inner and "format" not in inner:
         return " or ".join(f"`{choice}`" for choice in inner["enum"])
     value = inner.get("format") or {"integer": "whole number", "string": "text"}[inner["type"]]
-    return f"list of {value}s" if field.get("type") == "array" else value
+    return f"list of {value}s" if field.get("type") == "array" and inner is not field else value
 
 
 def _default(field):

@@ -14,19 +14,15 @@ import xarray as xr
 from lube.errors import DataError, LubeError
 from lube.grid.operating_points import OperatingPoint, operating_points
 from lube.recordings.manifest import Entry, Manifest
-from lube.recordings.reader import open_recording
+from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 from lube.rig.record import LEVELS, TRACE_SAMPLES, Conditions, Record
 from lube.rig.simulator import SimulatedRig
 from lube.rig.study_shares import levels_named, values_with_limits
 from lube.schema import LIMITS, label
 from lube.statistics.folding import PHASES
-from lube.study.lubricant_record import check_temperatures
 from lube.study.study import Study
 
 log = logging.getLogger(__name__)
-
-SATURATED = 0.001
-"""Share of samples at the amplifier's limits from which a record is refused."""
 
 
 # Simulated records
@@ -146,43 +142,21 @@ def _row_of_entry(entry: Entry, study: Study, remarks: list[str]) -> dict[str, A
 def _conditions_of_entry(entry: Entry, study: Study) -> Conditions:
     """Conditions of a measured record; refused where the study's model is not defined."""
     slip = entry.slide_to_roll_ratio
-    conditions = Conditions(
+    return Conditions(
         **{name: getattr(entry, name) for name in LEVELS},
-        lubricant=entry.lubricant or study.lubricants[0].name,
+        lubricant=lubricant_of(entry, study),
         slide_to_roll_ratio=study.rig_slip if slip is None else slip,
         pair=entry.pair or "1",
         tolerances=_tolerances(entry, study),
     )
-    lubricants = {record.name: record for record in study.lubricants}
-    if conditions.lubricant not in lubricants:
-        raise DataError(
-            f"{entry.where}: lubricant: got {conditions.lubricant}, need one of the study's: "
-            f"{', '.join(lubricants)}"
-        )
-    try:
-        check_temperatures(lubricants[conditions.lubricant], [conditions.temperature])
-        study.check_window(conditions.force)
-    except LubeError as error:
-        raise DataError(f"{entry.where}: {error}") from None
-    return conditions
 
 
 def _measured_record(entry: Entry, conditions: Conditions, study: Study) -> Record:
     """Read the recording of an entry; refused if it is saturated."""
-    recording = open_recording(
-        entry.file, entry.sampling_interval, entry.channel, entry.unit, entry.gain, entry.offset
-    )
+    recording = open_entry(entry)
     record = Record(conditions, study, recording.quantity, recording.sampling_interval)
-    limit = study.rig.amplifier_range if recording.quantity == "voltage" else np.inf
-    saturated = 0
-    for piece in recording.pieces():
+    for piece in unsaturated_pieces(recording, study):
         record.add(piece)
-        saturated += np.count_nonzero(np.abs(piece) >= limit)
-    if saturated > SATURATED * record.samples:
-        raise DataError(
-            f"{entry.file}: saturated, {saturated / record.samples:.1%} of its samples are at or "
-            f"beyond {limit:g} V, need at most {SATURATED:.1%} beyond rig.amplifier_range"
-        )
     return record
 
 

@@ -13,9 +13,10 @@ from contextlib import contextmanager
 from itertools import pairwise
 from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import BaseModel, BeforeValidator, StringConstraints, ValidationError, WithJsonSchema
+from pydantic import BaseModel, BeforeValidator, StringConstraints, ValidationError
 
 from lube.errors import LubeError, right_one, shown
+from lube.study.written_forms import Written, written_levels, written_number, written_quantity
 from lube.types import File
 from lube.units import convert, parse_number, parse_quantity
 
@@ -109,11 +110,14 @@ def bounded(number: float, units: str | None, **limits: float) -> float:
     raise LubeError(f"got {number:g}, need a {needed} {units or ''}".rstrip())
 
 
-def _field(kept, parse, kind, limits=None, shape="string", hint=""):
-    """Field type: what is kept, its parser, and its JSON schema for the table of keys."""
-    described = f"{kind}, {_in_words(limits)}" if limits else kind
-    schema = {"type": shape, "format": described}
-    return Annotated[kept, BeforeValidator(collected(hint=hint)(parse)), WithJsonSchema(schema)]
+def _field(kept, parse, written, hint=""):
+    """Field type: what is kept, its parser, and a function that makes its JSON schema."""
+    return Annotated[kept, BeforeValidator(collected(hint=hint)(parse)), Written(written)]
+
+
+def _needed(kind, limits):
+    """``quantity in m, above 0``."""
+    return f"{kind}, {_in_words(limits)}" if limits else kind
 
 
 def quantity(units: str, **limits: float) -> Any:
@@ -135,7 +139,8 @@ def quantity(units: str, **limits: float) -> Any:
     def parse(value):
         return bounded(parse_quantity(value, units), units, **limits)
 
-    return _field(float, parse, f"quantity in {units}", limits)
+    needed = _needed(f"quantity in {units}", limits)
+    return _field(float, parse, lambda: written_quantity(units, needed, limits))
 
 
 def pure_number(**limits: float) -> Any:
@@ -155,7 +160,7 @@ def pure_number(**limits: float) -> Any:
     def parse(value):
         return bounded(parse_number(value), None, **limits)
 
-    return _field(float, parse, "number", limits, "number")
+    return _field(float, parse, lambda: written_number(_needed("number", limits), limits))
 
 
 def checked_text(check: Callable[[str], object], kind: str) -> Any:
@@ -178,10 +183,10 @@ def checked_text(check: Callable[[str], object], kind: str) -> Any:
         check(value)
         return value
 
-    return _field(str, parse, kind)
+    return _field(str, parse, lambda: {"type": "string", "format": kind})
 
 
-def length_or_words(accepts: Callable[..., bool], words: str) -> Any:
+def length_or_words(accepts: Callable[..., bool], words: str, pattern: str) -> Any:
     """Make a field type for a length or, in its place, certain words, which are kept as written.
 
     Parameters
@@ -190,6 +195,8 @@ def length_or_words(accepts: Callable[..., bool], words: str) -> Any:
         Takes the value and says whether it is such words; may raise LubeError.
     words : str
         What the words are, for messages and for the JSON schema.
+    pattern : str
+        Regular expression of the words, for the JSON schema.
 
     Returns
     -------
@@ -200,7 +207,13 @@ def length_or_words(accepts: Callable[..., bool], words: str) -> Any:
     def parse(value):
         return value if accepts(value) else bounded(parse_quantity(value, "m"), "m", above=0.0)
 
-    return _field(float | str, parse, f"quantity in m, or {words}", hint=f", or {words}")
+    needed = f"quantity in m, or {words}"
+
+    def written():
+        length = written_quantity("m", needed, {"above": 0.0})
+        return {"type": "string", "format": needed, "anyOf": [{"pattern": pattern}, length]}
+
+    return _field(float | str, parse, written, hint=f", or {words}")
 
 
 def levels(units: str | None, **limits: float) -> Any:
@@ -228,8 +241,8 @@ def levels(units: str | None, **limits: float) -> Any:
                 raise LubeError(f"got {upper:g} after {lower:g}, need rising levels, each once")
         return numbers
 
-    kind = "list of numbers" if units is None else f"values and units in {units}"
-    return _field(tuple[float, ...], parse, kind, limits, "object")
+    needed = _needed("list of numbers" if units is None else f"values and units in {units}", limits)
+    return _field(tuple[float, ...], parse, lambda: written_levels(units, needed, limits))
 
 
 def _level_list(value, target):

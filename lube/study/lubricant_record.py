@@ -42,8 +42,11 @@ class ViscosityPoint(StrictModel):
     """Viscosity at one temperature, kinematic or dynamic."""
 
     temperature: OilTemperature
+    """temperature of the value"""
     kinematic_viscosity: quantity("m^2/s", above=0.0) | None = None
+    """kinematic viscosity; this or `dynamic_viscosity`"""
     dynamic_viscosity: quantity("Pa*s", above=0.0) | None = None
+    """dynamic viscosity"""
 
     @model_validator(mode="after")
     def _check_one_viscosity(self):
@@ -128,7 +131,9 @@ class TemperatureRange(Sourced):
     """Temperatures at which the lubricant record is valid, in place of those of its data."""
 
     lowest: OilTemperature
+    """lowest temperature"""
     highest: OilTemperature
+    """highest temperature"""
 
     @model_validator(mode="after")
     def _check_order(self):
@@ -148,8 +153,10 @@ class LubricantRecord(StrictModel):
     viscosity_law: Literal[tuple(VISCOSITY_LAWS)] | None = None
     """law that gives the viscosity between the data; by default astm-d341"""
     density: Density | None = None
+    """density; needed unless CoolProp gives it"""
     pressure_viscosity: PressureViscosity
     thermal_conductivity: ThermalConductivity | None = None
+    """thermal conductivity; needed unless CoolProp gives it"""
     temperature_range: TemperatureRange | None = None
 
     _files: tuple[Path, ...] = PrivateAttr(())

@@ -8,6 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints, 
 
 from lube.errors import shown
 from lube.study.field_types import StrictModel, each_once
+from lube.study.written_forms import Written
 
 PAPER = "Mixed and boundary lubrication in rolling contact: experiment and simulation"
 """Title of the paper whose model and operating points the study uses."""
@@ -53,7 +54,11 @@ _Name = _text(
     "'Family, Given', or a name without a comma",
 )
 _Orcid = _text(_is_orcid, "an ORCID iD such as 0000-0002-1825-0097, whose last digit is a check")
-_Day = Annotated[datetime.date, BeforeValidator(_day)]
+_Day = Annotated[
+    datetime.date,
+    BeforeValidator(_day),
+    Written(lambda: {"type": ["string", "integer"], "format": "date"}),
+]
 # The characters that CITATION.cff allows.
 _Doi = _text(
     re.compile(r"10\.\d{4,9}(\.\d+)?/[\w:/;.()\[\]\\-]{1,200}", re.ASCII).fullmatch,

@@ -81,9 +81,13 @@ def _points_of(wavelength):
 
 
 _LongestWavelength = length_or_words(
-    lambda text: text == AUTOMATIC_WAVELENGTH, f"the words `{AUTOMATIC_WAVELENGTH}`"
+    lambda text: text == AUTOMATIC_WAVELENGTH,
+    f"the words `{AUTOMATIC_WAVELENGTH}`",
+    f"^{AUTOMATIC_WAVELENGTH}$",
 )
-_ShortestWavelength = length_or_words(_is_points, "a number of grid points such as `10 points`")
+_ShortestWavelength = length_or_words(
+    _is_points, "a number of grid points such as `10 points`", " points$"
+)
 
 
 class Roughness(StrictModel):

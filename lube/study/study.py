@@ -17,7 +17,7 @@ from pydantic_core import to_jsonable_python
 from lube.errors import LubeError, StudyError, shown
 from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
-from lube.physics.film_formulas import formula
+from lube.physics.film_formulas import FORMULAS, formula
 from lube.schema.stages import STAGES, forerunners
 from lube.study.field_types import (
     Slug,
@@ -29,18 +29,38 @@ from lube.study.field_types import (
     quantity,
     validate,
 )
-from lube.study.lubricant_record import LubricantRecord, check_temperatures, load_record
+from lube.study.lubricant_record import (
+    LubricantRecord,
+    check_temperatures,
+    load_record,
+    shipped_records,
+)
 from lube.study.metadata import About
 from lube.study.resolve import resolved_content
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.rollers import BoundaryLayer, LineSpec, RollerPair, Roughness, line_spec
 from lube.study.size_limits import check_sizes
+from lube.study.written_forms import Written
 from lube.types import File
 
 
 @collected()
 def _known_formula(name):
     return formula(name).name
+
+
+_Formula = Annotated[
+    str,
+    AfterValidator(_known_formula),
+    Written(lambda: {"type": "string", "format": "text", "enum": list(FORMULAS)}),
+]
+
+
+def _names_of_records():
+    """JSON schema of the lubricants as they are written: names, where the study has records."""
+    path = {"type": "string", "pattern": r"\.ya?ml$"}
+    one = {"anyOf": [{"enum": list(shipped_records())}, path]}
+    return {"type": "array", "items": one, "minItems": 1, "format": "list of names or paths"}
 
 
 class OperatingGrid(StrictModel):
@@ -96,9 +116,11 @@ class Study(StrictModel):
     kept_realisations: tuple[Annotated[StrictInt, Field(ge=0)], ...]
     """realisations whose lines stay in roughness.nc, 0 among them"""
     rollers: RollerPair
-    lubricants: tuple[LubricantRecord, ...] = Field(min_length=1)
+    lubricants: Annotated[
+        tuple[LubricantRecord, ...], Field(min_length=1), Written(_names_of_records)
+    ]
     """names of shipped records, or paths of your own YAML records"""
-    film_formulas: tuple[Annotated[str, AfterValidator(_known_formula)], ...] = Field(min_length=1)
+    film_formulas: tuple[_Formula, ...] = Field(min_length=1)
     """names from the registry of film formulas"""
     operating_grid: OperatingGrid
     roughness: Roughness

@@ -64,6 +64,36 @@ def _check_entry(entry):
         raise StudyError(f"--config: got {entry}, need '{outer}={value}' for a nested key")
 
 
+def changes_of(entries: Sequence[str]) -> dict[str, Any]:
+    """Read changes of a study from a command line, as Snakemake reads its ``--config``.
+
+    Parameters
+    ----------
+    entries : sequence of str
+        Such as ``realisations=8`` or ``rollers={first: {radius: 30 mm}}``.
+
+    Returns
+    -------
+    dict
+        From key to value, for `study_of_command`.
+
+    Raises
+    ------
+    StudyError
+        At the first entry that is not of that form.
+    """
+    import yaml
+
+    changes = {}
+    for entry in entries:
+        _check_entry(entry)
+        key, _, value = entry.partition("=")
+        changes[key] = value or None
+        with suppress(yaml.YAMLError):  # what is no YAML is text
+            changes[key] = yaml.load(value, Loader=yaml.BaseLoader) or None
+    return changes
+
+
 def study_of_command(files: Sequence[File], config: dict) -> tuple[Study, dict[str, Any]]:
     """Load the study that a Snakemake command asks for.
 

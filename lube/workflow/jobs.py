@@ -2,6 +2,7 @@
 
 import errno
 import logging
+import os
 import signal
 import sys
 import time
@@ -12,6 +13,10 @@ from lube.types import File
 
 TERMINAL_PAUSE = 5.0
 """Least time between two progress lines of a job on the terminal, s; the log has all of them."""
+
+
+SILENT = "LUBE_SILENT_JOBS"
+"""Environment variable by which the bar of a run keeps jobs from writing across it."""
 
 
 class _Occasionally(logging.Filter):
@@ -47,7 +52,7 @@ def begin_job(log_file: File) -> None:
     """
     sys.excepthook = _report
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
-    terminal = logging.StreamHandler()
+    terminal = logging.NullHandler() if SILENT in os.environ else logging.StreamHandler()
     terminal.setLevel(logging.INFO)  # tracebacks of notebooks go to the log alone
     terminal.addFilter(_Occasionally())
     logging.basicConfig(level=logging.WARNING, handlers=[terminal], format="%(message)s")

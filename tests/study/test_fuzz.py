@@ -16,6 +16,7 @@ from operator import getitem
 import pytest
 import written_recordings
 import yaml
+from editors import check_schema
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from refusals import attempt, check_line
@@ -33,6 +34,7 @@ from lube.study.lubricant_record import (
 )
 from lube.study.resolve import resolved_content, resolved_text
 from lube.study.study import load_study
+from lube.study.text_files import read_yaml
 
 FEW, MANY = 40, 1000
 
@@ -181,6 +183,7 @@ def study_is_valid(path):
     """Whether a study is read; what the workflow asks of it before the first job is plain data."""
     study = attempt(load_study, path)
     if study is not None:
+        check_schema("study", read_yaml(path, LubeError))
         assert study.batch(study.batches[-1])[-1] == study.realisations - 1
         assert study.trace_points and study.line_spec and study.rig_realisations
         json.dumps(study.origin("gauge"), allow_nan=False)
@@ -191,6 +194,7 @@ def record_is_valid(path):
     record = attempt(load_record, path)
     if record is None:
         return False
+    check_schema("lubricant", read_yaml(path, LubeError))
     with contextlib.suppress(LubeError):
         check_temperatures(record, [20.0, 40.0])
     assert record.pressure_viscosity.definition_text and record.law_used
@@ -205,7 +209,10 @@ def manifest_is_read(path):
     for line in [] if found is None else found.refused:
         check_line(line)
         assert line.startswith(path.name)
-    return found is not None and not found.refused
+    accepted = found is not None and not found.refused
+    if accepted and path.suffix == ".yaml":
+        check_schema("manifest", read_yaml(path, LubeError, list))
+    return accepted
 
 
 def is_read(read):

@@ -1,0 +1,1 @@
+"""What the commands of `lube` do: one module each."""

@@ -1,0 +1,110 @@
+"""``lube check``: a whole study with its list of records, without running it."""
+
+import csv
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+
+from lube.commands.run import repository
+from lube.errors import LubeError
+from lube.types import File
+from lube.workflow.command_line import changes_of, study_of_command
+from lube.workflow.study_files import StudyFiles
+
+
+def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], list[str]]:
+    """Check a study as the workflow does, without running it.
+
+    Parameters
+    ----------
+    path : str or Path
+        Its YAML file.
+    entries : sequence of str, optional
+        Changes ``key=value``, as of Snakemake's ``--config``.
+
+    Returns
+    -------
+    summary : list of str
+        What the study will compute, a line each.
+    refused : list of str
+        A line for each measured record that cannot be used.
+
+    Raises
+    ------
+    LubeError
+        If the study cannot be carried out.
+    """
+    study, arguments = study_of_command([path], changes_of(entries))
+    folder = StudyFiles(study, **arguments).folder
+    counts = {name: len(levels) for name, levels in study.operating_grid}
+    counts["lubricant"] = len(study.lubricants)
+    points = math.prod(counts.values())
+    factors = [_many(count, name) for name, count in counts.items() if count > 1]
+    more = [
+        _many(len(study.film_formulas), "film_formula"),
+        _many(study.realisations, "realisation"),
+    ]
+    runs = points * len(study.film_formulas) * study.realisations
+    records, refused = _records(study)
+    lines = {
+        "study": f"{study.name}: valid",
+        "operating points": " = ".join([f"{points:,}", *filter(None, [" × ".join(factors)])]),
+        "contact runs": " × ".join([f"{runs:,} = {points:,}", *more]),
+        "records": records,
+        "results": folder,
+        "last run": _last_run(folder),
+    }
+    return [f"{name:18}{text}" for name, text in lines.items()], refused
+
+
+def _many(count, name):
+    """``5 forces``."""
+    words = name.replace("slide_to_roll", "slide-to-roll").replace("_", " ")
+    return f"{count} {words}{'s' * (count != 1)}"
+
+
+def _records(study):
+    """Say where the records come from; and one line for each that cannot be used."""
+    manifest = study.experiment.manifest
+    if manifest is None:
+        return f"simulated, {_many(study.rig.pairs, 'pair')} of rollers", []
+    from lube.recordings.manifest import read_manifest
+
+    content = read_manifest(manifest)
+    refused = [*content.refused]
+    for entry in content.entries:
+        try:
+            _read(entry, study)
+        except LubeError as error:
+            refused.append(str(error))
+    total = len(content.refused) + len(content.entries)
+    usable = total - len(refused)
+    if not usable:
+        refused.append(f"{manifest}: no record can be used, need one at least")
+    return f"{usable} of the {total} in {manifest} can be used", refused
+
+
+def _read(entry, study):
+    """Read a record to its end."""
+    from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
+
+    lubricant_of(entry, study)
+    if entry.file is not None:
+        for _ in unsaturated_pieces(open_entry(entry), study):
+            pass
+
+
+def _last_run(results):
+    """Say how long the jobs of the study's last run took, by Snakemake's benchmarks."""
+    files = []
+    with suppress(LubeError):  # without a clone there is no run
+        files = list((repository() / results).glob("benchmarks/*.tsv"))
+    if not files:
+        return "none, so its time is not known"
+    seconds = sum(map(_seconds, files))
+    return f"{len(files)} jobs took {seconds / 60.0:.1f} min, one after the other"
+
+
+def _seconds(file):
+    with file.open(encoding="utf-8", newline="") as lines:
+        return float(next(csv.DictReader(lines, delimiter="\t"))["s"])

@@ -1,0 +1,219 @@
+"""``lube compare``: which values and figures of two results differ, and by how much."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from lube.errors import DataError, shown
+from lube.schema import LIMITS
+from lube.types import File
+
+STAMP_STRIP = 27
+"""Height of the strip below a figure that names study and commit, in pixels."""
+
+_MOST_CHANGES = 10  # values of the study that are listed
+_MOST_NAMED = 5  # coordinates that only one has
+
+
+def compare_results(first: File, second: File) -> Iterator[str]:
+    """Compare two folders of results, two archives, or two datasets of one kind.
+
+    Values are compared at equal coordinates, whatever their order. NaN equals NaN.
+
+    Parameters
+    ----------
+    first, second : str or Path
+        Two folders or two NetCDF files.
+
+    Yields
+    ------
+    str
+        A line for each variable, coordinate, figure or file that differs; nothing if all are the
+        same.
+
+    Raises
+    ------
+    DataError
+        If one of them is missing or damaged, or they have nothing in common to compare.
+    """
+    first, second = Path(first), Path(second)
+    for path in (first, second):
+        if not path.exists():
+            raise DataError(f"{path}: no such file, need a folder of results or a dataset")
+    if first.is_dir() != second.is_dir():
+        raise DataError(f"got {first} and {second}, need two folders or two datasets")
+    if not first.is_dir():
+        yield from _datasets(first, second, first.name)
+        return
+    one, other = _files(first), _files(second)
+    if not one.keys() & other.keys():
+        raise DataError(f"got {first} and {second}, need two folders with results of one kind")
+    yield from _only_in_one(one, other)
+    for name in sorted(one.keys() & other.keys()):
+        if one[name].read_bytes() != other[name].read_bytes():
+            kind = _figures if name.endswith(".png") else _datasets
+            yield from kind(one[name], other[name], name)
+
+
+def _files(folder):
+    """Datasets and figures of a folder of results, or of an archive, by name."""
+    patterns = ("*.nc", "data/*.nc", "figures/*.png")
+    return {path.name: path for pattern in patterns for path in sorted(folder.glob(pattern))}
+
+
+def _only_in_one(one, other):
+    for number, here, there in (("first", one, other), ("second", other, one)):
+        yield from (f"{name}: only in the {number}" for name in here if name not in there)
+
+
+def _figures(first, second, name):
+    from matplotlib.image import imread
+
+    one, other = (imread(path)[:-STAMP_STRIP] for path in (first, second))
+    if one.shape != other.shape:
+        yield f"{name}: {_pixels(one)} pixels against {_pixels(other)}"
+    elif share := np.any(one != other, axis=-1).mean():
+        yield f"{name}: {share:.2%} of the pixels differ"
+
+
+def _pixels(picture):
+    return f"{picture.shape[1]} x {picture.shape[0]}"
+
+
+def _datasets(first, second, where):
+    one, other = _read(first), _read(second)
+    if not set(one.data_vars) & set(other.data_vars):
+        raise DataError(f"{first} and {second}: no variable in common, need datasets of one kind")
+    lines = [*_only_in_one(sorted(one.variables), sorted(other.variables))]
+    labelled = [dim for dim in one.dims if dim in one.indexes and dim in other.indexes]
+    for dim in labelled:
+        one, other, lost = _at_common_labels(one, other, dim)
+        lines += lost
+    shared = sorted(set(one.variables) & set(other.variables) - set(labelled))
+    differing = {name: line for name in shared if (line := _variables(one, other, name))}
+    for name in differing:
+        # The limits of an interval are beside its value.
+        value = name.removesuffix("_lower").removesuffix("_upper")
+        if value == name or not differing.keys() & {value, f"{value}_mean"}:
+            lines.append(f"{name}: {differing[name]}")
+    if lines:
+        lines += _values_of_studies(one, other)
+    yield from (f"{where}: {line}" for line in lines)
+
+
+def _read(path):
+    try:
+        return xr.load_dataset(path, engine="netcdf4")
+    except (OSError, RuntimeError, ValueError, AttributeError) as error:
+        reason = (str(error) or type(error).__name__).splitlines()[0]
+        raise DataError(f"{path}: not a whole NetCDF file ({reason})") from None
+
+
+def _at_common_labels(one, other, dim):
+    """Bring two datasets to the labels of a dimension that both have; and name the others."""
+    here, there = one.indexes[dim], other.indexes[dim]
+    if not (here.is_unique and there.is_unique):
+        return one, other, [] if here.equals(there) else [f"{dim}: other labels, some repeated"]
+    lost = []
+    for number, own, others in (("first", here, there), ("second", there, here)):
+        if alone := [_short(label) for label in own if label not in others]:
+            names = "; ".join([*alone[:_MOST_NAMED], *["..."] * (len(alone) > _MOST_NAMED)])
+            lost.append(f"{dim}: {len(alone)} of {own.size} only in the {number}: {names}")
+    common = [label for label in here if label in there]
+    return one.sel({dim: common}), other.sel({dim: common}), lost
+
+
+def _short(value):
+    return f"{value:.6g}" if isinstance(value, int | float | np.number) else str(value)
+
+
+def _variables(one, other, name):
+    """Say how the values of a variable differ; nothing if they are the same."""
+    here, there = one[name], other[name]
+    if dict(here.sizes) != dict(there.sizes):
+        return f"{_sizes(here)} against {_sizes(there)}"
+    there = there.transpose(*here.dims)
+    numbers = here.dtype.kind in "fiu" and there.dtype.kind in "fiu"
+    differ = (here.values != there.values) & ~(here.isnull().values & there.isnull().values)
+    if not differ.any():
+        return ""
+    gap = differ.astype(float)
+    if numbers:
+        gap[differ] = np.abs(there.values[differ].astype(float) - here.values[differ])
+    # A value that one has and the other lacks is the largest difference.
+    place = np.unravel_index(np.argmax(np.where(np.isnan(gap), np.inf, gap)), gap.shape)
+    line = f"{np.count_nonzero(differ)} of {gap.size} differ, {'most' if numbers else 'first'}"
+    line += f"{_coordinates(here, place)}: {_value(one, name, place)} against "
+    line += _value(other, name, place, here.dims)
+    if numbers and np.isfinite(gap[place]):
+        line += (
+            f", {100.0 * gap[place] / max(np.abs([here.values[place], there.values[place]])):.2g} %"
+        )
+    return line + _intervals_apart(one, other, name)
+
+
+def _sizes(variable):
+    return " x ".join(f"{size} {dim}" for dim, size in variable.sizes.items()) or "a single value"
+
+
+def _coordinates(variable, place):
+    """Say where a value is."""
+    labels = [
+        f"{dim} {_short(variable[dim].values[index]) if dim in variable.coords else index}"
+        for dim, index in zip(variable.dims, place, strict=True)
+        if variable.sizes[dim] > 1
+    ]
+    return f" at {', '.join(labels)}" if labels else ""
+
+
+def _value(dataset, name, place, dims=None):
+    """Print a value, with its interval if it has one."""
+    at = dict(zip(dims or dataset[name].dims, place, strict=True))
+    value, *interval = (one.isel(at).item() for one in (dataset[name], *_limits(dataset, name)))
+    between = f" ({_short(interval[0])} to {_short(interval[1])})" if interval else ""
+    return f"{_short(value) if not isinstance(value, str) else shown(value)}{between}"
+
+
+def _limits(dataset, name):
+    """Limits of the 95 % intervals of a variable; none if it has none."""
+    names = [f"{name.removesuffix('_mean')}{limit}" for limit in LIMITS[1:]]
+    found = [dataset[limit] for limit in names if limit in dataset]
+    alike = all(set(limit.dims) == set(dataset[name].dims) for limit in found)
+    return found if len(found) == 2 and alike else []
+
+
+def _intervals_apart(one, other, name):
+    """Say how many intervals do not overlap."""
+    here, there = _limits(one, name), _limits(other, name)
+    if not (here and there):
+        return ""
+    apart = int(((here[0] > there[1]) | (there[0] > here[1])).sum())
+    return f"; {apart or 'all'} intervals {'do not ' * (apart > 0)}overlap"
+
+
+def _values_of_studies(one, other):
+    """Name the values of the two studies that differ, which explains the results that do."""
+    configs = []
+    for dataset in (one, other):
+        stages = json.loads(dataset.attrs.get("config", "{}")).values()
+        configs.append({name: value for stage in stages for name, value in _flat(stage).items()})
+    names = [name for name in configs[0] if configs[0][name] != configs[1].get(name)]
+    for name in names[:_MOST_CHANGES]:
+        here, there = (shown(config.get(name)) for config in configs)
+        yield f"the studies differ in {name}: {here} against {there}"
+    if len(names) > _MOST_CHANGES:
+        yield f"the studies differ in {len(names) - _MOST_CHANGES} more values"
+
+
+def _flat(config):
+    """Values of nested mappings, by dotted names."""
+    found = {}
+    for name, value in config.items():
+        if isinstance(value, dict):
+            found |= {f"{name}.{inner}": one for inner, one in _flat(value).items()}
+        else:
+            found[name] = value
+    return found

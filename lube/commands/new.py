@@ -1,0 +1,150 @@
+"""``lube new``: write a commented study of one's own rollers and oil, based on the paper's."""
+
+import json
+import os
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from lube.commands.run import repository
+from lube.errors import DataError, LubeError, shown
+from lube.report.pages import render
+from lube.storage.files import why_not
+from lube.study.lubricant_record import is_record_path
+from lube.study.schema_files import schema_line
+from lube.study.study import load_study
+from lube.types import File
+from lube.units import parse_quantity
+from lube.workflow.command_line import PAPER
+
+OF_ROLLERS = {"radius": "m", "roughness": "m"}
+"""Options for one or two numbers with a unit, and the kind of unit."""
+
+OF_GRID = {"force": "N", "speed": "rpm", "temperature": "degC"}
+"""Options for levels with a unit, and the kind of unit."""
+
+_THINNEST = {"force": "1600 N", "speed": "600/7 rpm", "temperature": "80 degC"}  # of the paper
+_SPACING = 0.05 / 1_000_000  # radius over points in the paper's study, m
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+)?"
+_NUMBERS = re.compile(rf"((?:{_NUMBER}[\s,]+)*{_NUMBER})\s*(1/\w+|[^\d\s/,.].*)")
+
+_RECORDS = """\
+# Measured records, one a line; files are named from this folder. Further columns, such as channel,
+# gain and pair, are explained in docs/records.md.
+file, force [N], speed [rpm], temperature [degC]
+# run-07.csv, 800, 100, 40
+"""
+
+
+def new_study(
+    path: File,
+    quantities: Mapping[str, str],
+    oils: Sequence[str] = (),
+    realisations: int | None = None,
+    records: File | None = None,
+) -> list[Path]:
+    """Write a study, and a list of records to fill in.
+
+    Parameters
+    ----------
+    path : str or Path
+        YAML file to write; its stem is the study's name.
+    quantities : dict of str to str
+        Any of `OF_ROLLERS` and `OF_GRID`: numbers with a unit, such as ``100 200 N``.
+    oils : sequence of str, optional
+        Names of shipped lubricant records, or paths of records.
+    realisations : int, optional
+        Number of pairs of roughness lines.
+    records : str or Path, optional
+        List of measured records, CSV; if there is none, one without records is written.
+
+    Returns
+    -------
+    list of Path
+        The files that were written, the study first.
+
+    Raises
+    ------
+    LubeError
+        If the study's file exists, or the study cannot be carried out; nothing is left then.
+    """
+    path = Path(path)
+    if path.suffix not in (".yaml", ".yml"):
+        raise LubeError(f"got {path}, need the name of a .yaml file")
+    folder = path.resolve().parent
+    numbers = {name: _numbers(name, text) for name, text in quantities.items()}
+    texts = {
+        "base": os.path.relpath(repository(folder) / PAPER, folder),
+        "oils": [os.path.relpath(oil, folder) if is_record_path(oil) else oil for oil in oils],
+        "records": records and os.path.relpath(records, folder),
+    }
+    text = render(
+        "study.yaml",
+        **{name: text and json.dumps(text, ensure_ascii=False) for name, text in texts.items()},
+        **_values(numbers),
+        **{"schema": schema_line("study", path), "path": path, "name": path.stem},
+        realisations=realisations,
+    )
+    return _written(path, text, None if records is None else Path(records))
+
+
+def _numbers(option, text):
+    """Split ``100, 200 N`` into numbers and unit, as they are written."""
+    match = _NUMBERS.fullmatch(text.strip())
+    if match is None:
+        raise LubeError(f"--{option}: got {shown(text)}, need numbers with a unit, as in `1 2 mm`")
+    values, units = match[1].replace(",", " ").split(), match[2]
+    if option in OF_ROLLERS and len(values) > 2:
+        raise LubeError(f"--{option}: got {shown(text)}, need one number, or one of each roller")
+    for value in values:
+        try:
+            parse_quantity(f"{value} {units}", (OF_ROLLERS | OF_GRID)[option])
+        except LubeError as error:
+            raise LubeError(f"--{option}: {error}") from None
+    return values, units
+
+
+def _values(numbers):
+    """Values of the template that follow from the options with units."""
+    keys = {"radius": "radius", "roughness": "rms_roughness"}
+    found = {"rollers": {}, "points": None, "thinnest": {}}
+    if given := {keys[name]: numbers[name] for name in OF_ROLLERS if name in numbers}:
+        for roller, side in (("first", 0), ("second", -1)):
+            found["rollers"][roller] = {
+                key: f"{values[side]} {units}" for key, (values, units) in given.items()
+            }
+    if "radius" in numbers:
+        radius = parse_quantity(found["rollers"]["first"]["radius"], "m")
+        found["points"] = round(radius / _SPACING)
+    levels = {name: numbers[name] for name in OF_GRID if name in numbers}
+    for name, (values, units) in levels.items():
+        found["thinnest"][name] = f"{values[0 if name == 'speed' else -1]} {units}"
+    return found | {"levels": levels, "thinnest": _THINNEST | found["thinnest"]}
+
+
+def _written(path, text, records):
+    """Write the files and check the study."""
+    written = []
+    try:
+        _write(path, text)
+        written.append(path)
+        if records is not None and not records.exists():
+            _write(records, _RECORDS)
+            written.append(records)
+        load_study(path)
+    except LubeError:
+        for file in written:
+            file.unlink()
+        raise
+    return written
+
+
+def _write(path, text):
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise DataError(f"{path}: exists already, need a new name") from None
+    except OSError as error:
+        raise DataError(f"{path}: cannot be written: {why_not(error, path)}") from None

@@ -1,0 +1,77 @@
+"""``lube run``: Snakemake in the folder of the Snakefile, wherever the user is."""
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from lube.errors import LubeError
+from lube.storage.git import ROOT
+
+_SNAKEFILE = "Snakefile"
+_SIGN = "workflow/rules/study.smk"  # of a Snakefile that is this one
+
+
+def snakemake_command(arguments: Sequence[str]) -> list[str]:
+    """Compose the command that runs a study.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        A study's YAML file, or none for the paper's, then targets and options of Snakemake.
+
+    Returns
+    -------
+    list of str
+        The command; the study comes last, so that targets precede it.
+    """
+    study, rest = [], list(arguments)
+    if rest and rest[0].endswith((".yaml", ".yml")):
+        study = ["--configfile", str(Path(rest.pop(0)).resolve())]
+    return [sys.executable, "-m", "snakemake", *rest, *study]
+
+
+def repository(here: Path | None = None) -> Path:
+    """Find the folder of the Snakefile.
+
+    Parameters
+    ----------
+    here : Path, optional
+        The current folder, which comes first.
+
+    Returns
+    -------
+    Path
+        The current folder, or else the clone that the package was installed from.
+
+    Raises
+    ------
+    LubeError
+        If neither has the Snakefile.
+    """
+    here = here or Path.cwd()
+    for folder in (here, *here.parents, ROOT):
+        if (folder / _SNAKEFILE).is_file() and (folder / _SIGN).is_file():
+            return folder
+    raise LubeError(
+        f"{here}: no Snakefile of lube, need a clone of its repository or a folder in it"
+    )
+
+
+def run(arguments: Sequence[str]) -> NoReturn:
+    """Become Snakemake, so that signals and the exit status are its own.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        As of `snakemake_command`.
+
+    Raises
+    ------
+    LubeError
+        As from `repository`.
+    """
+    command = snakemake_command(arguments)
+    os.chdir(repository())
+    os.execv(command[0], command)

@@ -1,0 +1,90 @@
+"""Whether a measured record can be used in a study: its conditions and its samples."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from lube.errors import DataError, LubeError
+from lube.recordings.manifest import Entry
+from lube.recordings.reader import Recording, open_recording
+from lube.study.lubricant_record import check_temperatures
+from lube.study.study import Study
+
+SATURATED = 0.001
+"""Share of samples at the amplifier's limits from which a record is refused."""
+
+
+def lubricant_of(entry: Entry, study: Study) -> str:
+    """Find the lubricant of a record, whose conditions must be within the study's model.
+
+    Parameters
+    ----------
+    entry : Entry
+        Its row of the manifest.
+    study : Study
+        The study.
+
+    Returns
+    -------
+    str
+        Name of a lubricant of the study, by default its first.
+
+    Raises
+    ------
+    DataError
+        If the study has no such lubricant, it is not valid at the temperature, or the contact at
+        the force is too narrow or too wide.
+    """
+    lubricants = {record.name: record for record in study.lubricants}
+    name = entry.lubricant or study.lubricants[0].name
+    if name not in lubricants:
+        raise DataError(
+            f"{entry.where}: lubricant: got {name}, need one of the study's: "
+            f"{', '.join(lubricants)}"
+        )
+    try:
+        check_temperatures(lubricants[name], [entry.temperature])
+        study.check_window(entry.force)
+    except LubeError as error:
+        raise DataError(f"{entry.where}: {error}") from None
+    return name
+
+
+def open_entry(entry: Entry) -> Recording:
+    """Open the recording of a row of the manifest; errors are those of `open_recording`."""
+    return open_recording(
+        entry.file, entry.sampling_interval, entry.channel, entry.unit, entry.gain, entry.offset
+    )
+
+
+def unsaturated_pieces(recording: Recording, study: Study) -> Iterator[np.ndarray]:
+    """Read a recording, which must be within the range of the rig's amplifier.
+
+    Parameters
+    ----------
+    recording : Recording
+        From `open_entry`.
+    study : Study
+        Its rig has the range.
+
+    Yields
+    ------
+    numpy.ndarray
+        As `Recording.pieces`.
+
+    Raises
+    ------
+    DataError
+        After the last piece, if too many samples are saturated; and as from `Recording.pieces`.
+    """
+    limit = study.rig.amplifier_range if recording.quantity == "voltage" else np.inf
+    samples = saturated = 0
+    for piece in recording.pieces():
+        samples += piece.size
+        saturated += np.count_nonzero(np.abs(piece) >= limit)
+        yield piece
+    if saturated > SATURATED * samples:
+        raise DataError(
+            f"{recording.path}: saturated, {saturated / samples:.1%} of its samples are at or "
+            f"beyond {limit:g} V, need at most {SATURATED:.1%} beyond rig.amplifier_range"
+        )
