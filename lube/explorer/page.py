@@ -6,6 +6,7 @@ What happens when a control moves is in ``templates/explorer.mjs``.
 
 import functools
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,6 @@ import xarray as xr
 from bokeh.core.properties import value as constant
 from bokeh.document import Document
 from bokeh.models import (
-    BasicTicker,
     CategoricalSlider,
     ColorBar,
     ColumnDataSource,
@@ -21,8 +21,11 @@ from bokeh.models import (
     FixedTicker,
     HoverTool,
     InlineStyleSheet,
+    LinearColorMapper,
+    LogAxis,
     LogColorMapper,
     RadioButtonGroup,
+    Range1d,
     Select,
     TapTool,
     Whisker,
@@ -32,12 +35,10 @@ from bokeh.plotting import figure
 from bokeh.resources import Resources
 from bokeh.themes import Theme
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from scipy.ndimage import distance_transform_edt
 
 from lube.explorer.content import CHOICES, page_content
 from lube.physics.regimes import regime
 from lube.plots import COLOURS
-from lube.schema import COORDINATES
 from lube.workflow.stamps import stamp
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -50,9 +51,8 @@ _NAMES = {
     "slide_to_roll_ratio": "Slide-to-roll ratio",
 }
 """Names of the choices on the page."""
-_AXES = {"force": "Force (N)", "speed": "Speed (r/min)", "temperature": "Temperature (°C)"}
 _TINTS = ("#E8F4FB", "#FDF3DC", "#DFF3EC", "#F9E6DA")  # of the regimes: light Okabe-Ito colours
-_SHARES = (1e-6, 1.0)  # probabilities that the master map's colours tell apart
+_SHARES = (1e-6, 1e-4, 1e-2, 1.0)  # labels of the master map's colours, from end to end
 _FONT = "system-ui, sans-serif"
 _THEME = Theme(
     json={
@@ -107,8 +107,8 @@ def explorer_page(datasets: dict[str, xr.Dataset]) -> str:
     controls = _controls(content["levels"], start)
     sources = {
         **{name: ColumnDataSource({column: [] for column in _POINTS}, name=name)
-           for name in ("grid", "along", "chosen")},
-        "records": _source("lambda", "x", "share", "lower", "upper", "name", "here"),
+           for name in ("along", "grid", "force", "chosen")},
+        "records": _source("x", "lambda", "share", "name"),
         "master": _source("lambda", "narrow", "near", "lower", "upper", "wide"),
         "frame": _source("left", "right", "bottom", "top"),
         "whole": _source("time", "length", "resistance"),
@@ -159,23 +159,24 @@ def _controls(levels, start):
 
 def _figures(content, datasets, sources):
     ratios, shares = _ratio_range(datasets), _share_range(datasets)
+    across = Range1d()
     figures = {
-        "film": _film_along(sources, _film_range(datasets)),
-        "probability": _probability_along(sources, shares),
+        "film": _film_along(sources, across, _film_range(datasets)),
+        "probability": _probability_along(sources, across, shares),
         "regimes": _regime_map(datasets["film"], content["validity"], sources),
         "curve": _master_curve(sources, ratios, shares),
     }
     if len(content["master"]["contact_width"]) > 1:
         figures["map"] = _master_map(content["master"], sources)
     for part in ("whole", "close"):
-        figures |= _trace(part, sources[part])
+        figures |= _trace(part, sources[part], _resistance_range(datasets["trace"]))
     return figures
 
 
 def _spread(values, by=1.3):
     """Range of positive values with some room on a logarithmic axis."""
     values = values[np.isfinite(values) & (values > 0.0)]
-    return (values.min() / by, values.max() * by)
+    return (values.min() / by, values.max() * by) if values.size else (0.1, 10.0)
 
 
 def _film_range(datasets):
@@ -202,20 +203,42 @@ def _share_range(datasets):
     return low, 1.6
 
 
+def _resistance_range(trace):
+    return _spread(trace["contact_resistance"].values, 1.5)
+
+
 def _plot(x_axis_label, y_axis_label, **options):
-    return figure(
+    plot = figure(
         x_axis_label=x_axis_label, y_axis_label=y_axis_label, tools="", toolbar_location=None,
         **options
     )  # fmt: skip
+    for axis, span in ((plot.xaxis, plot.x_range), (plot.yaxis, plot.y_range)):
+        if isinstance(axis[0], LogAxis):
+            _label(axis, _round_numbers(span.start, span.end), "{:g}".format)
+    return plot
+
+
+def _label(axis, ticks, text):
+    axis.ticker = FixedTicker(ticks=ticks)
+    axis.major_label_overrides = {tick: text(tick) for tick in ticks}
+
+
+def _round_numbers(low, high):
+    """Round numbers for a logarithmic axis, some four to nine of them."""
+    decades = math.log10(high / low)
+    digits = (1, 2, 5) if decades < 2.5 else (1, 3) if decades < 3.5 else (1,)
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
+    numbers = [float(f"{digit}e{power}") for power in powers for digit in digits]
+    return [number for number in numbers if low <= number <= high]
+
+
+def _percent(share):
+    return f"{100.0 * share:.10f}".rstrip("0").rstrip(".") + " %"
 
 
 def _percent_axis(plot):
     """Label powers of ten of a share with percentages."""
-    plot.yaxis.ticker = FixedTicker(ticks=[10.0**power for power in range(-9, 1)])
-    plot.yaxis.major_label_overrides = {
-        10.0**power: f"{10.0 ** (power + 2):.10f}".rstrip("0").rstrip(".") + " %"
-        for power in range(-9, 1)
-    }
+    _label(plot.yaxis, [10.0**power for power in range(-9, 1)], _percent)
 
 
 def _points(plot, source, x, y, size=8, **look):
@@ -226,10 +249,9 @@ def _points(plot, source, x, y, size=8, **look):
     return points
 
 
-def _all_points(plot, sources, x, y, along=False, tips=()):
+def _all_points(plot, sources, x, y, around="grid"):
     """The operating points around the chosen one, and the chosen one."""
-    around = sources["along" if along else "grid"]
-    small = _points(plot, around, x, y, size=8 if along else 6)
+    small = _points(plot, sources[around], x, y, size=6 if around == "grid" else 8)
     _points(
         plot, sources["chosen"], x, y, size=15, fill_color=COLOURS["vermilion"], line_color="black"
     )
@@ -239,24 +261,22 @@ def _all_points(plot, sources, x, y, along=False, tips=()):
     )
 
 
-def _probabilities(plot, sources, x, along=False):
+def _probabilities(plot, sources, x, around):
     """Probabilities with their intervals; where no contact was seen, their upper limits."""
-    _all_points(plot, sources, x, "mean", along)
-    for name, size, colour in (
-        ("along" if along else "grid", 9 if along else 6, COLOURS["blue"]),
-        ("chosen", 15, COLOURS["vermilion"]),
-    ):
+    _whiskers(plot, sources["chosen"], x, "black", 2)
+    _all_points(plot, sources, x, "mean", around)
+    for name, size, colour in ((around, 8, COLOURS["blue"]), ("chosen", 15, COLOURS["vermilion"])):
         limits = plot.scatter(
             x, "limit", source=sources[name], size=size, marker="inverted_triangle",
-            fill_color="white", line_color=colour, line_width=2 if name == "chosen" else 1,
+            fill_color="white", line_color=colour, line_width=1.0 if name == around else 2.5,
         )  # fmt: skip
         limits.nonselection_glyph = limits.glyph
-        if name != "chosen":
-            plot.select_one(TapTool).renderers.append(limits)
-            plot.select_one(HoverTool).renderers.append(limits)
+        if name == around:
+            for tool in (HoverTool, TapTool):
+                plot.select_one(tool).renderers.append(limits)
     records = plot.scatter(
-        "x" if along else "lambda", "share", source=sources["records"], marker="x", size=10,
-        line_color=COLOURS["purple"], line_width=2, line_alpha="here" if along else 1.0,
+        x, "share", source=sources["records"], marker="x", size=10,
+        line_color=COLOURS["purple"], line_width=2.5,
     )  # fmt: skip
     plot.add_tools(HoverTool(renderers=[records], tooltips="<b>@name</b>"))
 
@@ -270,20 +290,21 @@ def _whiskers(plot, source, x, colour, width):
     plot.add_layout(whisker)
 
 
-def _film_along(sources, films):
-    plot = _plot("", "Film thickness (µm)", y_axis_type="log", y_range=films, name="film")
+def _film_along(sources, across, films):
+    plot = _plot("", "Film thickness (µm)", y_axis_type="log", x_range=across, y_range=films)
     plot.line("x", "film", source=sources["along"], line_color=COLOURS["blue"], line_width=2)
-    _all_points(plot, sources, "x", "film", along=True)
+    _all_points(plot, sources, "x", "film", "along")
     return plot
 
 
-def _probability_along(sources, shares):
-    plot = _plot("", "Breakthrough probability", y_axis_type="log", y_range=shares)
+def _probability_along(sources, across, shares):
+    plot = _plot(
+        "", "Breakthrough probability", y_axis_type="log", x_range=across, y_range=shares
+    )  # fmt: skip
     _percent_axis(plot)
     plot.line("x", "mean", source=sources["along"], line_color=COLOURS["blue"], line_width=2)
     _whiskers(plot, sources["along"], "x", COLOURS["blue"], 1)
-    _whiskers(plot, sources["chosen"], "x", "black", 2)
-    _probabilities(plot, sources, "x", along=True)
+    _probabilities(plot, sources, "x", "along")
     return plot
 
 
@@ -294,7 +315,8 @@ def _regime_map(film, validity, sources):
     loads = np.append(film["moes_load"].values, frames[:, :2])
     materials = np.append(film["moes_material"].values, frames[:, 2:])
     left, right = _spread(loads, 1.6)
-    bottom, top = max(materials.min() - 1.5, 0.05), materials.max() + 1.5
+    # Space above points and frames for the names of the regimes.
+    bottom, top = max(materials.min() - 1.0, 0.05), materials.max() + 3.0
     across, up = np.geomspace(left, right, 400), np.linspace(bottom, top, 300)
     flags = regime(across, up[:, None])
     plot = _plot(
@@ -303,16 +325,14 @@ def _regime_map(film, validity, sources):
     )  # fmt: skip
     plot.image(
         [flags.astype(np.uint8)], x=left, y=bottom, dw=right - left, dh=top - bottom,
-        palette=_TINTS, level="image",
+        color_mapper=LinearColorMapper(palette=_TINTS, low=0, high=3), level="image",
     )  # fmt: skip
-    for flag in np.unique(flags):
-        # In the middle of the widest part of the regime.
-        inside = np.pad(flags == flag, 1)
-        row, column = np.unravel_index(distance_transform_edt(inside).argmax(), inside.shape)
+    for flag in np.unique(flags[-1]):
         plot.text(
-            [across[column - 1]], [up[row - 1]], [names[flag].replace("_", "\n")],
-            text_align="center", text_baseline="middle", text_font=constant(_FONT),
-            text_font_size="14px", text_color="#475569",
+            [np.exp(np.log(across[flags[-1] == flag]).mean())], [top],
+            [names[flag].replace("_", "\n")],
+            text_align="center", text_baseline="top", text_font=constant(_FONT), y_offset=4,
+            text_font_size="13px", text_line_height=1.0, text_color="#334155",
         )  # fmt: skip
     plot.quad(
         source=sources["frame"], left="left", right="right", bottom="bottom", top="top",
@@ -338,8 +358,7 @@ def _master_curve(sources, ratios, shares):
     plot.line("lambda", "wide", source=source, line_color=COLOURS["grey"], line_dash="dashed",
               line_width=2)  # fmt: skip
     plot.line("lambda", "near", source=source, line_color=COLOURS["orange"], line_width=2.5)
-    _whiskers(plot, sources["chosen"], "lambda", "black", 2)
-    _probabilities(plot, sources, "lambda")
+    _probabilities(plot, sources, "lambda", "force")
     return plot
 
 
@@ -352,8 +371,8 @@ def _master_map(master, sources):
     mean = np.array(master["mean"], dtype=float).ravel()
     rows, columns = np.divmod(np.arange(mean.size), ratios.size)
     mapper = LogColorMapper(
-        palette=Cividis256, low=_SHARES[0], high=_SHARES[1], low_color=Cividis256[0]
-    )
+        palette=Cividis256, low=_SHARES[0], high=_SHARES[-1], nan_color="white"
+    )  # fmt: skip
     plot = _plot(
         "Lambda ratio", "Contact width (µm)",
         x_axis_type="log", x_range=(edges[0], edges[-1]), y_range=(lines[0], lines[-1]),
@@ -367,13 +386,12 @@ def _master_map(master, sources):
             "mean": np.where(mean > 0.0, mean, np.nan),
         }
     )
-    mapper.nan_color = "#FFFFFF"
     plot.quad(
         source=fields, left="left", right="right", bottom="bottom", top="top", line_color=None,
         fill_color={"field": "mean", "transform": mapper},
     )  # fmt: skip
-    bar = ColorBar(color_mapper=mapper, width=12, padding=4, ticker=FixedTicker(ticks=[1e-6, 1e-4, 1e-2, 1]))
-    bar.major_label_overrides = {1e-6: "0.0001 %", 1e-4: "0.01 %", 1e-2: "1 %", 1.0: "100 %"}
+    bar = ColorBar(color_mapper=mapper, width=12, padding=4)
+    _label(bar, list(_SHARES), _percent)
     plot.add_layout(bar, "right")
     _all_points(plot, sources, "lambda", "width")
     return plot
@@ -385,16 +403,14 @@ def _edges(values):
     return np.concatenate([[2 * values[0] - inner[0]], inner, [2 * values[-1] - inner[-1]]])
 
 
-def _trace(part, source):
+def _trace(part, source, resistances):
     """Contact length and resistance of a trace, or of its part around the peak."""
     time = "Time (s)" if part == "whole" else "Time from the peak (ms)"
-    length = _plot(time, "Contact length (µm)", height=240)
+    common = {"height": 230, "x_range": Range1d()}
+    length = _plot(time, "Contact length (µm)", y_range=Range1d(), **common)
     length.line("time", "length", source=source, line_color=COLOURS["blue"])
-    length.y_range.start = 0
-    resistance = _plot(
-        time, "Resistance (Ω)", height=240, y_axis_type="log", x_range=length.x_range
-    )
-    resistance.line("time", "resistance", source=source, line_color=COLOURS["green"])
+    resistance = _plot(time, "Resistance (Ω)", y_axis_type="log", y_range=resistances, **common)
+    resistance.line("time", "resistance", source=source, line_color=COLOURS["green"], line_width=2)
     return {f"{part}_length": length, f"{part}_resistance": resistance}
 
 
@@ -407,29 +423,35 @@ def _filled(content, datasets, controls, sources, figures):
     react = CustomJS.from_file(_TEMPLATES / "explorer.mjs", **arguments)
     for name, control in controls.items():
         control.js_on_change("active" if name == "along" else "value", react)
-    for name in ("grid", "along"):
+    for name in ("along", "grid", "force"):
         sources[name].selected.js_on_change("indices", react)
+    places = {f"control-{name}": control for name, control in controls.items()}
+    places |= {f"figure-{name}": plot for name, plot in figures.items()}
     document = Document(theme=_THEME)
     document.js_on_event("document_ready", react)
-    for model in (*controls.values(), *figures.values()):
-        document.add_root(model)
+    with document.models.freeze():  # or every root would have all models counted again
+        for model in places.values():
+            document.add_root(model)
     # As `bokeh.embed.components` does, but with names instead of random numbers.
-    places = {model.id: f"figure-{name}" for name, model in figures.items()}
-    places |= {model.id: f"control-{name}" for name, model in controls.items()}
+    places = {model.id: place for place, model in places.items()}
     items = [{"docid": "explorer", "roots": places, "root_ids": list(places)}]
-    return _environment().get_template("explorer.html").render(
-        title=datasets["contact"].attrs["title"].rpartition(", ")[0],
-        content=content,
-        names=_NAMES,
-        controls=controls,
-        figures=figures,
-        json={
-            "content": _script(content),
-            "models": _script({"explorer": document.to_json(deferred=False)}),
-            "items": _script(items),
-        },
-        bokeh=Resources(mode="inline", components=["bokeh", "bokeh-widgets"]).render(),
-        stamp=stamp(list(datasets.values())),
+    return (
+        _environment()
+        .get_template("explorer.html")
+        .render(
+            title=datasets["contact"].attrs["title"].rpartition(", ")[0],
+            content=content,
+            names=_NAMES,
+            controls=controls,
+            figures=figures,
+            json={
+                "content": _script(content),
+                "models": _script({"explorer": document.to_json(deferred=False)}),
+                "items": _script(items),
+            },
+            bokeh=Resources(mode="inline", components=["bokeh", "bokeh-widgets"]).render(),
+            stamp=stamp(list(datasets.values())),
+        )
     )
 
 

@@ -13,6 +13,12 @@ const units = {
     hertz_pressure: [1e-6, "MPa"],
     entrainment_speed: [1, "m/s"],
 };
+const axes = {
+    force: "Force (N)",
+    speed: "Speed (r/min)",
+    temperature: "Temperature (°C)",
+    slide_to_roll_ratio: "Slide-to-roll ratio",
+};
 const superscript = (power) => [...String(power)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("");
 const element = (id) => document.getElementById(id);
 
@@ -58,8 +64,7 @@ function row(point, along) {
         x: along ? levels[along].values[point[along]] : NaN,
         film: 1e6 * at("film_thickness", point),
         mean: seen ? mean : NaN,
-        // A bar to zero would leave a logarithmic axis.
-        lower: seen ? Math.max(lower, 1e-12) : NaN,
+        lower: seen ? Math.max(lower, 1e-12) : NaN, // the axis ends far above
         upper: seen ? upper : NaN,
         limit: seen ? NaN : upper,
         lambda: at("lambda_ratio", point),
@@ -79,6 +84,9 @@ function* neighbours(point, names) {
     const [name, ...rest] = names;
     for (const index of levels[name].values.keys()) yield* neighbours({ ...point, [name]: index }, rest);
 }
+
+// Logarithmic axes have no place for zero.
+const positive = (share) => (share > 0 ? share : NaN);
 
 function fill(source, rows) {
     const columns = Object.keys(source.data);
@@ -157,17 +165,18 @@ function showRecords(point, along, source) {
         return line;
     });
     element("records").replaceChildren(...lines);
+    // In the figures: records that differ in the abscissa alone, or that are of the chosen force.
     const others = grid.filter((name) => name !== along);
-    const same = (record) => record.lubricant === levels.lubricant.values[point.lubricant];
     fill(
         source,
-        content.records.rows.filter(same).map((record) => ({
-            name: recordText(record, formula),
-            share: record.measured_share > 0 ? record.measured_share : NaN,
-            lambda: record.lambda_ratio[formula],
-            x: isNear(record, point, others) && grid.includes(along) ? record[along] : NaN,
-            here: 1,
-        })),
+        content.records.rows
+            .filter((record) => isNear(record, point, []))
+            .map((record) => ({
+                name: recordText(record, formula),
+                share: positive(record.measured_share),
+                x: grid.includes(along) && isNear(record, point, others) ? record[along] : NaN,
+                lambda: isNear(record, point, ["force"]) ? record.lambda_ratio[formula] : NaN,
+            })),
     );
 }
 
@@ -177,7 +186,6 @@ function showMaster(point, source) {
     const away = contact_width.map((one) => Math.abs(one - width));
     const near = away.indexOf(Math.min(...away));
     const last = contact_width.length - 1;
-    const positive = (value) => (value > 0 ? value : NaN);
     fill(
         source,
         lambda_ratio.map((lambda, i) => ({
@@ -197,7 +205,13 @@ function showMaster(point, source) {
     }
 }
 
-function showTrace(point, controls, sources) {
+function setRange(range, values, room) {
+    const [low, high] = [Math.min(...values), Math.max(...values)];
+    const more = room * (high - low) || 0.5;
+    [range.start, range.end] = [low - more, high + more];
+}
+
+function showTrace(point, sources, figures) {
     const trace = content.traces.find((one) => choices.every((name) => one.at[name] === point[name]));
     element("traces").hidden = trace === undefined;
     element("trace-points").hidden = trace !== undefined;
@@ -213,14 +227,16 @@ function showTrace(point, controls, sources) {
     const peak = time[contact_length.indexOf(Math.max(...contact_length))];
     for (const [part, scale, zero] of [["whole", 1, 0], ["close", 1e3, peak]]) {
         const { time, contact_length, contact_resistance } = trace[part];
-        fill(
-            sources[part],
-            time.map((moment, i) => ({
-                time: scale * (moment - zero),
-                length: 1e6 * contact_length[i],
-                resistance: contact_resistance[i],
-            })),
-        );
+        const rows = time.map((moment, i) => ({
+            time: scale * (moment - zero),
+            length: 1e6 * contact_length[i],
+            resistance: contact_resistance[i],
+        }));
+        fill(sources[part], rows);
+        for (const name of [`${part}_length`, `${part}_resistance`]) {
+            setRange(figures[name].x_range, rows.map((one) => one.time), 0.01);
+        }
+        figures[`${part}_length`].y_range.setv({ start: 0, end: 1.08 * Math.max(...rows.map((one) => one.length)) || 1 });
     }
 }
 
@@ -279,7 +295,7 @@ function prepareTraceButtons(controls) {
 let ready = false;
 
 export default function ({ controls, sources, figures }, origin) {
-    const tapped = ["grid", "along"].find((name) => sources[name].selected === origin);
+    const tapped = ["along", "grid", "force"].find((name) => sources[name].selected === origin);
     if (tapped !== undefined) {
         const [index] = origin.indices;
         if (index === undefined) return;
@@ -296,11 +312,11 @@ export default function ({ controls, sources, figures }, origin) {
     }
     const point = chosen(controls);
     const along = "along" in controls ? controls.along.tags[controls.along.active] : "temperature";
-    for (const name of ["film", "probability"]) {
-        figures[name].below[0].axis_label = ({ force: "Force (N)", speed: "Speed (r/min)", temperature: "Temperature (°C)" })[along] ?? "Slide-to-roll ratio";
-    }
+    setRange(figures.film.x_range, levels[along].values, 0.06); // which both figures share
+    for (const name of ["film", "probability"]) figures[name].below[0].axis_label = axes[along];
     fill(sources.along, [...neighbours(point, [along])].map((one) => row(one, along)));
     fill(sources.grid, [...neighbours(point, grid)].map((one) => row(one)));
+    fill(sources.force, [...neighbours(point, ["speed", "temperature"])].map((one) => row(one)));
     fill(sources.chosen, [row(point, along)]);
     const { moes_load, moes_material } = content.validity[levels.film_formula.values[point.film_formula]];
     fill(sources.frame, [{ left: moes_load[0], right: moes_load[1], bottom: moes_material[0], top: moes_material[1] }]);
@@ -308,6 +324,6 @@ export default function ({ controls, sources, figures }, origin) {
     showRecords(point, along, sources.records);
     showMaster(point, sources.master);
     showValues(point);
-    showTrace(point, controls, sources);
+    showTrace(point, sources, figures);
     toAddress(controls, point);
 }
