@@ -30,6 +30,7 @@ FLOORS = [
     {"report"},
     {"workflow"},
     {"archive", "plots"},
+    {"explorer"},
     {"cli"},
 ]
 FLOOR_OF = {room: number for number, floor in enumerate(FLOORS) for room in floor}

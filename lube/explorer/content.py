@@ -130,7 +130,7 @@ def _validity(formula):
 
 
 def _master(master):
-    """The master map, its probabilities as rows of one contact width."""
+    """List the master map, its probabilities as rows of one contact width."""
     limits = {
         limit: _plain(master[f"breakthrough_probability_{limit}"].transpose("contact_width", ...))
         for limit in LIMITS
@@ -139,7 +139,7 @@ def _master(master):
 
 
 def _records(comparison):
-    """Records with a contact share, one dict each; values by formula are lists."""
+    """List the records with a contact share as dicts; their values by formula are lists."""
     names = (
         *("record", "lubricant", "slide_to_roll_ratio", "force", "speed", "temperature"),
         *("force_level", "speed_level", "temperature_level"),

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from bokeh.core.properties import value as constant
 from bokeh.document import Document
 from bokeh.models import (
     CategoricalSlider,
@@ -51,8 +50,12 @@ _NAMES = {
     "slide_to_roll_ratio": "Slide-to-roll ratio",
 }
 """Names of the choices on the page."""
-_TINTS = ("#E8F4FB", "#FDF3DC", "#DFF3EC", "#F9E6DA")  # of the regimes: light Okabe-Ito colours
+_TINTS = ("#D6ECFA", "#FFF4D1", "#E0E0E0", "#F4D3C0")
+"""Light colours of the regimes."""
 _SHARES = (1e-6, 1e-4, 1e-2, 1.0)  # labels of the master map's colours, from end to end
+_DIGITS = {0.5: (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), 1.2: (1, 1.5, 2, 3, 5, 7),
+           2.5: (1, 2, 5), 3.5: (1, 3), math.inf: (1,)}  # fmt: skip
+"""Which digits get a label on a logarithmic axis of up to so many decades."""
 _FONT = "system-ui, sans-serif"
 _THEME = Theme(
     json={
@@ -76,11 +79,22 @@ _THEME = Theme(
         }
     }
 )
-_POINTS = (
+_POINT = (
     *("x", "film", "mean", "lower", "upper", "limit", "lambda", "width", "M", "L", "name"),
     *CHOICES,
 )
-"""Columns of the sources of operating points; ``limit`` is an upper limit without contact."""
+_COLUMNS = {
+    "chosen": _POINT,
+    "along": _POINT,  # along one variable
+    "force": _POINT,  # at one force
+    "grid": _POINT,  # at all forces, speeds and temperatures
+    "records": ("x", "lambda", "share", "name"),
+    "master": ("lambda", "narrow", "near", "lower", "upper", "wide"),
+    "frame": ("left", "right", "bottom", "top"),  # of the film formula's validity
+    "whole": ("time", "length", "resistance"),
+    "close": ("time", "length", "resistance"),
+}
+"""Columns of what the figures draw; ``limit`` is an upper limit where no contact was seen."""
 
 
 def explorer_page(datasets: dict[str, xr.Dataset]) -> str:
@@ -106,27 +120,18 @@ def explorer_page(datasets: dict[str, xr.Dataset]) -> str:
     start = content["traces"][0]["at"]
     controls = _controls(content["levels"], start)
     sources = {
-        **{name: ColumnDataSource({column: [] for column in _POINTS}, name=name)
-           for name in ("along", "grid", "force", "chosen")},
-        "records": _source("x", "lambda", "share", "name"),
-        "master": _source("lambda", "narrow", "near", "lower", "upper", "wide"),
-        "frame": _source("left", "right", "bottom", "top"),
-        "whole": _source("time", "length", "resistance"),
-        "close": _source("time", "length", "resistance"),
-    }  # fmt: skip
+        name: ColumnDataSource({column: [] for column in columns}, name=name)
+        for name, columns in _COLUMNS.items()
+    }
     figures = _figures(content, datasets, sources)
     return _filled(content, datasets, controls, sources, figures)
-
-
-def _source(*columns):
-    return ColumnDataSource({name: [] for name in columns})
 
 
 # Controls
 
 
 def _controls(levels, start):
-    """A control for each choice that has several levels, and one for the abscissa."""
+    """Make a control for each choice with several levels, and one for the abscissa."""
     controls = {}
     sheets = [InlineStyleSheet(css=(_TEMPLATES / "controls.css").read_text(encoding="utf-8"))]
     common = {"stylesheets": sheets, "sizing_mode": "stretch_width"}
@@ -134,7 +139,7 @@ def _controls(levels, start):
         names = level["names"]
         if len(names) == 1:
             continue
-        options = {"name": name, "title": _NAMES[name], "value": names[start[name]], **common}
+        options = {"title": _NAMES[name], "value": names[start[name]], **common}
         if name in ("lubricant", "film_formula"):
             controls[name] = Select(options=names, **options)
         else:
@@ -147,7 +152,6 @@ def _controls(levels, start):
         controls["along"] = RadioButtonGroup(
             labels=[_NAMES[name] for name in several],
             active=first,
-            name="along",
             tags=several,
             **common,
         )
@@ -167,7 +171,7 @@ def _figures(content, datasets, sources):
         "curve": _master_curve(sources, ratios, shares),
     }
     if len(content["master"]["contact_width"]) > 1:
-        figures["map"] = _master_map(content["master"], sources)
+        figures["map"] = _master_map(content["master"], ratios, sources)
     for part in ("whole", "close"):
         figures |= _trace(part, sources[part], _resistance_range(datasets["trace"]))
     return figures
@@ -224,9 +228,9 @@ def _label(axis, ticks, text):
 
 
 def _round_numbers(low, high):
-    """Round numbers for a logarithmic axis, some four to nine of them."""
+    """Round numbers for a logarithmic axis, the fewer of each decade the more decades it has."""
     decades = math.log10(high / low)
-    digits = (1, 2, 5) if decades < 2.5 else (1, 3) if decades < 3.5 else (1,)
+    digits = next(digits for most, digits in _DIGITS.items() if decades <= most)
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
     numbers = [float(f"{digit}e{power}") for power in powers for digit in digits]
     return [number for number in numbers if low <= number <= high]
@@ -237,8 +241,8 @@ def _percent(share):
 
 
 def _percent_axis(plot):
-    """Label powers of ten of a share with percentages."""
-    _label(plot.yaxis, [10.0**power for power in range(-9, 1)], _percent)
+    """Label the shares on a plot's upright axis with percentages."""
+    _label(plot.yaxis, plot.yaxis[0].ticker.ticks, _percent)
 
 
 def _points(plot, source, x, y, size=8, **look):
@@ -250,7 +254,7 @@ def _points(plot, source, x, y, size=8, **look):
 
 
 def _all_points(plot, sources, x, y, around="grid"):
-    """The operating points around the chosen one, and the chosen one."""
+    """Draw the operating points around the chosen one, and the chosen one."""
     small = _points(plot, sources[around], x, y, size=6 if around == "grid" else 8)
     _points(
         plot, sources["chosen"], x, y, size=15, fill_color=COLOURS["vermilion"], line_color="black"
@@ -310,13 +314,11 @@ def _probability_along(sources, across, shares):
 
 def _regime_map(film, validity, sources):
     """Where the points lie among the four regimes, over the Moes numbers."""
-    names = film["regime"].attrs["flag_meanings"].split()
     frames = np.array([[*one["moes_load"], *one["moes_material"]] for one in validity.values()])
     loads = np.append(film["moes_load"].values, frames[:, :2])
     materials = np.append(film["moes_material"].values, frames[:, 2:])
     left, right = _spread(loads, 1.6)
-    # Space above points and frames for the names of the regimes.
-    bottom, top = max(materials.min() - 1.0, 0.05), materials.max() + 3.0
+    bottom, top = max(materials.min() - 1.0, 0.05), materials.max() + 1.0
     across, up = np.geomspace(left, right, 400), np.linspace(bottom, top, 300)
     flags = regime(across, up[:, None])
     plot = _plot(
@@ -327,13 +329,6 @@ def _regime_map(film, validity, sources):
         [flags.astype(np.uint8)], x=left, y=bottom, dw=right - left, dh=top - bottom,
         color_mapper=LinearColorMapper(palette=_TINTS, low=0, high=3), level="image",
     )  # fmt: skip
-    for flag in np.unique(flags[-1]):
-        plot.text(
-            [np.exp(np.log(across[flags[-1] == flag]).mean())], [top],
-            [names[flag].replace("_", "\n")],
-            text_align="center", text_baseline="top", text_font=constant(_FONT), y_offset=4,
-            text_font_size="13px", text_line_height=1.0, text_color="#334155",
-        )  # fmt: skip
     plot.quad(
         source=sources["frame"], left="left", right="right", bottom="bottom", top="top",
         fill_color=None, line_color="black", line_dash="dashed",
@@ -362,8 +357,8 @@ def _master_curve(sources, ratios, shares):
     return plot
 
 
-def _master_map(master, sources):
-    """The master map, each of its values as a coloured field."""
+def _master_map(master, span, sources):
+    """Draw the master map, each of its values as a coloured field."""
     ratios = np.array(master["lambda_ratio"])
     widths = 1e6 * np.array(master["contact_width"])
     edges = np.exp(_edges(np.log(ratios)))
@@ -375,7 +370,8 @@ def _master_map(master, sources):
     )  # fmt: skip
     plot = _plot(
         "Lambda ratio", "Contact width (µm)",
-        x_axis_type="log", x_range=(edges[0], edges[-1]), y_range=(lines[0], lines[-1]),
+        x_axis_type="log", x_range=span, y_range=(lines[0], lines[-1]),
+        background_fill_color=_TINTS[2],
     )  # fmt: skip
     fields = ColumnDataSource(
         {
@@ -387,8 +383,9 @@ def _master_map(master, sources):
         }
     )
     plot.quad(
-        source=fields, left="left", right="right", bottom="bottom", top="top", line_color=None,
+        source=fields, left="left", right="right", bottom="bottom", top="top",
         fill_color={"field": "mean", "transform": mapper},
+        line_color={"field": "mean", "transform": mapper},  # or gaps would show
     )  # fmt: skip
     bar = ColorBar(color_mapper=mapper, width=12, padding=4)
     _label(bar, list(_SHARES), _percent)
@@ -406,11 +403,13 @@ def _edges(values):
 def _trace(part, source, resistances):
     """Contact length and resistance of a trace, or of its part around the peak."""
     time = "Time (s)" if part == "whole" else "Time from the peak (ms)"
-    common = {"height": 230, "x_range": Range1d()}
+    common = {"height": 230, "x_range": Range1d(), "min_border_left": 75}
     length = _plot(time, "Contact length (µm)", y_range=Range1d(), **common)
     length.line("time", "length", source=source, line_color=COLOURS["blue"])
     resistance = _plot(time, "Resistance (Ω)", y_axis_type="log", y_range=resistances, **common)
-    resistance.line("time", "resistance", source=source, line_color=COLOURS["green"], line_width=2)
+    green = COLOURS["green"]
+    resistance.line("time", "resistance", source=source, line_color=green)
+    resistance.scatter("time", "resistance", source=source, color=green, size=3)
     return {f"{part}_length": length, f"{part}_resistance": resistance}
 
 
@@ -418,7 +417,7 @@ def _trace(part, source, resistances):
 
 
 def _filled(content, datasets, controls, sources, figures):
-    """The page as text."""
+    """Fill the page's template."""
     arguments = {"controls": controls, "sources": sources, "figures": figures}
     react = CustomJS.from_file(_TEMPLATES / "explorer.mjs", **arguments)
     for name, control in controls.items():
@@ -430,7 +429,8 @@ def _filled(content, datasets, controls, sources, figures):
     document = Document(theme=_THEME)
     document.js_on_event("document_ready", react)
     with document.models.freeze():  # or every root would have all models counted again
-        for model in places.values():
+        for place, model in places.items():
+            model.name = place
             document.add_root(model)
     # As `bokeh.embed.components` does, but with names instead of random numbers.
     places = {model.id: place for place, model in places.items()}
@@ -442,6 +442,7 @@ def _filled(content, datasets, controls, sources, figures):
             title=datasets["contact"].attrs["title"].rpartition(", ")[0],
             content=content,
             names=_NAMES,
+            tints=_TINTS,
             controls=controls,
             figures=figures,
             json={

@@ -146,11 +146,13 @@ function isNear(record, point, names) {
     );
 }
 
+const origin = content.records.origin.replace(/^./, (first) => first.toUpperCase());
+
 function recordText(record, formula) {
     const { measured_share: share, measured_share_lower: lower, measured_share_upper: upper } = record;
     const predicted = [record.predicted_share_lower[formula], record.predicted_share_upper[formula]].map(percent);
     return (
-        `${record.record}: in contact ${percent(share)} of the time (${percent(lower)} to ${percent(upper)}); ` +
+        `${origin} record ${record.record}: in contact ${percent(share)} of the time (${percent(lower)} to ${percent(upper)}); ` +
         `predicted for one pair of rollers: ${predicted.join(" to ")}`
     );
 }
@@ -161,7 +163,7 @@ function showRecords(point, along, source) {
     const lines = here.map((record) => {
         const line = document.createElement("p");
         line.className = "note";
-        line.textContent = `${content.records.origin} record ${recordText(record, formula)}`;
+        line.textContent = recordText(record, formula);
         return line;
     });
     element("records").replaceChildren(...lines);
@@ -222,7 +224,7 @@ function showTrace(point, sources, figures) {
     element("trace-text").textContent =
         `One realisation of the roughness, in contact ${percent(trace.share)} of this revolution. An asperity takes ` +
         `${rounded(1e3 * trace.crossing)} ms to cross the contact. Drawn: the longest contact and the lowest ` +
-        `resistance of each ${trace.whole.steps} time steps, around the peak of each ${trace.close.steps}.`;
+        `resistance within every ${trace.whole.steps} time steps, and around the peak within every ${trace.close.steps}.`;
     const { time, contact_length } = trace.close;
     const peak = time[contact_length.indexOf(Math.max(...contact_length))];
     for (const [part, scale, zero] of [["whole", 1, 0], ["close", 1e3, peak]]) {
