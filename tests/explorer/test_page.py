@@ -141,8 +141,12 @@ def test_every_control_moves_and_every_number_is_the_datasets(visit, explored, p
 def drawn(page, source):
     """Points that a figure draws."""
     return page.evaluate(
-        f"Object.fromEntries(Object.entries(Bokeh.documents[0].get_model_by_name('{source}').data)"
-        ".map(([name, values]) => [name, Array.from(values, (one) => Number.isNaN(one) ? null : one)]))"
+        """(name) => {
+            const columns = Object.entries(Bokeh.documents[0].get_model_by_name(name).data);
+            const plain = (one) => (Number.isNaN(one) ? null : one);
+            return Object.fromEntries(columns.map(([key, values]) => [key, values.map(plain)]));
+        }""",
+        source,
     )
 
 
