@@ -20,7 +20,8 @@ LIMITS = ("mean", "lower", "upper")
 SHOWN = {
     "lubricant": ("dynamic_viscosity", "pressure_viscosity_coefficient"),
     "film": (
-        *("film_thickness", "lambda_ratio", "regime", "in_validity_range"),
+        *("film_thickness", "lambda_ratio", "regime"),
+        *("formula_place", "formula_source", "in_validity_range"),
         *("moes_load", "moes_material", "contact_half_width", "hertz_pressure"),
         *("entrainment_speed", "inlet_shear_heating_factor"),
     ),

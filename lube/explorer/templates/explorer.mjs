@@ -32,7 +32,7 @@ function rounded(number) {
     return `${Number(digits)} × 10${superscript(Number(power))}`;
 }
 
-const percent = (share) => (share === null ? "–" : `${rounded(100 * share)} %`);
+const percent = (share) => (share === null ? "–" : `${rounded(100 * share)}\u00a0%`);
 
 // Values at an operating point, which is an index for each choice
 
@@ -45,20 +45,21 @@ function at(name, point) {
 function shown(name, point) {
     const [factor, unit] = units[name] ?? [1, ""];
     const value = at(name, point);
-    return value === null ? "–" : `${rounded(factor * value)} ${unit}`.trim();
+    return value === null ? "–" : `${rounded(factor * value)}\u00a0${unit}`.trim();
 }
 
 const named = (point, names) => names.map((name) => levels[name].names[point[name]]).join(", ");
 
 function probability(point, kind = "breakthrough") {
     const [mean, lower, upper] = ["mean", "lower", "upper"].map((limit) => at(`${kind}_probability_${limit}`, point));
-    return { mean, lower, upper, seen: mean > 0 };
+    const seen = mean > 0;
+    return { mean, lower, upper, seen, text: seen ? percent(mean) : `<\u00a0${percent(upper)}` };
 }
 
 // One row of a source of operating points
 function row(point, along) {
-    const { mean, lower, upper, seen } = probability(point);
-    const share = seen ? `${percent(mean)} (${percent(lower)} to ${percent(upper)})` : `below ${percent(upper)}`;
+    const { mean, lower, upper, seen, text } = probability(point);
+    const share = seen ? `${text} (${percent(lower)} to ${percent(upper)})` : text;
     return {
         ...point,
         x: along ? levels[along].values[point[along]] : NaN,
@@ -124,14 +125,14 @@ function toAddress(controls, point) {
 // Parts of the page
 
 function showAnswers(point) {
-    const { mean, lower, upper, seen } = probability(point);
-    element("probability").textContent = seen ? percent(mean) : `below ${percent(upper)}`;
+    const { lower, upper, seen, text } = probability(point);
+    element("probability").textContent = text;
     element("interval").textContent = seen
         ? `of the time; 95 % interval ${percent(lower)} to ${percent(upper)}`
         : "of the time: none was seen; 95 % upper limit";
     element("film").textContent = shown("film_thickness", point);
     const valid = at("in_validity_range", point);
-    element("valid").textContent = valid ? "within the formula's validated range" : "outside the formula's validated range";
+    element("valid").textContent = `${at("formula_place", point)} film, ${valid ? "within" : "outside"} the formula's validated range`;
     element("valid").classList.toggle("warning", !valid);
     element("lambda").textContent = shown("lambda_ratio", point);
     element("regime").textContent = content.regimes[at("regime", point)].replace("_", ", ");
@@ -252,7 +253,6 @@ function showTable(id, rows) {
 }
 
 function showValues(point) {
-    const geometric = probability(point, "geometric_contact");
     const rows = [
         "dynamic_viscosity",
         "pressure_viscosity_coefficient",
@@ -263,10 +263,7 @@ function showValues(point) {
     ].map((name) => [variables[name].long_name, shown(name, point)]);
     rows.splice(4, 0, ["contact width", `${rounded(2e6 * at("contact_half_width", point))} µm`]);
     rows.push(["film reduction by inlet shear heating, not applied", percent(1 - at("inlet_shear_heating_factor", point))]);
-    rows.push([
-        "geometric contact probability",
-        geometric.seen ? percent(geometric.mean) : `below ${percent(geometric.upper)}`,
-    ]);
+    rows.push(["geometric contact probability", probability(point, "geometric_contact").text]);
     showTable("values", rows.map(([name, value]) => [name[0].toUpperCase() + name.slice(1), value]));
     showTable(
         "digits",
