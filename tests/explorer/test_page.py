@@ -6,9 +6,11 @@ import shutil
 
 import pytest
 import xarray as xr
+from bokeh.models import ColumnDataSource, LogAxis
 from studies import OIL
 
-from lube.explorer.content import CHOICES, SHOWN
+from lube.explorer.content import CHOICES, SHOWN, page_content
+from lube.explorer.figures import COLUMNS, draw
 from lube.explorer.page import explorer_page
 from lube.storage.netcdf import load
 
@@ -291,6 +293,20 @@ def test_of_several_oils_one_is_chosen(visit, explored, tmp_path):
     before = float(said(page)["digits"]["film_thickness"])
     page.locator("#control-lubricant select").select_option("second")
     assert float(said(page)["digits"]["film_thickness"]) == 2.0 * before
+
+
+def test_every_logarithmic_axis_has_labels_and_no_share_above_one(explored):
+    for study in (explored, one_point(explored)):
+        sources = {name: ColumnDataSource(dict.fromkeys(row, [])) for name, row in COLUMNS.items()}
+        for plot in draw(page_content(study), study, sources).values():
+            for axis, span in ((plot.xaxis[0], plot.x_range), (plot.yaxis[0], plot.y_range)):
+                if isinstance(axis, LogAxis):
+                    assert len(axis.ticker.ticks) >= 2
+                    assert span.start <= min(axis.ticker.ticks)
+                    assert max(axis.ticker.ticks) <= span.end
+                    if "probability" in axis.axis_label:
+                        assert max(axis.ticker.ticks) == 1.0
+                        assert axis.major_label_overrides[1.0] == "100 %"
 
 
 def test_the_page_is_small_stamped_and_complete(explored, page_file):
