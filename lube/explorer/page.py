@@ -74,7 +74,7 @@ def _controls(levels, start):
     """Make a control for each choice with several levels, and one for the abscissa."""
     controls = {}
     sheets = [InlineStyleSheet(css=(_TEMPLATES / "controls.css").read_text(encoding="utf-8"))]
-    common = {"stylesheets": sheets, "sizing_mode": "stretch_width"}
+    common = {"stylesheets": sheets, "sizing_mode": "stretch_width", "margin": (4, 0, 8, 0)}
     for name, level in levels.items():
         names = level["names"]
         if len(names) == 1:

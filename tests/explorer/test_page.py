@@ -297,7 +297,7 @@ def test_of_several_oils_one_is_chosen(visit, explored, tmp_path):
 
 def test_every_logarithmic_axis_has_labels_and_no_share_above_one(explored):
     for study in (explored, one_point(explored)):
-        sources = {name: ColumnDataSource(dict.fromkeys(row, [])) for name, row in COLUMNS.items()}
+        sources = {name: ColumnDataSource() for name in COLUMNS}
         for plot in draw(page_content(study), study, sources).values():
             for axis, span in ((plot.xaxis[0], plot.x_range), (plot.yaxis[0], plot.y_range)):
                 if isinstance(axis, LogAxis):
