@@ -20,6 +20,7 @@ include: "workflow/rules/figure.smk"
 include: "workflow/rules/speed.smk"
 include: "workflow/rules/reading.smk"
 include: "workflow/rules/coverage.smk"
+include: "workflow/rules/explorer.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/archive.smk"
 
@@ -29,9 +30,10 @@ rule all:
     input:
         [result(f"{kind}.nc") for kind in DATASETS],
         products(ARCHIVED),
+        result("explorer.html"),
         [result(f"report/{page}.html") for page in ("configuration", "assumptions", "run_times")],
     message:
-        "Done: datasets, figures and executed notebooks are in {RESULTS}"
+        "Done: datasets, figures, executed notebooks and explorer.html are in {RESULTS}"
 
 
 rule benchmark:

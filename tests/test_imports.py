@@ -30,7 +30,7 @@ FLOORS = [
     {"report", "calculator"},
     {"workflow"},
     {"archive", "plots"},
-    {"commands"},
+    {"commands", "explorer"},
     {"cli"},
 ]
 FLOOR_OF = {room: number for number, floor in enumerate(FLOORS) for room in floor}

@@ -102,6 +102,7 @@ def archive_contents(
     return {
         **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in DATASETS},
         **{name: results / name for name in drawn},
+        "explorer.html": results / "explorer.html",
         **{f"study/{name}": path for name, path in written.items()},
         **{f"lubricants/{name}": path for name, path in _records(study).items()},
         **{f"code/{name}": ROOT / name for name in code_files()},

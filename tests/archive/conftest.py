@@ -16,7 +16,7 @@ FIGURE = "fig02_film"
 
 
 def write_results(study, datasets, folder):
-    """Save datasets, each made from those before it, and the files of one figure."""
+    """Save datasets, each made from those before it, the files of one figure, and the explorer."""
     *records, film = [*study.lubricants[0].files, folder / "film.nc"]
     for kind in DATASETS:
         inputs = {"lubricant": records, "film": [folder / "lubricant.nc"], "roughness": []}
@@ -30,6 +30,7 @@ def write_results(study, datasets, folder):
         "drawn_by": "",
     }
     (folder / origin(FIGURE)).write_text(json.dumps(content))
+    (folder / "explorer.html").write_text("page")
 
 
 @pytest.fixture(scope="session")

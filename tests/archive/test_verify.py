@@ -143,6 +143,7 @@ def test_of_measured_records_the_manifest_is_checked(datasets, archive, tmp_path
     for kind in DATASETS:
         inputs = [results / "film.nc", manifest, record] if kind == "experiment" else []
         save(datasets[kind], results / f"{kind}.nc", kind, study, inputs)
+    (results / "explorer.html").write_text("page")
     make_archive(study, mine, results, [], results / "mine")
     assert verify_archive(results / "mine") == []
     assert "study/film.nc" not in files_of(results / "mine")

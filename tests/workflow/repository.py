@@ -63,8 +63,8 @@ class Repository:
         return finished.stdout
 
     def planned(self, study=SMOKE):
-        """Results that the next run would make, but for the report's pages, which follow all."""
-        return {name for name in self._planned(study) if not name.startswith("report/")}
+        """Results that the next run would make, but for pages, which follow all."""
+        return {name for name in self._planned(study) if not name.endswith(".html")}
 
     def planned_pages(self, study=SMOKE):
         """Pages of the report that the next run would make."""
@@ -99,8 +99,9 @@ class Repository:
         return {path: (path.stat().st_mtime_ns, digest(path)) for path in files}
 
     def products(self):
-        """Digests of what a study is run for: datasets, figures and executed notebooks."""
+        """Digests of what a study is run for: datasets, figures, notebooks and the explorer."""
         paths = [*self.results.glob("*.nc"), *self.results.glob("figures/*")]
+        paths += self.results.glob("*.html")
         paths += self.results.glob("notebooks/*")
         return {str(path.relative_to(self.results)): digest(path) for path in paths}
 

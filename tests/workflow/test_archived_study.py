@@ -30,6 +30,8 @@ def test_the_archive_holds_results_study_records_code_and_metadata(smoke, archiv
     for figure in smoke.notebooks:
         for name in products_of(figure):
             assert (archive / name).read_bytes() == (smoke.results / name).read_bytes()
+    page = "explorer.html"
+    assert (archive / page).read_bytes() == (smoke.results / page).read_bytes()
     assert {
         *("README.md", "CITATION.cff", ".zenodo.json", "ro-crate-metadata.json", SUMS, VALUES),
         *("versions.txt", "study/smoke.yaml", "study/paper.yaml"),

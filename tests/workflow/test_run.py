@@ -11,9 +11,12 @@ from lube.schema import DATASETS, STAGES, check, forerunners
 from lube.storage.netcdf import load
 
 
-def test_every_dataset_figure_and_notebook_is_made_and_nothing_unfinished_is_left(smoke):
+def test_all_datasets_figures_notebooks_and_the_explorer_are_made_and_nothing_unfinished_is_left(
+    smoke,
+):
     expected = {f"{kind}.nc" for kind in DATASETS}
     expected |= {name for figure in smoke.notebooks for name in products_of(figure)}
+    expected.add("explorer.html")
     assert smoke.notebooks
     assert set(smoke.products()) == expected
     assert not list(smoke.results.rglob("*.part"))
@@ -127,7 +130,7 @@ def test_each_job_says_in_words_what_is_made_and_nothing_alarms(smoke):
     for message in messages:
         assert re.match(
             r"(Lubricant|Film|Roughness|Batch|Contact|Master map|Trace|Rig|Experiment|Comparison"
-            r"|Gauge|Figures?|Report|Done): \S+",
+            r"|Gauge|Figures?|Explorer|Report|Done): \S+",
             message,
         )
     assert len(set(messages)) == len(messages)

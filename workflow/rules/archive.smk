@@ -7,6 +7,7 @@ rule archive:
         written=lambda wildcards: archived_texts(FILES),
         datasets=[result(f"{kind}.nc") for kind in DATASETS],
         products=products(ARCHIVED),
+        explorer=result("explorer.html"),
     output:
         # An old archive stays until the new one is complete.
         zip=update(result(f"archive/{STUDY.name}.zip")),

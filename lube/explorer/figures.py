@@ -1,0 +1,341 @@
+"""The explorer's figures, by Bokeh: axes, ranges and looks; the page's JavaScript fills them."""
+
+import math
+
+import numpy as np
+import xarray as xr
+from bokeh.models import (
+    ColorBar,
+    ColumnDataSource,
+    FixedTicker,
+    HoverTool,
+    LinearColorMapper,
+    LogAxis,
+    LogColorMapper,
+    Range1d,
+    TapTool,
+    Whisker,
+)
+from bokeh.palettes import Cividis256
+from bokeh.plotting import figure
+from bokeh.themes import Theme
+
+from lube.explorer.content import CHOICES
+from lube.physics.regimes import regime
+from lube.plots import COLOURS
+
+TINTS = ("#D6ECFA", "#FFF4D1", "#E0E0E0", "#F4D3C0")
+"""Light colours of the regimes."""
+_SHARES = (1e-6, 1e-4, 1e-2, 1.0)  # labels of the master map's colours, from end to end
+_DIGITS = {0.5: (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), 1.2: (1, 1.5, 2, 3, 5, 7),
+           2.5: (1, 2, 5), 3.5: (1, 3), math.inf: (1,)}  # fmt: skip
+"""Which digits get a label on a logarithmic axis of up to so many decades."""
+_FONT = "system-ui, sans-serif"
+THEME = Theme(
+    json={
+        "attrs": {
+            "Axis": {
+                "axis_label_text_font": _FONT,
+                "axis_label_text_font_size": "14px",
+                "axis_label_text_font_style": "normal",
+                "major_label_text_font": _FONT,
+                "major_label_text_font_size": "13px",
+                "minor_tick_line_color": None,
+            },
+            "Grid": {"grid_line_color": "#E4E4E4"},
+            "Plot": {
+                "height": 320,
+                "sizing_mode": "stretch_width",
+                "outline_line_color": "#94A3B8",
+            },
+            "BaseColorBar": {"major_label_text_font_size": "13px"},
+        }
+    }
+)
+"""Look of all figures, legible on a phone."""
+_POINT = (
+    *("x", "film", "mean", "lower", "upper", "limit", "lambda", "width", "M", "L", "name"),
+    *CHOICES,
+)
+COLUMNS = {
+    "chosen": _POINT,
+    "along": _POINT,  # along one variable
+    "force": _POINT,  # at one force
+    "grid": _POINT,  # at all forces, speeds and temperatures
+    "records": ("x", "lambda", "share", "name"),
+    "master": ("lambda", "narrow", "near", "lower", "upper", "wide"),
+    "frame": ("left", "right", "bottom", "top"),  # of the film formula's validity
+    "whole": ("time", "length", "resistance"),
+    "close": ("time", "length", "resistance"),
+}
+"""Columns of what the figures draw; ``limit`` is an upper limit where no contact was seen."""
+
+
+def draw(
+    content: dict, datasets: dict[str, xr.Dataset], sources: dict[str, ColumnDataSource]
+) -> dict[str, figure]:
+    """Draw the page's figures, still without an operating point.
+
+    Parameters
+    ----------
+    content : dict
+        From `lube.explorer.content.page_content`.
+    datasets : dict of str to xarray.Dataset
+        What it was made from.
+    sources : dict of str to bokeh.models.ColumnDataSource
+        One for each of `COLUMNS`, by its name.
+
+    Returns
+    -------
+    dict of str to bokeh.plotting.figure
+        By the names of their places on the page.
+    """
+    ratios, shares = _ratio_range(datasets), _share_range(datasets)
+    across = Range1d()
+    figures = {
+        "film": _film_along(sources, across, _film_range(datasets)),
+        "probability": _probability_along(sources, across, shares),
+        "regimes": _regime_map(datasets["film"], content["validity"], sources),
+        "curve": _master_curve(sources, ratios, shares),
+    }
+    if len(content["master"]["contact_width"]) > 1:
+        figures["map"] = _master_map(content["master"], ratios, sources)
+    for part in ("whole", "close"):
+        figures |= _trace(part, sources[part], _resistance_range(datasets["trace"]))
+    return figures
+
+
+def _spread(values, by=1.3):
+    """Range of positive values with some room on a logarithmic axis."""
+    values = values[np.isfinite(values) & (values > 0.0)]
+    return (values.min() / by, values.max() * by) if values.size else (0.1, 10.0)
+
+
+def _film_range(datasets):
+    return _spread(1e6 * datasets["film"]["film_thickness"].values)
+
+
+def _ratio_range(datasets):
+    ratios = [datasets[kind]["lambda_ratio"].values.ravel() for kind in ("film", "master")]
+    return _spread(np.concatenate(ratios), 1.1)
+
+
+def _share_range(datasets):
+    """Probabilities of the study: down to the smallest estimate, or limit where none was seen."""
+    mean, upper = (
+        np.concatenate(
+            [
+                datasets[kind][f"breakthrough_probability_{limit}"].values.ravel()
+                for kind in ("contact", "master")
+            ]
+        )
+        for limit in ("mean", "upper")
+    )
+    low, _ = _spread(np.where(mean > 0.0, mean, upper))
+    return low, 1.6
+
+
+def _resistance_range(trace):
+    return _spread(trace["contact_resistance"].values, 1.5)
+
+
+def _plot(x_axis_label, y_axis_label, **options):
+    plot = figure(
+        x_axis_label=x_axis_label, y_axis_label=y_axis_label, tools="", toolbar_location=None,
+        **options
+    )  # fmt: skip
+    for axis, span in ((plot.xaxis, plot.x_range), (plot.yaxis, plot.y_range)):
+        if isinstance(axis[0], LogAxis):
+            _label(axis, _round_numbers(span.start, span.end), "{:g}".format)
+    return plot
+
+
+def _label(axis, ticks, text):
+    axis.ticker = FixedTicker(ticks=ticks)
+    axis.major_label_overrides = {tick: text(tick) for tick in ticks}
+
+
+def _round_numbers(low, high):
+    """Round numbers for a logarithmic axis, the fewer of each decade the more decades it has."""
+    decades = math.log10(high / low)
+    digits = next(digits for most, digits in _DIGITS.items() if decades <= most)
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
+    numbers = [float(f"{digit}e{power}") for power in powers for digit in digits]
+    return [number for number in numbers if low <= number <= high]
+
+
+def _percent(share):
+    return f"{100.0 * share:.10f}".rstrip("0").rstrip(".") + " %"
+
+
+def _percent_axis(plot):
+    """Label the shares on a plot's upright axis with percentages."""
+    _label(plot.yaxis, [share for share in plot.yaxis[0].ticker.ticks if share <= 1.0], _percent)
+
+
+def _points(plot, source, x, y, size=8, **look):
+    """Points that tell their name when hovered or touched, and are chosen by a click."""
+    look = {"fill_color": COLOURS["sky"], "line_color": COLOURS["blue"]} | look
+    points = plot.scatter(x, y, source=source, size=size, **look)
+    points.nonselection_glyph = points.glyph
+    return points
+
+
+def _all_points(plot, sources, x, y, around="grid"):
+    """Draw the operating points around the chosen one, and the chosen one."""
+    small = _points(plot, sources[around], x, y, size=6 if around == "grid" else 8)
+    _points(
+        plot, sources["chosen"], x, y, size=15, fill_color=COLOURS["vermilion"], line_color="black"
+    )
+    plot.add_tools(
+        HoverTool(renderers=[small], tooltips="<b>@name</b>", point_policy="snap_to_data"),
+        TapTool(renderers=[small]),
+    )
+
+
+def _probabilities(plot, sources, x, around):
+    """Probabilities with their intervals; where no contact was seen, their upper limits."""
+    _whiskers(plot, sources["chosen"], x, "black", 2)
+    _all_points(plot, sources, x, "mean", around)
+    for name, size, colour in ((around, 8, COLOURS["blue"]), ("chosen", 15, COLOURS["vermilion"])):
+        limits = plot.scatter(
+            x, "limit", source=sources[name], size=size, marker="inverted_triangle",
+            fill_color="white", line_color=colour, line_width=1.0 if name == around else 2.5,
+        )  # fmt: skip
+        limits.nonselection_glyph = limits.glyph
+        if name == around:
+            for tool in (HoverTool, TapTool):
+                plot.select_one(tool).renderers.append(limits)
+    records = plot.scatter(
+        x, "share", source=sources["records"], marker="x", size=10,
+        line_color=COLOURS["purple"], line_width=2.5,
+    )  # fmt: skip
+    plot.add_tools(HoverTool(renderers=[records], tooltips="<b>@name</b>"))
+
+
+def _whiskers(plot, source, x, colour, width):
+    whisker = Whisker(
+        base=x, lower="lower", upper="upper", source=source, line_color=colour, line_width=width
+    )
+    whisker.upper_head.size = whisker.lower_head.size = 8
+    whisker.upper_head.line_color = whisker.lower_head.line_color = colour
+    plot.add_layout(whisker)
+
+
+def _film_along(sources, across, films):
+    plot = _plot("", "Film thickness (µm)", y_axis_type="log", x_range=across, y_range=films)
+    plot.line("x", "film", source=sources["along"], line_color=COLOURS["blue"], line_width=2)
+    _all_points(plot, sources, "x", "film", "along")
+    return plot
+
+
+def _probability_along(sources, across, shares):
+    plot = _plot(
+        "", "Breakthrough probability", y_axis_type="log", x_range=across, y_range=shares
+    )  # fmt: skip
+    _percent_axis(plot)
+    plot.line("x", "mean", source=sources["along"], line_color=COLOURS["blue"], line_width=2)
+    _whiskers(plot, sources["along"], "x", COLOURS["blue"], 1)
+    _probabilities(plot, sources, "x", "along")
+    return plot
+
+
+def _regime_map(film, validity, sources):
+    """Where the points lie among the four regimes, over the Moes numbers."""
+    frames = np.array([[*one["moes_load"], *one["moes_material"]] for one in validity.values()])
+    loads = np.append(film["moes_load"].values, frames[:, :2])
+    materials = np.append(film["moes_material"].values, frames[:, 2:])
+    left, right = _spread(loads, 1.6)
+    bottom, top = max(materials.min() - 1.0, 0.05), materials.max() + 1.0
+    across, up = np.geomspace(left, right, 400), np.linspace(bottom, top, 300)
+    flags = regime(across, up[:, None])
+    plot = _plot(
+        "Moes load number M", "Moes material number L",
+        x_axis_type="log", x_range=(left, right), y_range=(bottom, top),
+    )  # fmt: skip
+    plot.image(
+        [flags.astype(np.uint8)], x=left, y=bottom, dw=right - left, dh=top - bottom,
+        color_mapper=LinearColorMapper(palette=TINTS, low=0, high=3), level="image",
+    )  # fmt: skip
+    plot.quad(
+        source=sources["frame"], left="left", right="right", bottom="bottom", top="top",
+        fill_color=None, line_color="black", line_dash="dashed",
+    )  # fmt: skip
+    _all_points(plot, sources, "M", "L")
+    return plot
+
+
+def _master_curve(sources, ratios, shares):
+    """Probability against the lambda ratio, by the master map."""
+    plot = _plot(
+        "Lambda ratio", "Breakthrough probability",
+        x_axis_type="log", y_axis_type="log", x_range=ratios, y_range=shares,
+    )  # fmt: skip
+    _percent_axis(plot)
+    source = sources["master"]
+    plot.varea(
+        "lambda", "lower", "upper", source=source, fill_color=COLOURS["orange"], fill_alpha=0.35
+    )
+    plot.line("lambda", "narrow", source=source, line_color=COLOURS["grey"], line_dash="dotted",
+              line_width=2)  # fmt: skip
+    plot.line("lambda", "wide", source=source, line_color=COLOURS["grey"], line_dash="dashed",
+              line_width=2)  # fmt: skip
+    plot.line("lambda", "near", source=source, line_color=COLOURS["orange"], line_width=2.5)
+    _probabilities(plot, sources, "lambda", "force")
+    return plot
+
+
+def _master_map(master, span, sources):
+    """Draw the master map, each of its values as a coloured field."""
+    ratios = np.array(master["lambda_ratio"])
+    widths = 1e6 * np.array(master["contact_width"])
+    edges = np.exp(_edges(np.log(ratios)))
+    lines = _edges(widths)
+    mean = np.array(master["mean"], dtype=float).ravel()
+    rows, columns = np.divmod(np.arange(mean.size), ratios.size)
+    mapper = LogColorMapper(
+        palette=Cividis256, low=_SHARES[0], high=_SHARES[-1], nan_color="white"
+    )  # fmt: skip
+    plot = _plot(
+        "Lambda ratio", "Contact width (µm)",
+        x_axis_type="log", x_range=span, y_range=(lines[0], lines[-1]),
+        background_fill_color=TINTS[2],
+    )  # fmt: skip
+    fields = ColumnDataSource(
+        {
+            "left": edges[columns],
+            "right": edges[columns + 1],
+            "bottom": lines[rows],
+            "top": lines[rows + 1],
+            "mean": np.where(mean > 0.0, mean, np.nan),
+        }
+    )
+    plot.quad(
+        source=fields, left="left", right="right", bottom="bottom", top="top",
+        fill_color={"field": "mean", "transform": mapper},
+        line_color={"field": "mean", "transform": mapper},  # or gaps would show
+    )  # fmt: skip
+    bar = ColorBar(color_mapper=mapper, width=12, padding=4)
+    _label(bar, list(_SHARES), _percent)
+    plot.add_layout(bar, "right")
+    _all_points(plot, sources, "lambda", "width")
+    return plot
+
+
+def _edges(values):
+    """Edges of fields around rising values."""
+    inner = 0.5 * (values[1:] + values[:-1])
+    return np.concatenate([[2 * values[0] - inner[0]], inner, [2 * values[-1] - inner[-1]]])
+
+
+def _trace(part, source, resistances):
+    """Contact length and resistance of a trace, or of its part around the peak."""
+    time = "Time (s)" if part == "whole" else "Time from the peak (ms)"
+    common = {"height": 230, "x_range": Range1d(), "min_border_left": 75}
+    length = _plot(time, "Contact length (µm)", y_range=Range1d(), **common)
+    length.line("time", "length", source=source, line_color=COLOURS["blue"])
+    resistance = _plot(time, "Resistance (Ω)", y_axis_type="log", y_range=resistances, **common)
+    green = COLOURS["green"]
+    resistance.line("time", "resistance", source=source, line_color=green)
+    resistance.scatter("time", "resistance", source=source, color=green, size=3)
+    return {f"{part}_length": length, f"{part}_resistance": resistance}

@@ -1,0 +1,152 @@
+"""The explorer's page: controls and figures by Bokeh, in a template of our own.
+
+The page holds everything, Bokeh's JavaScript included, so it needs neither server nor network.
+What happens when a control moves is in ``templates/explorer.mjs``.
+"""
+
+import functools
+import json
+from pathlib import Path
+
+import xarray as xr
+from bokeh.document import Document
+from bokeh.models import (
+    CategoricalSlider,
+    ColumnDataSource,
+    CustomJS,
+    InlineStyleSheet,
+    RadioButtonGroup,
+    Select,
+)
+from bokeh.resources import Resources
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from lube.explorer.content import CHOICES, page_content
+from lube.explorer.figures import COLUMNS, THEME, TINTS, draw
+from lube.workflow.stamps import stamp
+
+_TEMPLATES = Path(__file__).parent / "templates"
+_NAMES = {
+    "lubricant": "Oil",
+    "film_formula": "Film formula",
+    "force": "Force",
+    "speed": "Speed",
+    "temperature": "Temperature",
+    "slide_to_roll_ratio": "Slide-to-roll ratio",
+}
+"""Names of the choices on the page."""
+
+
+def explorer_page(datasets: dict[str, xr.Dataset]) -> str:
+    """Make the explorer of a study.
+
+    Parameters
+    ----------
+    datasets : dict of str to xarray.Dataset
+        The study's ``lubricant``, ``film``, ``contact``, ``master``, ``trace`` and
+        ``comparison``, as loaded.
+
+    Returns
+    -------
+    str
+        HTML that needs no other file. The same datasets give the same page.
+
+    Raises
+    ------
+    DataError
+        As from `lube.workflow.stamps.stamp`.
+    """
+    content = page_content(datasets)
+    start = content["traces"][0]["at"]
+    controls = _controls(content["levels"], start)
+    sources = {
+        name: ColumnDataSource({column: [] for column in columns}, name=name)
+        for name, columns in COLUMNS.items()
+    }
+    figures = draw(content, datasets, sources)
+    return _filled(content, datasets, controls, sources, figures)
+
+
+# Controls
+
+
+def _controls(levels, start):
+    """Make a control for each choice with several levels, and one for the abscissa."""
+    controls = {}
+    sheets = [InlineStyleSheet(css=(_TEMPLATES / "controls.css").read_text(encoding="utf-8"))]
+    common = {"stylesheets": sheets, "sizing_mode": "stretch_width", "margin": (4, 0, 8, 0)}
+    for name, level in levels.items():
+        names = level["names"]
+        if len(names) == 1:
+            continue
+        options = {"title": _NAMES[name], "value": names[start[name]], **common}
+        if name in ("lubricant", "film_formula"):
+            controls[name] = Select(options=names, **options)
+        else:
+            controls[name] = CategoricalSlider(categories=names, **options)
+    several = [name for name in CHOICES[2:] if name in controls]
+    if several:
+        first = several.index("temperature") if "temperature" in several else 0
+        controls["along"] = RadioButtonGroup(
+            labels=[_NAMES[name] for name in several],
+            active=first,
+            tags=several,
+            **common,
+        )
+    return controls
+
+
+# Page
+
+
+def _filled(content, datasets, controls, sources, figures):
+    """Fill the page's template."""
+    arguments = {"controls": controls, "sources": sources, "figures": figures}
+    react = CustomJS.from_file(_TEMPLATES / "explorer.mjs", **arguments)
+    for name, control in controls.items():
+        control.js_on_change("active" if name == "along" else "value", react)
+    for name in ("along", "grid", "force"):
+        sources[name].selected.js_on_change("indices", react)
+    places = {f"control-{name}": control for name, control in controls.items()}
+    places |= {f"figure-{name}": plot for name, plot in figures.items()}
+    document = Document(theme=THEME)
+    document.js_on_event("document_ready", react)
+    with document.models.freeze():  # or every root would have all models counted again
+        for place, model in places.items():
+            model.name = place
+            document.add_root(model)
+    # As `bokeh.embed.components` does, but with names instead of random numbers.
+    places = {model.id: place for place, model in places.items()}
+    items = [{"docid": "explorer", "roots": places, "root_ids": list(places)}]
+    return (
+        _environment()
+        .get_template("explorer.html")
+        .render(
+            title=datasets["contact"].attrs["title"].rpartition(", ")[0],
+            content=content,
+            names=_NAMES,
+            tints=TINTS,
+            controls=controls,
+            figures=figures,
+            json={
+                "content": _script(content),
+                "models": _script({"explorer": document.to_json(deferred=False)}),
+                "items": _script(items),
+            },
+            bokeh=Resources(mode="inline", components=["bokeh", "bokeh-widgets"]).render(),
+            stamp=stamp(list(datasets.values())),
+        )
+    )
+
+
+def _script(value):
+    """JSON that cannot end the script element it stands in."""
+    return json.dumps(value, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+@functools.cache
+def _environment():
+    return Environment(
+        loader=PackageLoader("lube.explorer"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip

@@ -1,0 +1,87 @@
+"""The explorer's content is the datasets': bit by bit, at the study's own levels."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from lube.explorer.content import CHOICES, SHOWN, TRACE_PIECES, TRACES, level_names, page_content
+from lube.storage.netcdf import load
+
+EXPLORED = ("lubricant", "film", "contact", "master", "trace", "comparison")
+
+
+@pytest.fixture(scope="module")
+def explored(files):
+    """The datasets that the page is made of, as saved and loaded."""
+    return {kind: load(files / f"{kind}.nc", kind).load() for kind in EXPLORED}
+
+
+def read_back(datasets):
+    """The content as the page's JavaScript reads it."""
+    return json.loads(json.dumps(page_content(datasets), allow_nan=False))
+
+
+def test_every_value_is_the_datasets_bit_by_bit(explored):
+    content = read_back(explored)
+    levels = {name: content["levels"][name]["values"] for name in CHOICES}
+    for kind, names in SHOWN.items():
+        for name in names:
+            shown, array = content["variables"][name], explored[kind][name]
+            assert array.dims == tuple(shown["dims"])
+            for dim in array.dims:
+                assert levels[dim] == array[dim].values.tolist()
+            assert shown["values"] == array.values.ravel().tolist()
+            assert (shown["file"], shown["units"]) == (f"{kind}.nc", array.attrs.get("units", ""))
+    master = content["master"]
+    assert master["lambda_ratio"] == explored["master"]["lambda_ratio"].values.tolist()
+    mean = explored["master"]["breakthrough_probability_mean"]
+    assert master["mean"] == mean.transpose("contact_width", "lambda_ratio").values.tolist()
+
+
+def test_levels_have_names_with_units_all_different(explored):
+    names = {name: levels["names"] for name, levels in read_back(explored)["levels"].items()}
+    assert names["lubricant"] == ["Mobilgear SHC XMP 320"]
+    assert names["speed"] == ["85.71 r/min", "100 r/min"]
+    assert names["temperature"] == ["40 °C", "80 °C"]
+    assert level_names("force", [12345.0], explored["lubricant"]) == ["12345 N"]
+    assert level_names("force", [10.0001, 10.0002], explored["lubricant"]) == ["10.0001", "10.0002"]
+    oils = xr.concat([explored["lubricant"]] * 2, "lubricant", data_vars="minimal", compat="equals")
+    oils = oils.assign_coords(lubricant=["a", "b"])  # two records of one title
+    assert level_names("lubricant", ["a", "b"], oils) == ["a", "b"]
+
+
+def test_of_neighbouring_steps_of_a_trace_the_extremes_stay(explored):
+    trace = explored["trace"].copy(deep=True)
+    trace["contact_length"][:] = 0.0
+    trace["contact_resistance"][:] = np.inf
+    trace["contact_length"][0, 7003], trace["contact_resistance"][0, 7003] = 2e-6, 0.5
+    trace["contact_length"][0, 7004], trace["contact_resistance"][0, 7004] = 1e-6, 0.7
+    kept = read_back(explored | {"trace": trace})["traces"]
+    point, (time, step) = trace.isel(operating_point=0), trace.time.values[[7003, 1]]
+    whole, close = kept[0]["whole"], kept[0]["close"]
+    assert kept[0]["share"] == 2 / trace.sizes["time"]
+    for part in (whole, close):
+        assert len(part["time"]) <= TRACE_PIECES
+        assert {len(part[name]) for name in TRACES} == {len(part["time"])}
+        peak = part["contact_length"].index(2e-6)
+        assert 0.0 <= time - part["time"][peak] < part["steps"] * step
+        assert part["contact_resistance"][peak] == 0.5
+        assert None in part["contact_resistance"]
+    assert close["steps"] < whole["steps"]
+    levels = page_content(explored)["levels"]
+    for name in CHOICES:
+        assert levels[name]["values"][kept[0]["at"][name]] == point[name].item()
+
+
+def test_records_without_a_share_are_left_out_and_conditions_near_no_level_are_none(explored):
+    comparison = explored["comparison"].copy(deep=True)
+    comparison["measured_share"][0] = np.nan
+    comparison["force_level"][1] = np.nan
+    rows = read_back(explored | {"comparison": comparison})["records"]["rows"]
+    assert len(rows) == comparison.sizes["record"] - 1
+    one = comparison.isel(record=1)
+    assert rows[0]["force_level"] is None and rows[0]["force"] == one["force"].item()
+    assert rows[0]["measured_share"] == one["measured_share"].item()
+    assert rows[0]["lambda_ratio"] == one["lambda_ratio"].values.tolist()

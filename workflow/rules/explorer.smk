@@ -1,0 +1,20 @@
+EXPLORED = ("lubricant", "film", "contact", "master", "trace", "comparison")
+
+
+rule explorer:
+    input:
+        **{kind: result(f"{kind}.nc") for kind in EXPLORED},
+        templates=sorted(map(str, Path("lube/explorer/templates").iterdir())),
+        sources=script_sources("explorer"),
+    output:
+        result("explorer.html"),
+    log:
+        result("logs/explorer.log"),
+    benchmark:
+        result("benchmarks/explorer.tsv")
+    params:
+        kinds=EXPLORED,
+    message:
+        "Explorer: a page on which to move over the operating points"
+    script:
+        "../scripts/explorer.py"

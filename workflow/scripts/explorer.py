@@ -1,0 +1,14 @@
+"""Make explorer.html, a page that shows any operating point of the study."""
+
+from lube.explorer.page import explorer_page
+from lube.storage.files import written_whole
+from lube.storage.netcdf import load
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
+
+begin_job(snakemake.log[0])
+study = load_study(**snakemake.config["study"])
+datasets = {kind: load(snakemake.input[kind], kind, study) for kind in snakemake.params.kinds}
+page = explorer_page(datasets)
+with written_whole(snakemake.output[0]) as part:
+    part.write_text(page, encoding="utf-8")
