@@ -3,7 +3,6 @@
 from lube.report.pages import render
 from lube.schema import DATASETS, SUMMARIES
 from lube.storage.git import changed_code, commit
-from lube.storage.provenance import title_of
 from lube.study.metadata import LICENCES, PAPER
 from lube.study.study import Study
 
@@ -28,7 +27,7 @@ def archive_page(study: Study, study_file: str, refused: list[str]) -> str:
     grid = study.operating_grid
     return render(
         "archive.md",
-        title=title_of(study),
+        title=study.title,
         about=study.about,
         licence=LICENCES[study.about.licence],
         paper=PAPER,
