@@ -23,7 +23,7 @@ title, assumptions = title_and_text(assumptions_of(study, paper, docs["assumptio
 _, limits = title_and_text(limits_of(study, paper, docs["limits"]))
 drawing = docs["architecture"].split("```")[1]
 parts = {
-    "facts": to_html(f"{facts(study, results['lubricant'])}\n{made(study)}"),
+    "facts": to_html(f"{facts(study, results['lubricant'])}\n\n{made(study)}"),
     "findings": to_html(findings(study, results)),
     "limits": to_html(limits),
     "files": to_html(table("files")),
