@@ -107,7 +107,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     return render(
         "findings.md",
         study=study,
-        film=_film(film, first),
+        film=_film(film, first) | _width(film, 2.0 * math.pi / study.line_spec.q_max),
         contact=_contact(contact.sel(first)),
         trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
         spread=_spread(film, contact, first),
@@ -142,6 +142,13 @@ def _film(film, first):
         "outside": outside,
         "heating": heating if math.isfinite(heating) else None,
     }
+
+
+def _width(film, shortest):
+    """Range of the contact width, also over the shortest wavelength of the roughness."""
+    half = film["contact_half_width"]
+    width = [2.0 * half.min().item(), 2.0 * half.max().item()]
+    return {"width": width, "waves": [one / shortest for one in width]}
 
 
 def _contact(contact):

@@ -94,5 +94,5 @@ rule report:
     message:
         "Report: {output}"
     shell:
-        # Of a second Snakemake: the report is about finished jobs, and this one is running.
-        "{params.snakemake:q} --nolock --report {output:q} > {log:q} 2>&1"
+        # A second Snakemake: it reports on finished jobs, and this one is running.
+        "{params.snakemake:q} --report {output:q} > {log:q} 2>&1"
