@@ -103,8 +103,12 @@ def test_the_start_page_describes_the_study_and_leads_to_every_figure(smoke, hel
 def test_the_pages_show_configuration_assumptions_and_run_times(smoke, held):
     assert "first.young_modulus</code></td><td>210 GPa</td>" in page(held, "configuration")
     text = (smoke / "docs/assumptions.md").read_text("utf-8")
-    cells = [row.split("|")[1].strip() for row in text.splitlines() if row.startswith("|")][2:]
-    assert len(cells) > 15
+    model = text.partition("## In the paper's study")[0]
+    cells = [row.split("|")[1].strip() for row in model.splitlines() if row.startswith("|")][2:]
+    assert len(cells) > 8
+    # Its steel is the paper's, its grid is not.
+    assert "<td>steel</td>" in page(held, "assumptions")
+    assert "125 points" not in page(held, "assumptions")
     for cell in cells:
         assert f"<td>{to_html(cell)[3:-4]}</td>" in page(held, "assumptions")
     times = page(held, "run_times")
