@@ -19,6 +19,7 @@ from lube.archive.citation import citation_file, zenodo_metadata
 from lube.archive.crate import CATALOGUE, crate_metadata
 from lube.archive.page import archive_page
 from lube.errors import DataError, StudyError, shown
+from lube.report import SUMMARISED
 from lube.schema import DATASETS
 from lube.storage.files import why_not, written_whole
 from lube.storage.git import ROOT, code_files, commit
@@ -97,7 +98,7 @@ def archive_contents(
     results = Path(results)
     written = written_files(study, path)
     study_file = next(iter(written))
-    experiment = load(results / "experiment.nc", "experiment")
+    summarised = {kind: load(results / f"{kind}.nc", kind) for kind in SUMMARISED}
     drawn = [name for figure in figures for name in (*products(figure), origin(figure))]
     return {
         **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in DATASETS},
@@ -111,7 +112,7 @@ def archive_contents(
         "versions.txt": exact_versions(),
         "CITATION.cff": citation_file(study),
         ".zenodo.json": zenodo_metadata(study),
-        "README.md": archive_page(study, study_file, experiment.attrs["refused"].splitlines()),
+        "README.md": archive_page(study, study_file, summarised),
     }
 
 

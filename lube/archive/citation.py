@@ -9,7 +9,6 @@ import yaml
 
 from lube.errors import StudyError
 from lube.storage.git import commit_date
-from lube.storage.provenance import title_of
 from lube.study.metadata import PAPER
 from lube.study.study import Study
 
@@ -77,7 +76,7 @@ def citation_file(study: Study) -> str:
         "cff-version": "1.2.0",
         "message": "If you use these results, please cite them and the paper whose model they use.",
         "type": "dataset",
-        "title": title_of(study),
+        "title": study.title,
         "authors": [_cff_person(creator) for creator in about.creators],
         "abstract": about.summary,
         "keywords": list(about.keywords),
@@ -121,7 +120,7 @@ def zenodo_metadata(study: Study) -> str:
     about = study.about
     content = {
         "upload_type": "dataset",
-        "title": title_of(study),
+        "title": study.title,
         "description": f"<p>{html.escape(about.summary)}</p><p>The model is that of: {PAPER}.</p>",
         "creators": [creator.model_dump(exclude_none=True) for creator in about.creators],
         "publication_date": publication_date(study).isoformat(),

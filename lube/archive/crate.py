@@ -12,7 +12,6 @@ from rocrate.rocrate import ROCrate
 
 from lube.archive.citation import publication_date
 from lube.schema import SUMMARIES
-from lube.storage.provenance import title_of
 from lube.study.metadata import LICENCES
 from lube.study.study import Study
 
@@ -55,7 +54,7 @@ def crate_metadata(study: Study, files: dict[str, int]) -> str:
         JSON-LD by RO-Crate 1.3.
     """
     about, crate = study.about, ROCrate(version=RO_CRATE)
-    crate.name, crate.description = title_of(study), about.summary
+    crate.name, crate.description = study.title, about.summary
     crate.datePublished = publication_date(study)
     crate.keywords = ", ".join(about.keywords)
     crate.license = crate.add(_licence(crate, about.licence))

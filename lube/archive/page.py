@@ -1,14 +1,18 @@
 """The README of an archive, for a reader who has nothing else."""
 
+from collections.abc import Mapping
+
+import xarray as xr
+
 from lube.report.pages import render
+from lube.report.summary import facts, findings
 from lube.schema import DATASETS, SUMMARIES
 from lube.storage.git import changed_code, commit
-from lube.storage.provenance import title_of
 from lube.study.metadata import LICENCES, PAPER
 from lube.study.study import Study
 
 
-def archive_page(study: Study, study_file: str, refused: list[str]) -> str:
+def archive_page(study: Study, study_file: str, results: Mapping[str, xr.Dataset]) -> str:
     """Write the README.md of an archive.
 
     Parameters
@@ -17,8 +21,8 @@ def archive_page(study: Study, study_file: str, refused: list[str]) -> str:
         The study.
     study_file : str
         Path of its file below the archive's folder ``study``, with slashes.
-    refused : list of str
-        Lines about measured records that were not used, and why.
+    results : dict of str to xarray.Dataset
+        Its datasets `lube.report.SUMMARISED`, by name.
 
     Returns
     -------
@@ -28,7 +32,7 @@ def archive_page(study: Study, study_file: str, refused: list[str]) -> str:
     grid = study.operating_grid
     return render(
         "archive.md",
-        title=title_of(study),
+        title=study.title,
         about=study.about,
         licence=LICENCES[study.about.licence],
         paper=PAPER,
@@ -37,6 +41,7 @@ def archive_page(study: Study, study_file: str, refused: list[str]) -> str:
         commit=commit(),
         changed=changed_code(),
         measured=study.experiment.manifest is not None,
-        refused=refused,
+        facts=facts(study, results["lubricant"]),
+        findings=findings(study, results),
         example={name: getattr(grid, name)[-1] for name in ("force", "speed", "temperature")},
     )

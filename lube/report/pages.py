@@ -3,6 +3,8 @@
 import functools
 import math
 
+import numpy as np
+
 from lube.report.markdown import escaped, inline
 from lube.units import with_unit
 
@@ -59,9 +61,17 @@ def percent(share: float) -> str:
     -------
     str
         Such as ``1.25 %``; a dash for NaN.
+
+    Examples
+    --------
+    >>> percent(9.934e-07)
+    '0.0000993 %'
     """
     share = float(share)
-    return f"{100.0 * share:.3g} %" if math.isfinite(share) else "–"
+    if not math.isfinite(share):
+        return "–"
+    digits = np.format_float_positional(100.0 * share, precision=3, fractional=False, trim="-")
+    return f"{digits} %"
 
 
 def count(number: float, noun: str) -> str:

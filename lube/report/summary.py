@@ -1,7 +1,8 @@
-"""Summary of a study on the report's start page: its numbers and its results."""
+"""Summary of a study for its report and archive, in Markdown: its numbers and its results."""
 
 import math
 import platform
+from collections.abc import Mapping
 from importlib.metadata import version
 
 import numpy as np
@@ -11,17 +12,60 @@ from lube.report.pages import render
 from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
 from lube.study.study import Study
+from lube.units import with_unit
 
+_FREQUENT, _RARE = 0.1, 0.001
+"""Shares of time above and below which contact is called frequent and rare."""
 _AGREEMENT = (
     *("bias", "rms_difference", "overlap_share", "compared_records", "pairs", "origin"),
     *("overlap_share_expected_lower", "overlap_share_expected_upper"),
 )
-"""Measures of agreement between simulation and rig that the start page states."""
-_LIMITS = ("mean", "lower", "upper")
+"""Measures of agreement between simulation and rig that the summary states."""
+_VARIABLES = {
+    "force": ("normal force", "N"),
+    "speed": ("rotation speed", "rpm"),
+    "temperature": ("temperature", "degC"),
+    "slide_to_roll_ratio": ("slide-to-roll ratio", ""),
+    "lubricant": ("lubricant", None),
+}
+"""Operating variables in words, with their units."""
 
 
-def facts(study: Study) -> str:
-    """Summarise the configuration of a study.
+def facts(study: Study, lubricant: xr.Dataset) -> str:
+    """Summarise the values of a study.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    lubricant : xarray.Dataset
+        Its dataset of this name.
+
+    Returns
+    -------
+    str
+        Markdown: a table of two columns.
+    """
+    properties = ("temperature", "kinematic_viscosity", "pressure_viscosity_coefficient")
+    oils = {
+        oil["lubricant_title"].item(): [
+            {name: oil[name].values[end].item() for name in properties}
+            for end in ((0, -1) if oil.sizes["temperature"] > 1 else (0,))
+        ]
+        for oil in (lubricant.isel(lubricant=n) for n in range(lubricant.sizes["lubricant"]))
+    }
+    return render(
+        "facts.md",
+        study=study,
+        oils=oils,
+        points=math.prod(len(levels) for levels in study.operating_grid.model_dump().values()),
+        shortest=2.0 * math.pi / study.line_spec.q_max,
+        longest=2.0 * math.pi / study.line_spec.q_min,
+    )
+
+
+def made(study: Study) -> str:
+    """Name the authors of a study, the code and the software that made it.
 
     Parameters
     ----------
@@ -31,80 +75,166 @@ def facts(study: Study) -> str:
     Returns
     -------
     str
-        HTML: a table of two columns.
+        Markdown: a sentence.
     """
     libraries = [f"{name} {version(name)}" for name in ("lube", *LIBRARIES, "snakemake")]
     return render(
-        "facts.html",
-        study=study,
-        points=math.prod(len(levels) for levels in study.operating_grid.model_dump().values()),
-        shortest=2.0 * math.pi / study.line_spec.q_max,
-        longest=2.0 * math.pi / study.line_spec.q_min,
+        "made.md",
+        creators=[one.name for one in study.about.creators],
         commit=commit(),
         software=[*libraries, f"Python {platform.python_version()}"],
     )
 
 
-def findings(study: Study, film: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset) -> str:
+def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     """Summarise the results of a study.
 
     Parameters
     ----------
     study : Study
         The study.
-    film, contact, comparison : xarray.Dataset
-        Its datasets of these names.
+    results : dict of str to xarray.Dataset
+        Its datasets `lube.report.SUMMARISED`, by name.
 
     Returns
     -------
     str
-        HTML: sentences, and a table of the operating points that the study names for its traces.
+        Markdown: what was found, with the film formula that the study names first; tables of the
+        means over each operating variable and of the points of the traces; the refused records.
     """
-    chosen = {
-        "lubricant": study.lubricants[0].name,
-        "film_formula": study.film_formulas[0],
-        "slide_to_roll_ratio": study.rig_slip,
-    }
-    mean = contact["breakthrough_probability_mean"].sel(chosen)
-    greatest = mean.isel(mean.argmax(mean.dims))
-    inside = _at(film["in_validity_range"], chosen).values.astype(bool)
+    film, contact, comparison = (results[kind] for kind in ("film", "contact", "comparison"))
+    first = {"film_formula": study.film_formulas[0]}
     return render(
-        "findings.html",
-        lubricant=study.lubricants[0].title,
-        film_formula=study.film_formulas[0],
-        slip=study.rig_slip,
-        points=mean.size,
-        touched=int((mean > 0.0).sum()),
-        greatest=greatest.item(),
-        greatest_at={name: float(greatest[name]) for name in mean.dims},
-        outside=int((~inside).sum()),
-        film_points=inside.size,
-        agreement=_agreement(comparison, chosen),
+        "findings.md",
+        study=study,
+        film=_film(film, first) | _width(film, 2.0 * math.pi / study.line_spec.q_max),
+        contact=_contact(contact.sel(first)),
+        trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
+        spread=_spread(film, contact, first),
+        agreement=_agreement(comparison, first),
+        gauged=_gauged(results["gauge"]),
         traces=[_trace(point, film, contact, comparison) for point in study.trace_points],
+        notes={
+            "Records that were refused, and are in no result": _lines(results, "refused"),
+            "Remarks on records": _lines(results, "remarks"),
+        },
     )
 
 
-def notes(experiment: xr.Dataset, comparison: xr.Dataset) -> str:
-    """List the refused records, and the remarks on the others.
-
-    Parameters
-    ----------
-    experiment, comparison : xarray.Dataset
-        The study's datasets of these names.
-
-    Returns
-    -------
-    str
-        HTML: a list under each heading; empty if there is nothing to list.
-    """
-    lists = {
-        "Records that were refused, and are in no result": experiment.attrs["refused"].splitlines(),
-        "Remarks on records": [
-            *experiment.attrs["remarks"].splitlines(),
-            *comparison.attrs["remarks"].splitlines(),
-        ],
+def _film(film, first):
+    """Range of the film, and how many points lie in each regime and outside each formula."""
+    thickness, ratio = (film[name].sel(first) for name in ("film_thickness", "lambda_ratio"))
+    regimes = film["regime"].attrs["flag_meanings"].split()
+    outside = {
+        name: int((~film["in_validity_range"].sel(film_formula=name).astype(bool)).sum())
+        for name in film["film_formula"].values
     }
-    return render("notes.html", lists=lists)
+    heating = 1.0 - film["inlet_shear_heating_factor"].min().item()
+    return {
+        "thickness": [thickness.min().item(), thickness.max().item()],
+        "lambda_ratio": [ratio.min().item(), ratio.max().item()],
+        "regimes": {
+            name.replace("_", " and "): points
+            for flag, name in enumerate(regimes)
+            if (points := int((film["regime"] == flag).sum()))
+        },
+        "points": film["regime"].size,
+        "outside": outside,
+        "heating": heating if math.isfinite(heating) else None,
+    }
+
+
+def _width(film, shortest):
+    """Range of the contact width, also over the shortest wavelength of the roughness."""
+    half = film["contact_half_width"]
+    width = [2.0 * half.min().item(), 2.0 * half.max().item()]
+    return {"width": width, "waves": [one / shortest for one in width]}
+
+
+def _contact(contact):
+    """Where contact is frequent, where rare, and where none was seen."""
+    mean, upper = (contact[f"breakthrough_probability_{name}"] for name in ("mean", "upper"))
+    seen = mean > 0.0
+    found = {
+        "points": mean.size,
+        "touched": int(seen.sum()),
+        "frequent": int((mean > _FREQUENT).sum()),
+        "rare": int((seen & (mean < _RARE)).sum()),
+        "unseen": upper.where(~seen).max().item(),
+    }
+    if found["touched"]:
+        found["greatest"] = _probability(contact.isel(mean.argmax(mean.dims)))
+        least = mean.where(seen, np.inf)
+        found["least"] = _probability(contact.isel(least.argmin(mean.dims)))
+    return found
+
+
+def _probability(here):
+    """Coordinates and probability of one operating point, and the scatter between its pairs."""
+    lower, upper = (here[f"breakthrough_probability_{end}"].item() for end in ("lower", "upper"))
+    pairs = here["breakthrough_probability"].values
+    return {
+        **{name: here[name].item() for name in _VARIABLES},
+        "mean": here["breakthrough_probability_mean"].item(),
+        "interval": [lower, upper],
+        "deviation": pairs.std(ddof=1) if pairs.size > 1 else math.nan,
+    }
+
+
+def _trends(mean):
+    """Mean probability at each level of the operating variables that have several."""
+    return {
+        words: {
+            level if unit is None else with_unit(float(f"{level:.3g}"), unit): share
+            for level, share in zip(mean[name].values, _by(mean, name), strict=True)
+        }
+        for name, (words, unit) in _VARIABLES.items()
+        if mean.sizes[name] > 1
+    }
+
+
+def _by(mean, name):
+    return mean.mean([dim for dim in mean.dims if dim != name]).values.tolist()
+
+
+def _spread(film, contact, first):
+    """Differences between the formulas of the central film; None if there is one at most."""
+    central = film["film_formula"].values[film["formula_place"].values == "central"]
+    if central.size < 2:
+        return None
+    films = film["film_thickness"].sel(film_formula=central)
+    valid = films.where(film["in_validity_range"].sel(film_formula=central).astype(bool))
+    mean = contact["breakthrough_probability_mean"]
+    most = mean.sel(first, drop=True)
+    there = mean.isel(most.argmax(most.dims)).sel(film_formula=central)
+    return {
+        "formulas": central.size,
+        "film": _largest_excess(films),
+        "valid": _largest_excess(valid),
+        "probability": [there.min().item(), there.max().item()],
+    }
+
+
+def _largest_excess(films):
+    """Largest difference of two formulas at one point, relative to the smaller film."""
+    return (films.max("film_formula") / films.min("film_formula") - 1.0).max().item()
+
+
+def _agreement(comparison, first):
+    """Measures of agreement between simulation and rig; NaN if there is no record."""
+    chosen = first | {"threshold": comparison["comparison_threshold"].item()}
+    return {name: _at(comparison[name], chosen).item() for name in _AGREEMENT}
+
+
+def _gauged(gauge):
+    """How many records give both limits of their film, and how many one only."""
+    lower, upper = (gauge[f"gauged_film_thickness_{end}"].values for end in ("lower", "upper"))
+    return {
+        "records": int(np.isfinite(upper + lower).size),
+        "closed": int((np.isfinite(upper) & (lower > 0.0)).sum()),
+        "thicker": int(np.isposinf(upper).sum()),
+        "thinner": int((lower == 0.0).sum()),
+    }
 
 
 def _at(variable, point):
@@ -112,20 +242,11 @@ def _at(variable, point):
     return variable.sel({name: level for name, level in point.items() if name in variable.dims})
 
 
-def _agreement(comparison, chosen):
-    """Measures of agreement between simulation and rig; None if there is no record."""
-    chosen = chosen | {"threshold": comparison["comparison_threshold"].item()}
-    measures = {name: _at(comparison[name], chosen).item() for name in _AGREEMENT}
-    return measures if math.isfinite(measures["bias"]) else None
-
-
 def _trace(point, film, contact, comparison):
     """Values at one operating point."""
     shares = _measured_near(comparison, point)
-    probability = {limit: contact[f"breakthrough_probability_{limit}"] for limit in _LIMITS}
     return {
-        **point,
-        **{limit: values.sel(point).item() for limit, values in probability.items()},
+        **_probability(contact.sel(point)),
         "film": _at(film["film_thickness"], point).item(),
         "lambda_ratio": _at(film["lambda_ratio"], point).item(),
         "records": shares.size,
@@ -142,3 +263,9 @@ def _measured_near(comparison, point):
     )
     shares = comparison["measured_share"].values[near]
     return shares[np.isfinite(shares)]
+
+
+def _lines(results, attribute):
+    """Lines about records, of the experiment and of what is made from it."""
+    texts = [results[kind].attrs.get(attribute, "") for kind in ("experiment", "comparison")]
+    return [line for text in texts for line in text.splitlines()]

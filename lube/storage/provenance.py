@@ -82,7 +82,7 @@ def descriptive_attributes(study: "Study", kind: str) -> dict[str, Any]:
     """
     about = study.about
     return {
-        "title": f"{title_of(study)}, {_stage(kind)}",
+        "title": f"{study.title}, {_stage(kind)}",
         "summary": f"{SUMMARIES[_stage(kind)]} {about.summary}",
         "keywords": ", ".join(about.keywords),
         "study": study.name,
@@ -105,11 +105,6 @@ def _source(study, stage):
         return f"simulation {by}"
     evaluated = f"records of a rig, evaluated {by}"
     return evaluated if stage == "experiment" else f"{evaluated}; simulation {by}"
-
-
-def title_of(study: "Study") -> str:
-    """Title of a study's results: as given, by default one with the study's name."""
-    return study.about.title or f"Mixed lubrication study {study.name}"
 
 
 def config_text(study: "Study", kind: str) -> str:

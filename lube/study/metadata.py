@@ -11,7 +11,7 @@ from lube.study.field_types import StrictModel, each_once
 from lube.study.written_forms import Written
 
 PAPER = "Mixed and boundary lubrication in rolling contact: experiment and simulation"
-"""Title of the paper whose model and operating points the study uses."""
+"""Title of the paper whose model every study uses."""
 
 LICENCES = {
     "CC-BY-4.0": "https://creativecommons.org/licenses/by/4.0/",

@@ -3,7 +3,7 @@
 A study's file may name another with the key ``based_on`` and then holds only what differs. The
 contents are merged from the last base up: mappings key by key; lists and single values are
 replaced. Each study needs a name of its own, so that the results of different values are not
-mixed in one folder.
+mixed in one folder. What ``about`` says of one study's results is not said of another's.
 """
 
 import io
@@ -16,6 +16,9 @@ from lube.errors import StudyError, shown
 from lube.study.lubricant_record import is_record_path
 from lube.study.text_files import read_yaml
 from lube.types import File
+
+_OF_ONE_STUDY = {"title", "summary", "date", "doi"}
+"""Keys of ``about`` that a study does not take over from its base."""
 
 
 def study_files(path: File) -> list[Path]:
@@ -124,6 +127,10 @@ def _on_top(base, changes, where):
             f"{where}: name: {came}, need one other than {base.get('name')!r}, "
             "or results of different values would be mixed"
         )
+    match base:
+        case {"about": dict(about)}:
+            kept = {key: value for key, value in about.items() if key not in _OF_ONE_STUDY}
+            base = base | {"about": kept}
     return _merged(base, changes)
 
 

@@ -137,6 +137,11 @@ class Study(StrictModel):
     _each_once = field_validator("kept_realisations", "film_formulas")(each_once)
 
     @property
+    def title(self) -> str:
+        """Title of the results: the study's own, or else one with its name."""
+        return self.about.title or f"Mixed lubrication study {self.name}"
+
+    @property
     def line_spec(self) -> LineSpec:
         """What determines the roughness lines of this study."""
         return line_spec(self.rollers, self.roughness, max(self.operating_grid.force))

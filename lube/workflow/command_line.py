@@ -1,6 +1,7 @@
 """The study that a Snakemake command asks for: ``--configfile`` and ``--config``."""
 
 import argparse
+import json
 import os
 from collections.abc import Sequence
 from contextlib import suppress
@@ -120,6 +121,28 @@ def study_of_command(files: Sequence[File], config: dict) -> tuple[Study, dict[s
     path = os.path.relpath(files[0]) if files else PAPER
     changes = {key: _typed(value) for key, value in config.items()}
     return load_study(path, changes), {"path": path, "changes": changes}
+
+
+def same_study(path: str, changes: dict) -> list[str]:
+    """Write the options of a Snakemake command that asks for the same study.
+
+    Parameters
+    ----------
+    path, changes
+        As from `study_of_command`.
+
+    Returns
+    -------
+    list of str
+        ``--configfile``, and ``--config`` if there are changes.
+
+    Examples
+    --------
+    >>> same_study("mine.yaml", {"rollers": {"length": "8 mm"}})
+    ['--configfile', 'mine.yaml', '--config', 'rollers={"length": "8 mm"}']
+    """
+    values = [f"{key}={json.dumps(value)}" for key, value in changes.items()]
+    return ["--configfile", path, *(["--config", *values] if values else [])]
 
 
 def _typed(value):

@@ -10,6 +10,7 @@ from studies import ROOT, SMOKE
 
 from lube.archive.build import VALUES, archive_contents, exact_versions, make_archive, written_files
 from lube.errors import DataError, StudyError
+from lube.report import SUMMARISED
 from lube.study.study import load_study
 
 
@@ -113,7 +114,8 @@ def test_an_archive_that_cannot_be_made_leaves_the_old_one(
     study, files, tmp_path, tmp_path_factory
 ):
     results = tmp_path_factory.mktemp("results")
-    shutil.copy(files / "experiment.nc", results)
+    for kind in SUMMARISED:
+        shutil.copy(files / f"{kind}.nc", results)
     archive = tmp_path / "archive"
     archive.mkdir()
     (archive / "README.md").write_text("old")

@@ -3,6 +3,7 @@
 import re
 from html import unescape
 
+import pytest
 from markdown_it import MarkdownIt
 
 from lube.archive.page import archive_page
@@ -10,20 +11,25 @@ from lube.schema import DATASETS
 from lube.study.metadata import About
 
 
-def page_of(study, study_file="smoke.yaml", **about):
-    about = About.model_validate({"creators": [{"name": "A"}]} | about)
-    return archive_page(study.model_copy(update={"about": about}), study_file, [])
+@pytest.fixture
+def page_of(study, datasets):
+    def write(study_file="smoke.yaml", changes=(), experiment=datasets["experiment"], **about):
+        about = About.model_validate({"creators": [{"name": "A"}]} | about)
+        study_of_test = study.model_copy(update={"about": about, **dict(changes)})
+        return archive_page(study_of_test, study_file, datasets | {"experiment": experiment})
+
+    return write
 
 
 def shown(page):
     return MarkdownIt("commonmark").enable(["table", "strikethrough"]).render(page)
 
 
-def test_title_summary_and_creators_are_shown_as_written(study):
-    plain = shown(page_of(study))
+def test_title_summary_and_creators_are_shown_as_written(page_of):
+    plain = shown(page_of())
     for words in ("<script>alert(1)</script>", "Müller*_`, 😀", "1. first", "[a](b)", "n*m & a_b"):
         creators = [{"name": "Oil Lab", "affiliation": words}]
-        html = shown(page_of(study, title=words, summary=words, creators=creators))
+        html = shown(page_of(title=words, summary=words, creators=creators))
         blocks = re.findall(r"<(?:h1|p)>(.*?)</(?:h1|p)>", html, re.DOTALL)
         title, creators_line, licence, summary, model = map(unescape, blocks[:5])
         assert [title, summary, creators_line] == [words, words, f"Oil Lab ({words})"]
@@ -32,24 +38,32 @@ def test_title_summary_and_creators_are_shown_as_written(study):
         assert all(html.count(tag) == plain.count(tag) for tag in ("<p>", "<td>", "<pre>"))
 
 
-def test_every_dataset_and_the_code_are_named(study):
-    page = page_of(study, "studies/mine.yaml")
+def test_every_dataset_and_the_code_are_named(page_of):
+    page = page_of("studies/mine.yaml")
     assert all(f"`data/{kind}.nc`" in page for kind in DATASETS)
     assert "| `study/studies/mine.yaml` | the study as it was written |" in page
     assert "lube explain data/contact.nc --force 1600 --speed 100 --temperature 80" in page
     assert "measured records" not in page
 
 
-def test_the_place_of_measured_records_is_named_and_refused_ones_with_their_reasons(study):
+def test_the_place_of_measured_records_is_named_and_refused_ones_with_their_reasons(
+    study, datasets, page_of
+):
     measured = study.experiment.model_copy(update={"manifest": "list.csv"})
-    study = study.model_copy(update={"experiment": measured})
-    page = archive_page(study, "smoke.yaml", ["run_7.csv: line 3: got 'x', need y"])
+    refused = datasets["experiment"].assign_attrs(refused="run_7.csv: line 3: got 'x', need y")
+    page = page_of(changes={"experiment": measured}, experiment=refused)
     assert "measured records themselves are not in this archive" in page
     assert "again,\nput the measured records where their list expects them" in page
     assert "refused, and are in no result" in page
     assert "run_7.csv: line 3: got 'x', need y" in unescape(shown(page))
 
 
-def test_code_that_is_not_as_in_its_commit_is_named(study, monkeypatch):
+def test_code_that_is_not_as_in_its_commit_is_named(page_of, monkeypatch):
     monkeypatch.setattr("lube.archive.page.changed_code", lambda: ["notebooks/fig02_film.ipynb"])
-    assert "; not as in that commit: `notebooks/fig02_film.ipynb` |" in page_of(study)
+    assert "; not as in that commit: `notebooks/fig02_film.ipynb` |" in page_of()
+
+
+def test_the_values_and_findings_of_the_study_are_stated(page_of):
+    page = page_of()
+    assert "| **Rollers** | two alike, radius 50 mm, Young's modulus 210 GPa" in page
+    assert "Metal contact occurs at" in page or "No metal contact was seen" in page

@@ -39,7 +39,7 @@ def test_mappings_are_merged_and_lists_and_single_values_replaced(write):
     assert first == PAPER_CONTENT["rollers"]["first"] | {"radius": "60 mm"}
     assert force == {"values": [800, 1600], "units": "N"}
     assert (content["seed"], content["film_formulas"]) == (3, ["moes"])
-    assert {key for key in content if content[key] != PAPER_CONTENT[key]} == {"name", *own}
+    assert {key for key in content if content[key] != PAPER_CONTENT[key]} == {"name", "about", *own}
     assert list(content) == list(PAPER_CONTENT)
 
 
@@ -93,6 +93,16 @@ def test_changes_come_on_top_and_need_a_new_name():
         message = refusal(load_study, SMOKE, old)
         came = "got 'smoke'" if "name" in old else "missing"
         assert f"smoke.yaml: --config: name: {came}, need one other than 'smoke'" in message
+
+
+def test_what_is_said_of_one_studys_results_is_not_said_of_anothers(write):
+    base = PAPER_CONTENT["about"]
+    assert {"title", "date"} <= set(base)
+    path = write("mine.yaml", based_on="paper.yaml", name="mine", about={"licence": "CC0-1.0"})
+    expected = {"creators": base["creators"], "licence": "CC0-1.0"}
+    assert resolved_content(path)["about"] == expected
+    assert load_study(path).title == "Mixed lubrication study mine"
+    assert load_study(PAPER, {"name": "mine", "about": {"title": "Mine"}}).title == "Mine"
 
 
 def test_a_study_based_on_another_needs_a_name_of_its_own(write):

@@ -2,11 +2,12 @@
 
 import pytest
 from refusals import one_line
+from snakemake.cli import parse_config
 from studies import PAPER, SMOKE
 
 from lube.errors import StudyError
 from lube.study.study import load_study
-from lube.workflow.command_line import check_command_line, study_of_command
+from lube.workflow.command_line import check_command_line, same_study, study_of_command
 
 
 @pytest.fixture(autouse=True)
@@ -67,6 +68,15 @@ def test_config_changes_values_whose_numbers_snakemake_leaves_as_text():
     assert (study.name, study.seed, study.kept_realisations) == ("mine", 3, (0, 1))
     assert (study.rig.revolutions, study.rig.drift) == (3, 0.1)
     assert load_study(**arguments) == study
+
+
+def test_the_options_of_the_same_study_are_read_as_it():
+    changes = {"name": "mine", "seed": 3, "rig": {"revolutions": 3, "bias_voltage": "40 mV"}}
+    changes["operating_grid"] = {"slide_to_roll_ratio": [0, 0.5]}
+    _, path, _, *values = same_study("workflow/config/smoke.yaml", changes)
+    read = parse_config(values)
+    assert study_of_command([path], read)[1] == {"path": path, "changes": changes}
+    assert same_study("a.yaml", {}) == ["--configfile", "a.yaml"]
 
 
 def test_mistakes_in_config_are_refused_as_those_in_a_file():

@@ -3,18 +3,22 @@
 import base64
 import json
 import re
+import shutil
 from html import unescape
 
 import pytest
+from repository import Repository
 
 from lube.report.markdown import plain, title_and_text, to_html
 
 
 @pytest.fixture(scope="module")
-def report(smoke):
+def report(smoke, tmp_path_factory):
     """The report of the smoke study, as text."""
-    smoke.run("--report", "report.html")
-    return (smoke / "report.html").read_text("utf-8")
+    folder = tmp_path_factory.mktemp("reported") / "repository"
+    repository = Repository(shutil.copytree(smoke.folder, folder, symlinks=True))
+    repository.run("report")
+    return (repository.results / "report.html").read_text("utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -66,9 +70,9 @@ def test_every_figure_is_in_its_chapter_as_png_and_pdf(smoke, held):
     )
     assert sorted(chapters) == [
         "1 Oil and film",
-        "2 Figures of the paper",
+        "2 Contact",
         "3 Roughness and ensemble",
-        "4 Beyond the paper",
+        "4 Simulation and rig",
     ]
     for path in shown:
         data = base64.b64decode(held["results"][path]["data_uri"].split("base64,")[1])
@@ -99,8 +103,12 @@ def test_the_start_page_describes_the_study_and_leads_to_every_figure(smoke, hel
 def test_the_pages_show_configuration_assumptions_and_run_times(smoke, held):
     assert "first.young_modulus</code></td><td>210 GPa</td>" in page(held, "configuration")
     text = (smoke / "docs/assumptions.md").read_text("utf-8")
-    cells = [row.split("|")[1].strip() for row in text.splitlines() if row.startswith("|")][2:]
-    assert len(cells) > 15
+    model = text.partition("## In the paper's study")[0]
+    cells = [row.split("|")[1].strip() for row in model.splitlines() if row.startswith("|")][2:]
+    assert len(cells) > 8
+    # Its steel is the paper's, its grid is not.
+    assert "<td>steel</td>" in page(held, "assumptions")
+    assert "125 points" not in page(held, "assumptions")
     for cell in cells:
         assert f"<td>{to_html(cell)[3:-4]}</td>" in page(held, "assumptions")
     times = page(held, "run_times")

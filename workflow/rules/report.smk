@@ -1,3 +1,6 @@
+from lube.report import SUMMARISED
+from lube.workflow.command_line import PAPER, same_study
+
 # Chapter of the report that holds its pages.
 ABOUT_THE_STUDY = "About the study"
 TEMPLATES = sorted(map(str, Path("lube/report/templates").iterdir()))
@@ -5,11 +8,9 @@ TEMPLATES = sorted(map(str, Path("lube/report/templates").iterdir()))
 
 rule pages:
     input:
-        film=result("film.nc"),
-        contact=result("contact.nc"),
-        experiment=result("experiment.nc"),
-        comparison=result("comparison.nc"),
+        **{kind: result(f"{kind}.nc") for kind in SUMMARISED},
         study=FILES.study_file,
+        paper=PAPER,
         docs=[f"docs/{page}.md" for page in ("limits", "assumptions", "architecture")],
         templates=TEMPLATES,
         sources=script_sources("pages"),
@@ -34,7 +35,7 @@ rule pages:
             caption="../report/page.rst",
             labels={
                 "Page": "Assumptions",
-                "Shows": "what the paper leaves open, and what was filled in",
+                "Shows": "what the paper leaves open, and what is used instead",
             },
         ),
     log:
@@ -73,3 +74,25 @@ rule times:
         "Report: run times and memory of all jobs"
     script:
         "../scripts/times.py"
+
+
+rule report:
+    input:
+        rules.pages.output,
+        rules.times.output,
+        # The report shows all that rule `times` waits for.
+        list(Path("workflow/report").iterdir()),
+    output:
+        result("report.html"),
+    log:
+        result("logs/report.log"),
+    benchmark:
+        result("benchmarks/report.tsv")
+    localrule: True
+    params:
+        snakemake=[sys.executable, "-m", "snakemake", *same_study(**config["study"])],
+    message:
+        "Report: {output}"
+    shell:
+        # A second Snakemake: it reports on finished jobs, and this one is running.
+        "{params.snakemake:q} --report {output:q} > {log:q} 2>&1"

@@ -2,28 +2,30 @@
 
 from pathlib import Path
 
+from lube.report import SUMMARISED
 from lube.report.configuration import configuration
 from lube.report.key_tables import table
 from lube.report.markdown import title_and_text, to_html
 from lube.report.pages import render
-from lube.report.summary import facts, findings, notes
+from lube.report.statements import assumptions_of, limits_of
+from lube.report.summary import facts, findings, made
 from lube.storage.files import written_whole
 from lube.storage.netcdf import load
 from lube.study.study import load_study
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-study = load_study(**snakemake.config["study"])
-kinds = ("film", "contact", "experiment", "comparison")
-film, contact, experiment, comparison = (load(snakemake.input[kind], kind, study) for kind in kinds)
+study, paper = load_study(**snakemake.config["study"]), load_study(snakemake.input.paper)
+results = {kind: load(snakemake.input[kind], kind, study) for kind in SUMMARISED}
 written = Path(snakemake.input.study).read_text(encoding="utf-8")
 docs = {Path(file).stem: Path(file).read_text(encoding="utf-8") for file in snakemake.input.docs}
-title, assumptions = title_and_text(docs["assumptions"])
+title, assumptions = title_and_text(assumptions_of(study, paper, docs["assumptions"]))
+_, limits = title_and_text(limits_of(study, paper, docs["limits"]))
 drawing = docs["architecture"].split("```")[1]
 parts = {
-    "facts": facts(study),
-    "findings": findings(study, film, contact, comparison) + notes(experiment, comparison),
-    "limits": to_html(title_and_text(docs["limits"])[1]),
+    "facts": to_html(f"{facts(study, results['lubricant'])}\n\n{made(study)}"),
+    "findings": to_html(findings(study, results)),
+    "limits": to_html(limits),
     "files": to_html(table("files")),
     "pipeline": to_html(f"```{drawing}```"),
     "configuration": render("page.html", title="Configuration", body=configuration(study, written)),

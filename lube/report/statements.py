@@ -1,0 +1,67 @@
+"""What the documentation says of the paper's study, reduced to what holds for another study.
+
+A section of the documentation under the heading ``In the paper's study`` is about its values.
+"""
+
+import functools
+import re
+
+from lube.study.study import Study
+
+_HEADING = "## In the paper's study\n"
+
+
+def limits_of(study: Study, paper: Study, text: str) -> str:
+    """Reduce the limits to those that hold for a study.
+
+    Parameters
+    ----------
+    study, paper : Study
+        The study, and that of the paper.
+    text : str
+        ``docs/limits.md``.
+
+    Returns
+    -------
+    str
+        The text; without the numbers of the paper's study if the study's probabilities follow from
+        other values.
+    """
+    same = study.origin("contact") == paper.origin("contact")
+    return text if same else text.partition(_HEADING)[0].rstrip()
+
+
+def assumptions_of(study: Study, paper: Study, text: str) -> str:
+    """Reduce the assumptions to those of a study.
+
+    Parameters
+    ----------
+    study, paper : Study
+        The study, and that of the paper.
+    text : str
+        ``docs/assumptions.md``. The last column of the table below the heading names the keys of a
+        study that a line is about.
+
+    Returns
+    -------
+    str
+        The text, with those lines whose values the study shares with the paper's.
+    """
+    general, _, table = text.partition(_HEADING)
+    values = [one.model_dump(mode="json") for one in (study, paper)]
+
+    def shared(row):
+        keys = re.findall(r"`([\w.]+)`", row.rpartition(" | ")[2])
+        return all(_at(values[0], key) == _at(values[1], key) for key in keys)
+
+    *head, body = table.strip().split("\n", 2)
+    rows = body.split("\n")
+    kept = [row for row in rows if shared(row)]
+    if kept == rows:
+        return text
+    section = ["## The same as in the paper's study", "", *head, *kept] if kept else []
+    return "\n".join([general, *section])
+
+
+def _at(content, key):
+    return functools.reduce(dict.__getitem__, key.split("."), content)
