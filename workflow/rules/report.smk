@@ -1,6 +1,6 @@
 # Chapter of the report that holds its pages.
 ABOUT_THE_STUDY = "About the study"
-TEMPLATES = sorted(map(str, Path("lube/report/templates").iterdir()))
+TEMPLATES = [from_here(path) for path in sorted(Path(ROOT, "lube/report/templates").iterdir())]
 
 
 rule pages:
@@ -10,7 +10,7 @@ rule pages:
         experiment=result("experiment.nc"),
         comparison=result("comparison.nc"),
         study=FILES.study_file,
-        docs=[f"docs/{page}.md" for page in ("limits", "assumptions", "architecture")],
+        docs=[from_here(f"docs/{page}.md") for page in ("limits", "assumptions", "architecture")],
         templates=TEMPLATES,
         sources=script_sources("pages"),
     output:
