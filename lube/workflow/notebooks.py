@@ -32,7 +32,8 @@ log = logging.getLogger(__name__)
 _CELL_FAILED = 3
 """Exit code of the process that executes a notebook; 1 is Python's own, of any other error."""
 
-_ADDED = {"injected-parameters", "papermill-error-cell-tag"}
+_INJECTED = "injected-parameters"
+_ADDED = {_INJECTED, "papermill-error-cell-tag"}
 """Tags of the cells that papermill adds."""
 
 # Parts of IPython's tracebacks.
@@ -185,7 +186,7 @@ def _add_output(cell, output):
 
 def _failure(executed, exit_code):
     """Say in one line which cell fails, where and why; log the whole traceback."""
-    cells = [cell for cell in executed.cells if not _ADDED & set(cell.metadata.get("tags", []))]
+    cells = [cell for cell in executed.cells if _ADDED.isdisjoint(_tags(cell))]
     # Counted from 1, text included, as a reader of the notebook counts.
     started = [n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time]
     if exit_code != _CELL_FAILED:
@@ -206,10 +207,14 @@ def _failure(executed, exit_code):
     return f"cell {number} fails{where}: {' '.join(f'{error.ename}: {error.evalue}'.split())}"
 
 
+def _tags(cell):
+    return cell.metadata.get("tags", [])
+
+
 def _save(executed, path):
     """Write an executed notebook, the same bytes each time."""
     with written_whole(path) as part:
-        nbformat.write(_without_times(executed), part)
+        nbformat.write(_to_keep(executed), part)
 
 
 def _check_parameters(notebook, parameters):
@@ -222,9 +227,14 @@ def _check_parameters(notebook, parameters):
             )
 
 
-def _without_times(executed):
-    """Remove the clock times and random cell names that papermill leaves in a notebook."""
+def _to_keep(executed):
+    """Remove papermill's clock times and random cell names, and the cell of this run's paths.
+
+    Without that cell the copy, opened and run by hand, shows the study in whose folder it lies,
+    and writes nothing.
+    """
     executed.metadata.pop("papermill", None)
+    executed.cells = [cell for cell in executed.cells if _INJECTED not in _tags(cell)]
     for number, cell in enumerate(executed.cells):
         cell.metadata.pop("papermill", None)
         cell.metadata.pop("execution", None)
