@@ -1,10 +1,15 @@
 # Mixed lubrication of rough rollers: the whole study. See README.md.
 
 
-report: "workflow/report/study.rst"
-
-
 include: "workflow/rules/common.smk"
+
+
+# The report of another Snakefile begins with a page of its own.
+if not IS_MODULE:
+
+    report: "workflow/report/study.rst"
+
+
 include: "workflow/rules/notebooks.smk"
 include: "workflow/rules/study.smk"
 include: "workflow/rules/lubricant.smk"

@@ -28,6 +28,8 @@ from lube.workflow.cells import parameters_of
 from lube.workflow.stamps import DRAWN_BY
 
 log = logging.getLogger(__name__)
+# Papermill's own reading of the parameters, which warns of all but the simplest Python.
+logging.getLogger("papermill.translators").setLevel(logging.ERROR)
 
 _CELL_FAILED = 3
 """Exit code of the process that executes a notebook; 1 is Python's own, of any other error."""
