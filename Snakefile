@@ -36,11 +36,11 @@ rule all:
         products(ARCHIVED),
         [result(f"report/{page}.html") for page in ("configuration", "assumptions", "run_times")],
     message:
-        "Done: datasets, figures and executed notebooks are in {RESULTS}"
+        f"Done: datasets, figures and executed notebooks are in {RESULTS}"
 
 
 rule benchmark:
     input:
         products(TIMINGS),
     message:
-        "Done: measured times and their figures are in {RESULTS}"
+        f"Done: measured times and their figures are in {RESULTS}"
