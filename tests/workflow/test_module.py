@@ -46,6 +46,7 @@ def test_all_results_are_planned_in_the_other_repository(other):
     assert all(name.startswith("results/mine/") for name in made - {"number.txt"})
 
 
+@pytest.mark.slow
 def test_snakefile_and_configuration_of_the_catalogue_do_as_well(other):
     """As snakedeploy sets up a repository: with a copy of the folder `config`."""
     shutil.copytree(ROOT / "config", other / "config")
