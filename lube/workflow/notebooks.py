@@ -58,9 +58,9 @@ def execute_notebook(
         Notebook to execute; it is not changed.
     output : str or Path
         Path of the executed copy, such as ``fig02_film.ipynb``, written only if all cells
-        succeed. It has the notebook's own cells, without the given parameters. If one fails, the cells executed so far are saved beside it as
-        ``fig02_film.failed.ipynb``, which the next success removes, and the traceback goes to
-        the log.
+        succeed. It has the notebook's own cells, without the given parameters. If a cell fails,
+        those executed so far are saved beside it as ``fig02_film.failed.ipynb``, which the next
+        success removes, and the traceback goes to the log.
     parameters : dict
         Values for the names in the cell tagged ``parameters``.
     drawn_by : str
