@@ -10,6 +10,16 @@ __version__ = "0.2.0"
 
 _HOMES = {
     "lube.archive.explain": ("explain",),
+    "lube.calculator.duty_cycle": ("duty",),
+    "lube.calculator.operating_points": ("contact_probability", "film", "trace"),
+    "lube.calculator.parts": ("Oil", "Rollers"),
+    "lube.calculator.required": (
+        "required_film",
+        "required_roughness",
+        "required_speed",
+        "required_temperature",
+        "required_viscosity",
+    ),
     "lube.errors": ("DataError", "LubeError", "RangeError", "RecordError", "StudyError"),
     "lube.physics.electrical": ("contact_resistance",),
     "lube.physics.film_formulas": ("FORMULAS",),

@@ -1,6 +1,17 @@
 """The public names of `lube`, for editors and type checkers."""
 
 from lube.archive.explain import explain as explain
+from lube.calculator.duty_cycle import duty as duty
+from lube.calculator.operating_points import contact_probability as contact_probability
+from lube.calculator.operating_points import film as film
+from lube.calculator.operating_points import trace as trace
+from lube.calculator.parts import Oil as Oil
+from lube.calculator.parts import Rollers as Rollers
+from lube.calculator.required import required_film as required_film
+from lube.calculator.required import required_roughness as required_roughness
+from lube.calculator.required import required_speed as required_speed
+from lube.calculator.required import required_temperature as required_temperature
+from lube.calculator.required import required_viscosity as required_viscosity
 from lube.errors import DataError as DataError
 from lube.errors import LubeError as LubeError
 from lube.errors import RangeError as RangeError

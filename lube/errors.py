@@ -3,6 +3,9 @@
 Every message says which input is meant, what came and what is needed.
 """
 
+import difflib
+from collections.abc import Iterable
+
 LONGEST_VALUE = 60
 """Longest representation of a value in a message, in characters."""
 
@@ -27,6 +30,31 @@ def shown(value: object) -> str:
     """
     text = repr(value)
     return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "..."
+
+
+def right_one(wrong: str, names: Iterable[str]) -> str:
+    """Name what was probably meant by an unknown name, or all that there is.
+
+    Parameters
+    ----------
+    wrong : str
+        The unknown name.
+    names : iterable of str
+        The known ones.
+
+    Returns
+    -------
+    str
+        The end of a message.
+
+    Examples
+    --------
+    >>> right_one("moe", ["moes", "grubin"])
+    "did you mean 'moes'?"
+    """
+    names = list(names)
+    near = difflib.get_close_matches(wrong, names, n=1)
+    return f"did you mean {near[0]!r}?" if near else f"need one of {', '.join(names)}"
 
 
 class LubeError(Exception):

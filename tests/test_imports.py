@@ -27,7 +27,7 @@ FLOORS = [
     {"rig", "storage"},
     {"recordings"},
     {"stages"},
-    {"report"},
+    {"report", "calculator"},
     {"workflow"},
     {"archive", "plots"},
     {"cli"},
@@ -101,10 +101,14 @@ def loaded_after(statement):
             "import lube.workflow.command_line, lube.workflow.study_files, lube.archive.inputs",
             {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp", "papermill"},
         ),
+        (
+            "import lube; lube.Oil, lube.contact_probability, lube.required_film, lube.duty",
+            {"snakemake", "papermill", "nbformat", "rocrate", "docutils", "markdown_it"},
+        ),
         ("import lube.workflow.figure_list", {"xarray", "nbformat", "papermill", "docutils"}),
     ],
 )
-def test_what_snakemake_imports_at_every_start_is_light(statement, heavy):
+def test_what_is_imported_at_every_start_is_light(statement, heavy):
     assert not loaded_after(statement) & heavy
 
 

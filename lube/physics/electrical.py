@@ -27,7 +27,7 @@ class Circuit(Protocol):
 
 
 def contact_resistance(contact_length: Values, resistivity: float) -> Values:
-    r"""Resistance of all broken segments in parallel (paper, Eq. 1).
+    r"""Resistance of all broken segments in parallel, the paper's equation 1.
 
     .. math:: \frac{1}{R_c} = \frac{L_{con}}{\rho}
 

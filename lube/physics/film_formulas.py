@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lube.errors import StudyError
+from lube.errors import StudyError, right_one
 from lube.physics.dimensionless import moes_numbers
 from lube.physics.regimes import moes_asymptotes
 from lube.types import Values
@@ -118,7 +118,7 @@ def formula(name: str) -> Formula:
     'Pan & Hamrock, J. Tribol. 111 (1989)'
     """
     if name not in FORMULAS:
-        raise StudyError(f"unknown film formula {name!r}, need one of {', '.join(FORMULAS)}")
+        raise StudyError(f"unknown film formula {name!r}, {right_one(name, FORMULAS)}")
     return FORMULAS[name]
 
 

@@ -69,7 +69,7 @@ def contact_statistics(
     share is not small, film and asperities together carry more than the applied load.
     """
     film = film.transpose(*OPERATING_DIMS)
-    results = _run(lines, film, boundary_layer, slide_to_roll_ratio, revolutions)
+    results = contact_at(lines, film, boundary_layer, slide_to_roll_ratio, revolutions)
     # F_N 2a/L' by Hertz: the maximum pressure is 4/pi times the mean one, F_N / (2a L').
     width = 2.0 * film["contact_half_width"]
     patch_load = np.pi / 4.0 * film["hertz_pressure"] * width * width
@@ -133,7 +133,7 @@ def _map(lines, film, boundary_layer, levels, dims):
         film_thickness=points[dims[0]] * film["composite_rms_roughness"].item(),
         contact_half_width=points[dims[1]] / 2.0,
     )
-    results = _run(lines, table, boundary_layer).isel(slide_to_roll_ratio=0)
+    results = contact_at(lines, table, boundary_layer).isel(slide_to_roll_ratio=0)
     return results[["breakthrough_probability", "geometric_contact_probability"]]
 
 
@@ -151,8 +151,30 @@ def _layer_map(lines, film, boundary_layer):
     return xr.concat(maps, strengths, join="exact").transpose("realisation", *LAYER_DIMS)
 
 
-def _run(lines, film, boundary_layer, slide_to_roll_ratio=(0.0,), revolutions=1):
-    """Statistics over (realisation, slide_to_roll_ratio, dimensions of the film table)."""
+def contact_at(
+    lines: xr.Dataset,
+    film: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    slide_to_roll_ratio: Sequence[float] = (0.0,),
+    revolutions: int = 1,
+) -> xr.Dataset:
+    """Run the contact model over the dimensions that the films and contact widths have.
+
+    Parameters
+    ----------
+    lines, boundary_layer, slide_to_roll_ratio, revolutions
+        As in `contact_statistics`.
+    film : xarray.Dataset
+        With ``film_thickness`` and ``contact_half_width``, m, over any dimensions, and
+        ``reduced_modulus``, Pa.
+
+    Returns
+    -------
+    xarray.Dataset
+        The results of `contact_statistics` but the share of the load, over (realisation,
+        slide_to_roll_ratio, dimensions of the films), without attributes of their variables.
+        Its own are ``travel`` and ``longest_wavelength``, both m, of a realisation.
+    """
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     points = whole_numbers(thickness.values.ravel(), half_width.values.ravel(), lines)
     (films, half_windows), inverse = np.unique(np.stack(points), axis=1, return_inverse=True)

@@ -5,7 +5,6 @@ of fields that are written with a unit and kept in SI, and the one-line message 
 """
 
 import ast
-import difflib
 import inspect
 import operator
 from collections import Counter
@@ -16,7 +15,7 @@ from typing import Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, StringConstraints, ValidationError, WithJsonSchema
 
-from lube.errors import LubeError, shown
+from lube.errors import LubeError, right_one, shown
 from lube.types import File
 from lube.units import convert, parse_number, parse_quantity
 
@@ -349,8 +348,7 @@ def _right_key(location, model):
     for part in sections:
         if isinstance(part, str):
             model = next(_models(model.model_fields[part].annotation))
-    near = difflib.get_close_matches(str(wrong), model.model_fields, n=1)
-    return f"did you mean {near[0]!r}?" if near else f"need one of {', '.join(model.model_fields)}"
+    return right_one(str(wrong), model.model_fields)
 
 
 def _models(annotation):

@@ -13,7 +13,7 @@ from typing import Literal
 
 from pydantic import PrivateAttr, model_validator
 
-from lube.errors import RangeError, RecordError, shown
+from lube.errors import RangeError, RecordError, right_one, shown
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_range
 from lube.physics.pressure_viscosity import GOLD_BASES
@@ -255,7 +255,7 @@ def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
         viscosity = viscosity.model_copy(update={"points": read_viscosity_csv(files[1])})
         record = record.model_copy(update={"viscosity": viscosity})
     if viscosity.points is not None:
-        _check_points(viscosity.points, files[-1])
+        check_points(viscosity.points, files[-1])
     record._files = files
     return record
 
@@ -266,7 +266,8 @@ def _record_path(name_or_path, folder):
     names = shipped_records()
     if name_or_path not in names:
         raise RecordError(
-            f"got {shown(name_or_path)}, need one of {', '.join(names)}, or a path of a .yaml file"
+            f"got {shown(name_or_path)}, {right_one(str(name_or_path), names)} "
+            "Or give the path of a .yaml file"
         )
     return SHIPPED_FOLDER / f"{name_or_path}.yaml"
 
@@ -282,8 +283,21 @@ def _beside(record_path, name):
     return folder / name
 
 
-def _check_points(points, where):
-    """Refuse data that no viscosity law can fit."""
+def check_points(points: Sequence[ViscosityPoint], where: File) -> None:
+    """Refuse data that no viscosity law can fit.
+
+    Parameters
+    ----------
+    points : sequence of ViscosityPoint
+        Viscosities at some temperatures.
+    where : str or Path
+        Where they come from, for the message.
+
+    Raises
+    ------
+    RecordError
+        If they are all at one temperature, or rise with the temperature.
+    """
     if len({point.temperature for point in points}) < 2:
         raise RecordError(f"{where}: viscosity: need values at two temperatures or more")
     for kind in ("kinematic_viscosity", "dynamic_viscosity"):

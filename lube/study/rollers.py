@@ -80,6 +80,12 @@ def _points_of(wavelength):
     return bounded(number, "points", least=2.0, most=MOST_POINTS)
 
 
+_LongestWavelength = length_or_words(
+    lambda text: text == AUTOMATIC_WAVELENGTH, f"the words `{AUTOMATIC_WAVELENGTH}`"
+)
+_ShortestWavelength = length_or_words(_is_points, "a number of grid points such as `10 points`")
+
+
 class Roughness(StrictModel):
     """Statistics and grid of the random roughness lines of both rollers."""
 
@@ -87,21 +93,22 @@ class Roughness(StrictModel):
     """points N around the first roller"""
     hurst_exponent: pure_number(above=0.0, below=1.0)
     """Hurst exponent H"""
-    longest_wavelength: length_or_words(
-        lambda text: text == AUTOMATIC_WAVELENGTH, f"the words `{AUTOMATIC_WAVELENGTH}`"
-    )
+    longest_wavelength: _LongestWavelength
     """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
     the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
     0.61
     """
-    shortest_wavelength: length_or_words(_is_points, "a number of grid points such as `10 points`")
+    shortest_wavelength: _ShortestWavelength
     """2 pi / q_max; the break-up of the boundary layer depends on it"""
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
 
 
 class BoundaryLayer(StrictModel):
-    """Boundary layer on the rollers; metal contact is where it breaks (paper, Eqs. 4 and 6)."""
+    """Boundary layer on the rollers; metal contact is where it breaks.
+
+    Equations 4 and 6 of the paper.
+    """
 
     critical_thickness: Length
     """critical thickness h_c"""

@@ -3,6 +3,8 @@
 import re
 
 import pytest
+from markdown_it import MarkdownIt
+from mdit_py_plugins.anchors import anchors_plugin
 from studies import ROOT
 
 from lube.recordings.manifest import read_manifest
@@ -48,11 +50,19 @@ def test_a_key_has_its_unit_limits_and_default():
         assert any(line.startswith(row) for line in table(name).splitlines()), row
 
 
-def test_links_lead_to_files():
+def headings(page):
+    """Anchors of a page's headings, as GitHub and the site make them."""
+    tokens = MarkdownIt().use(anchors_plugin, max_level=3).parse(page.read_text(encoding="utf-8"))
+    return {token.attrGet("id") for token in tokens if token.type == "heading_open"}
+
+
+def test_links_lead_to_files_and_headings():
     for name, text in PAGES.items():
-        for target in re.findall(r"\]\(([^)#\s]+)\)", text):
-            if not target.startswith("https://"):
-                assert (ROOT / name).parent.joinpath(target).exists(), f"{name}: {target}"
+        for target, anchor in re.findall(r"\]\(([^)#\s]*)#?([^)\s]*)\)", text):
+            if not target.startswith("https:"):
+                page = (ROOT / name).parent / target if target else ROOT / name
+                assert page.exists(), f"{name}: {target}"
+                assert not anchor or anchor in headings(page), f"{name}: {target}#{anchor}"
 
 
 def test_the_readme_is_short():
@@ -76,13 +86,3 @@ def test_the_loggers_record_is_read_as_the_documentation_says(tmp_path):
     first = next(open_recording(entry.file, None, *channel).pieces())[0]
     assert first == pytest.approx(11.02e-3, rel=1e-12)
     assert "(113.2 - 3)/10 = 11.02 mV" in PAGES["docs/records.md"]
-
-
-def test_the_python_example_runs_as_printed():
-    example = next(block for block in code_blocks("docs/python.md", "python") if "oil =" in block)
-    *body, last = example.strip().splitlines()
-    names = {}
-    exec("\n".join(body).replace("100_000", "20_000").replace("range(8)", "range(2)"), names)
-    mean = eval(last, names)
-    assert mean.sizes == {"temperature": 2, "force": 2}
-    assert (mean.sel(temperature=80) >= mean.sel(temperature=40)).all()

@@ -15,8 +15,8 @@ from lube.study.resolve import resolved_content
 from lube.workflow.cells import datasets_of
 
 ROOT = Path(__file__).parents[2]
-COPIED = ("Snakefile", "README.md", "pyproject.toml", "workflow", "docs", "lube", "notebooks")
-COPIED += ("config", "profiles", "tests/benchmarks")
+COPIED = ("Snakefile", "README.md", "CHANGELOG.md", "pyproject.toml")
+COPIED += ("config", "workflow", "docs", "lube", "notebooks", "profiles", "tests/benchmarks")
 SMOKE = "workflow/config/smoke.yaml"
 RESULTS = "results/smoke"
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")

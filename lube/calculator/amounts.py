@@ -1,0 +1,127 @@
+"""Numbers with units as they are given in Python, and results in the units people use."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from lube.errors import LubeError, StudyError, shown
+from lube.schema import COORDINATES, FILES, REGIMES
+from lube.study.field_types import bounded
+from lube.units import convert, parse_quantity
+
+Amount = str | Sequence[str] | tuple[Any, str] | Any
+"""``"800 N"``, ``["400 N", "800 N"]``, ``([400, 800], "N")``, or a quantity of pint."""
+
+_MICROMETRES = (
+    *("film_thickness", "contact_half_width", "composite_rms_roughness"),
+    *("contact_length", "mean_contact_length"),
+)
+_CUSTOMARY = dict.fromkeys(_MICROMETRES, ("um", 1e6)) | {
+    "hertz_pressure": ("MPa", 1e-6),
+    "reduced_modulus": ("GPa", 1e-9),
+    "reduced_radius": ("mm", 1e3),
+    "dynamic_viscosity": ("mPa s", 1e3),
+    "kinematic_viscosity": ("mm2 s-1", 1e6),
+    "pressure_viscosity_coefficient": ("GPa-1", 1e9),
+    "time": ("ms", 1e3),
+}
+"""Customary unit of a variable, and its number of them in one SI unit."""
+_VARIABLES = COORDINATES | FILES["lubricant"] | FILES["trace"] | FILES["film"] | FILES["contact"]
+
+
+def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArray:
+    """Convert an argument to numbers in the units that the study computes in.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, for messages, and of the dimension of several numbers.
+    value : str, sequence of str, tuple or pint.Quantity
+        One number with its unit, such as ``"800 N"``; or several, as ``["400 N", "800 N"]`` or
+        ``([400, 800], "N")``.
+    units : str
+        Unit of the result.
+    **limits : float
+        As in `lube.study.field_types.bounded`, in `units`.
+
+    Returns
+    -------
+    xarray.DataArray
+        Without dimensions, or over `name`.
+
+    Raises
+    ------
+    StudyError
+        Which argument, what came, what is needed.
+
+    Examples
+    --------
+    >>> amount("force", ([0.4, 0.8], "kN"), "N").values
+    array([400., 800.])
+    """
+    try:
+        numbers = np.asarray(_numbers(value, units), float)
+        for number in numbers.ravel():
+            bounded(number, units, **limits)
+        if numbers.ndim > 1 or not numbers.size:
+            raise LubeError(f"got {shown(value)}, need one number with its unit, or a list of them")
+    except LubeError as error:
+        raise StudyError(f"{name}: {error}") from None
+    return xr.DataArray(numbers, {name: numbers} if numbers.ndim else None, [name] * numbers.ndim)
+
+
+def _numbers(value, units):
+    match value:
+        case (str(), *_) | [str(), *_] if not _has_unit_last(value):
+            return [parse_quantity(one, units) for one in value]
+        case (numbers, str(given)):
+            return convert(_floats(numbers), given, units)
+        case _ if hasattr(value, "magnitude"):
+            return convert(_floats(value.magnitude), f"{value.units}", units)
+    return parse_quantity(value, units)
+
+
+def _floats(numbers):
+    try:
+        return np.asarray(numbers, float)
+    except (TypeError, ValueError):
+        raise LubeError(f"got {shown(numbers)}, need numbers and their unit") from None
+
+
+def _has_unit_last(value):
+    """Whether a pair is numbers and their unit, rather than two numbers with units."""
+    return len(value) == 2 and not isinstance(value[0], str)
+
+
+def described(results: xr.Dataset) -> xr.Dataset:
+    """Convert results to customary units, and label them.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Variables of the ``lubricant``, ``film``, ``contact`` or ``trace`` file, in SI units.
+
+    Returns
+    -------
+    xarray.Dataset
+        Films and lengths in um, pressures in MPa; each variable with ``units`` and
+        ``long_name``, the regime in words.
+
+    Examples
+    --------
+    >>> described(xr.Dataset({"film_thickness": 1.07e-6})).film_thickness.attrs["units"]
+    'um'
+    """
+    found = results.copy()
+    for name in set(results.variables) & set(_VARIABLES):
+        variable, values = _VARIABLES[name], results[name].values
+        units, factor = _CUSTOMARY.get(name, (variable.units, None))
+        if factor is not None:
+            values = factor * values
+        elif name == "regime":
+            values = np.array(REGIMES)[values]
+        labels = {"long_name": variable.long_name, "units": units or ""}
+        found[name] = xr.Variable(results[name].dims, values, labels)
+    return found

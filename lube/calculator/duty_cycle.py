@@ -1,0 +1,172 @@
+"""Duty cycles: the answer at each duty point, and the weighted whole."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from lube.calculator.amounts import amount, described
+from lube.calculator.operating_points import (
+    FILM_VARIABLES,
+    FORMULA,
+    REALISATIONS,
+    SEED,
+    ensemble,
+)
+from lube.calculator.parts import Oil, Rollers
+from lube.errors import DataError, LubeError, right_one, shown
+from lube.physics.hertz import reduced_radius
+from lube.rig.map_curves import windows_in
+from lube.schema import LIMITS
+from lube.stages.film import film_at
+from lube.statistics.confidence import probability_interval
+from lube.study.small_csv import HEADER_CELL
+from lube.types import File
+
+_COLUMNS = {
+    "force": "N",
+    "temperature": "degC",
+    "share": "1",
+    "radius": "m",
+    "second_radius": "m",
+    "speed": "rpm",
+    "entrainment_speed": "m/s",
+    "surface_speed": "m/s",
+    "second_surface_speed": "m/s",
+}
+"""Columns of a table of duty points, each with the unit that it is converted to."""
+_SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed")
+
+
+def duty(
+    points: pd.DataFrame | Mapping[str, Sequence] | Sequence[Mapping[str, Any]] | File,
+    rollers: Rollers,
+    oil: Oil,
+    *,
+    film_formula: str = FORMULA,
+    realisations: int = REALISATIONS,
+    seed: int = SEED,
+) -> xr.Dataset:
+    """Film and probability of contact along a duty cycle, and over the whole of it.
+
+    The model's probability depends on film thickness and contact width. So each duty point has
+    the film and width of its own radii, and all share the roughness lines of `rollers`.
+
+    Parameters
+    ----------
+    points : pandas.DataFrame, dict, list of dict or path of a CSV file
+        One row for each duty point. Columns of numbers carry their unit, as in ``force [N]``; in
+        other columns each value does, as in ``"800 N"``. Needed are ``force``, ``temperature``,
+        and one of ``speed`` (rotation of the first roller in pure rolling, such as rpm),
+        ``entrainment_speed``, or the two of ``surface_speed`` and ``second_surface_speed``.
+        Optional are ``radius`` and ``second_radius``, by default those of `rollers`, and
+        ``share``, the weight of the point, by default equal weights.
+    rollers : Rollers
+        Material, roughness and, where the points have none, radii.
+    oil : Oil
+        The oil.
+    film_formula, realisations, seed
+        As in `lube.contact_probability`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `lube.contact_probability` over ``point``, ``share`` (normalised), and
+        ``whole_probability`` with ``_lower`` and ``_upper``: the share of the whole time with
+        metal contact. The intervals are those of the mean over pairs of rollers.
+
+    Raises
+    ------
+    LubeError
+        Which column, what came, what is needed.
+
+    Examples
+    --------
+    >>> rollers = Rollers(radius="5 mm", rms_roughness="0.2 um")
+    >>> points = [
+    ...     {"force": "100 N", "speed": "500 rpm", "temperature": "60 degC", "share": "90 %"},
+    ...     {"force": "300 N", "speed": "250 rpm", "temperature": "80 degC", "share": "10 %"},
+    ... ]
+    >>> found = duty(points, rollers, Oil("mobilgear-shc-xmp-320"), realisations=4)
+    >>> low, high = found.breakthrough_probability_mean.values
+    >>> bool(low < found.whole_probability < high)
+    True
+    """
+    columns = _columns(points)
+    share = columns.get("share", xr.ones_like(columns["force"]))
+    if not share.sum() > 0.0:
+        raise DataError("points: share: got 0 at all points, need a weight above 0")
+    table = _film(columns, rollers, oil, film_formula)
+    contact = ensemble(table, rollers, realisations, seed)
+    share = share / share.sum()
+    found = table[list(FILM_VARIABLES)].assign(columns | dict(contact.data_vars) | {"share": share})
+    found = described(found).assign_attrs(contact.attrs)
+    whole = (contact["breakthrough_probability"] * share).sum("point")
+    windows = windows_in(contact, 2.0 * table["contact_half_width"].max().item())
+    for ending, value in zip(LIMITS, probability_interval(whole.values, windows), strict=True):
+        labels = {"long_name": "breakthrough probability of the whole duty cycle"}
+        found[f"whole_probability{ending}"] = (), value, labels
+    return found
+
+
+def _film(columns, rollers, oil, film_formula):
+    """Film table over ``point``, each with its own radii."""
+    pair = rollers.pair
+    first = columns.get("radius", pair.first.radius)
+    second = columns.get("second_radius", pair.second.radius)
+    own = SimpleNamespace(
+        first=SimpleNamespace(radius=first),
+        length=pair.length,
+        reduced_radius=reduced_radius(first, second),
+        reduced_modulus=pair.reduced_modulus,
+        composite_rms_roughness=pair.composite_rms_roughness,
+    )
+    properties = oil.at(columns["temperature"])
+    rotation = columns.get("speed")
+    if rotation is None:
+        entrainment = columns.get("entrainment_speed")
+        if entrainment is None:
+            entrainment = 0.5 * (columns["surface_speed"] + columns["second_surface_speed"])
+        rotation = entrainment * 60.0 / (2.0 * np.pi * first)
+    table = film_at(properties, own, columns["force"], rotation, [film_formula])
+    table = table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
+    return table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
+
+
+def _columns(points):
+    """Columns of a table by name, each over ``point`` in the units of `_COLUMNS`."""
+    try:
+        is_file = isinstance(points, str | Path)
+        frame = pd.read_csv(points, skipinitialspace=True) if is_file else pd.DataFrame(points)
+    except (OSError, ValueError) as error:
+        raise DataError(f"points: got {shown(points)}, need a table: {error}") from None
+    columns = dict(_column(f"{header}".strip(), frame[header].tolist()) for header in frame)
+    for name in ("force", "temperature"):
+        if name not in columns:
+            raise DataError(f"points: no column {name!r}, need one, as '{name} [{_COLUMNS[name]}]'")
+    given = [names for names in _SPEEDS if set(names.split(" and ")) & set(columns)]
+    if len(given) != 1 or not set(given[0].split(" and ")) <= set(columns):
+        raise DataError(f"points: need one kind of speed: {', '.join(_SPEEDS)}")
+    return columns
+
+
+def _column(header, values):
+    """Name and values of a column, over ``point``."""
+    cell = HEADER_CELL.fullmatch(header)
+    name, units = cell.groups() if cell else (header, None)
+    if name not in _COLUMNS:
+        raise DataError(f"points: unknown column {header!r}, {right_one(name, _COLUMNS)}")
+    limits = {"temperature": {"above": -273.15}, "share": {"least": 0.0}}.get(name, {"above": 0.0})
+    if name == "share" and units is None and not isinstance(values[0], str):
+        units = "1"
+    try:
+        numbers = amount(
+            name, values if units is None else (values, units), _COLUMNS[name], **limits
+        )
+    except LubeError as error:
+        raise DataError(f"points: {error}") from None
+    return name, xr.DataArray(numbers.values, dims="point")

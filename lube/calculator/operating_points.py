@@ -1,0 +1,359 @@
+"""Film, probability of contact and resistance at operating points."""
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from lube.calculator.amounts import Amount, amount, described
+from lube.calculator.parts import Oil, Rollers
+from lube.errors import LubeError, StudyError, shown
+from lube.grid.discretise import speed_ratios
+from lube.rig.map_curves import windows_in
+from lube.schema import OPERATING_DIMS
+from lube.stages.contact import contact_at
+from lube.stages.film import film_at, film_table
+from lube.stages.lubricant import lubricant_table
+from lube.stages.roughness import roughness_batch
+from lube.stages.trace import contact_trace
+from lube.statistics.confidence import probability_interval
+from lube.study.field_types import bounded
+from lube.study.rollers import BoundaryLayer
+from lube.units import parse_number
+
+FORMULA = "pan-hamrock"
+"""Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
+REALISATIONS = 64
+SEED = 1
+
+FILM_VARIABLES = (
+    *("film_thickness", "lambda_ratio", "regime", "in_validity_range", "hertz_pressure"),
+    *("contact_half_width", "entrainment_speed", "dynamic_viscosity"),
+)
+_PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
+
+
+def film(
+    rollers: Rollers,
+    oil: Oil,
+    force: Amount,
+    speed: Amount,
+    temperature: Amount,
+    *,
+    film_formula: str | Sequence[str] = FORMULA,
+) -> xr.Dataset:
+    """Film thickness, lambda ratio and regime.
+
+    Parameters
+    ----------
+    rollers : Rollers
+        The two rollers.
+    oil : Oil
+        The oil between them.
+    force : str, sequence of str or tuple
+        Normal force, such as ``"800 N"``, or several: ``["400 N", "800 N"]`` or
+        ``([400, 800], "N")``.
+    speed : str, sequence of str or tuple
+        Rotation speed of the first roller in pure rolling, such as ``"100 rpm"``, or entrainment
+        speed, such as ``"0.5 m/s"``.
+    temperature : str, sequence of str or tuple
+        Temperature of rollers and oil, such as ``"60 degC"``.
+    film_formula : str or sequence of str, optional
+        Keys of `lube.FORMULAS`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over those of film_formula, temperature, speed and force of which several are given, in
+        customary units.
+
+    Raises
+    ------
+    LubeError
+        Which argument, what came, what is needed.
+
+    Examples
+    --------
+    >>> rollers = Rollers(radius="50 mm", rms_roughness="0.2 um")
+    >>> found = film(rollers, Oil("mobilgear-shc-xmp-320"), "800 N", "100 rpm", "40 degC")
+    >>> f"{found.film_thickness.item():.2f} um, lambda ratio {found.lambda_ratio.item():.1f}"
+    '1.05 um, lambda ratio 3.7'
+    """
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
+    return described(table[list(FILM_VARIABLES)])
+
+
+def film_in_si(
+    rollers: Rollers,
+    oil: Oil,
+    force: Amount,
+    speed: Amount,
+    temperature: Amount,
+    film_formula: str | Sequence[str],
+) -> xr.Dataset:
+    """All variables of the film table in SI units, and the oil's; arguments as in `film`."""
+    force = amount("force", force, "N", above=0.0)
+    speed = rotation_speed(speed, rollers.pair.first.radius)
+    temperature = amount("temperature", temperature, "degC", above=-273.15)
+    if not temperature.dims:
+        temperature = temperature.assign_coords(temperature=temperature)
+    properties = oil.at(temperature)
+    formulas = [film_formula] if isinstance(film_formula, str) else list(film_formula)
+    table = film_at(properties, rollers.pair, force, speed, formulas)
+    table = table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
+    table = table.assign_coords(force=force, speed=speed)
+    table = table.transpose("film_formula", "temperature", "speed", "force", missing_dims="ignore")
+    return table.isel(film_formula=0) if isinstance(film_formula, str) else table
+
+
+def rotation_speed(speed: Amount, radius: float | xr.DataArray) -> xr.DataArray:
+    """Rotation speed in rpm, from itself or from the entrainment speed at a radius in m.
+
+    Raises
+    ------
+    StudyError
+        If it is neither.
+    """
+    try:
+        return amount("speed", speed, "rpm", above=0.0)
+    except LubeError as error:
+        try:
+            entrainment = amount("speed", speed, "m/s", above=0.0)
+        except LubeError:
+            raise StudyError(f"{error}, or 'm/s'") from None
+        rotation = entrainment * (60.0 / (2.0 * np.pi * radius))
+        return rotation.assign_coords(speed=rotation) if rotation.dims else rotation
+
+
+def single(name: str, values: xr.DataArray) -> float:
+    """Value of an argument of which there must be one.
+
+    Raises
+    ------
+    StudyError
+        If there are several.
+    """
+    if values.dims:
+        raise StudyError(f"{name}: got {values.size} values, need one")
+    return values.item()
+
+
+def _checked_slip(slip):
+    try:
+        return bounded(parse_number(slip), None, least=-2.0, most=2.0)
+    except LubeError as error:
+        raise StudyError(f"slide_to_roll_ratio: {error}") from None
+
+
+def contact_probability(
+    rollers: Rollers,
+    oil: Oil,
+    force: Amount,
+    speed: Amount,
+    temperature: Amount,
+    *,
+    film_formula: str | Sequence[str] = FORMULA,
+    slide_to_roll_ratio: float = 0.0,
+    realisations: int = REALISATIONS,
+    seed: int = SEED,
+) -> xr.Dataset:
+    """Probability of metal contact, with its 95 % interval, and the film.
+
+    The probability is that of a line, and the mean over pairs of rollers: one pair, and rollers
+    of a length, touch more or less often.
+
+    Parameters
+    ----------
+    rollers, oil, force, speed, temperature, film_formula
+        As in `film`.
+    slide_to_roll_ratio : float, optional
+        Difference of the surface speeds over their mean. It does not change the expected
+        probability, only the computing time and the scatter.
+    realisations : int, optional
+        Number of pairs of roughness lines.
+    seed : int, optional
+        Seed of the roughness.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `film`; ``breakthrough_probability`` and
+        ``geometric_contact_probability`` of each realisation, and ``_mean``, ``_lower`` and
+        ``_upper`` of both.
+
+    Raises
+    ------
+    LubeError
+        Which argument, what came, what is needed.
+
+    Examples
+    --------
+    >>> rollers = Rollers(radius="5 mm", rms_roughness="0.2 um")
+    >>> oil = Oil("mobilgear-shc-xmp-320")
+    >>> found = contact_probability(
+    ...     rollers, oil, "300 N", "500 rpm", "80 degC", realisations=4
+    ... )
+    >>> bool(found.breakthrough_probability_lower < found.breakthrough_probability_upper)
+    True
+    """
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
+    slip = _checked_slip(slide_to_roll_ratio)
+    contact = ensemble(table, rollers, realisations, seed, slip)
+    found = table[list(FILM_VARIABLES)].assign(contact.data_vars).assign_attrs(contact.attrs)
+    return described(found)
+
+
+def ensemble(
+    table: xr.Dataset, rollers: Rollers, realisations: int, seed: int, slip: float = 0.0
+) -> xr.Dataset:
+    """Probabilities at some films and contact widths, and their intervals.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        With ``film_thickness`` and ``contact_half_width`` (m) over any dimensions, and
+        ``reduced_modulus`` (Pa).
+    rollers : Rollers
+        Their lines and boundary layer are used.
+    realisations, seed : int
+        As in `contact_probability`.
+    slip : float, optional
+        Slide-to-roll ratio.
+
+    Returns
+    -------
+    xarray.Dataset
+        From `with_limits`.
+    """
+    run = partial(probabilities, table=table, layer=rollers.layer, slip=slip)
+    return with_limits(run_all(run, rollers, realisations, seed), table["contact_half_width"], slip)
+
+
+def probabilities(
+    lines: xr.Dataset, table: xr.Dataset, layer: BoundaryLayer, slip: float = 0.0
+) -> xr.Dataset:
+    """Both probabilities of some realisations, over realisation and the table's dimensions."""
+    found = contact_at(lines, table, layer, [slip])
+    return found[list(_PROBABILITIES)].isel(slide_to_roll_ratio=0, drop=True)
+
+
+def run_all(
+    run: Callable[[xr.Dataset], xr.Dataset], rollers: Rollers, realisations: int, seed: int
+) -> xr.Dataset:
+    """Apply a function to the roughness lines of every realisation, and join the results.
+
+    Parameters
+    ----------
+    run : callable
+        From lines, as `lube.stages.roughness.roughness_batch` gives them, to results over
+        realisation and other dimensions.
+    rollers : Rollers
+        Their lines are drawn.
+    realisations, seed : int
+        As in `contact_probability`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The results over all realisations.
+
+    Raises
+    ------
+    StudyError
+        If the number of realisations or the seed is not a suitable whole number.
+    """
+    for name, number, least in (("realisations", realisations, 1), ("seed", seed, 0)):
+        if isinstance(number, bool) or not isinstance(number, int) or number < least:
+            raise StudyError(f"{name}: got {shown(number)}, need a whole number, at least {least}")
+
+    def of_realisation(number):
+        return run(roughness_batch(rollers.lines, seed, [number]))
+
+    # Drawing and running release Python's lock, so threads share the work.
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        parts = list(pool.map(of_realisation, range(realisations)))
+    joined = xr.concat(parts, "realisation", coords="minimal", compat="override", join="exact")
+    return joined.assign_attrs(seed=seed)
+
+
+def with_limits(contact: xr.Dataset, half_width: xr.DataArray, slip: float = 0.0) -> xr.Dataset:
+    """Add the mean over the realisations and its 95 % limits to both probabilities.
+
+    Parameters
+    ----------
+    contact : xarray.Dataset
+        From `run_all` with `probabilities`.
+    half_width : xarray.DataArray
+        Contact half-width, m.
+    slip : float, optional
+        Slide-to-roll ratio.
+
+    Returns
+    -------
+    xarray.Dataset
+        Also with ``_mean``, ``_lower`` and ``_upper`` of both probabilities.
+    """
+    moved = contact.attrs["travel"] * min(speed_ratios(slip))
+    windows = windows_in(contact.assign_attrs(travel=moved), 2.0 * half_width)
+    windows = windows.broadcast_like(contact[_PROBABILITIES[0]][0])
+    for name in _PROBABILITIES:
+        dims = contact[name].dims[1:]
+        found = probability_interval(contact[name].values, windows.transpose(*dims).values)
+        for part, values in zip(("mean", "lower", "upper"), found, strict=True):
+            contact[f"{name}_{part}"] = dims, values
+    return contact
+
+
+def trace(
+    rollers: Rollers,
+    oil: Oil,
+    force: str,
+    speed: str,
+    temperature: str,
+    *,
+    film_formula: str = FORMULA,
+    slide_to_roll_ratio: float = 0.0,
+    seed: int = SEED,
+) -> xr.Dataset:
+    """Contact length and electrical resistance over one revolution.
+
+    Parameters
+    ----------
+    rollers, oil, force, speed, temperature, film_formula
+        As in `film`, one of each.
+    slide_to_roll_ratio, seed
+        As in `contact_probability`; the trace is that of realisation 0.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``contact_length`` (um) and ``contact_resistance`` (ohm) over time (ms). The resistance
+        is infinite without contact.
+
+    Raises
+    ------
+    LubeError
+        Which argument, what came, what is needed.
+
+    Examples
+    --------
+    >>> rollers = Rollers(radius="5 mm", rms_roughness="0.2 um")
+    >>> found = trace(rollers, Oil("mobilgear-shc-xmp-320"), "300 N", "500 rpm", "80 degC")
+    >>> f"{found.time.values[-1]:.0f} ms"
+    '120 ms'
+    """
+    force = single("force", amount("force", force, "N", above=0.0))
+    speed = single("speed", rotation_speed(speed, rollers.pair.first.radius))
+    temperature = single("temperature", amount("temperature", temperature, "degC", above=-273.15))
+    slip = _checked_slip(slide_to_roll_ratio)
+    properties = lubricant_table([oil.record], [temperature])
+    table = film_table(properties, rollers.pair, [force], [speed], [film_formula])
+    point = {name: table[name].item() for name in OPERATING_DIMS}
+    point["slide_to_roll_ratio"] = slip
+    lines = roughness_batch(rollers.lines, seed, [0])
+    found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity)
+    names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
+    return described(found[names].isel(operating_point=0).drop_attrs())

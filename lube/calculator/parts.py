@@ -1,0 +1,291 @@
+"""Rollers and oils, from numbers with units or from a lubricant record."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import scipy.fft
+import xarray as xr
+
+from lube.calculator.amounts import Amount, amount, described
+from lube.errors import LubeError, RecordError, StudyError, shown
+from lube.physics.pressure_viscosity import GOLD_BASES
+from lube.stages.lubricant import lubricant_table
+from lube.study.field_types import validate
+from lube.study.lubricant_record import (
+    LubricantRecord,
+    check_points,
+    load_record,
+    read_viscosity_csv,
+)
+from lube.study.rollers import BoundaryLayer, LineSpec, Roller, RollerPair, Roughness, line_spec
+from lube.types import File
+from lube.units import parse_quantity
+
+_PROPERTIES = (
+    *("kinematic_viscosity", "dynamic_viscosity", "density", "pressure_viscosity_coefficient"),
+    *("thermal_conductivity", "temperature_viscosity_coefficient"),
+)
+_POINTS_PER_WAVE = 10
+"""Grid points in the shortest wavelength, as in the paper."""
+
+
+class Rollers:
+    """Two rollers in line contact: geometry, material, roughness and boundary layer.
+
+    Parameters
+    ----------
+    radius : str
+        Radius of the first roller, such as ``"50 mm"``.
+    rms_roughness : str
+        Rms roughness of the first roller by itself, such as ``"0.2 um"``.
+    length : str, optional
+        Length of the line contact.
+    young_modulus, poisson_ratio : str, float, optional
+        Of the first roller's material; the default is steel.
+    second : dict, optional
+        What differs of the second roller, such as ``{"radius": "30 mm"}``. Without it the rollers
+        are equal.
+    longest_wavelength, shortest_wavelength : str, optional
+        Of the roughness; the defaults are the paper's. The longest is customarily the width of
+        the contact, the shortest what a profilometer resolves.
+    hurst_exponent : float, optional
+        Hurst exponent of the roughness, from 0 to 1.
+    points : int, optional
+        Grid points around the first roller; by default about ten in the shortest wavelength.
+    critical_thickness, shear_strength : str, optional
+        Of the boundary layer; the paper's.
+    resistivity : str, optional
+        Of the rollers' material; hardened bearing steel.
+
+    Attributes
+    ----------
+    pair : RollerPair
+        Geometry, material and roughness.
+    lines : LineSpec
+        What determines the roughness lines.
+    layer : BoundaryLayer
+        The boundary layer.
+    resistivity : float
+        In ohm m.
+
+    Raises
+    ------
+    StudyError
+        Which argument, what came, what is needed.
+
+    Examples
+    --------
+    >>> rollers = Rollers(radius="50 mm", rms_roughness="0.2 um")
+    >>> f"{1e6 * rollers.pair.composite_rms_roughness:.3f} um"
+    '0.283 um'
+    """
+
+    pair: RollerPair
+    lines: LineSpec
+    layer: BoundaryLayer
+    resistivity: float
+
+    def __init__(
+        self,
+        radius: str,
+        rms_roughness: str,
+        length: str = "10 mm",
+        *,
+        young_modulus: str = "210 GPa",
+        poisson_ratio: float = 0.3,
+        second: Mapping[str, object] | None = None,
+        longest_wavelength: str = "0.42 mm",
+        shortest_wavelength: str = "3.1416 um",
+        hurst_exponent: float = 0.7,
+        points: int | None = None,
+        critical_thickness: str = "5 nm",
+        shear_strength: str = "1 MPa",
+        resistivity: str = "0.2 uohm*m",
+    ) -> None:
+        first = {
+            "radius": radius,
+            "rms_roughness": rms_roughness,
+            "young_modulus": young_modulus,
+            "poisson_ratio": poisson_ratio,
+        }
+        other = first | dict(second or {})
+        self.pair = RollerPair(
+            length=_metres("length", length),
+            first=validate(Roller, first, "Rollers", StudyError),
+            second=validate(Roller, other, "Rollers: second", StudyError),
+        )
+        layer = {"critical_thickness": critical_thickness, "shear_strength": shear_strength}
+        self.layer = validate(BoundaryLayer, layer, "Rollers", StudyError)
+        self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
+        if points is None:
+            shortest = amount("shortest_wavelength", shortest_wavelength, "m", above=0.0).item()
+            turn = 2.0 * math.pi * self.pair.first.radius
+            points = scipy.fft.next_fast_len(math.ceil(turn / shortest * _POINTS_PER_WAVE), True)
+        roughness = {
+            "points": points,
+            "hurst_exponent": hurst_exponent,
+            # Lengths only: the other choices of a study depend on its grid.
+            "longest_wavelength": _metres("longest_wavelength", longest_wavelength),
+            "shortest_wavelength": _metres("shortest_wavelength", shortest_wavelength),
+            "height_step": "1 pm",
+        }
+        texture = validate(Roughness, roughness, "Rollers", StudyError)
+        self.lines = line_spec(self.pair, texture, largest_force=math.nan)
+
+    def __repr__(self) -> str:
+        pair = self.pair
+        radii, rms = (
+            " and ".join(f"{scale * getattr(each, name):.4g}" for each in (pair.first, pair.second))
+            for name, scale in (("radius", 1e3), ("rms_roughness", 1e6))
+        )
+        return (
+            f"<Rollers: radii {radii} mm, rms roughness {rms} um, {1e3 * pair.length:.4g} mm long>"
+        )
+
+
+def _metres(name, length):
+    """Check a length and write it as the models of a study read it."""
+    return f"{amount(name, length, 'm', above=0.0).item()!r} m"
+
+
+class Oil:
+    """An oil, from a lubricant record or from numbers.
+
+    Parameters
+    ----------
+    name : str or Path, optional
+        Name of a shipped lubricant record (`lube.shipped_records`), or path of a YAML file.
+    viscosity : dict or str, optional
+        Without a record: viscosities, kinematic or dynamic, at two temperatures or more, such as
+        ``{"40 degC": "320 mm^2/s", "100 degC": "38 mm^2/s"}``; or the path of a CSV file with the
+        columns ``temperature [degC]`` and ``kinematic_viscosity [mm^2/s]``.
+    density : str, optional
+        At 15 degC.
+    base : str, optional
+        Base oil, for the pressure-viscosity coefficient by Gold's form: ``mineral``,
+        ``polyalphaolefin``, ``ester`` or ``polyglycol``.
+    pressure_viscosity : str, optional
+        Pressure-viscosity coefficient such as ``"18 1/GPa"``, in place of that of the base oil.
+
+    Attributes
+    ----------
+    record : LubricantRecord
+        The whole lubricant record.
+
+    Raises
+    ------
+    RecordError
+        Which argument, what came, what is needed.
+
+    Examples
+    --------
+    >>> oil = Oil(viscosity={"40 degC": "320 mm^2/s", "100 degC": "38 mm^2/s"}, base="mineral")
+    >>> f"{oil.properties('60 degC').dynamic_viscosity.item():.0f} mPa s"
+    '114 mPa s'
+    """
+
+    record: LubricantRecord
+
+    def __init__(
+        self,
+        name: File | None = None,
+        *,
+        viscosity: Mapping[str, str] | File | None = None,
+        density: str = "870 kg/m^3",
+        base: str = "mineral",
+        pressure_viscosity: str | None = None,
+    ) -> None:
+        if (name is None) == (viscosity is None):
+            raise RecordError(
+                f"Oil: got {'neither' if name is None else 'both'}, need either the name of a "
+                "lubricant record or viscosity={...}"
+            )
+        if name is None:
+            self.record = _record(viscosity, density, base, pressure_viscosity)
+        else:
+            self.record = load_record(name)
+
+    def properties(self, temperature: Amount) -> xr.Dataset:
+        """Viscosity, density and pressure-viscosity coefficient at some temperatures.
+
+        Parameters
+        ----------
+        temperature : str, sequence of str or tuple
+            Such as ``"60 degC"`` or ``(range(40, 101, 10), "degC")``.
+
+        Returns
+        -------
+        xarray.Dataset
+            In customary units, over temperature if there are several.
+
+        Raises
+        ------
+        RangeError
+            If the lubricant record is not valid at a temperature.
+        """
+        degrees = amount("temperature", temperature, "degC")
+        table = self.at(degrees)
+        return described(
+            table[[name for name in table.data_vars if table[name].dims == degrees.dims]]
+        )
+
+    def at(self, temperature: xr.DataArray) -> xr.Dataset:
+        """Properties in SI units, at temperatures in degC over any dimensions."""
+        table = lubricant_table([self.record], np.unique(temperature.values))
+        return table.isel(lubricant=0).sel(temperature=temperature).drop_attrs()
+
+    def __repr__(self) -> str:
+        lowest, highest = self.record.valid_temperatures
+        return f"<Oil: {self.record.title}, valid from {lowest:g} to {highest:g} degC>"
+
+
+def _record(viscosity, density, base, pressure_viscosity):
+    """Lubricant record of some viscosities."""
+    if base not in GOLD_BASES:
+        raise RecordError(f"Oil: base: got {shown(base)}, need one of {', '.join(GOLD_BASES)}")
+    source = "assumed: given in Python"
+    alpha = {"source": source, "gold_base": base}
+    if pressure_viscosity is not None:
+        definition = "reciprocal-asymptotic"
+        alpha = {"source": source, "value": pressure_viscosity, "definition": definition}
+    points = _points(viscosity)
+    content = {
+        "name": "oil",
+        "title": "Oil of given viscosity",
+        "viscosity": {"source": source, "points": points},
+        "density": {
+            "source": source,
+            "at_15_degC": density,
+            "thermal_coefficient": "6.4e-4 1/K",
+        },
+        "pressure_viscosity": alpha,
+        "thermal_conductivity": {"source": "assumed: typical of oils", "value": "0.14 W/m/K"},
+    }
+    record = validate(LubricantRecord, content, "Oil", RecordError)
+    check_points(record.viscosity.points, "Oil")
+    return record
+
+
+def _points(viscosity):
+    if isinstance(viscosity, str | Path):
+        return read_viscosity_csv(viscosity)
+    if not isinstance(viscosity, Mapping):
+        raise RecordError(
+            f"Oil: viscosity: got {shown(viscosity)}, need viscosities by temperature, such as "
+            "{'40 degC': '320 mm^2/s', '100 degC': '38 mm^2/s'}, or a CSV file"
+        )
+    return [
+        {"temperature": temperature, _kind(value): value}
+        for temperature, value in viscosity.items()
+    ]
+
+
+def _kind(viscosity):
+    """Whether a viscosity is kinematic or dynamic, by its unit."""
+    try:
+        parse_quantity(viscosity, "Pa*s")
+    except LubeError:
+        return "kinematic_viscosity"
+    return "dynamic_viscosity"

@@ -1,0 +1,26 @@
+"""The rollers and the oil of the busy study, as a notebook gives them."""
+
+import math
+
+import pytest
+from studies import OIL
+
+from lube import Oil, Rollers
+
+
+@pytest.fixture(scope="session")
+def rollers(busy):
+    spec = busy.study.line_spec
+    return Rollers(
+        radius="50 mm",
+        rms_roughness="0.2 um",
+        points=50_000,
+        longest_wavelength=f"{2.0 * math.pi / spec.q_min!r} m",
+        shortest_wavelength=f"{10.0 * spec.spacing!r} m",
+        shear_strength="0.2 MPa",
+    )
+
+
+@pytest.fixture(scope="session")
+def oil():
+    return Oil(OIL)

@@ -1,0 +1,63 @@
+"""Numbers with units from Python, and results in customary units."""
+
+import numpy as np
+import pint
+import pytest
+import xarray as xr
+
+from lube import StudyError
+from lube.calculator.amounts import amount, described
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        ["400 N", "0.8 kN"],
+        ("400 N", "800 N"),
+        ([0.4, 0.8], "kN"),
+        (np.array([400, 800]), "N"),
+        pint.UnitRegistry().Quantity([0.4, 0.8], "kN"),
+    ],
+)
+def test_several_numbers_are_given_in_many_ways(value):
+    numbers = amount("force", value, "N")
+    np.testing.assert_allclose(numbers, [400.0, 800.0], rtol=1e-14)
+    assert numbers.dims == ("force",)
+
+
+def test_one_number_has_no_dimension():
+    for value in ("800 N", (0.8, "kN"), pint.UnitRegistry().Quantity(0.8, "kN")):
+        assert amount("force", value, "N").dims == ()
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (800, "force: got 800, need a number with its unit, such as '1 N'"),
+        ("800", "force: got '800', need a number with its unit, such as '1 N'"),
+        ("800 m", "force: wrong dimension or unit 'm', need a unit of the kind 'N'"),
+        ("-1 N", "force: got -1, need a value above 0 N"),
+        ((float("nan"), "N"), "force: got nan, need a value above 0 N"),
+        ([], "force: got [], need a number with its unit, such as '1 N'"),
+        (([], "N"), "force: got ([], 'N'), need one number with its unit, or a list of them"),
+        (([[1]], "N"), "force: got ([[1]], 'N'), need one number with its unit, or a list of them"),
+        ((["a"], "N"), "force: got ['a'], need numbers and their unit"),
+    ],
+)
+def test_a_mistake_is_one_line_that_names_the_argument(value, told):
+    with pytest.raises(StudyError) as error:
+        amount("force", value, "N", above=0.0)
+    assert str(error.value) == told
+
+
+def test_results_have_customary_units_and_names():
+    table = xr.Dataset(
+        {"film_thickness": ("force", [1e-6, 2e-6]), "regime": ("force", [0, 3])},
+        {"force": [100.0, 200.0]},
+    )
+    found = described(table)
+    np.testing.assert_array_equal(found["film_thickness"], [1.0, 2.0])
+    assert found["film_thickness"].attrs == {"long_name": "film thickness", "units": "um"}
+    assert found["regime"].values.tolist() == ["isoviscous_rigid", "piezoviscous_elastic"]
+    assert found["force"].attrs["units"] == "N"
+    assert "units" not in table["force"].attrs

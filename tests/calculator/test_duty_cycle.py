@@ -1,0 +1,101 @@
+"""A table of duty points: each as by itself, and the weighted whole."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import lube
+from lube import LubeError, Rollers
+
+RUNS = {"realisations": 8, "seed": 2}
+POINTS = {
+    "force [N]": [400.0, 1600.0, 100.0],
+    "speed [rpm]": [100.0, 60.0, 100.0],
+    "temperature [degC]": [60.0, 80.0, 80.0],
+    "share": [3.0, 1.0, 0.0],
+}
+
+
+def test_each_point_is_as_by_itself_and_the_whole_is_weighted(rollers, oil):
+    found = lube.duty(POINTS, rollers, oil, **RUNS)
+    for number in range(3):
+        units = {"force": "N", "speed": "rpm", "temperature": "degC"}
+        point = {name: (POINTS[f"{name} [{unit}]"][number], unit) for name, unit in units.items()}
+        alone = lube.contact_probability(rollers, oil, **point, **RUNS)
+        here = found.isel(point=number)
+        for name in (
+            "film_thickness",
+            "breakthrough_probability",
+            "breakthrough_probability_upper",
+        ):
+            np.testing.assert_array_equal(here[name], alone[name])
+    mean = found["breakthrough_probability_mean"].values
+    np.testing.assert_allclose(found["whole_probability"], 0.75 * mean[0] + 0.25 * mean[1])
+    np.testing.assert_allclose(found["share"], [0.75, 0.25, 0.0])
+    assert found["whole_probability_lower"] < found["whole_probability"]
+    assert found["whole_probability"] < found["whole_probability_upper"]
+
+
+def test_the_whole_of_one_point_is_that_point(rollers, oil):
+    one = {name: values[:1] for name, values in POINTS.items()}
+    found = lube.duty(one, rollers, oil, **RUNS)
+    for ending in ("_lower", "_upper"):
+        expected = found[f"breakthrough_probability{ending}"].item()
+        assert found[f"whole_probability{ending}"].item() == pytest.approx(expected, rel=1e-12)
+
+
+def test_tables_of_every_kind_are_the_same(rollers, oil, tmp_path):
+    frame = pd.DataFrame(POINTS)
+    frame.to_csv(tmp_path / "duty.csv", index=False)
+    rows = [
+        {"force": f"{f} N", "speed": f"{n} rpm", "temperature": f"{t} degC", "share": f"{s} %"}
+        for f, n, t, s in frame.values
+    ]
+    expected = lube.duty(POINTS, rollers, oil, **RUNS)
+    for table in (frame, tmp_path / "duty.csv", rows):
+        found = lube.duty(table, rollers, oil, **RUNS)
+        np.testing.assert_allclose(found["whole_probability"], expected["whole_probability"])
+
+
+def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
+    """The film is that of rollers of these radii."""
+    table = {
+        "force [N]": [400.0, 400.0],
+        "temperature [degC]": [60.0, 60.0],
+        "radius [mm]": [50.0, 20.0],
+        "second_radius [mm]": [50.0, 40.0],
+        "surface_speed [m/s]": [0.6, 0.6],
+        "second_surface_speed [m/s]": [0.6, 0.2],
+    }
+    found = lube.duty(table, rollers, oil, **RUNS)
+    for number, (radius, second, speed) in enumerate([(50, 50, 0.6), (20, 40, 0.4)]):
+        own = Rollers(f"{radius} mm", "0.2 um", second={"radius": f"{second} mm"})
+        expected = lube.film(own, oil, "400 N", f"{speed} m/s", "60 degC")
+        for name in ("film_thickness", "contact_half_width", "hertz_pressure"):
+            np.testing.assert_allclose(found[name][number], expected[name], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"forse [N]": [1.0] * 3}, "points: unknown column 'forse [N]', did you mean 'force'?"),
+        ({"share": [1.0, -1.0, 1.0]}, "points: share: got -1, need a value at least 0"),
+        ({"share": [0.0] * 3}, "points: share: got 0 at all points, need a weight above 0"),
+        ({"speed [rpm]": None}, "points: need one kind of speed: speed, entrainment_speed, surf"),
+        ({"surface_speed [m/s]": [1.0] * 3}, "points: need one kind of speed"),
+        ({"force [N]": None}, "points: no column 'force', need one, as 'force [N]'"),
+        ({"force [N]": [1.0, np.nan, 1.0]}, "points: force: got nan, need a value above 0 N"),
+        ({"force [m]": [1.0] * 3, "force [N]": None}, "points: force: wrong dimension or unit 'm'"),
+        ({"temperature [degC]": [60.0, 60.0, 20.0]}, "got 20 degC, need 40 to 100 degC"),
+    ],
+)
+def test_a_mistake_is_one_line(rollers, oil, change, told):
+    table = {name: values for name, values in (POINTS | change).items() if values is not None}
+    with pytest.raises(LubeError) as error:
+        lube.duty(table, rollers, oil)
+    assert told in str(error.value)
+
+
+def test_a_file_that_is_not_there_is_one_line(rollers, oil):
+    with pytest.raises(LubeError, match=r"got 'nowhere\.csv', need a table"):
+        lube.duty("nowhere.csv", rollers, oil)

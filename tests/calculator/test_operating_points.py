@@ -1,0 +1,88 @@
+"""The façade gives the workflow's numbers, to the last bit for the same lines."""
+
+import numpy as np
+import pytest
+
+import lube
+from lube import LubeError
+
+GRID = {
+    "force": ([100.0, 400.0, 1600.0], "N"),
+    "speed": ([60.0, 100.0], "rpm"),
+    "temperature": ([60.0, 80.0], "degC"),
+}
+POINT = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
+
+
+def test_films_are_those_of_the_film_stage(rollers, oil, busy):
+    found = lube.film(rollers, oil, **GRID, film_formula=["paper", "pan-hamrock"])
+    expected = busy.film.isel(lubricant=0)
+    for name, factor in (("film_thickness", 1e6), ("lambda_ratio", 1.0)):
+        assert found[name].dims == ("film_formula", "temperature", "speed", "force")
+        np.testing.assert_array_equal(
+            found[name], factor * expected[name].transpose(*found[name].dims)
+        )
+
+
+def test_probabilities_and_intervals_are_those_of_the_workflow(rollers, oil, busy):
+    values = {"film_formula": ["paper", "pan-hamrock"], "realisations": 32, "seed": busy.study.seed}
+    found = lube.contact_probability(rollers, oil, **GRID, **values)
+    expected = busy.contact.isel(lubricant=0, slide_to_roll_ratio=0)
+    for name in ("breakthrough_probability", "geometric_contact_probability"):
+        for ending in ("", "_mean", "_lower", "_upper"):
+            variable = found[f"{name}{ending}"]
+            of_stage = expected[f"{name}{ending}"].transpose(*variable.dims)
+            np.testing.assert_array_equal(variable, of_stage)
+    assert 0.0 < found["breakthrough_probability_mean"].min() < 0.5
+
+
+def test_one_point_is_a_point_of_the_grid(rollers, oil, busy):
+    values = {"film_formula": "paper", "realisations": 32, "seed": busy.study.seed}
+    found = lube.contact_probability(rollers, oil, **POINT, **values)
+    expected = busy.contact.sel(force=400.0, speed=100.0, temperature=60.0, film_formula="paper")
+    assert found["breakthrough_probability_mean"].dims == ()
+    assert found["breakthrough_probability_mean"] == expected["breakthrough_probability_mean"]
+
+
+def test_the_speed_may_be_the_entrainment_speed(rollers, oil):
+    by_turns = lube.film(rollers, oil, **POINT)
+    metres = f"{by_turns.entrainment_speed.item()!r} m/s"
+    by_entrainment = lube.film(rollers, oil, **POINT | {"speed": metres})
+    np.testing.assert_allclose(by_entrainment["speed"], 100.0, rtol=1e-12)
+    np.testing.assert_allclose(by_entrainment["film_thickness"], by_turns["film_thickness"])
+    several = lube.film(rollers, oil, **POINT | {"speed": ["0.5 m/s", "1 m/s"]})
+    assert several["film_thickness"].sizes == {"speed": 2}
+    np.testing.assert_allclose(several["entrainment_speed"], [0.5, 1.0])
+
+
+def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
+    values = {"film_formula": "paper", "seed": 3}
+    found = lube.trace(rollers, oil, **POINT, **values)
+    share = lube.contact_probability(rollers, oil, **POINT, **values, realisations=1)
+    touching = np.isfinite(found["contact_resistance"])
+    assert touching.mean().item() == share["breakthrough_probability"].item()
+    assert 0.0 < touching.mean() < 1.0
+    np.testing.assert_allclose(found["time"][-1] / 600.0, 1.0, rtol=1e-3)  # ms in a revolution
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"force": "400"}, "force: got '400', need a number with its unit, such as '1 N'"),
+        ({"speed": "3 kg"}, "or 'm/s'"),
+        ({"temperature": "300 K"}, "got 26.85 degC, need 40 to 100 degC"),
+        ({"film_formula": "moe"}, "unknown film formula 'moe', did you mean 'moes'?"),
+        ({"realisations": 0}, "realisations: got 0, need a whole number, at least 1"),
+        ({"seed": 1.5}, "seed: got 1.5, need a whole number, at least 0"),
+        ({"slide_to_roll_ratio": 3}, "slide_to_roll_ratio: got 3, need a value"),
+    ],
+)
+def test_a_mistake_is_one_line_that_names_the_argument(rollers, oil, change, told):
+    with pytest.raises(LubeError) as error:
+        lube.contact_probability(rollers, oil, **POINT | change)
+    assert told in str(error.value)
+
+
+def test_a_trace_is_of_one_point(rollers, oil):
+    with pytest.raises(LubeError, match="speed: got 2 values, need one"):
+        lube.trace(rollers, oil, **POINT | {"speed": ["1 rpm", "2 rpm"]})

@@ -1,0 +1,103 @@
+"""Rollers and oils made of numbers are those of a study and of a lubricant record."""
+
+import pickle
+
+import numpy as np
+import pytest
+from studies import OIL
+
+from lube import LubeError, Oil, Rollers, load_record
+
+TWO = {"40 degC": "335 mm^2/s", "100 degC": "38.3 mm^2/s"}
+
+
+def test_the_defaults_are_the_papers_rollers(study):
+    rollers = Rollers("50 mm", "0.2 um")
+    assert rollers.pair == study.rollers
+    assert rollers.layer == study.boundary_layer
+    assert rollers.resistivity == study.resistivity
+    assert rollers.lines.points == (1_000_000, 1_000_000)
+
+
+def test_rollers_have_the_lines_of_a_study_with_the_same_wavelengths(rollers, busy):
+    for name, value in busy.study.line_spec.model_dump().items():
+        np.testing.assert_allclose(getattr(rollers.lines, name), value, rtol=1e-14)
+
+
+def test_the_second_roller_differs_in_what_is_said():
+    pair = Rollers("50 mm", "0.2 um", second={"radius": "30 mm", "young_modulus": "310 GPa"}).pair
+    assert (pair.second.radius, pair.second.young_modulus) == (0.03, 310e9)
+    assert pair.second.rms_roughness == pair.first.rms_roughness
+
+
+def test_an_oil_of_numbers_is_that_of_a_record():
+    record, given = Oil(OIL), Oil(viscosity=TWO, density="860 kg/m^3", base="polyalphaolefin")
+    temperatures = ["40 degC", "57 degC", "100 degC"]
+    one, other = record.properties(temperatures), given.properties(temperatures)
+    for name in ("dynamic_viscosity", "density", "pressure_viscosity_coefficient"):
+        np.testing.assert_array_equal(one[name], other[name])
+    assert record.record == load_record(OIL)
+
+
+def test_an_oil_of_a_table_of_dynamic_viscosities(tmp_path):
+    path = tmp_path / "oil.csv"
+    path.write_text("temperature [degC], dynamic_viscosity [mPa*s]\n40, 100\n80, 20\n")
+    of_table = Oil(viscosity=path, pressure_viscosity="18 1/GPa").properties("40 degC")
+    of_numbers = Oil(viscosity={"40 degC": "100 mPa*s", "80 degC": "20 cP"}).properties("40 degC")
+    assert of_table["dynamic_viscosity"].item() == pytest.approx(100.0, rel=1e-12)
+    assert of_table["pressure_viscosity_coefficient"].item() == pytest.approx(18.0)
+    assert of_numbers["dynamic_viscosity"].item() == pytest.approx(100.0, rel=1e-12)
+
+
+def test_both_show_themselves_and_travel_between_processes():
+    rollers, oil = Rollers("50 mm", "0.2 um"), Oil(OIL)
+    assert repr(rollers) == (
+        "<Rollers: radii 50 and 50 mm, rms roughness 0.2 and 0.2 um, 10 mm long>"
+    )
+    assert repr(oil) == "<Oil: Mobilgear SHC XMP 320, valid from 40 to 100 degC>"
+    assert pickle.loads(pickle.dumps(rollers)).lines == rollers.lines
+    assert pickle.loads(pickle.dumps(oil)).record == oil.record
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: Rollers("50", "0.2 um"), "Rollers: radius: got '50', need a number with its unit"),
+        (lambda: Rollers("50 mm", "0.2 um", "1"), "length: got '1', need a number with its unit"),
+        (
+            lambda: Rollers("50 mm", "0.2 um", second={"raduis": "3 mm"}),
+            "Rollers: second: raduis: unknown key, did you mean 'radius'?",
+        ),
+        (
+            lambda: Rollers("50 mm", "0.2 um", longest_wavelength="contact width"),
+            "longest_wavelength: got 'contact width', need a number with its unit",
+        ),
+        (
+            lambda: Rollers("50 mm", "0.2 um", hurst_exponent=1.5),
+            "Rollers: hurst_exponent: got 1.5, need a value above 0 and below 1",
+        ),
+        (lambda: Oil("mobilgear-shc-xmp-32"), "did you mean 'mobilgear-shc-xmp-320'?"),
+        (
+            lambda: Oil(),
+            "Oil: got neither, need either the name of a lubricant record or",
+        ),
+        (lambda: Oil(OIL, viscosity=TWO), "Oil: got both"),
+        (
+            lambda: Oil(viscosity={"40 degC": "30 mm^2/s", "100 degC": "300 mm^2/s"}),
+            "Oil: viscosity: need less at 100 degC than at 40 degC",
+        ),
+        (lambda: Oil(viscosity={"40 degC": "30 mm^2/s"}), "need values at two temperatures"),
+        (
+            lambda: Oil(viscosity={"40 degC": "30", "80 degC": "9 mm^2/s"}),
+            "got '30', need a number",
+        ),
+        (lambda: Oil(viscosity="30 mm^2/s"), "30 mm^2/s: cannot be read"),
+        (lambda: Oil(viscosity=30.0), "viscosity: got 30.0, need viscosities by temperature"),
+        (lambda: Oil(viscosity=TWO, base="PAO"), "Oil: base: got 'PAO', need one of mineral"),
+        (lambda: Oil(OIL).properties("20 degC"), f"{OIL}: got 20 degC, need 40 to 100 degC"),
+    ],
+)
+def test_a_mistake_is_one_line(make, told):
+    with pytest.raises(LubeError) as error:
+        make()
+    assert told in str(error.value)

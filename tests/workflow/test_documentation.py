@@ -1,0 +1,85 @@
+"""The examples of the documentation run and print what it says; its site is complete."""
+
+import contextlib
+import io
+import re
+import subprocess
+import sys
+from doctest import NORMALIZE_WHITESPACE, OutputChecker
+
+import pytest
+import xarray as xr
+from markdown_it import MarkdownIt
+from studies import ROOT
+
+import lube
+from lube import load_study
+
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md"))]
+
+
+def code_blocks(page):
+    """Language and content of every block of code, in order."""
+    tokens = MarkdownIt().parse(page.read_text(encoding="utf-8"))
+    return [(token.info, token.content) for token in tokens if token.type == "fence"]
+
+
+def pages_with(language):
+    pages = [page for page in PAGES if language in dict(code_blocks(page))]
+    return pytest.mark.parametrize("page", pages, ids=lambda page: page.stem)
+
+
+@pytest.fixture
+def folder(smoke, tmp_path, monkeypatch):
+    """A folder like the reader's: the studies, an oil, and results of three studies."""
+    for name in ("workflow", "lube"):
+        (tmp_path / name).symlink_to(smoke / name)
+    for block in (content for _, content in code_blocks(ROOT / "docs/oil.md")):
+        if block.startswith("# my-oil.yaml\n"):
+            (tmp_path / "my-oil.yaml").write_text(block, encoding="utf-8")
+    results = tmp_path / "results"
+    (results / "paper").mkdir(parents=True)
+    for name in ("smoke", "my-study"):
+        (results / name).symlink_to(smoke.results)
+    with xr.open_dataset(smoke.results / "contact.nc") as contact:  # the paper's has no slip
+        contact.isel(slide_to_roll_ratio=[0]).to_netcdf(results / "paper/contact.nc")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pages_with("python")
+def test_examples_run_and_print_what_follows_them(page, folder):
+    names, printed = {}, ""
+    for language, content in code_blocks(page):
+        if language == "python":
+            with contextlib.redirect_stdout(io.StringIO()) as output:
+                exec(content, names)
+            printed = output.getvalue()
+        elif language == "text":
+            assert OutputChecker().check_output(content, printed, NORMALIZE_WHITESPACE), printed
+
+
+@pages_with("yaml")
+def test_studies_are_valid(page, folder):
+    for language, content in code_blocks(page):
+        if language == "yaml" and content.startswith("based_on:"):
+            (folder / "my-study.yaml").write_text(content, encoding="utf-8")
+            load_study(folder / "my-study.yaml")
+
+
+def test_the_site_is_built_without_warnings_and_shows_everything(smoke, tmp_path):
+    command = [sys.executable, "-m", "sphinx", "-qW", "--keep-going", smoke / "docs", tmp_path]
+    built = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert built.returncode == 0, built.stderr
+    pages = {
+        path.relative_to(tmp_path).as_posix(): path.read_text(encoding="utf-8")
+        for path in tmp_path.rglob("*.html")
+    }
+    for name, text in pages.items():  # scripts, styles and pictures come without a network
+        assert not re.search(r'(src|<link [^>]*href)="(https?:)?//', text), name
+    assert "<math" in pages["theory.html"] and "$" not in pages["theory.html"]
+    for figure in smoke.notebooks:
+        assert f"{figure}.png" in pages["gallery.html"]
+    documented = "".join(text for name, text in pages.items() if name.startswith("api/"))
+    for name in {*lube.__all__} - {"__version__"}:
+        assert f'id="lube.{name}"' in documented, f"put {name} into docs/api/"
