@@ -25,7 +25,7 @@ def other(tmp_path, monkeypatch):
     copy_of_the_repository(tmp_path / "lube")
     (tmp_path / "studies").mkdir()
     (tmp_path / "studies/mine.yaml").write_text(example("yaml"), "utf-8")
-    (tmp_path / "Snakefile").write_text(example("python"), "utf-8")
+    (tmp_path / "Snakefile").write_text(example("text"), "utf-8")
     return Repository(tmp_path)
 
 
