@@ -1,10 +1,15 @@
 # Mixed lubrication of rough rollers: the whole study. See README.md.
 
 
-report: "workflow/report/study.rst"
-
-
 include: "workflow/rules/common.smk"
+
+
+# The report of another Snakefile begins with a page of its own.
+if not IS_MODULE:
+
+    report: "workflow/report/study.rst"
+
+
 include: "workflow/rules/notebooks.smk"
 include: "workflow/rules/study.smk"
 include: "workflow/rules/lubricant.smk"
@@ -33,11 +38,11 @@ rule all:
         result("explorer.html"),
         [result(f"report/{page}.html") for page in ("configuration", "assumptions", "run_times")],
     message:
-        "Done: datasets, figures, executed notebooks and explorer.html are in {RESULTS}"
+        f"Done: datasets, figures, executed notebooks and explorer.html are in {RESULTS}"
 
 
 rule benchmark:
     input:
         products(TIMINGS),
     message:
-        "Done: measured times and their figures are in {RESULTS}"
+        f"Done: measured times and their figures are in {RESULTS}"

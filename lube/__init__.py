@@ -48,6 +48,7 @@ _HOMES = {
     ),
     "lube.study.study": ("Study", "load_study"),
     "lube.surfaces.synthetic": ("power_spectrum",),
+    "lube.workflow.results": ("results_folder",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -53,5 +53,6 @@ from lube.study.rollers import line_spec as line_spec
 from lube.study.study import Study as Study
 from lube.study.study import load_study as load_study
 from lube.surfaces.synthetic import power_spectrum as power_spectrum
+from lube.workflow.results import results_folder as results_folder
 
 __version__: str

@@ -1,6 +1,7 @@
 """The inputs of the Snakemake rule `archive`. Heavy imports wait: each start needs this module."""
 
 from lube.errors import LubeError
+from lube.workflow.sources import from_here
 from lube.workflow.study_files import StudyFiles, input_paths, one_line_errors
 
 
@@ -28,4 +29,4 @@ def archived_texts(files: StudyFiles) -> list[str]:
         raise LubeError(f"--config: for an archive, write the changes into {file}")
     check_about(files.study)
     written = written_files(files.study, files.path).values()
-    return [*input_paths(written), *files.record_files(), *code_files()]
+    return [*input_paths(written), *files.record_files(), *map(from_here, code_files())]

@@ -11,12 +11,12 @@ ROOT = Path(__file__).parents[2]
 
 # Named one by one, since the user's own studies, records and notes may lie beside them.
 _CODE = (
-    *("Snakefile", "pyproject.toml", "LICENSE", "CITATION.cff"),
+    *("Snakefile", "workflow/Snakefile", "pyproject.toml", "LICENSE", "CITATION.cff"),
     *("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/**/*", "lube/**/*"),
     *("notebooks/*.ipynb", "tests/benchmarks/*.py", "profiles/*/config.yaml"),
     *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
     *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
-    "workflow/report/*",
+    *("workflow/report/*", "config/README.md", "config/config.yaml"),
 )
 
 _CACHE = re.compile(r"(^|/)(\.|__pycache__/)")

@@ -100,7 +100,8 @@ def parameters_of(notebook: File) -> dict[str, Any]:
     Returns
     -------
     dict
-        From name to value if that is a single text or number, else to None.
+        From name to value if that is a single text or number, to the last name if it is a path
+        such as ``study / "film.nc"``, else to None.
 
     Raises
     ------
@@ -114,9 +115,19 @@ def parameters_of(notebook: File) -> dict[str, Any]:
     for node in ast.parse(python_of(tagged[0], notebook)).body:
         if isinstance(node, ast.Assign | ast.AnnAssign):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-            value = node.value.value if isinstance(node.value, ast.Constant) else None
+            value = _constant(node.value)
             found |= {target.id: value for target in targets if isinstance(target, ast.Name)}
     return found
+
+
+def _constant(value):
+    """Value of a text or number, or of the name at the end of a path such as folder / "film.nc"."""
+    match value:
+        case ast.BinOp(op=ast.Div(), right=ast.Constant(value=str(name))):
+            return name
+        case ast.Constant(value=constant):
+            return constant
+    return None
 
 
 def datasets_of(notebook: File) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""The study that a Snakemake command asks for: ``--configfile`` and ``--config``."""
+"""The study that Snakemake is asked for: by its options, or by the workflow that uses this one."""
 
 import argparse
 import json
@@ -7,14 +7,15 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
-from lube.errors import StudyError
+from lube.errors import StudyError, shown
 from lube.study.resolve import study_files
 from lube.study.study import Study, load_study
 from lube.types import File
+from lube.workflow.sources import from_here
 from lube.workflow.study_files import one_line_errors
 
 PAPER = "workflow/config/paper.yaml"
-"""Study file of a command without ``--configfile``."""
+"""Study file of a command without ``--configfile``, below the folder of the workflow."""
 
 _WORDS = {"true": True, "false": False, "null": None}
 
@@ -118,7 +119,7 @@ def study_of_command(files: Sequence[File], config: dict) -> tuple[Study, dict[s
         If the study cannot be loaded, or ``--config`` changes it without a new name.
     """
     _check_number([str(file) for file in files])
-    path = os.path.relpath(files[0]) if files else PAPER
+    path = os.path.relpath(files[0]) if files else from_here(PAPER)
     changes = {key: _typed(value) for key, value in config.items()}
     return load_study(path, changes), {"path": path, "changes": changes}
 
@@ -143,6 +144,37 @@ def same_study(path: str, changes: dict) -> list[str]:
     """
     values = [f"{key}={json.dumps(value)}" for key, value in changes.items()]
     return ["--configfile", path, *(["--config", *values] if values else [])]
+
+
+def study_of_module(config: dict) -> tuple[Study, dict[str, Any]]:
+    """Load the study that another workflow asks for, of which this one is a module.
+
+    Parameters
+    ----------
+    config : dict
+        The ``config`` of its ``module`` statement: the path of the study's file under ``study``,
+        and values to change, as for ``--config``.
+
+    Returns
+    -------
+    study : Study
+        The study.
+    arguments : dict
+        As from `study_of_command`.
+
+    Raises
+    ------
+    LubeError
+        If no file is named, or as from `study_of_command`.
+    """
+    changes = {key: value for key, value in config.items() if key != "study"}
+    if not isinstance(config.get("study"), str):
+        raise StudyError(
+            f"config of the module: study: got {shown(config.get('study'))}, need the path of a "
+            "study's file"
+        )
+    path = os.path.relpath(config["study"])
+    return load_study(path, changes), {"path": path, "changes": changes}
 
 
 def _typed(value):

@@ -8,10 +8,13 @@ from lube.schema import BENCHMARKS
 from lube.study.study import Study
 from lube.types import File
 from lube.workflow.cells import cells_of, datasets_of, python_of
-from lube.workflow.sources import script_sources, sources
+from lube.workflow.sources import from_here, script_sources, sources
 
 FURTHER = "further-figures"
 """Chapter of a notebook that names none."""
+
+NO_FIGURE = "no-figure"
+"""Tag of a notebook that is none of the study's figures."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,8 @@ class Figure:
     datasets : list of str
         Kinds of the datasets that its parameters cell names.
     sources : list of str
-        Files of the lube package that its cells and the script ``figure.py`` depend on.
+        Files of the lube package that its cells and the script ``figure.py`` depend on, from the
+        working folder.
     title, text : str
         Heading of its first cell, or else its name; and the text below. In Markdown.
     tags : list of str
@@ -77,10 +81,14 @@ class Figure:
 def _read(notebook):
     cells, datasets = cells_of(notebook), sorted(set(datasets_of(notebook).values()))
     code = "\n".join(python_of(cell, notebook) for cell in cells if cell["type"] == "code")
-    files = sorted({*sources(code), *script_sources("figure")})
+    files = sorted({*map(from_here, sources(code)), *script_sources("figure")})
     title, text = title_and_text(cells[0]["source"] if cells[0]["type"] == "markdown" else "")
-    tags = [tag for cell in cells for tag in cell["tags"]]
-    return Figure(notebook.stem, cells, datasets, files, title or notebook.stem, text, tags)
+    title, tags = title or notebook.stem, _tags(cells)
+    return Figure(notebook.stem, cells, datasets, files, title, text, tags)
+
+
+def _tags(cells):
+    return [tag for cell in cells for tag in cell["tags"]]
 
 
 def study_figures(study: Study, folder: File = "notebooks") -> dict[str, Figure]:
@@ -91,19 +99,20 @@ def study_figures(study: Study, folder: File = "notebooks") -> dict[str, Figure]
     study : Study
         The study.
     folder : str or Path, optional
-        Folder of the notebooks.
+        Folder of the notebooks, from the repository on if relative.
 
     Returns
     -------
     dict of str to Figure
-        By name, sorted.
+        By name, sorted; without the notebooks tagged ``no-figure``.
 
     Raises
     ------
     LubeError
         If a notebook is damaged, is not Python or has no parameters cell.
     """
-    figures = [_read(path) for path in sorted(Path(folder).glob("*.ipynb"))]
+    paths = sorted(Path(from_here(folder)).glob("*.ipynb"))
+    figures = [_read(path) for path in paths if NO_FIGURE not in _tags(cells_of(path))]
     return {figure.name: figure for figure in figures if figure.fits(study)}
 
 

@@ -6,6 +6,7 @@ files are still as the workflow made them.
 """
 
 import json
+import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ import netCDF4
 
 from lube.errors import DataError, LubeError
 from lube.storage.files import written_whole
+from lube.storage.git import ROOT
 from lube.storage.provenance import REMEDY, fingerprint
 from lube.types import File, Files
 from lube.workflow.cells import datasets_of
@@ -60,7 +62,7 @@ def draw_figure(notebook: File, datasets: list[str], code: list[str], results: F
     datasets : list of str
         Paths of the datasets that it names.
     code : list of str
-        Files of code that the figure depends on, below the folder of the Snakefile.
+        Paths of the files of code that the figure depends on.
     results : str or Path
         Folder of the study's results.
 
@@ -72,7 +74,8 @@ def draw_figure(notebook: File, datasets: list[str], code: list[str], results: F
     results, figure = Path(results), Path(notebook).stem
     before = _last_changes(results, figure)
     parameters = {**paths_for(notebook, datasets), "figure": str(results / "figures" / figure)}
-    changes = drawn_by(map(_commit_of, datasets), code, notebook)
+    names = [Path(os.path.relpath(file, ROOT)).as_posix() for file in code]
+    changes = drawn_by(map(_commit_of, datasets), names, notebook)
     execute_notebook(notebook, results / "notebooks" / f"{figure}.ipynb", parameters, changes)
     # Snakemake keeps the old pictures until new ones replace them.
     if not before.isdisjoint(_last_changes(results, figure)):

@@ -28,11 +28,14 @@ from lube.workflow.cells import parameters_of
 from lube.workflow.stamps import DRAWN_BY
 
 log = logging.getLogger(__name__)
+# Papermill's own reading of the parameters, which warns of all but the simplest Python.
+logging.getLogger("papermill.translators").setLevel(logging.ERROR)
 
 _CELL_FAILED = 3
 """Exit code of the process that executes a notebook; 1 is Python's own, of any other error."""
 
-_ADDED = {"injected-parameters", "papermill-error-cell-tag"}
+_INJECTED = "injected-parameters"
+_ADDED = {_INJECTED, "papermill-error-cell-tag"}
 """Tags of the cells that papermill adds."""
 
 # Parts of IPython's tracebacks.
@@ -55,9 +58,9 @@ def execute_notebook(
         Notebook to execute; it is not changed.
     output : str or Path
         Path of the executed copy, such as ``fig02_film.ipynb``, written only if all cells
-        succeed. If one fails, the cells executed so far are saved beside it as
-        ``fig02_film.failed.ipynb``, which the next success removes, and the traceback goes to
-        the log.
+        succeed. It has the notebook's own cells, without the given parameters. If a cell fails,
+        those executed so far are saved beside it as ``fig02_film.failed.ipynb``, which the next
+        success removes, and the traceback goes to the log.
     parameters : dict
         Values for the names in the cell tagged ``parameters``.
     drawn_by : str
@@ -185,7 +188,7 @@ def _add_output(cell, output):
 
 def _failure(executed, exit_code):
     """Say in one line which cell fails, where and why; log the whole traceback."""
-    cells = [cell for cell in executed.cells if not _ADDED & set(cell.metadata.get("tags", []))]
+    cells = [cell for cell in executed.cells if _ADDED.isdisjoint(_tags(cell))]
     # Counted from 1, text included, as a reader of the notebook counts.
     started = [n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time]
     if exit_code != _CELL_FAILED:
@@ -206,10 +209,14 @@ def _failure(executed, exit_code):
     return f"cell {number} fails{where}: {' '.join(f'{error.ename}: {error.evalue}'.split())}"
 
 
+def _tags(cell):
+    return cell.metadata.get("tags", [])
+
+
 def _save(executed, path):
     """Write an executed notebook, the same bytes each time."""
     with written_whole(path) as part:
-        nbformat.write(_without_times(executed), part)
+        nbformat.write(_to_keep(executed), part)
 
 
 def _check_parameters(notebook, parameters):
@@ -222,9 +229,14 @@ def _check_parameters(notebook, parameters):
             )
 
 
-def _without_times(executed):
-    """Remove the clock times and random cell names that papermill leaves in a notebook."""
+def _to_keep(executed):
+    """Remove papermill's clock times and random cell names, and the cell of this run's paths.
+
+    Without that cell the copy, opened and run by hand, shows the study in whose folder it lies,
+    and writes nothing.
+    """
     executed.metadata.pop("papermill", None)
+    executed.cells = [cell for cell in executed.cells if _INJECTED not in _tags(cell)]
     for number, cell in enumerate(executed.cells):
         cell.metadata.pop("papermill", None)
         cell.metadata.pop("execution", None)

@@ -6,13 +6,33 @@ its inputs, and an edited module reruns the jobs that use it.
 
 import ast
 import functools
+import os
 from pathlib import Path
 
 import lube
 from lube.storage.git import ROOT
+from lube.types import File
 
 _BY_VALUE = {"lube.study.study", "lube.schema.stages"}
 """Modules that reach a stage by the values they give it, which are parameters of its rule."""
+
+
+def from_here(name: File) -> str:
+    """Return the path of a file of the repository as seen from the working folder.
+
+    The two folders differ where the workflow is a module of another one.
+
+    Parameters
+    ----------
+    name : str or Path
+        Its path, from `ROOT` on if relative.
+
+    Returns
+    -------
+    str
+        The path, relative, so that the repository can be moved with what it has made.
+    """
+    return os.path.relpath(ROOT / name)
 
 
 def imported_modules(code: str) -> tuple[str, ...]:
@@ -97,20 +117,18 @@ def _imports_of(file):
     return imported_modules(file.read_text(encoding="utf-8"))
 
 
-def script_sources(name: str, root: Path = ROOT) -> list[str]:
+def script_sources(name: str) -> list[str]:
     """List the files of the lube package that a script of the workflow depends on.
 
     Parameters
     ----------
     name : str
-        Name of the script in ``workflow/scripts``, or its path below `root`.
-    root : Path, optional
-        As for `sources`.
+        Name of the script in ``workflow/scripts``, or its path below `ROOT`.
 
     Returns
     -------
     list of str
-        As from `sources`.
+        The files of `sources`, from the working folder.
     """
-    path = root / (name if name.endswith(".py") else f"workflow/scripts/{name}.py")
-    return sources(path.read_text(encoding="utf-8"), root)
+    path = ROOT / (name if name.endswith(".py") else f"workflow/scripts/{name}.py")
+    return [from_here(file) for file in sources(path.read_text(encoding="utf-8"))]

@@ -16,7 +16,7 @@ from lube.workflow.cells import datasets_of
 
 ROOT = Path(__file__).parents[2]
 COPIED = ("Snakefile", "README.md", "CHANGELOG.md", "pyproject.toml")
-COPIED += ("workflow", "docs", "lube", "notebooks", "profiles", "tests/benchmarks")
+COPIED += ("config", "workflow", "docs", "lube", "notebooks", "profiles", "tests/benchmarks")
 SMOKE = "workflow/config/smoke.yaml"
 RESULTS = "results/smoke"
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")

@@ -26,6 +26,8 @@ def test_a_parameter_is_a_dataset_if_its_value_is_the_path_of_one(write):
         ('x = "../results/paper/film.nc"', {"x": "film"}),
         ('film = "../results/paper/contact.nc"', {"film": "contact"}),
         ('film = "film.nc"', {"film": "film"}),
+        ('study = results_folder()\nfilm = study / "film.nc"', {"film": "film"}),
+        ('film = results_folder("slip") / "data" / "film.nc"', {"film": "film"}),
         ('a = b = "../film.nc"', {"a": "film", "b": "film"}),
         ('film: str = "../film.nc"', {"film": "film"}),
         ('clocks = "../results/paper/speed.nc"', {"clocks": "speed"}),
@@ -52,9 +54,10 @@ def test_notebooks_are_committed_without_outputs_and_write_no_figure_when_run_by
         code = [cell for cell in json.loads(text)["cells"] if cell["cell_type"] == "code"]
         assert not any(cell["outputs"] or cell["execution_count"] for cell in code), notebook
         assert text.endswith("}\n")
-        assert "figure = None" in text
-        assert parameters_of(notebook)["figure"] is None
-        assert datasets_of(notebook)
+        if notebook.stem != "start_here":
+            assert "figure = None" in text
+            assert parameters_of(notebook)["figure"] is None
+            assert datasets_of(notebook)
 
 
 def test_outputs_and_execution_counts_are_left_out(write):

@@ -7,7 +7,12 @@ from studies import PAPER, SMOKE
 
 from lube.errors import StudyError
 from lube.study.study import load_study
-from lube.workflow.command_line import check_command_line, same_study, study_of_command
+from lube.workflow.command_line import (
+    check_command_line,
+    same_study,
+    study_of_command,
+    study_of_module,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -83,3 +88,17 @@ def test_mistakes_in_config_are_refused_as_those_in_a_file():
     assert "seeed: unknown key" in one_line(
         StudyError, study_of_command, [SMOKE], {"name": "mine", "seeed": 3}
     )
+
+
+def test_another_workflow_names_the_study_and_changes_its_values():
+    study, arguments = study_of_module({"study": str(SMOKE), "name": "mine", "seed": 3})
+    assert (study.name, study.seed) == ("mine", 3)
+    assert arguments == {
+        "path": "workflow/config/smoke.yaml",
+        "changes": {"name": "mine", "seed": 3},
+    }
+
+
+def test_a_module_without_a_study_is_refused():
+    line = one_line(StudyError, study_of_module, {"seed": 3})
+    assert "study: got None, need the path of a study's file" in line

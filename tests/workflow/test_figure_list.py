@@ -42,6 +42,11 @@ def test_a_figure_that_compares_levels_asks_for_several(write, study):
     ]
 
 
+def test_a_notebook_may_be_no_figure(write, study):
+    write("start_here", "study = 1", tags=["no-figure"])
+    assert list(study_figures(study, write("fig01_mine"))) == ["fig01_mine"]
+
+
 def test_chapters_are_numbered_by_their_figures_measured_times_last(write, study):
     write("bench01_speed", "clocks = '../speed.nc'", tags=["chapter-measured-times"])
     write("fig02_b", tags=["chapter-oil-and-film"])

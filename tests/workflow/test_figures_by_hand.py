@@ -1,6 +1,7 @@
 """Figures of a study under Snakemake: run by hand, failing, stamped."""
 
 import nbformat
+import pytest
 from nbclient import NotebookClient
 from repository import products_of
 from written_notebooks import DRAW, write_notebook
@@ -14,16 +15,21 @@ def made(repository):
     return {name: (repository.results / name).read_bytes() for name in names}
 
 
-def test_a_notebook_run_by_hand_shows_its_figure_once_and_writes_nothing(spare, monkeypatch):
-    (spare / "results/paper").symlink_to("smoke")
+@pytest.mark.parametrize("folder", ["notebooks", "results/smoke/notebooks"])
+def test_a_notebook_run_by_hand_shows_its_figure_once_and_writes_nothing(
+    spare, monkeypatch, folder
+):
+    """A notebook of the repository, or the copy that the workflow has executed."""
     before = spare.snapshot()
     monkeypatch.setenv("PYTHONPATH", str(spare.folder))
-    notebook = nbformat.read(spare / "notebooks/fig02_film.ipynb", as_version=4)
-    NotebookClient(notebook, resources={"metadata": {"path": spare / "notebooks"}}).execute()
+    if folder == "notebooks":
+        monkeypatch.setenv("LUBE_STUDY", "smoke")
+    notebook = nbformat.read(spare / folder / "fig02_film.ipynb", as_version=4)
+    NotebookClient(notebook, resources={"metadata": {"path": spare / folder}}).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert len([output for output in outputs if "image/png" in output.get("data", {})]) == 1
     assert spare.snapshot() == before
-    assert {path.name for path in (spare / "results").iterdir()} == {"smoke", "paper"}
+    assert {path.name for path in (spare / "results").iterdir()} == {"smoke"}
 
 
 def test_a_failing_cell_is_named_and_leaves_the_old_figure(spare):

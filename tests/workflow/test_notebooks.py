@@ -30,6 +30,10 @@ def outputs_of(path):
     return [shown for cell in cells for shown in cell.get("outputs", [])]
 
 
+def sources_of(path):
+    return [cell.source for cell in nbformat.read(path, as_version=4).cells]
+
+
 def refusal(notebook, output, parameters):
     with pytest.raises(LubeError) as caught:
         execute_notebook(notebook, output, parameters, "")
@@ -46,6 +50,7 @@ def test_a_notebook_is_executed_with_its_parameters_twice_the_same(write, output
     drawn = tmp_path / "drawn"
     for _ in range(2):
         execute_notebook(notebook, output, {"film": "film.nc", "figure": str(drawn)}, "")
+        assert sources_of(output) == sources_of(notebook)  # without the parameters of this run
         copies.append(output.read_bytes())
         assert drawn.exists()
     assert copies[0] == copies[1]

@@ -4,25 +4,32 @@ import os
 import sys
 from pathlib import Path
 
-# The lube of this folder, even if another clone is installed: the files watched for changes are
-# the files that run.
-sys.path.insert(0, str(workflow.basedir))
+# The lube of this repository, even if another clone is installed: the files watched for changes are
+# the files that run. The Snakefile in use may be another one, of which this is a module.
+sys.path.insert(0, str(Path(workflow.snakefile).parents[2]))
 
 from lube.schema import DATASETS
 from lube.storage.files import check_writable
-from lube.workflow.command_line import study_of_command
+from lube.storage.git import ROOT
+from lube.workflow.command_line import study_of_command, study_of_module
 from lube.workflow.environment import compute_alike, use_package
-from lube.workflow.sources import script_sources
+from lube.workflow.sources import from_here, script_sources
 from lube.workflow.study_files import StudyFiles, digest, one_line_errors
 
 # For all jobs.
-use_package(workflow.basedir)
+use_package(ROOT)
 compute_alike()
 
+IS_MODULE = not workflow.modifier.is_main_snakefile()
 with one_line_errors():
-    STUDY, config["study"] = study_of_command(workflow.configfiles, workflow.config_settings.config)
+    if IS_MODULE:
+        STUDY, SOURCE = study_of_module(config)
+    else:
+        STUDY, SOURCE = study_of_command(workflow.configfiles, workflow.config_settings.config)
 
-FILES = StudyFiles(STUDY, **config["study"])
+# For the scripts and the report. The dictionary of another Snakefile stays as it is.
+config = {**config, "study": SOURCE}
+FILES = StudyFiles(STUDY, **SOURCE)
 RESULTS = FILES.folder
 result = FILES.result
 stage_files = FILES.stage_files

@@ -1,6 +1,6 @@
 rule coverage:
     input:
-        script="tests/benchmarks/bench_coverage.py",
+        script=from_here("tests/benchmarks/bench_coverage.py"),
         study=ancient(result("study.yaml")),
         records=record_files(),
         sources=script_sources("tests/benchmarks/bench_coverage.py"),

@@ -4,7 +4,9 @@ EXPLORED = ("lubricant", "film", "contact", "master", "trace", "comparison")
 rule explorer:
     input:
         **{kind: result(f"{kind}.nc") for kind in EXPLORED},
-        templates=sorted(map(str, Path("lube/explorer/templates").iterdir())),
+        templates=[
+            from_here(path) for path in sorted(Path(ROOT, "lube/explorer/templates").iterdir())
+        ],
         sources=script_sources("explorer"),
     output:
         result("explorer.html"),

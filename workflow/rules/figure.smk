@@ -1,7 +1,7 @@
 rule figure:
     input:
         # Saving a notebook with its outputs must not make the figure again; its cells must.
-        notebook=ancient("notebooks/{figure}.ipynb"),
+        notebook=ancient(from_here("notebooks/{figure}.ipynb")),
         datasets=lambda wildcards: [
             result(f"{kind}.nc") for kind in FIGURES[wildcards.figure].datasets
         ],

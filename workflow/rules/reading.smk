@@ -1,6 +1,6 @@
 rule reading:
     input:
-        script="tests/benchmarks/bench_records.py",
+        script=from_here("tests/benchmarks/bench_records.py"),
         study=ancient(result("study.yaml")),
         records=record_files(),
         sources=script_sources("tests/benchmarks/bench_records.py"),

@@ -3,15 +3,15 @@ from lube.workflow.command_line import PAPER, same_study
 
 # Chapter of the report that holds its pages.
 ABOUT_THE_STUDY = "About the study"
-TEMPLATES = sorted(map(str, Path("lube/report/templates").iterdir()))
+TEMPLATES = [from_here(path) for path in sorted(Path(ROOT, "lube/report/templates").iterdir())]
 
 
 rule pages:
     input:
         **{kind: result(f"{kind}.nc") for kind in SUMMARISED},
         study=FILES.study_file,
-        paper=PAPER,
-        docs=[f"docs/{page}.md" for page in ("limits", "assumptions", "architecture")],
+        paper=from_here(PAPER),
+        docs=[from_here(f"docs/{page}.md") for page in ("limits", "assumptions", "architecture")],
         templates=TEMPLATES,
         sources=script_sources("pages"),
     output:
@@ -76,23 +76,26 @@ rule times:
         "../scripts/times.py"
 
 
-rule report:
-    input:
-        rules.pages.output,
-        rules.times.output,
-        # The report shows all that rule `times` waits for.
-        list(Path("workflow/report").iterdir()),
-    output:
-        result("report.html"),
-    log:
-        result("logs/report.log"),
-    benchmark:
-        result("benchmarks/report.tsv")
-    localrule: True
-    params:
-        snakemake=[sys.executable, "-m", "snakemake", *same_study(**config["study"])],
-    message:
-        "Report: {output}"
-    shell:
-        # A second Snakemake: it reports on finished jobs, and this one is running.
-        "{params.snakemake:q} --report {output:q} > {log:q} 2>&1"
+# A workflow that uses this one as a module makes its own report.
+if not IS_MODULE:
+
+    rule report:
+        input:
+            rules.pages.output,
+            rules.times.output,
+            # The report shows all that rule `times` waits for.
+            [from_here(path) for path in sorted(Path(ROOT, "workflow/report").iterdir())],
+        output:
+            result("report.html"),
+        log:
+            result("logs/report.log"),
+        benchmark:
+            result("benchmarks/report.tsv")
+        localrule: True
+        params:
+            snakemake=[sys.executable, "-m", "snakemake", *same_study(**config["study"])],
+        message:
+            "Report: {output}"
+        shell:
+            # A second Snakemake: it reports on finished jobs, and this one is running.
+            "{params.snakemake:q} --report {output:q} > {log:q} 2>&1"

@@ -1,6 +1,6 @@
 rule speed:
     input:
-        script="tests/benchmarks/bench_speed.py",
+        script=from_here("tests/benchmarks/bench_speed.py"),
         study=ancient(result("study.yaml")),
         records=record_files(),
         sources=script_sources("tests/benchmarks/bench_speed.py"),

@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
+from lube.storage.git import ROOT
 from lube.workflow.figures import draw_figure
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 notebook, results = snakemake.input.notebook, Path(snakemake.output.notebook).parents[1]
-code = [*snakemake.input.sources, "workflow/scripts/figure.py"]
+code = [*snakemake.input.sources, str(ROOT / "workflow/scripts/figure.py")]
 draw_figure(notebook, snakemake.input.datasets, code, results)
