@@ -19,6 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.markers import CARETDOWN, CARETLEFT, CARETRIGHT, CARETUP
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from lube.schema import COORDINATES
@@ -36,6 +37,9 @@ COLOURS = {
     "purple": "#CC79A7",
     "grey": "#7F7F7F",
 }
+EDGE_MARK = "edge-mark"
+"""Group identifier of the marks that `mark_outside` draws."""
+
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 _STYLE = {
@@ -351,6 +355,52 @@ def interval_bars(
     at, limits = np.asarray(x)[~seen], np.asarray(upper)[~seen]
     arrows = {"uplims": True, "linestyle": "none", "capsize": 2.5, "elinewidth": 1.0}
     axes.errorbar(at, limits, yerr=0.5 * limits, color=style.get("color"), **arrows)
+
+
+def mark_outside(*panels: Axes) -> None:
+    """Mark at the panels' edges the points that lie beyond them.
+
+    Each gets a triangle at the nearest place of the edge, in its own colour, that points to where
+    it lies.
+
+    Parameters
+    ----------
+    *panels : matplotlib.axes.Axes
+        Panels with all their points, drawn by `Axes.plot` or `Axes.errorbar` with a marker, and
+        with final limits.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> from lube import plots
+    >>> _, axes = plt.subplots()
+    >>> _ = axes.plot([1, 2, 3], [0.5, 7.0, 0.2], "o"), axes.set_ylim(0, 1)
+    >>> plots.mark_outside(axes)
+    >>> axes.lines[-1].get_xydata().tolist()
+    [[2.0, 1.0]]
+    """
+    for panel in panels:
+        (left, right), (low, high) = panel.get_xbound(), panel.get_ybound()
+        for line in [line for line in panel.lines if line.get_marker() not in ("None", "")]:
+            x, y = np.asarray(line.get_data(), float)
+            beyond = {
+                CARETUP: y > high,
+                CARETDOWN: y < low,
+                CARETRIGHT: (x > right) & (low <= y) & (y <= high),
+                CARETLEFT: (x < left) & (low <= y) & (y <= high),
+            }
+            for marker, there in beyond.items():
+                if there.any():
+                    panel.plot(
+                        x[there].clip(left, right),
+                        y[there].clip(low, high),
+                        linestyle="none",
+                        marker=marker,
+                        color=line.get_color(),
+                        clip_on=False,
+                        gid=EDGE_MARK,
+                        zorder=4,
+                    )
 
 
 def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> None:
