@@ -86,7 +86,7 @@ _AXIS_UNITS = {
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
 _FOOTNOTE_LINE = 130  # characters that fit below a figure
 _LONGEST_NAME = 32  # characters of a record's name; of a longer one the end is shown
-_SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) ")  # or after a panel's letter
+_SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) |(?<=pair) ")  # or a letter's
 
 
 def use_style() -> None:
@@ -499,18 +499,24 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
 
 def _fold_labels(figure):
     """Break titles and axis labels that are longer than their panels into several lines."""
-    figure.draw_without_rendering()
-    for axes in figure.axes:
-        panel = axes.get_window_extent()
-        title = axes.set_title(axes.get_title(loc="left"), loc="left")
-        for text, side in (
-            (title, "width"),
-            (axes.xaxis.label, "width"),
-            (axes.yaxis.label, "height"),
-        ):
-            excess = getattr(text.get_window_extent(), side) / getattr(panel, side)
-            if excess > 1.0:
-                text.set_text(_folded(text.get_text(), excess))
+    # Folded labels leave the panels less room, so the others are measured again.
+    for _ in range(3):
+        figure.draw_without_rendering()
+        long = [one for axes in figure.axes for one in _long_labels(axes)]
+        for text, excess in long:
+            text.set_text(_folded(text.get_text(), excess))
+        if not long:
+            return
+
+
+def _long_labels(axes):
+    """Title and labels of a panel that are longer than it, and by which factor."""
+    panel = axes.get_window_extent()
+    title = axes.set_title(axes.get_title(loc="left"), loc="left")
+    for text, side in ((title, "width"), (axes.xaxis.label, "width"), (axes.yaxis.label, "height")):
+        excess = getattr(text.get_window_extent(), side) / getattr(panel, side)
+        if excess > 1.0:
+            yield text, excess
 
 
 def _folded(label, excess):
