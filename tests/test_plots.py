@@ -154,3 +154,38 @@ def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
         assert line.get_window_extent().y1 <= bottom
     with Image.open(tmp_path / "figure.png") as picture:
         assert picture.text["Description"] == stamp([shown])
+
+
+def test_a_long_label_is_folded_to_its_panel_and_keeps_numbers_with_their_units():
+    plots.use_style()
+    canvas, axes = plt.subplots(figsize=(2.2, 2.2))
+    axes.set_title("(a) 1600 N, 100 r/min, 40 °C: in contact", loc="left")
+    plots.save_figure(canvas, None, dataset_of_a_study())
+    canvas.draw_without_rendering()
+    words = axes.get_title(loc="left")
+    assert words.replace("\n", " ") == "(a) 1600 N, 100 r/min, 40 °C: in contact"
+    assert all(f"{number}\n" not in words for number in ("(a)", "1600", "100", "40"))
+    title = axes.set_title(words, loc="left")
+    assert title.get_window_extent().width <= axes.get_window_extent().width
+
+
+def test_the_legend_names_each_label_once_and_fits_the_figure():
+    plots.use_style()
+    canvas, panels = plt.subplots(1, 2, figsize=(4, 2))
+    for panel, levels in zip(panels, (range(5), range(3, 12)), strict=True):
+        for level in levels:
+            panel.plot([0, 1], [0, level], label=f"{level} newtons")
+    plots.legend_above(canvas, panels, "Force")
+    (legend,) = canvas.legends
+    assert [text.get_text() for text in legend.get_texts()] == [f"{n} newtons" for n in range(12)]
+    assert legend.get_window_extent().width <= canvas.bbox.width
+
+
+def test_a_logarithmic_axis_of_few_decades_has_plain_numbers():
+    for high, ticks in ((30.0, ["1", "2", "5", "10", "20"]), (1e6, None)):
+        _, axes = plt.subplots()
+        axes.set(xscale="log", xlim=(1.0, high))
+        plots.log_ticks(axes.xaxis)
+        labels = [text.get_text() for text in axes.get_xticklabels() if text.get_text()]
+        assert ticks is None or set(ticks) <= set(labels)
+        assert ticks is not None or all("10^" in label for label in labels)
