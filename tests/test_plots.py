@@ -156,11 +156,11 @@ def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
         assert picture.text["Description"] == stamp([shown])
 
 
-def test_a_long_label_is_folded_to_its_panel_and_keeps_numbers_with_their_units():
+def test_a_long_label_is_folded_to_its_panel_and_keeps_numbers_with_their_units(study):
     plots.use_style()
     canvas, axes = plt.subplots(figsize=(2.2, 2.2))
     axes.set_title("(a) 1600 N, 100 r/min, 40 °C: in contact", loc="left")
-    plots.save_figure(canvas, None, dataset_of_a_study())
+    plots.save_figure(canvas, None, xr.Dataset(attrs=global_attributes(study, "film")))
     canvas.draw_without_rendering()
     words = axes.get_title(loc="left")
     assert words.replace("\n", " ") == "(a) 1600 N, 100 r/min, 40 °C: in contact"
