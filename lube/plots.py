@@ -6,6 +6,7 @@ quantities take theirs from a colour map whose lightness changes steadily.
 
 import io
 import re
+import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -15,6 +16,7 @@ import numpy.typing as npt
 import xarray as xr
 from IPython import get_ipython
 from IPython.display import Image, display
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
@@ -85,7 +87,9 @@ _AXIS_UNITS = {
 
 
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
+_FOOTNOTE_LINE = 130  # characters that fit below a figure
 _LONGEST_NAME = 32  # characters of a record's name; of a longer one the end is shown
+_SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) ")  # or after a panel's letter
 
 
 def use_style() -> None:
@@ -298,7 +302,7 @@ def footnote(figure: Figure, dataset: xr.Dataset | xr.DataArray) -> None:
         if name in dataset.coords
     ]
     # An empty line keeps the stamp's place free.
-    line = " · ".join(parts) + "\n"
+    line = textwrap.fill(" · ".join(parts), _FOOTNOTE_LINE) + "\n"
     figure.supxlabel(line, x=0.99, ha="right", fontsize=6.5, color="#5F5F5F")
 
 
@@ -320,6 +324,57 @@ def plain_log_ticks(axis: Axis, numbers: Sequence[int] = (1, 2, 5)) -> None:
         axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
+
+
+def log_ticks(axis: Axis) -> None:
+    """Label a logarithmic axis by powers of ten, or by plain numbers if it spans few of them.
+
+    Parameters
+    ----------
+    axis : matplotlib.axis.Axis
+        The axis, on a logarithmic scale, with its final limits.
+    """
+    low, high = sorted(axis.get_view_interval())
+    if high < 100 * low:
+        plain_log_ticks(axis)
+    else:
+        axis.set_minor_formatter(NullFormatter())
+
+
+def legend_above(
+    figure: Figure, panels: Iterable[Axes], title: str | None = None, **more: Artist
+) -> None:
+    """Write one legend above all panels, in as many columns as fit the figure.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure, in constrained layout.
+    panels : iterable of matplotlib.axes.Axes
+        Panels whose labelled lines it explains; a label that several use appears once. Without
+        any label there is no legend.
+    title : str, optional
+        Title of the legend.
+    **more : matplotlib.artist.Artist
+        Further entries by their labels.
+    """
+    entries = {}
+    for panel in panels:
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    entries |= more
+    for rows in range(1, len(entries) + 1):
+        legend = figure.legend(
+            entries.values(),
+            entries.keys(),
+            loc="outside upper center",
+            ncols=-(-len(entries) // rows),
+            title=title,
+            columnspacing=1.4,
+        )
+        if legend.get_window_extent().width < figure.bbox.width or rows == len(entries):
+            return
+        legend.remove()
 
 
 def panel_letters(axes: Iterable[Axes]) -> None:
@@ -429,6 +484,7 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     """
     line = stamp(shown)
     _write_below(figure, line)
+    _fold_labels(figure)
     if stem is None:
         return
     # Without clock time or software version, so that the bytes are the same each time.
@@ -442,6 +498,31 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     if get_ipython() is not None:
         plt.close(figure)  # or Jupyter would draw it once more
         display(Image(png, retina=True))
+
+
+def _fold_labels(figure):
+    """Break titles and axis labels that are longer than their panels into several lines."""
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        panel = axes.get_window_extent()
+        title = axes.set_title(axes.get_title(loc="left"), loc="left")
+        for text, side in (
+            (title, "width"),
+            (axes.xaxis.label, "width"),
+            (axes.yaxis.label, "height"),
+        ):
+            excess = getattr(text.get_window_extent(), side) / getattr(panel, side)
+            if excess > 1.0:
+                text.set_text(_folded(text.get_text(), excess))
+
+
+def _folded(label, excess):
+    """Fold a label whose longest line is too long by a factor; numbers keep their units."""
+    lines = _SPACE_BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", label).splitlines()
+    # One character less, because not all are equally wide.
+    width = max(int(max(map(len, lines)) / excess) - 1, 1)
+    folded = "\n".join(textwrap.fill(line, width) for line in lines)
+    return folded.replace("\N{NO-BREAK SPACE}", " ")
 
 
 def _picture(figure, suffix, metadata):
