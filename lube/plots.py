@@ -42,6 +42,9 @@ COLOURS = {
 EDGE_MARK = "edge-mark"
 """Group identifier of the marks that `mark_outside` draws."""
 
+NOT_POINTS = ("None", "none", "", " ", "_", "|")
+"""Markers that are no points: none, and the caps of bars."""
+
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 _STYLE = {
@@ -436,7 +439,7 @@ def mark_outside(*panels: Axes) -> None:
     """
     for panel in panels:
         (left, right), (low, high) = panel.get_xbound(), panel.get_ybound()
-        for line in [line for line in panel.lines if line.get_marker() not in ("None", "")]:
+        for line in [line for line in panel.lines if line.get_marker() not in NOT_POINTS]:
             x, y = np.asarray(line.get_data(), float)
             beyond = {
                 CARETUP: y > high,

@@ -11,11 +11,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
+from matplotlib.legend import Legend
 from matplotlib.patches import Rectangle
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox
 
-from lube.plots import EDGE_MARK
+from lube.plots import EDGE_MARK, NOT_POINTS
 from lube.workflow.cells import cells_of, datasets_of
 
 MARGIN = 1.0
@@ -60,6 +61,7 @@ def faults(figure):
         *_clipped(texts, figure.bbox),
         *(fault for axes in figure.axes for fault in _long_labels(axes)),
         *_covering_legends(figure),
+        *(fault for axes in figure.axes for fault in _covering_words(axes)),
         *(fault for axes in figure.axes for fault in _points_outside(axes)),
         *_unlettered(figure),
     ]
@@ -125,8 +127,7 @@ def _long_labels(axes):
 
 
 def _covering_legends(figure):
-    own = [axes.get_legend() for axes in figure.axes]
-    for legend in (*figure.legends, *filter(None, own)):
+    for legend in figure.findobj(Legend):
         words = [text.get_text() for text in legend.get_texts()]
         if not any(word.strip() for word in words):
             yield "a legend is empty"
@@ -147,7 +148,7 @@ def _data(axes):
         if not line.get_visible() or not _in_data_coordinates(line, axes):
             continue
         points = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
-        if line.get_linestyle() not in ("None", "none", "", " "):
+        if line.get_linestyle() not in NOT_POINTS:
             # Pieces of whole numbers: a gap in a line must not be bridged.
             for piece in _pieces(points):
                 yield Path(piece), False
@@ -175,7 +176,7 @@ def _in_data_coordinates(artist, axes):
 
 
 def _has_markers(line):
-    return line.get_marker() not in ("None", "none", "", " ", None) and line.get_gid() != EDGE_MARK
+    return line.get_marker() not in NOT_POINTS and line.get_gid() != EDGE_MARK
 
 
 def _pieces(points):
@@ -199,27 +200,42 @@ def _places(collection):
     return collection.get_offset_transform().transform(offsets)
 
 
+def _points_of(axes):
+    """Places in pixels of all points drawn with a marker."""
+    found = [np.empty((0, 2))]
+    for line in axes.lines:
+        if line.get_visible() and _has_markers(line) and _in_data_coordinates(line, axes):
+            values = np.column_stack(line.get_data()).astype(float)
+            found.append(line.get_transform().transform(values))
+    for collection in axes.collections:
+        if isinstance(collection, PathCollection) and _in_data_coordinates(collection, axes):
+            found.append(_places(collection))
+    places = np.concatenate(found)
+    return places[np.isfinite(places).all(axis=1)]
+
+
 def _points_outside(axes):
     """Points that lie outside the panel and have no mark at its edge."""
     panel = axes.get_window_extent()
-    found, marks = [], []
-    for line in axes.lines:
-        places = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
-        if line.get_gid() == EDGE_MARK:
-            marks += places.tolist()
-        elif line.get_visible() and _has_markers(line) and _in_data_coordinates(line, axes):
-            found += places.tolist()
-    for collection in axes.collections:
-        if isinstance(collection, PathCollection) and _in_data_coordinates(collection, axes):
-            found += _places(collection).tolist()
+    marks = [line.get_xydata() for line in axes.lines if line.get_gid() == EDGE_MARK]
+    marks = [axes.transData.transform(places) for places in marks]
     missing = 0
-    for place in found:
+    for place in _points_of(axes):
         nearest = np.clip(place, panel.min, panel.max)
-        outside = np.isfinite(place).all() and np.abs(nearest - place).max() > MARGIN
-        missing += outside and not any(np.abs(nearest - mark).max() < MARGIN for mark in marks)
+        marked = any((np.abs(places - nearest).max(axis=1) < MARGIN).any() for places in marks)
+        missing += np.abs(nearest - place).max() > MARGIN and not marked
     if missing:
         title = axes.get_title(loc="left") or axes.get_ylabel()
         yield f"{missing} points lie outside panel {title!r}, without a mark at its edge"
+
+
+def _covering_words(axes):
+    """Words within the panel that lie on points."""
+    places = _points_of(axes)
+    for text in axes.texts:
+        box = text.get_window_extent()
+        if text.get_text().strip() and text.get_visible() and box.count_contains(places):
+            yield f"text {text.get_text()!r} covers points"
 
 
 # Panels

@@ -52,6 +52,11 @@ def test_text_must_not_collide_or_be_cut(panels):
     assert "text 'the end of a long line' is cut by the figure's edge" in faults_of(panels)
 
 
+def test_words_must_not_cover_points(panels):
+    panels[0].text(1.8, 0.49, "a result")
+    assert faults_of(panels) == "text 'a result' covers points"
+
+
 def test_labels_must_be_shorter_than_their_panels(panels):
     panels[1].set_ylabel("A label that is longer than the panel is high, with its unit (m)")
     panels[0].set_title("(a) A title that is longer than its panel is wide, as well", loc="left")

@@ -4,6 +4,7 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.markers import CARETDOWN, CARETLEFT, CARETRIGHT, CARETUP
 from PIL import Image
 
 from lube import plots
@@ -62,6 +63,23 @@ def test_a_probability_of_zero_hangs_from_its_limit_on_a_logarithmic_scale():
         points, arrows = (container[0] for container in axes.containers)
         np.testing.assert_array_equal(points.get_ydata(), drawn)
         assert arrows.get_ydata().tolist() == limits
+
+
+def test_points_outside_a_panel_are_marked_at_its_edge_in_their_colour():
+    _, axes = plt.subplots()
+    axes.errorbar([0, 1, 2, 3], [0.5, 9.0, -1.0, 0.5], yerr=0.1, capsize=2, fmt="o", color="red")
+    axes.set(xlim=(0.5, 2.5), ylim=(0, 1))
+    before = len(axes.lines)
+    plots.mark_outside(axes)
+    marks = {line.get_marker(): line for line in axes.lines[before:]}
+    places = {marker: line.get_xydata().tolist() for marker, line in marks.items()}
+    assert places == {
+        CARETUP: [[1.0, 1.0]],
+        CARETDOWN: [[2.0, 0.0]],
+        CARETRIGHT: [[2.5, 0.5]],
+        CARETLEFT: [[0.5, 0.5]],
+    }
+    assert {line.get_color() for line in marks.values()} == {"red"}
 
 
 @pytest.fixture

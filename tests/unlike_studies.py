@@ -58,7 +58,7 @@ STUDIES = {
     "ceramic": _small(
         "ceramic",
         rollers=PAPER_CONTENT["rollers"] | {"second": _SILICON_NITRIDE},
-        lubricants=["mobilgear-shc-xmp-320", "n-dodecane"],
+        lubricants=["n-dodecane", "mobilgear-shc-xmp-320"],
         film_formulas=["moes", "dowson-higginson-minimum"],
         operating_grid=_grid([50, 150, 500], [1500, 2900.5, 6000, 12000], [40, 65, 100]),
         traces=[
