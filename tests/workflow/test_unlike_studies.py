@@ -18,8 +18,10 @@ NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 def test_no_figure_has_colliding_text_covered_or_missing_points(name, tmp_path):
     paths = write_datasets(STUDIES[name], tmp_path / name)
     figures = study_figures(load_study(tmp_path / name / "study.yaml"), NOTEBOOKS)
-    found = {}
-    for figure in figures.values():
-        if not figure.measured:
-            found[figure.name] = faults(draw(NOTEBOOKS / f"{figure.name}.ipynb", paths))
-    assert {figure: lines for figure, lines in found.items() if lines} == {}
+    found = [
+        f"{figure.name}: {fault}"
+        for figure in figures.values()
+        if not figure.measured
+        for fault in faults(draw(NOTEBOOKS / f"{figure.name}.ipynb", paths))
+    ]
+    assert not found, "\n".join(found)
