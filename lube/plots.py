@@ -88,6 +88,7 @@ _AXIS_UNITS = {
 
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
 _FOOTNOTE_LINE = 130  # characters that fit below a figure
+_MOST_LABELS = 9  # on a logarithmic axis
 _LONGEST_NAME = 32  # characters of a record's name; of a longer one the end is shown
 _SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) |(?<=pair) ")  # or a letter's
 
@@ -315,11 +316,14 @@ def plain_log_ticks(axis: Axis, numbers: Sequence[int] = (1, 2, 5)) -> None:
         The axis, on a logarithmic scale, with its final limits.
     numbers : sequence of int, optional
         Multiples of the powers of ten that get a label. On an axis too short for two of these
-        labels, evenly spaced round numbers get one.
+        labels, evenly spaced round numbers get one; on one of many powers, these alone.
     """
     low, high = sorted(axis.get_view_interval())
     axis.set_major_locator(LogLocator(subs=numbers))
-    if sum(low <= tick <= high for tick in axis.get_majorticklocs()) < 2:
+    labels = sum(low <= tick <= high for tick in axis.get_majorticklocs())
+    if labels > _MOST_LABELS:
+        axis.set_major_locator(LogLocator())
+    if labels < 2:
         axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

@@ -130,6 +130,7 @@ def test_panels_are_lettered_before_their_titles():
 def test_a_logarithmic_axis_has_plain_labels_however_short_it_is():
     cases = {
         (15.0, 120.0): ["20", "50", "100"],
+        (0.5, 1500.0): ["1", "10", "100", "1000"],
         (0.7, 1.4): ["0.8", "1", "1.2", "1.4"],
         (1.02, 1.07): ["1.02", "1.03", "1.04", "1.05", "1.06", "1.07"],
     }
