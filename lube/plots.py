@@ -6,6 +6,7 @@ quantities take theirs from a colour map whose lightness changes steadily.
 
 import io
 import re
+import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -15,10 +16,12 @@ import numpy.typing as npt
 import xarray as xr
 from IPython import get_ipython
 from IPython.display import Image, display
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.markers import CARETDOWN, CARETLEFT, CARETRIGHT, CARETUP
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from lube.schema import COORDINATES
@@ -36,6 +39,12 @@ COLOURS = {
     "purple": "#CC79A7",
     "grey": "#7F7F7F",
 }
+EDGE_MARK = "edge-mark"
+"""Group identifier of the marks that `mark_outside` draws."""
+
+NOT_POINTS = ("None", "none", "", " ", "_", "|")
+"""Markers that are no points: none, and the caps of bars."""
+
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 _STYLE = {
@@ -78,7 +87,10 @@ _AXIS_UNITS = {
 
 
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
+_FOOTNOTE_LINE = 130  # characters that fit below a figure
+_MOST_LABELS = 9  # on a logarithmic axis
 _LONGEST_NAME = 32  # characters of a record's name; of a longer one the end is shown
+_SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) |(?<=pair) ")  # or a letter's
 
 
 def use_style() -> None:
@@ -291,7 +303,7 @@ def footnote(figure: Figure, dataset: xr.Dataset | xr.DataArray) -> None:
         if name in dataset.coords
     ]
     # An empty line keeps the stamp's place free.
-    line = " · ".join(parts) + "\n"
+    line = textwrap.fill(" · ".join(parts), _FOOTNOTE_LINE) + "\n"
     figure.supxlabel(line, x=0.99, ha="right", fontsize=6.5, color="#5F5F5F")
 
 
@@ -304,15 +316,69 @@ def plain_log_ticks(axis: Axis, numbers: Sequence[int] = (1, 2, 5)) -> None:
         The axis, on a logarithmic scale, with its final limits.
     numbers : sequence of int, optional
         Multiples of the powers of ten that get a label. On an axis too short for two of these
-        labels, evenly spaced round numbers get one.
+        labels, evenly spaced round numbers get one; on one of many powers, these alone.
     """
     low, high = sorted(axis.get_view_interval())
     axis.set_major_locator(LogLocator(subs=numbers))
-    if sum(low <= tick <= high for tick in axis.get_majorticklocs()) < 2:
+    labels = sum(low <= tick <= high for tick in axis.get_majorticklocs())
+    if labels > _MOST_LABELS:
+        axis.set_major_locator(LogLocator())
+    if labels < 2:
         axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
+
+
+def log_ticks(axis: Axis) -> None:
+    """Label a logarithmic axis by powers of ten, or by plain numbers if it spans few of them.
+
+    Parameters
+    ----------
+    axis : matplotlib.axis.Axis
+        The axis, on a logarithmic scale, with its final limits.
+    """
+    low, high = sorted(axis.get_view_interval())
+    if high < 100 * low:
+        plain_log_ticks(axis)
+    else:
+        axis.set_minor_formatter(NullFormatter())
+
+
+def legend_above(
+    figure: Figure, panels: Iterable[Axes], title: str | None = None, **more: Artist
+) -> None:
+    """Write one legend above all panels, in as many columns as fit the figure.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure, in constrained layout.
+    panels : iterable of matplotlib.axes.Axes
+        Panels whose labelled lines it explains; a label that several use appears once. Without
+        any label there is no legend.
+    title : str, optional
+        Title of the legend.
+    **more : matplotlib.artist.Artist
+        Further entries by their labels.
+    """
+    entries = {}
+    for panel in panels:
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    entries |= more
+    for rows in range(1, len(entries) + 1):
+        legend = figure.legend(
+            entries.values(),
+            entries.keys(),
+            loc="outside upper center",
+            ncols=-(-len(entries) // rows),
+            title=title,
+            columnspacing=1.4,
+        )
+        if legend.get_window_extent().width < figure.bbox.width or rows == len(entries):
+            return
+        legend.remove()
 
 
 def panel_letters(axes: Iterable[Axes]) -> None:
@@ -353,6 +419,52 @@ def interval_bars(
     axes.errorbar(at, limits, yerr=0.5 * limits, color=style.get("color"), **arrows)
 
 
+def mark_outside(*panels: Axes) -> None:
+    """Mark at the panels' edges the points that lie beyond them.
+
+    Each gets a triangle at the nearest place of the edge, in its own colour, that points to where
+    it lies.
+
+    Parameters
+    ----------
+    *panels : matplotlib.axes.Axes
+        Panels with all their points, drawn by `Axes.plot` or `Axes.errorbar` with a marker, and
+        with final limits.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> from lube import plots
+    >>> _, axes = plt.subplots()
+    >>> _ = axes.plot([1, 2, 3], [0.5, 7.0, 0.2], "o"), axes.set_ylim(0, 1)
+    >>> plots.mark_outside(axes)
+    >>> axes.lines[-1].get_xydata().tolist()
+    [[2.0, 1.0]]
+    """
+    for panel in panels:
+        (left, right), (low, high) = panel.get_xbound(), panel.get_ybound()
+        for line in [line for line in panel.lines if line.get_marker() not in NOT_POINTS]:
+            x, y = np.asarray(line.get_data(), float)
+            beyond = {
+                CARETUP: y > high,
+                CARETDOWN: y < low,
+                CARETRIGHT: (x > right) & (low <= y) & (y <= high),
+                CARETLEFT: (x < left) & (low <= y) & (y <= high),
+            }
+            for marker, there in beyond.items():
+                if there.any():
+                    panel.plot(
+                        x[there].clip(left, right),
+                        y[there].clip(low, high),
+                        linestyle="none",
+                        marker=marker,
+                        color=line.get_color(),
+                        clip_on=False,
+                        gid=EDGE_MARK,
+                        zorder=4,
+                    )
+
+
 def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> None:
     """Stamp a figure with its origin; save it as PNG and PDF, the same bytes each time.
 
@@ -376,6 +488,7 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     """
     line = stamp(shown)
     _write_below(figure, line)
+    _fold_labels(figure)
     if stem is None:
         return
     # Without clock time or software version, so that the bytes are the same each time.
@@ -389,6 +502,37 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     if get_ipython() is not None:
         plt.close(figure)  # or Jupyter would draw it once more
         display(Image(png, retina=True))
+
+
+def _fold_labels(figure):
+    """Break titles and axis labels that are longer than their panels into several lines."""
+    # Folded labels leave the panels less room, so the others are measured again.
+    for _ in range(3):
+        figure.draw_without_rendering()
+        long = [one for axes in figure.axes for one in _long_labels(axes)]
+        for text, excess in long:
+            text.set_text(_folded(text.get_text(), excess))
+        if not long:
+            return
+
+
+def _long_labels(axes):
+    """Title and labels of a panel that are longer than it, and by which factor."""
+    panel = axes.get_window_extent()
+    title = axes.set_title(axes.get_title(loc="left"), loc="left")
+    for text, side in ((title, "width"), (axes.xaxis.label, "width"), (axes.yaxis.label, "height")):
+        excess = getattr(text.get_window_extent(), side) / getattr(panel, side)
+        if excess > 1.0:
+            yield text, excess
+
+
+def _folded(label, excess):
+    """Fold a label whose longest line is too long by a factor; numbers keep their units."""
+    lines = _SPACE_BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", label).splitlines()
+    # One character less, because not all are equally wide.
+    width = max(int(max(map(len, lines)) / excess) - 1, 1)
+    folded = "\n".join(textwrap.fill(line, width) for line in lines)
+    return folded.replace("\N{NO-BREAK SPACE}", " ")
 
 
 def _picture(figure, suffix, metadata):

@@ -4,6 +4,7 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.markers import CARETDOWN, CARETLEFT, CARETRIGHT, CARETUP
 from PIL import Image
 
 from lube import plots
@@ -64,6 +65,23 @@ def test_a_probability_of_zero_hangs_from_its_limit_on_a_logarithmic_scale():
         assert arrows.get_ydata().tolist() == limits
 
 
+def test_points_outside_a_panel_are_marked_at_its_edge_in_their_colour():
+    _, axes = plt.subplots()
+    axes.errorbar([0, 1, 2, 3], [0.5, 9.0, -1.0, 0.5], yerr=0.1, capsize=2, fmt="o", color="red")
+    axes.set(xlim=(0.5, 2.5), ylim=(0, 1))
+    before = len(axes.lines)
+    plots.mark_outside(axes)
+    marks = {line.get_marker(): line for line in axes.lines[before:]}
+    places = {marker: line.get_xydata().tolist() for marker, line in marks.items()}
+    assert places == {
+        CARETUP: [[1.0, 1.0]],
+        CARETDOWN: [[2.0, 0.0]],
+        CARETRIGHT: [[2.5, 0.5]],
+        CARETLEFT: [[0.5, 0.5]],
+    }
+    assert {line.get_color() for line in marks.values()} == {"red"}
+
+
 @pytest.fixture
 def records():
     """Three records of two pairs of rollers, the last not at a level of force."""
@@ -112,6 +130,7 @@ def test_panels_are_lettered_before_their_titles():
 def test_a_logarithmic_axis_has_plain_labels_however_short_it_is():
     cases = {
         (15.0, 120.0): ["20", "50", "100"],
+        (0.5, 1500.0): ["1", "10", "100", "1000"],
         (0.7, 1.4): ["0.8", "1", "1.2", "1.4"],
         (1.02, 1.07): ["1.02", "1.03", "1.04", "1.05", "1.06", "1.07"],
     }
@@ -154,3 +173,38 @@ def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
         assert line.get_window_extent().y1 <= bottom
     with Image.open(tmp_path / "figure.png") as picture:
         assert picture.text["Description"] == stamp([shown])
+
+
+def test_a_long_label_is_folded_to_its_panel_and_keeps_numbers_with_their_units(study):
+    plots.use_style()
+    canvas, axes = plt.subplots(figsize=(2.2, 2.2))
+    axes.set_title("(a) 1600 N, 100 r/min, 40 °C: in contact", loc="left")
+    plots.save_figure(canvas, None, xr.Dataset(attrs=global_attributes(study, "film")))
+    canvas.draw_without_rendering()
+    words = axes.get_title(loc="left")
+    assert words.replace("\n", " ") == "(a) 1600 N, 100 r/min, 40 °C: in contact"
+    assert all(f"{number}\n" not in words for number in ("(a)", "1600", "100", "40"))
+    title = axes.set_title(words, loc="left")
+    assert title.get_window_extent().width <= axes.get_window_extent().width
+
+
+def test_the_legend_names_each_label_once_and_fits_the_figure():
+    plots.use_style()
+    canvas, panels = plt.subplots(1, 2, figsize=(4, 2))
+    for panel, levels in zip(panels, (range(5), range(3, 12)), strict=True):
+        for level in levels:
+            panel.plot([0, 1], [0, level], label=f"{level} newtons")
+    plots.legend_above(canvas, panels, "Force")
+    (legend,) = canvas.legends
+    assert [text.get_text() for text in legend.get_texts()] == [f"{n} newtons" for n in range(12)]
+    assert legend.get_window_extent().width <= canvas.bbox.width
+
+
+def test_a_logarithmic_axis_of_few_decades_has_plain_numbers():
+    for high, ticks in ((30.0, ["1", "2", "5", "10", "20"]), (1e6, None)):
+        _, axes = plt.subplots()
+        axes.set(xscale="log", xlim=(1.0, high))
+        plots.log_ticks(axes.xaxis)
+        labels = [text.get_text() for text in axes.get_xticklabels() if text.get_text()]
+        assert ticks is None or set(ticks) <= set(labels)
+        assert ticks is not None or all("10^" in label for label in labels)

@@ -152,28 +152,3 @@ def datasets_of(notebook: File) -> dict[str, str]:
     values = parameters_of(notebook).items()
     names = {parameter: str(value).rsplit("/", 1)[-1] for parameter, value in values}
     return {parameter: kinds[name] for parameter, name in names.items() if name in kinds}
-
-
-def computed_caption(executed: File) -> str:
-    """Read the sentences that a notebook computed for its caption.
-
-    Parameters
-    ----------
-    executed : str or Path
-        The executed notebook, which may be missing.
-
-    Returns
-    -------
-    str
-        What its cells tagged ``caption`` show, as Markdown; empty if there is nothing.
-    """
-    if not Path(executed).exists():
-        return ""
-    cells = json.loads(Path(executed).read_text(encoding="utf-8"))["cells"]
-    shown = [
-        "".join(output.get("data", {}).get("text/markdown", ""))
-        for cell in cells
-        if "caption" in cell["metadata"].get("tags", [])
-        for output in cell["outputs"]
-    ]
-    return "\n\n".join(shown)

@@ -9,7 +9,7 @@ from studies import ROOT
 from written_notebooks import write_notebook
 
 from lube.errors import LubeError
-from lube.workflow.cells import cells_of, computed_caption, datasets_of, parameters_of, python_of
+from lube.workflow.cells import cells_of, datasets_of, parameters_of, python_of
 
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 
@@ -74,19 +74,6 @@ def test_lines_of_ipython_are_left_out_of_the_python_code():
     assert python_of({"source": "%matplotlib inline\nx = 1\n!ls"}, "figure.ipynb") == "x = 1"
     with pytest.raises(LubeError, match=r"figure.ipynb: got 'film =', which is not Python"):
         python_of({"source": "film ="}, "figure.ipynb")
-
-
-def test_a_computed_caption_is_what_the_tagged_cells_show(tmp_path):
-    path = tmp_path / "executed.ipynb"
-    assert computed_caption(path) == ""
-    cells = [nbformat.v4.new_code_cell(metadata={"tags": tags}) for tags in ([], ["caption"])]
-    for cell, words in zip(cells, ("no", "**yes**"), strict=True):
-        cell.outputs = [
-            nbformat.v4.new_output("stream", text="said"),
-            nbformat.v4.new_output("display_data", {"text/markdown": words}),
-        ]
-    nbformat.write(new_notebook(cells=cells), path)
-    assert computed_caption(path).strip() == "**yes**"
 
 
 def test_a_file_that_is_not_a_notebook_is_refused(tmp_path):

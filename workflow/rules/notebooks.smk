@@ -1,7 +1,6 @@
 # The figures of the study, read from their notebooks before any job.
 from lube.report.markdown import plain, to_html
 from lube.study.metadata import PAPER as PAPER_TITLE
-from lube.workflow.cells import computed_caption
 from lube.workflow.figure_list import chapters, study_figures
 
 with one_line_errors():
@@ -37,8 +36,5 @@ config["report"] = {
     "summary": STUDY.about.summary,
     "paper": PAPER_TITLE,
     "folder": result("report"),
-    "captions": {
-        name: to_html(f"{figure.text}\n\n{computed_caption(result(f'notebooks/{name}.ipynb'))}")
-        for name, figure in FIGURES.items()
-    },
+    "captions": {name: to_html(figure.text) for name, figure in FIGURES.items()},
 }

@@ -1,0 +1,168 @@
+"""Five studies as unlike as users' are, small enough for a test, and their datasets."""
+
+import numpy as np
+import yaml
+from studies import PAPER_CONTENT
+
+from lube.grid.operating_points import operating_points
+from lube.recordings.manifest import read_manifest
+from lube.rig.at_records import model_at_records
+from lube.rig.simulator import SimulatedRig
+from lube.stages.comparison import compare
+from lube.stages.contact import contact_map, contact_statistics
+from lube.stages.ensemble import gather, gather_map
+from lube.stages.experiment import measured_experiment, simulated_experiment
+from lube.stages.film import film_at_records, film_table
+from lube.stages.gauge import gauge_records
+from lube.stages.lubricant import lubricant_table
+from lube.stages.rig import rig_records
+from lube.stages.roughness import roughness_batch, roughness_lines
+from lube.stages.trace import contact_trace
+from lube.storage.netcdf import save
+from lube.study.study import load_study
+
+
+def _small(name, **changes):
+    """The paper's study on coarse lines, whose layer is weak: as many segments break as do in the
+    paper's. Changes replace whole sections."""
+    content = PAPER_CONTENT | {"name": name, "realisations": 8, "batch_size": 8}
+    content["roughness"] = content["roughness"] | {"points": 40_000}
+    content["boundary_layer"] = content["boundary_layer"] | {"shear_strength": "0.2 MPa"}
+    content["rig"] = content["rig"] | {"sampling_rate": "20 kHz", "revolutions": 3}
+    return content | changes
+
+
+def _grid(force, speed, temperature, slide_to_roll_ratio=(0,)):
+    return {
+        "force": {"values": list(force), "units": "N"},
+        "speed": {"values": list(speed), "units": "rpm"},
+        "temperature": {"values": list(temperature), "units": "degC"},
+        "slide_to_roll_ratio": list(slide_to_roll_ratio),
+    }
+
+
+def _trace(force, speed, temperature, **more):
+    levels = {"force": f"{force} N", "speed": f"{speed} rpm", "temperature": f"{temperature} degC"}
+    return levels | more
+
+
+_SILICON_NITRIDE = {
+    "radius": "20 mm",
+    "young_modulus": "310 GPa",
+    "poisson_ratio": 0.27,
+    "rms_roughness": "0.05 um",
+}
+
+STUDIES = {
+    "paper": _small("paper"),
+    "ceramic": _small(
+        "ceramic",
+        rollers=PAPER_CONTENT["rollers"] | {"second": _SILICON_NITRIDE},
+        lubricants=["n-dodecane", "mobilgear-shc-xmp-320"],
+        film_formulas=["moes", "dowson-higginson-minimum"],
+        operating_grid=_grid([50, 150, 500], [1500, 2900.5, 6000, 12000], [40, 65, 100]),
+        traces=[
+            _trace(500, 1500, 100, lubricant="mobilgear-shc-xmp-320"),
+            _trace(500, 1500, 100, lubricant="n-dodecane"),
+        ],
+    ),
+    # As strong a layer as the paper's, on lines too coarse for it: almost no breakthrough is seen.
+    "two-levels": _small(
+        "two-levels",
+        realisations=4,
+        boundary_layer=PAPER_CONTENT["boundary_layer"],
+        film_formulas=["paper", "pan-hamrock"],
+        operating_grid=_grid([800, 1600], ["600/7", 100], [40, 80], [0, 0.1]),
+    ),
+    "slip": _small(
+        "slip",
+        film_formulas=["paper"],
+        operating_grid=_grid(
+            [400, 1600], [100], [60, 80], [-1, -0.1, 0, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 2]
+        ),
+        traces=[_trace(1600, 100, 80, slide_to_roll_ratio=0.1)],
+    ),
+    "measured": _small(
+        "measured",
+        film_formulas=["paper", "moes"],
+        operating_grid=_grid([200, 800, 1600], [100, 200], [50, 65, 80]),
+        traces=[_trace(800, 100, 65), _trace(1600, 100, 80)],
+        experiment=PAPER_CONTENT["experiment"] | {"manifest": "records.csv"},
+    ),
+}
+
+
+def write_datasets(content, folder):
+    """Calculate a study as the workflow does, and save its datasets.
+
+    Returns
+    -------
+    dict
+        From the kind of each dataset to its path.
+    """
+    folder.mkdir()
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    manifest = content["experiment"].get("manifest")
+    if manifest:
+        (folder / manifest).touch()  # a study must name a file that exists
+        _write_records(load_study(path), folder / manifest)
+    study = load_study(path)
+    paths = {}
+    for kind, dataset in _datasets(study).items():
+        paths[kind] = folder / f"{kind}.nc"
+        save(dataset, paths[kind], kind, study)
+    return paths
+
+
+def _datasets(study):
+    grid, layer = study.operating_grid, study.boundary_layer
+    oil = lubricant_table(study.lubricants, grid.temperature)
+    film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+    lines = roughness_lines(study.line_spec, study.seed, study.kept_realisations)
+    batch = roughness_batch(study.line_spec, study.seed, range(study.realisations))
+    run = contact_statistics(batch, film, layer, study.slips, study.revolutions)
+    contact, master = gather([run], film), gather_map([contact_map(batch, film, layer)])
+    rig_lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
+    if study.experiment.manifest:
+        experiment = measured_experiment(read_manifest(study.experiment.manifest), study)
+    else:
+        experiment = simulated_experiment(rig_lines, film, study)
+    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+    at_records = film_at_records(experiment, oils, study.rollers, study.film_formulas)
+    model = model_at_records(at_records, experiment, film, contact, study)
+    comparison = compare(model, experiment, contact)
+    return {
+        "lubricant": oil,
+        "film": film,
+        "roughness": lines,
+        "contact": contact,
+        "master": master,
+        "trace": contact_trace(lines, film, study.trace_points, layer, study.resistivity),
+        "rig": rig_records(rig_lines, film, study),
+        "experiment": experiment,
+        "comparison": comparison,
+        "gauge": gauge_records(master, contact, comparison),
+    }
+
+
+def _write_records(study, manifest):
+    """Write records of the simulated rig as if they were measured, some beside the levels."""
+    oil = lubricant_table(study.lubricants, [50.0, 63.2, 65.0, 80.0])
+    forces, speeds = [203.0, 800.0, 1203.0, 1600.0], [100.0, 200.0]
+    film = film_table(oil, study.rollers, forces, speeds, ["paper"])
+    points = operating_points(film.isel(film_formula=0), 0.0)
+    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
+    voltages = {}
+    for _, number, revolution in SimulatedRig(lines, study, points).revolutions():
+        voltages.setdefault(number, []).append(revolution.voltage(study.rig))
+    rows = ["file,force [N],speed [rpm],temperature [degC]"]
+    for number, parts in voltages.items():
+        point, name = points[number], f"measurement-of-november-{number:02d}.csv"
+        voltage = np.concatenate(parts)
+        times = np.arange(voltage.size) / study.rig.sampling_rate
+        columns = np.column_stack([times, 1e3 * voltage])
+        header = "time [s],voltage [mV]"
+        np.savetxt(manifest.with_name(name), columns, "%.8g", ",", header=header, comments="")
+        rows.append(f"{name},{point.force},{point.speed},{point.temperature}")
+    manifest.write_text("\n".join(rows), encoding="utf-8")
