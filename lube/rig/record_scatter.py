@@ -37,8 +37,9 @@ PAIRINGS = 4
 """Number of second lines that each first line is paired with for the mean probability."""
 MOST_STRETCHES = 8
 """Largest number of stretches of one realisation that serve as short records."""
-ALIGNMENT_RATIOS = np.linspace(1.0, 3.5, 6)
-"""Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare."""
+ALIGNMENT_RATIOS = np.linspace(1.0, 3.75, 12)
+"""Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare. With fewer
+the interpolation between them makes the effects of lines alone at neighbouring films too alike."""
 
 
 def record_scatter(
