@@ -63,9 +63,8 @@ def imported_modules(code: str) -> tuple[str, ...]:
             if node.module == "lube":
                 found += [lube._HOME_OF[name] for name in names if name in lube._HOME_OF]
         elif isinstance(node, ast.Import):
-            found += [alias.name for alias in node.names]
-            if "lube" in found:  # any public name may follow
-                found += lube._HOMES
+            names = [alias.name for alias in node.names]
+            found += [*names, *(lube._HOMES if "lube" in names else ())]  # any may be used
     return tuple(found)
 
 

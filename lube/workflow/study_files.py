@@ -181,7 +181,7 @@ class StudyFiles:
         """
         steps = {"batches of realisations": [f"batch_{first}" for first in self.study.batches]}
         steps |= {stage: [stage] for stage in DATASETS}
-        steps["figures"] = list(figures)
+        steps |= {"figures": list(figures), "explorer": ["explorer"]}
         file = "benchmarks/{}.tsv".format
         return {step: [self.result(file(job)) for job in jobs] for step, jobs in steps.items()}
 

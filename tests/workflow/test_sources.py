@@ -24,6 +24,8 @@ def package(tmp_path):
 def test_imports_are_found_wherever_they_are():
     code = "import ast\ndef f():\n    from lube.stages import film\n"
     assert imported_modules(code) == ("ast", "lube.stages", "lube.stages.film")
+    some = imported_modules("from lube import load\nimport math\n")
+    assert some == ("lube", "lube.load", "lube.storage.netcdf", "math")
 
 
 def test_a_public_name_means_the_module_that_defines_it():
@@ -54,7 +56,7 @@ def test_a_module_is_a_source_of_the_scripts_that_use_it():
         return {name for name in SCRIPTS if f"lube/{module}.py" in script_sources(name)}
 
     assert users("stages/trace") == {"trace"}
-    assert users("plots") == set()
+    assert users("plots") == {"explorer"}
     assert {"batch", "trace", "rig", "experiment"} <= users("kernels/layer")
     assert "figure" in users("workflow/notebooks")
     assert users("workflow/jobs") == set(SCRIPTS)

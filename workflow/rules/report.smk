@@ -55,6 +55,7 @@ rule times:
         # When all else is done.
         [result(f"{kind}.nc") for kind in DATASETS],
         products(ARCHIVED),
+        result("explorer.html"),
         templates=TEMPLATES,
         sources=script_sources("times"),
     output:
