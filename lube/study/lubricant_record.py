@@ -272,9 +272,10 @@ def _record_path(name_or_path, folder):
         return Path(folder) / name_or_path
     names = shipped_records()
     if name_or_path not in names:
+        near = right_one(name_or_path, names) if isinstance(name_or_path, str) else ""
+        needed = f"need one of {', '.join(names)}, or a path of a .yaml file"
         raise RecordError(
-            f"got {shown(name_or_path)}, {right_one(str(name_or_path), names)} "
-            "Or give the path of a .yaml file"
+            f"got {shown(name_or_path)}, {needed}{f'; {near}' if near.startswith('did') else ''}"
         )
     return SHIPPED_FOLDER / f"{name_or_path}.yaml"
 
