@@ -4,7 +4,9 @@ A figure is checked as it is saved: drawn once more after its layout is final.
 """
 
 import itertools
+import os
 from contextlib import contextmanager
+from unittest.mock import patch
 
 import matplotlib
 import matplotlib.pyplot as plt
@@ -18,6 +20,7 @@ from matplotlib.transforms import Affine2D, Bbox
 
 from lube.plots import EDGE_MARK, NOT_POINTS
 from lube.workflow.cells import cells_of, datasets_of
+from lube.workflow.stamps import DRAWN_BY
 
 MARGIN = 1.0
 """Pixels by which boxes may overlap or stick out: the rounding of glyphs."""
@@ -41,7 +44,9 @@ def draw(notebook, paths):
         matplotlib.use("Agg")
         for cell in cells_of(notebook):
             if cell["type"] == "code":
-                exec(compile(cell["source"], str(notebook), "exec"), names)
+                # As when the workflow draws: the notebook does not look for results by itself.
+                with patch.dict(os.environ, {DRAWN_BY: "figure_checks"}):
+                    exec(compile(cell["source"], str(notebook), "exec"), names)
             if "parameters" in cell["tags"]:
                 names |= given
         (number,) = plt.get_fignums()
@@ -163,9 +168,9 @@ def _data(axes):
             transform = collection.get_transform()
             for path in collection.get_paths():
                 yield path.transformed(transform), isinstance(collection, PolyCollection)
-    for patch in axes.patches:
-        if isinstance(patch, Rectangle) and patch.get_visible():
-            yield patch.get_path().transformed(patch.get_transform()), True
+    for shape in axes.patches:
+        if isinstance(shape, Rectangle) and shape.get_visible():
+            yield shape.get_path().transformed(shape.get_transform()), True
 
 
 def _in_data_coordinates(artist, axes):

@@ -7,7 +7,7 @@ import pytest
 from lube.errors import LubeError
 
 NEEDED = re.compile(
-    "need|must be|unknown key|missing|not allowed|repeated|"
+    "need|did you mean|must be|unknown key|missing|not allowed|repeated|"
     "cannot be read|not valid|truncated|empty|no such file|the same operating point"
 )
 """Every message contains one of these expressions, which say how to correct the input."""
