@@ -206,12 +206,12 @@ def _line_effects(runs, model, study, slips, turns, realisations):
         return (np.zeros if one_alignment else np.ones)(ratio.size), None
     thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
     levels = runs.points(thickness, model["contact_half_width"].mean().item())
-    shares = _crosswise(runs, min(realisations, MOST_PAIRS), levels)
-    persistent = persistent_share(shares)
+    in_first, in_second = _crosswise(runs, min(realisations, MOST_PAIRS), levels)
+    persistent = persistent_share(in_first, in_second)
     known = np.isfinite(persistent)
     if not known.any():
         return np.ones(ratio.size), None
-    effects = _standardised(shares.mean(axis=1) + shares.mean(axis=0))
+    effects = _standardised(in_first.mean(axis=1) + in_second.mean(axis=0))
     rows = [np.interp(ratio, ALIGNMENT_RATIOS[known], row[known]) for row in (*effects, persistent)]
     return rows[-1], np.array(rows[:-1])
 
@@ -232,17 +232,33 @@ def _pooled(runs, points, count, mean, persistent):
 
 
 def _crosswise(runs, count, levels):
-    """Share of each first line with each second line, shape (count, count, levels)."""
-    shares = np.empty((count, count, levels.shape[1]))
+    """Share of each first line with each second line, two of shape (count, count, levels).
+
+    One in a whole turn of the first line, one in a whole turn of the second. In a turn of a line
+    of another size a part of a line passes more often than the rest: this adds to its effect, but
+    does not persist.
+    """
+    in_first, in_second = np.empty((2, count, count, levels.shape[1]))
     for begin in range(0, count, LINES_IN_MEMORY):
         numbers = range(begin, min(begin + LINES_IN_MEMORY, count))
         firsts = [runs.pair(number)[0] for number in numbers]
         for other in range(count):
             _, second = runs.pair(other)
             for number, first in zip(numbers, firsts, strict=True):
-                shares[number, other] = runs.share((first, second), 0.0, levels)
+                whole = first.size, second.size
+                shares = _whole_turns(runs, (first, second), levels, whole)
+                in_first[number, other], in_second[number, other] = shares
         log.info("lines %d to %d, paired with all others: done", begin, numbers[-1])
-    return shares
+    return in_first, in_second
+
+
+def _whole_turns(runs, pair, levels, whole):
+    """Shares in a turn of the first and of the second line."""
+    shorter, longer = sorted(whole)
+    counts = {shorter: runs.breakthroughs(pair, 0.0, levels, 0, shorter)}
+    if longer > shorter:
+        counts[longer] = counts[shorter] + runs.breakthroughs(pair, 0.0, levels, shorter, longer)
+    return [counts[steps] / steps for steps in whole]
 
 
 # Short records

@@ -304,17 +304,19 @@ def standard_error(
     return np.sqrt(variance + np.square(noise))
 
 
-def persistent_share(probabilities: Array) -> Array:
+def persistent_share(in_first: Array, in_second: Array) -> Array:
     """Part of one alignment's scatter that new alignments do not average out.
 
     It is the effect of either line alone, whatever it is paired with. Each first line is paired
     with each second line, and the effects follow from the analysis of variance of two crossed
-    factors.
+    factors: that of a line from whole turns of it.
 
     Parameters
     ----------
-    probabilities : numpy.ndarray
-        Shape (R, K, P): of each of R first lines with each of K second lines, at each of P points.
+    in_first, in_second : numpy.ndarray
+        Shape (R, K, P): of each of R first lines with each of K second lines, at each of P
+        points, in whole turns of the first and of the second line. For equally long lines both
+        are the same.
 
     Returns
     -------
@@ -324,14 +326,22 @@ def persistent_share(probabilities: Array) -> Array:
     Examples
     --------
     >>> first, second = np.array([0.1, 0.2, 0.4]), np.array([0.0, 0.3, 0.1])
-    >>> persistent_share((first[:, None] + second)[..., None]).round(6)
+    >>> shares = (first[:, None] + second)[..., None]
+    >>> persistent_share(shares, shares).round(6)
     array([1.])
     """
-    firsts, seconds = probabilities.shape[:2]
-    first, second = (probabilities.mean(axis=axis, keepdims=True) for axis in (1, 0))
-    rest = probabilities - first - second + probabilities.mean(axis=(0, 1))
-    together = np.sum(rest**2, axis=(0, 1)) / ((firsts - 1) * (seconds - 1))
-    alone = np.clip(first.var(axis=(0, 1), ddof=1) - together / seconds, 0.0, None)
-    alone += np.clip(second.var(axis=(0, 1), ddof=1) - together / firsts, 0.0, None)
+    firsts, seconds = in_first.shape[:2]
+    of_first, of_second = in_first.mean(axis=1), in_second.mean(axis=0)
+    together, also_together = _together(in_first), _together(in_second)
+    alone = np.clip(of_first.var(axis=0, ddof=1) - together / seconds, 0.0, None)
+    alone += np.clip(of_second.var(axis=0, ddof=1) - also_together / firsts, 0.0, None)
     with np.errstate(invalid="ignore"):
         return alone / (alone + together)
+
+
+def _together(shares):
+    """Variance of what two crossed factors do together, shape (P,)."""
+    firsts, seconds = shares.shape[:2]
+    first, second = (shares.mean(axis=axis, keepdims=True) for axis in (1, 0))
+    rest = shares - first - second + shares.mean(axis=(0, 1))
+    return np.sum(rest**2, axis=(0, 1)) / ((firsts - 1) * (seconds - 1))

@@ -181,8 +181,8 @@ def test_the_persistent_share_is_that_of_the_variance_between_pairs():
     of_pair, of_alignment = rng.normal(size=(pairs, 1, 2)), rng.normal(size=(pairs, alignments, 2))
     for share in (0.0, 0.2, 0.7):
         shares = np.sqrt(share) * of_pair + np.sqrt(1.0 - share) * of_alignment
-        assert persistent_share(shares) == pytest.approx(share, abs=0.02)
+        assert persistent_share(shares, shares) == pytest.approx(share, abs=0.02)
     shares = np.zeros((5, 4, 2))
     shares[:, :, 1] = np.arange(5.0)[:, None]  # pairs differ, alignments do not
-    found = persistent_share(shares)
+    found = persistent_share(shares, shares)
     assert np.isnan(found[0]) and found[1] == 1.0  # nothing scatters, and all of it persists
