@@ -35,6 +35,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return code
     except LubeError as error:
         print(f"Error: {error}", file=sys.stderr)
+    except ModuleNotFoundError as error:  # `pip install lube` brings what a notebook needs
+        needed = "need it: pip install 'lube[workflow]'"
+        print(f"Error: the package {error.name} is not installed, {needed}", file=sys.stderr)
     except KeyboardInterrupt:
         print("Interrupted", file=sys.stderr)
     except BrokenPipeError:  # the reader has stopped, as in `lube ... | head`

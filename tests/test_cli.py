@@ -46,6 +46,15 @@ def test_the_bare_command_helps(capsys):
     assert "compare" in capsys.readouterr().out
 
 
+def test_a_command_that_needs_the_workflow_says_how_to_install_it(monkeypatch, capsys):
+    for name in [name for name in sys.modules if name.startswith("lube.archive")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "yaml", None)
+    assert main(["verify", "nowhere"]) == 2
+    told = "Error: the package yaml is not installed, need it: pip install 'lube[workflow]'\n"
+    assert capsys.readouterr().err == told
+
+
 def test_the_version_is_that_of_the_package(capsys):
     with pytest.raises(SystemExit):
         main(["--version"])

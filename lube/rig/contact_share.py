@@ -45,8 +45,8 @@ class ContactShare:
     releases : array_like, optional
         Shape (K,), not below the limits; by default the limits, which is no hysteresis.
     hold : int, optional
-        A change of state counts only if it lasts so many samples, and then from its first sample
-        on; 0 is off.
+        Number of samples that a change of state must last to count; it then counts from its
+        first sample on. 0 is off.
 
     Raises
     ------
