@@ -16,6 +16,7 @@ from lube.calculator.operating_points import (
     REALISATIONS,
     SEED,
     ensemble,
+    one_formula,
 )
 from lube.calculator.parts import Oil, Rollers
 from lube.errors import DataError, LubeError, right_one, shown
@@ -132,7 +133,7 @@ def _film(columns, rollers, oil, film_formula):
         if entrainment is None:
             entrainment = 0.5 * (columns["surface_speed"] + columns["second_surface_speed"])
         rotation = entrainment * 60.0 / (2.0 * np.pi * first)
-    table = film_at(properties, own, columns["force"], rotation, [film_formula])
+    table = film_at(properties, own, columns["force"], rotation, [one_formula(film_formula)])
     table = table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
     return table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
 

@@ -141,6 +141,19 @@ def single(name: str, values: xr.DataArray) -> float:
     return values.item()
 
 
+def one_formula(name: str) -> str:
+    """Return the name of a film formula, of which there must be one.
+
+    Raises
+    ------
+    StudyError
+        If there are several.
+    """
+    if not isinstance(name, str):
+        raise StudyError(f"film_formula: got {shown(name)}, need one name")
+    return name
+
+
 def _checked_slip(slip):
     try:
         return bounded(parse_number(slip), None, least=-2.0, most=2.0)
@@ -350,7 +363,7 @@ def trace(
     temperature = single("temperature", amount("temperature", temperature, "degC", above=-273.15))
     slip = _checked_slip(slide_to_roll_ratio)
     properties = lubricant_table([oil.record], [temperature])
-    table = film_table(properties, rollers.pair, [force], [speed], [film_formula])
+    table = film_table(properties, rollers.pair, [force], [speed], [one_formula(film_formula)])
     point = {name: table[name].item() for name in OPERATING_DIMS}
     point["slide_to_roll_ratio"] = slip
     lines = roughness_batch(rollers.lines, seed, [0])

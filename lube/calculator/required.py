@@ -15,6 +15,7 @@ from lube.calculator.operating_points import (
     SEED,
     ensemble,
     film_in_si,
+    one_formula,
     probabilities,
     rotation_speed,
     run_all,
@@ -115,15 +116,10 @@ def required_viscosity(
     rotation = single("speed", rotation_speed(speed, rollers.pair.first.radius))
     properties = oil.at(_temperature(temperature))
     # The film depends on the product of viscosity and speed, so the speed is varied for both.
-    table = film_in_si(rollers, oil, force, (rotation * FACTORS, "rpm"), temperature, film_formula)
+    table = _film(rollers, oil, force, (rotation * FACTORS, "rpm"), temperature, film_formula)
     films = _films(rollers, force, share, realisations, seed)
-    factors = _level(FACTORS, table["film_thickness"].values, films)
+    factors = _reached(table, films, f"viscosity within a factor of {FACTORS[-1]:g} of the oil's")
     viscosity = properties["dynamic_viscosity"].item() * factors
-    if not np.isfinite(factors[0]):
-        raise RangeError(
-            f"share: got {share:g}, no viscosity within a factor of {FACTORS[-1]:g} of the oil's "
-            f"gives the film of {1e6 * films[0]:.3g} um that it needs"
-        )
     return _labelled(
         {
             "dynamic_viscosity": viscosity,
@@ -165,14 +161,9 @@ def required_speed(
         Which argument, what came, what is needed; or that no speed is enough.
     """
     _temperature(temperature)
-    table = film_in_si(rollers, oil, force, (FACTORS, "m/s"), temperature, film_formula)
+    table = _film(rollers, oil, force, (FACTORS, "m/s"), temperature, film_formula)
     films = _films(rollers, force, share, realisations, seed)
-    speeds = _level(FACTORS, table["film_thickness"].values, films)
-    if not np.isfinite(speeds[0]):
-        raise RangeError(
-            f"share: got {share:g}, no speed up to {FACTORS[-1]:g} m/s gives the film of "
-            f"{1e6 * films[0]:.3g} um that it needs"
-        )
+    speeds = _reached(table, films, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     speeds = {"entrainment_speed": speeds, "speed": speeds * turns}
     return _labelled(speeds | _film_variables(films, rollers))
@@ -211,11 +202,9 @@ def required_temperature(
     """
     single("speed", rotation_speed(speed, rollers.pair.first.radius))
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
-    table = film_in_si(rollers, oil, force, speed, (levels, "degC"), film_formula)
-    films, thickness = (
-        _films(rollers, force, share, realisations, seed),
-        table["film_thickness"].values,
-    )
+    table = _film(rollers, oil, force, speed, (levels, "degC"), film_formula)
+    films = _films(rollers, force, share, realisations, seed)
+    thickness = table["film_thickness"].values
     if thickness[0] < films[0]:
         coldest = ensemble(table.isel(temperature=[0]), rollers, realisations, seed)
         found = coldest["breakthrough_probability_mean"].item()
@@ -266,7 +255,7 @@ def required_roughness(
     """
     single("speed", rotation_speed(speed, rollers.pair.first.radius))
     _temperature(temperature)
-    film = film_in_si(rollers, oil, force, speed, temperature, film_formula)
+    film = _film(rollers, oil, force, speed, temperature, film_formula)
     share = _checked(share, rollers, film["contact_half_width"].item(), realisations)
     ratios = LAMBDA_RATIOS[::2]
     factors = film["lambda_ratio"].item() / ratios
@@ -293,6 +282,11 @@ def required_roughness(
             "lambda_ratio": ratios,
         }
     )
+
+
+def _film(rollers, oil, force, speed, temperature, film_formula):
+    """Film table in SI units by one formula."""
+    return film_in_si(rollers, oil, force, speed, temperature, one_formula(film_formula))
 
 
 def _films(rollers, force, share, realisations, seed):
@@ -342,10 +336,16 @@ def _lambda_ratios(levels, contact, share):
     return ratios
 
 
-def _level(levels, rising, wanted):
-    """Levels at which a rising quantity has wanted values: 0 or infinity beyond its ends."""
+def _reached(table, films, tried):
+    """Those of `FACTORS` at which a table has some films: 0 or infinity beyond its ends."""
     ends = {"left": -np.inf, "right": np.inf}
-    return np.exp(np.interp(np.log(wanted), np.log(rising), np.log(levels), **ends))
+    rising = np.log(table["film_thickness"].values)
+    factors = np.exp(np.interp(np.log(films), rising, np.log(FACTORS), **ends))
+    if not np.isfinite(factors[0]):
+        raise RangeError(
+            f"share: no {tried} gives the film of {1e6 * films[0]:.3g} um that it needs"
+        )
+    return factors
 
 
 def _temperature(temperature):

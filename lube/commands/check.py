@@ -85,7 +85,7 @@ def _records(study):
 
 
 def _read(entry, study):
-    """Read a record to its end."""
+    """Check the conditions of a record and read all its samples; errors say what is wrong."""
     from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 
     lubricant_of(entry, study)

@@ -31,7 +31,7 @@ def test_one_number_has_no_dimension():
 
 
 @pytest.mark.parametrize(
-    ("value", "told"),
+    ("value", "message"),
     [
         (800, "force: got 800, need a number with its unit, such as '1 N'"),
         ("800", "force: got '800', need a number with its unit, such as '1 N'"),
@@ -44,10 +44,10 @@ def test_one_number_has_no_dimension():
         ((["a"], "N"), "force: got ['a'], need numbers and their unit"),
     ],
 )
-def test_a_mistake_is_one_line_that_names_the_argument(value, told):
+def test_a_mistake_is_one_line_that_names_the_argument(value, message):
     with pytest.raises(StudyError) as error:
         amount("force", value, "N", above=0.0)
-    assert str(error.value) == told
+    assert str(error.value) == message
 
 
 def test_results_have_customary_units_and_names():

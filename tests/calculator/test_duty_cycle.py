@@ -76,7 +76,7 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"forse [N]": [1.0] * 3}, "points: unknown column 'forse [N]', did you mean 'force'?"),
         ({"share": [1.0, -1.0, 1.0]}, "points: share: got -1, need a value at least 0"),
@@ -89,11 +89,11 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
         ({"temperature [degC]": [60.0, 60.0, 20.0]}, "got 20 degC, need 40 to 100 degC"),
     ],
 )
-def test_a_mistake_is_one_line(rollers, oil, change, told):
+def test_a_mistake_is_one_line(rollers, oil, change, message):
     table = {name: values for name, values in (POINTS | change).items() if values is not None}
     with pytest.raises(LubeError) as error:
         lube.duty(table, rollers, oil)
-    assert told in str(error.value)
+    assert message in str(error.value)
 
 
 def test_a_file_that_is_not_there_is_one_line(rollers, oil):

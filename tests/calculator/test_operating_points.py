@@ -66,7 +66,7 @@ def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"force": "400"}, "force: got '400', need a number with its unit, such as '1 N'"),
         ({"speed": "3 kg"}, "or 'm/s'"),
@@ -77,10 +77,10 @@ def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
         ({"slide_to_roll_ratio": 3}, "slide_to_roll_ratio: got 3, need a value"),
     ],
 )
-def test_a_mistake_is_one_line_that_names_the_argument(rollers, oil, change, told):
+def test_a_mistake_is_one_line_that_names_the_argument(rollers, oil, change, message):
     with pytest.raises(LubeError) as error:
         lube.contact_probability(rollers, oil, **POINT | change)
-    assert told in str(error.value)
+    assert message in str(error.value)
 
 
 def test_a_trace_is_of_one_point(rollers, oil):

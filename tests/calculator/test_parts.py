@@ -60,7 +60,7 @@ def test_both_show_themselves_and_travel_between_processes():
 
 
 @pytest.mark.parametrize(
-    ("make", "told"),
+    ("make", "message"),
     [
         (lambda: Rollers("50", "0.2 um"), "Rollers: radius: got '50', need a number with its unit"),
         (lambda: Rollers("50 mm", "0.2 um", "1"), "length: got '1', need a number with its unit"),
@@ -97,7 +97,7 @@ def test_both_show_themselves_and_travel_between_processes():
         (lambda: Oil(OIL).properties("20 degC"), f"{OIL}: got 20 degC, need 40 to 100 degC"),
     ],
 )
-def test_a_mistake_is_one_line(make, told):
+def test_a_mistake_is_one_line(make, message):
     with pytest.raises(LubeError) as error:
         make()
-    assert told in str(error.value)
+    assert message in str(error.value)

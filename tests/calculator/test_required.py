@@ -79,7 +79,7 @@ def test_the_roughness_has_the_share(rollers, oil, busy):
 
 
 @pytest.mark.parametrize(
-    ("ask", "told"),
+    ("ask", "message"),
     [
         (
             lambda rollers, oil: lube.required_film(rollers, "400 N", share=1e-9),
@@ -115,9 +115,15 @@ def test_the_roughness_has_the_share(rollers, oil, busy):
             ),
             "force: got 2 values, need one",
         ),
+        (
+            lambda rollers, oil: lube.required_speed(
+                rollers, oil, "400 N", "60 degC", film_formula=["paper", "moes"]
+            ),
+            "film_formula: got ['paper', 'moes'], need one name",
+        ),
     ],
 )
-def test_the_impossible_is_told_in_one_line(rollers, oil, ask, told):
+def test_the_impossible_is_refused_in_one_line(rollers, oil, ask, message):
     with pytest.raises(LubeError) as error:
         ask(rollers, oil)
-    assert told in str(error.value)
+    assert message in str(error.value)
