@@ -261,7 +261,6 @@ def _record(viscosity, density, base, pressure_viscosity):
             "thermal_coefficient": "6.4e-4 1/K",
         },
         "pressure_viscosity": alpha,
-        "thermal_conductivity": {"source": "assumed: typical of oils", "value": "0.14 W/m/K"},
     }
     record = validate(LubricantRecord, content, "Oil", RecordError)
     check_points(record.viscosity.points, "Oil")

@@ -70,7 +70,8 @@ class _MeasuredOil:
         return gold_pressure_viscosity(viscosity, section.gold_base)
 
     def thermal_conductivity(self, temperature):
-        return np.full(np.shape(temperature), self._record.thermal_conductivity.value)
+        section = self._record.thermal_conductivity
+        return np.full(np.shape(temperature), np.nan if section is None else section.value)
 
 
 class _CoolPropFluid:
@@ -119,8 +120,8 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
         well: parameters, relative residuals, and curves at whole degrees within the record's
         temperature range. The data of a CoolProp fluid are samples of it, and its properties
         come from CoolProp itself. Values that do not exist are NaN: parameters that a law does
-        not have, data points beyond a lubricant's own, fits that a law does not allow, and the
-        viscosity index of a thin liquid.
+        not have, data points beyond a lubricant's own, fits that a law does not allow, the
+        viscosity index of a thin liquid, and a thermal conductivity that is not given.
 
     Raises
     ------

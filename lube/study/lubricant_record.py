@@ -156,7 +156,7 @@ class LubricantRecord(StrictModel):
     """density; needed unless CoolProp gives it"""
     pressure_viscosity: PressureViscosity
     thermal_conductivity: ThermalConductivity | None = None
-    """thermal conductivity; needed unless CoolProp gives it"""
+    """thermal conductivity, for the heating of the oil at the inlet; CoolProp gives its own"""
     temperature_range: TemperatureRange | None = None
 
     _files: tuple[Path, ...] = PrivateAttr(())
@@ -166,13 +166,13 @@ class LubricantRecord(StrictModel):
         fluid, alpha = self.viscosity.coolprop_fluid, self.pressure_viscosity
         measured = {
             "density": self.density,
-            "thermal_conductivity": self.thermal_conductivity,
             "pressure_viscosity.gold_base or value": alpha.gold_base or alpha.value,
         }
         for key, value in measured.items():
             if fluid is None and value is None:
                 raise ValueError(f"{key}: missing, need it unless CoolProp gives it")
-        for key, value in (measured | {"viscosity_law": self.viscosity_law}).items():
+        optional = {name: getattr(self, name) for name in ("thermal_conductivity", "viscosity_law")}
+        for key, value in (measured | optional).items():
             if fluid is not None and value is not None:
                 raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
         if fluid is not None and alpha.definition == "reciprocal-asymptotic":

@@ -107,6 +107,16 @@ def test_entrainment_speed_is_the_surface_speed_of_the_first_roller():
         assert float(table["entrainment_speed"][0]) == pytest.approx(expected)
 
 
+def test_without_a_thermal_conductivity_the_film_has_no_heating_factor():
+    record = PAPERS.lubricants[0].model_copy(update={"thermal_conductivity": None})
+    lubricant = lubricant_table([record], TEMPERATURE)
+    table = film_table(lubricant, ROLLERS, FORCE, SPEED, ["paper"])
+    schema.check(lubricant, "lubricant")
+    schema.check(table, "film")
+    assert np.isnan(table["inlet_shear_heating_factor"]).all()
+    assert np.isfinite(table["film_thickness"]).all()
+
+
 def test_figures_of_the_paper_over_the_grid(table):
     """Lambda 0.9..8.4, inlet heating up to 6 % (not included): physics.md, sections 1 and 3."""
     expected = table["film_thickness"] / (0.2e-6 * np.sqrt(2.0))

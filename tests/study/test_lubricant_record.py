@@ -106,7 +106,6 @@ MISTAKES = [
     ('source: "assumed: Gold"', "source: '  '", "pressure_viscosity.source: got '  '"),
     ("100 mm^2/s}", "100}", "points.0.kinematic_viscosity: got 100, need a number with its"),
     (OIL[OIL.index("density:") : OIL.index("pressure_v")], "", "density: missing"),
-    (OIL[OIL.index("thermal_conductivity") :], "", "thermal_conductivity: missing"),
     (POINTS, "", "viscosity: got none, need one of points, csv, coolprop_fluid"),
     (POINTS, POINTS + "  csv: a.csv\n", "viscosity: got points and csv, need one of"),
     (POINTS, "  points: []\n", "viscosity: need values at two temperatures or more"),

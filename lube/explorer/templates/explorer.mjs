@@ -262,7 +262,8 @@ function showValues(point) {
         "moes_material",
     ].map((name) => [variables[name].long_name, shown(name, point)]);
     rows.splice(4, 0, ["contact width", `${rounded(2e6 * at("contact_half_width", point))} µm`]);
-    rows.push(["film reduction by inlet shear heating, not applied", percent(1 - at("inlet_shear_heating_factor", point))]);
+    const heating = at("inlet_shear_heating_factor", point);
+    rows.push(["film reduction by inlet shear heating, not applied", percent(heating === null ? null : 1 - heating)]);
     rows.push(["geometric contact probability", probability(point, "geometric_contact").text]);
     showTable("values", rows.map(([name, value]) => [name[0].toUpperCase() + name.slice(1), value]));
     showTable(
