@@ -39,6 +39,29 @@ def random_phasors(generator: np.random.Generator, count: int) -> np.ndarray:
     return _PHASORS[generator.integers(0, PHASES, count, dtype=np.uint16)]
 
 
+def gaussian_phasors(generator: np.random.Generator, count: int) -> np.ndarray:
+    """Draw complex Gaussian numbers with a mean square of one.
+
+    Parameters
+    ----------
+    generator, count
+        As in `random_phasors`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (count,), complex64.
+
+    Examples
+    --------
+    >>> phasors = gaussian_phasors(np.random.default_rng(1), 10_000)
+    >>> f"{np.mean(np.abs(phasors) ** 2):.2f}"
+    '1.00'
+    """
+    parts = generator.standard_normal((count, 2), dtype=np.float32)
+    return np.float32(math.sqrt(0.5)) * parts.view(np.complex64)[:, 0]
+
+
 @kernel
 def whole_steps(heights: np.ndarray) -> np.ndarray:
     """Round heights in units of the height step to whole height steps.

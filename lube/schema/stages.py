@@ -66,6 +66,7 @@ _ROWS = (
         values=_LINES | _CONTACT | {"revolutions": "revolutions"},
         same_values=("roughness",),  # each batch draws its lines itself
     ),
+    Stage("tail", inputs=("film",), values=_LINES | _CONTACT),
     Stage("master", inputs=("film",), values=_LINES | _LAYER, same_values=("roughness",)),
     Stage(
         "trace",

@@ -175,3 +175,32 @@ def probability_interval(probabilities: Array, windows: Values) -> tuple[Array, 
     sample_size = np.where(np.ptp(probabilities, axis=0) > 0.0, sample_size, np.nan)
     degrees = max(realisations - 1, 1)
     return mean, *probability_limits(mean, sample_size, degrees, windows * realisations)
+
+
+def mean_interval(values: Array) -> tuple[Array, Array, Array]:
+    r"""Mean of independent, unbiased estimates of a positive number, and its 95 % interval.
+
+    .. math:: \bar x \pm t \frac{s}{\sqrt R}
+
+    with Student's t for R - 1 degrees of freedom.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        Shape (R, ...), the estimates, R of two or more.
+
+    Returns
+    -------
+    mean, lower, upper : numpy.ndarray
+        Shape (...) each; the lower limit is at least zero.
+
+    Examples
+    --------
+    >>> [f"{limit:.2f}" for limit in mean_interval(np.array([1.0, 2.0, 3.0]))]
+    ['2.00', '0.00', '4.48']
+    """
+    count = values.shape[0]
+    mean = mean_over_first(values)
+    error = np.sqrt(mean_over_first(np.square(values - mean)) / (count - 1))
+    half = scipy.special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0) * error
+    return mean, np.maximum(mean - half, 0.0), mean + half

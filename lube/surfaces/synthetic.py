@@ -20,7 +20,7 @@ from typing import Protocol
 import numpy as np
 import scipy.fft
 
-from lube.kernels.synthesis import random_phasors, whole_steps
+from lube.kernels.synthesis import gaussian_phasors, random_phasors, whole_steps
 
 ROLLERS = (1, 2)
 """Labels of the two rollers in files."""
@@ -131,12 +131,62 @@ def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> 
     numpy.ndarray
         Shape (N,), int32: heights in height steps, positive towards the other roller.
     """
+    return whole_steps(_superposition(spec, roller, random_phasors, np.random.default_rng(seed)))
+
+
+def draw_gaussian_line(
+    spec: LineSpecLike, roller: int, generator: np.random.Generator
+) -> np.ndarray:
+    """Draw one line with random amplitudes, which is exactly Gaussian.
+
+    Parameters
+    ----------
+    spec, roller
+        As in `draw_line`.
+    generator : numpy.random.Generator
+        Source of randomness.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,), float32: heights in height steps, not rounded. Their rms is that of the
+        roller in expectation only.
+    """
+    return _superposition(spec, roller, gaussian_phasors, generator)
+
+
+def _superposition(spec, roller, phasors, generator):
+    """Sum of the waves, each times a random number of the complex plane."""
     first_wave, amplitudes = _spectrum(spec, roller)
     points = spec.points[roller]
     waves = np.zeros(points // 2 + 1, np.complex64)
-    phasors = random_phasors(np.random.default_rng(seed), amplitudes.size)
-    np.multiply(amplitudes, phasors, out=waves[first_wave : first_wave + amplitudes.size])
-    return whole_steps(scipy.fft.irfft(waves, points, overwrite_x=True))
+    band = waves[first_wave : first_wave + amplitudes.size]
+    np.multiply(amplitudes, phasors(generator, amplitudes.size), out=band)
+    return scipy.fft.irfft(waves, points, overwrite_x=True)
+
+
+def autocovariance(spec: LineSpecLike, roller: int, lags: int) -> np.ndarray:
+    r"""Covariance of the heights of one line at two points.
+
+    .. math:: R_n = \frac12 \sum_k a_k^2 \cos \frac{2 \pi k n}{N}
+
+    Parameters
+    ----------
+    spec, roller
+        As in `draw_line`.
+    lags : int
+        Number of distances.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (lags,), for distances of n = 0, 1, ... points, squared height steps.
+    """
+    first_wave, amplitudes = wave_amplitudes(spec, roller)
+    points = spec.points[roller]
+    power = np.zeros(points // 2 + 1)
+    power[first_wave : first_wave + amplitudes.size] = (0.5 * amplitudes / spec.height_step) ** 2
+    return scipy.fft.irfft(power, points, norm="forward")[:lags]
 
 
 def draw_realisation(

@@ -1,0 +1,208 @@
+"""Contact of rough lines at any rarity: windows and runs in which one point is known to touch.
+
+Heights are height steps in single precision: a line that is moved until it touches the film has no
+whole-number heights any more.
+"""
+
+import numpy as np
+
+from lube.kernels.compiler import inlined, kernel
+from lube.kernels.layer import layer_breaks
+from lube.types import Array, Pair
+
+
+@kernel
+def touching_windows(
+    line: Array,
+    starts: Array,
+    correlation: Array,
+    touching: Pair,
+    film: Array,
+    factor: float,
+) -> tuple[float, float]:
+    r"""Weigh windows in which one point is known to touch.
+
+    In each window a Gaussian line is moved so that it passes through a given height above the
+    film at a given point,
+
+    .. math:: z_j = z'_j + \rho_{j - \tau} (z_\tau - z'_\tau) ,
+
+    with the line z' as it was drawn. A window of n touching points could have been chosen by any
+    of them, so it counts 1/n.
+
+    Parameters
+    ----------
+    line : numpy.ndarray
+        Sum z' of two Gaussian lines, float32 height steps.
+    starts : numpy.ndarray
+        Shape (M,), index of each window's first point in the line.
+    correlation : numpy.ndarray
+        Shape (2 W - 1,), float32: autocorrelation :math:`\rho` of the sum at the lags
+        -(W - 1) .. W - 1 points.
+    touching : tuple of numpy.ndarray
+        The point :math:`\tau` of each window that touches, shape (M,), counted from the window's
+        first, and its height :math:`z_\tau`, float32 height steps.
+    film : numpy.ndarray
+        Shape (W,), float32: film thickness at each point of the window, height steps.
+    factor : float
+        From `lube.kernels.layer.layer_factor`.
+
+    Returns
+    -------
+    contact, breakthrough : float
+        Mean weight of all windows, and of those in which a boundary layer breaks, the others
+        counted as zero.
+
+    Examples
+    --------
+    A flat line without correlation touches a film of 2 at one point only:
+
+    >>> line, film = np.zeros(9, np.float32), np.full(3, 2, np.float32)
+    >>> correlation = np.array([0, 0, 1, 0, 0], np.float32)
+    >>> touching = np.array([1]), np.array([3], np.float32)
+    >>> touching_windows(line, np.array([4]), correlation, touching, film, 2.0)
+    (1.0, 1.0)
+    """
+    width = film.size
+    overlap = np.empty(width, np.float32)
+    contact = breakthrough = 0.0
+    for m in range(starts.size):
+        origin = touching[0][m]
+        window = line[starts[m] : starts[m] + width]
+        shape = correlation[width - 1 - origin : 2 * width - 1 - origin]
+        rise = touching[1][m] - window[origin]
+        for j in range(width):  # without a branch, so the compiler vectorises it
+            overlap[j] = window[j] + shape[j] * rise - film[j]
+        points = 0
+        for j in range(width):
+            points += overlap[j] > 0.0
+        weight = 1.0 / max(points, 1)  # rounding may put the known point just below the film
+        contact += weight
+        if _breaks(overlap, factor):
+            breakthrough += weight
+    return contact / starts.size, breakthrough / starts.size
+
+
+@inlined
+def _breaks(overlap, factor):
+    """Decide whether the boundary layer breaks on a segment of a window."""
+    points, total = 0, 0.0
+    broken = False
+    for j in range(overlap.size + 1):
+        if j < overlap.size and overlap[j] > 0.0:
+            points += 1
+            total += overlap[j]
+        elif points > 0:
+            if layer_breaks(points, total, factor):
+                broken = True
+                break
+            points, total = 0, 0.0
+    return broken
+
+
+@kernel
+def touching_runs(
+    lines: Pair,
+    places: Array,
+    correlations: Pair,
+    heights: Array,
+    film: float,
+    factor: float,
+) -> Array:
+    r"""Weigh runs of points above a film, each found from one point that is known to touch.
+
+    The lines are moved as in `touching_windows`, each by its own share of the autocorrelation. A
+    run of n points could have been found from any of them, so it counts 1/n. No window cuts it.
+
+    Parameters
+    ----------
+    lines : tuple of numpy.ndarray
+        Two Gaussian lines, float32 height steps.
+    places : numpy.ndarray
+        Shape (M,), index of the known point in the lines.
+    correlations : tuple of numpy.ndarray
+        Shape (2 L + 1,) each, float32: autocovariance of each line over the variance of their
+        sum, at the lags -L .. L points.
+    heights : numpy.ndarray
+        Shape (M,), float32 height steps: the sum of the lines at the known point.
+    film : float
+        Film thickness, height steps.
+    factor : float
+        From `lube.kernels.layer.layer_factor`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (6,), sums over the M runs of their weights: of all; of those whose boundary layer
+        breaks; of these without another one within L points behind their known point; of these
+        without a forerunner one relative step earlier; and the second and the fourth again, times
+        the points of each run.
+    """
+    sums = np.zeros(6)
+    reach = correlations[0].size // 2
+    behind = np.empty(reach + 1, np.float32)
+    for m in range(places.size):
+        place = places[m]
+        rise = heights[m] - (lines[0][place] + lines[1][place])
+        moved = lines, place, correlations, reach, rise, film
+        start, stop, total = _run_around(moved, 0, 0)
+        points = max(stop - start, 1)  # rounding may put the known point just below the film
+        weight = 1.0 / points
+        sums[0] += weight
+        if layer_breaks(points, total, factor):
+            sums[1] += weight
+            sums[4] += 1.0
+            rest = behind[: reach + 1 - stop]
+            for j in range(rest.size):  # without a branch, so the compiler vectorises it
+                lag = reach + stop + j
+                known = correlations[0][lag] + correlations[1][lag]
+                drawn = lines[0][place + stop + j] + lines[1][place + stop + j]
+                rest[j] = drawn + known * rise - film
+            if not _breaks(rest, factor):
+                sums[2] += weight
+            if not _broke_before(moved, start, stop, factor):
+                sums[3] += weight
+                sums[5] += 1.0
+    return sums
+
+
+@inlined
+def _overlap(moved, point, step):
+    """Overlap at a point, counted from the known one, after a relative step of the first line."""
+    lines, place, correlations, reach, rise, film = moved
+    first = lines[0][place + point + step] + correlations[0][reach + point + step] * rise
+    second = lines[1][place + point] + correlations[1][reach + point] * rise
+    return first + second - film
+
+
+@inlined
+def _run_around(moved, point, step):
+    """Return first point, point after the last and sum of the overlaps of the run at a point."""
+    reach = moved[3]
+    start = stop = point
+    total = 0.0
+    overlap = _overlap(moved, stop, step)
+    while overlap > 0.0 and stop < reach - 1:
+        total += overlap
+        stop += 1
+        overlap = _overlap(moved, stop, step)
+    overlap = _overlap(moved, start - 1, step)
+    while overlap > 0.0 and start > 2 - reach:
+        total += overlap
+        start -= 1
+        overlap = _overlap(moved, start - 1, step)
+    return start, stop, total
+
+
+@inlined
+def _broke_before(moved, start, stop, factor):
+    """Decide whether a boundary layer broke in a range of points one relative step earlier."""
+    broken = False
+    point = start - 1
+    while point < stop:
+        first, after, total = _run_around(moved, point, -1)
+        if _overlap(moved, point, -1) > 0.0 and layer_breaks(after - first, total, factor):
+            broken = True
+            break
+        point = max(after, point + 1)
+    return broken

@@ -1,0 +1,188 @@
+"""The tail stage: probability and rate of contact at any rarity, labelled over the grid."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.special
+import xarray as xr
+
+from lube.errors import DataError
+from lube.grid.discretise import layer_factor_of
+from lube.grid.operating_points import surface_speeds
+from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
+from lube.schema import CONTACT_DIMS, LIMITS, OPERATING_DIMS, label
+from lube.statistics.confidence import mean_interval
+from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.surfaces.rare_contact import rare_contact
+from lube.surfaces.synthetic import ROLLERS, line_attributes, spectrum_moments
+
+PAIRS = 32
+"""Pairs of lines for the first film formula; the errors follow from the scatter between them."""
+FEWER_PAIRS = 8
+"""Pairs of lines for the other film formulas."""
+
+
+def tail_probabilities(
+    spec: LineSpec,
+    film: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    seed: int,
+    slide_to_roll_ratio: Sequence[float] = (0.0,),
+) -> xr.Dataset:
+    r"""Compute probability and rate of contact at all operating points, at any rarity.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        Parameters of the lines; `Study.line_spec` of a study.
+    film : xarray.Dataset
+        A ``film`` dataset.
+    boundary_layer : BoundaryLayer
+        The boundary layer.
+    seed : int
+        Seed of the study.
+    slide_to_roll_ratio : sequence of float, optional
+        Levels of the slide-to-roll ratio S; the default is pure rolling.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``tail`` file of `lube.schema`.
+
+    Raises
+    ------
+    DataError
+        If a film thickness is not above zero.
+
+    Notes
+    -----
+    In expectation the probabilities do not depend on slip: the lines are stationary and
+    independent, so every alignment is as good as another. Slip changes how many contacts there
+    are, and how long they last.
+
+    A *breakthrough* is counted where the boundary layer breaks on a whole run of touching points,
+    not on a piece that the window's edge cuts off. There are :math:`\nu` of them per point of the
+    line, and in each relative step of one point :math:`\beta` new ones appear in a window. At the
+    entrainment speed v the window sees
+
+    .. math:: \frac{v}{\Delta x} (\nu + |S|\, \beta)
+
+    of them per second. The mean number in the window, divided by this rate, is the mean duration.
+
+    In pure rolling, equal rollers repeat themselves. Groups of breakthroughs a longest wavelength
+    apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the
+    share of pairs with any is :math:`1 - e^{-\mu}`.
+    """
+    film = film.transpose(*OPERATING_DIMS)
+    lowest = film["film_thickness"].min().item()
+    if not lowest > 0.0:
+        raise DataError(f"film thickness: got {lowest:g} m, need above 0")
+    formulas, levels = film.sizes["film_formula"], np.asarray(slide_to_roll_ratio, float)
+    parts = [(slice(0, 1), PAIRS), (slice(1, formulas), FEWER_PAIRS)][: min(formulas, 2)]
+    tables = [
+        _table(spec, film.isel(film_formula=part), boundary_layer, (seed, pairs), levels)
+        for part, pairs in parts
+    ]
+    table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
+    coordinates = {name: film[name] for name in OPERATING_DIMS}
+    table = table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
+    return label(table, "tail")
+
+
+def _table(spec, film, boundary_layer, draws, slide_to_roll_ratio):
+    """Variables of some film formulas, unlabelled."""
+    slip = xr.DataArray(slide_to_roll_ratio, dims="slide_to_roll_ratio")
+    slip = slip.assign_coords(slide_to_roll_ratio=slip)
+    points = 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
+    windows, runs = _sampled(spec, film, points, boundary_layer, draws)
+    contact, breakthrough = windows.transpose("outcome", ...)
+    _, broken, groups, new, broken_points, new_points = runs.transpose("outcome", ...)
+    everywhere = xr.ones_like(slip)
+    speed = film["entrainment_speed"]
+    # A run is in the window if any of its points is.
+    in_window, new_in_window = (
+        number * (points - 1.0) + their_points
+        for number, their_points in ((broken, broken_points), (new, new_points))
+    )
+    rate = speed / spec.spacing * (broken + abs(slip) * new_in_window)
+    perimeter = spec.points[0] * spec.spacing
+    turn = perimeter / surface_speeds(speed, slip)[0]
+    table = {
+        **_limited("geometric_contact_probability", contact * everywhere, most=1.0),
+        **_limited("breakthrough_probability", breakthrough * everywhere, most=1.0),
+        **_limited("breakthrough_rate", rate),
+        "breakthroughs_per_revolution": (rate * turn).mean("pair"),
+        "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
+        **_touching_pairs(groups * spec.points[0], breakthrough, perimeter / speed),
+        **_asymptotes(spec, film, boundary_layer),
+    }
+    return xr.Dataset(table)
+
+
+def _sampled(spec, film, points, boundary_layer, draws):
+    """Probabilities of windows and numbers of runs, over (pair, outcome, operating dimensions)."""
+    thickness, points = xr.broadcast(film["film_thickness"], points)
+    factor = layer_factor_of(
+        xr.Dataset(attrs=line_attributes(spec)), film["reduced_modulus"].item(), boundary_layer
+    )
+    films, widths = thickness.values.ravel() / spec.height_step, points.values.ravel()
+    seed, pairs = draws
+    found = [
+        rare_contact(spec, seed, number, films, widths.astype(np.int64), factor)
+        for number in range(pairs)
+    ]
+    dims = ("pair", "outcome", *thickness.dims)
+    for values in zip(*found, strict=True):
+        yield xr.DataArray(
+            np.reshape(values, (pairs, -1, *thickness.shape)), thickness.coords, dims
+        )
+
+
+def _limited(name, values, most=np.inf):
+    """Mean and interval of a variable, from its values over pairs of lines."""
+    values = values.transpose("pair", ...)
+    limits = mean_interval(values.values)
+    return {
+        name + suffix: (values.dims[1:], np.minimum(limit, most))
+        for suffix, limit in zip(LIMITS, limits, strict=True)
+    }
+
+
+def _touching_pairs(groups, breakthrough, revolution):
+    """Share of pairs with a breakthrough in a revolution, and when they have the first.
+
+    Groups of breakthroughs come independently of one another. The first of them, if there is any
+    within a revolution T, comes on average after T (1 / mu - 1 / (e^mu - 1)); unless there is
+    one at the beginning.
+    """
+    limits = _limited("touching_pair_share", groups)
+    shares = {name: (dims, -np.expm1(-values)) for name, (dims, values) in limits.items()}
+    expected = groups.mean("pair")
+    # The difference of two large numbers where few groups are expected.
+    exact = 1.0 / expected - 1.0 / np.expm1(expected)
+    moment = xr.where(expected < 1e-4, 0.5 - expected / 12.0, exact)
+    without = 1.0 - breakthrough.mean("pair")
+    return shares | {"first_breakthrough_time": moment * without * revolution}
+
+
+def _asymptotes(spec, film, boundary_layer):
+    """Theory for high films: the window's first point touches, or a crossing lies in the window.
+
+    The boundary layer breaks if the summit behind is sharp enough.
+    """
+    lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
+    names = ("rms_height", "rms_slope", "rms_curvature")
+    moments = [sum(line[name] ** 2 for line in lines) for name in names]
+    curvature = breaking_curvature(
+        film["reduced_modulus"].item(),
+        boundary_layer.critical_thickness,
+        boundary_layer.shear_strength,
+    )
+    thickness = film["film_thickness"]
+    first = scipy.special.ndtr(-thickness / moments[0] ** 0.5)
+    contact = first + 2.0 * film["contact_half_width"] * crossing_rate(thickness, moments)
+    share = sharp_summit_share(thickness.values, moments, curvature)
+    return {
+        "geometric_contact_asymptote": contact,
+        "breakthrough_asymptote": contact * thickness.copy(data=share),
+    }

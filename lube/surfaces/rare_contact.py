@@ -1,0 +1,162 @@
+r"""Contact of Gaussian lines at any rarity, by importance sampling.
+
+An ensemble sees no contact that is rarer than its number of windows. Here every window touches: a
+point of it is chosen and raised above the film, as often and as high as it would be there by
+itself, and the rest of the window follows as the Gaussian line through that point. With the film
+:math:`h_j` at the points of the window, the rms height :math:`\sigma` of the sum of both lines and
+the Gaussian tail Q,
+
+.. math:: P = \sum_j Q(h_j / \sigma) \; \left\langle \frac{X}{n} \right\rangle ,
+
+where n counts the points of a window that touch, and X is one if the window counts: always for
+geometric contact, and for breakthrough if the boundary layer breaks on a segment. The estimate has
+no bias at any rarity, and its relative error hardly depends on the rarity.
+
+The amplitudes of the lines are random, so that the lines are exactly Gaussian.
+
+References
+----------
+R. J. Adler, J. H. Blanchet and J. Liu, Efficient Monte Carlo for high excursions of Gaussian
+random fields, Ann. Appl. Probab. 22 (2012) 1167-1214.
+"""
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.special
+
+from lube.kernels.tail import touching_runs, touching_windows
+from lube.surfaces.synthetic import ROLLERS, LineSpecLike, autocovariance, draw_gaussian_line
+from lube.types import Array, Pair
+
+WINDOWS = 800
+"""Windows along each pair of lines."""
+RUNS = 400
+"""Runs along each pair of lines."""
+
+
+@dataclass(frozen=True)
+class SumOfLines:
+    """Second moments of the sum of both lines.
+
+    Attributes
+    ----------
+    rms : float
+        Rms height, height steps.
+    covariances : tuple of numpy.ndarray
+        Autocovariance of each line over the variance of the sum, for distances of 0, 1, ...
+        points.
+    """
+
+    rms: float
+    covariances: Pair
+
+    @property
+    def correlation(self) -> Array:
+        """Autocorrelation of the sum."""
+        return self.covariances[0] + self.covariances[1]
+
+
+@functools.lru_cache(maxsize=4)
+def sum_of_lines(spec: LineSpecLike, lags: int) -> SumOfLines:
+    """Compute the second moments of the sum of both lines.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines.
+    lags : int
+        Number of distances.
+
+    Returns
+    -------
+    SumOfLines
+        The moments.
+    """
+    lines = [autocovariance(spec, roller, lags) for roller in range(len(ROLLERS))]
+    variance = lines[0][0] + lines[1][0]
+    return SumOfLines(np.sqrt(variance), tuple(line / variance for line in lines))
+
+
+def draw_pair(spec: LineSpecLike, seed: int, number: int) -> tuple[Pair, np.random.Generator]:
+    """Draw a pair of Gaussian lines.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines.
+    seed : int
+        Seed of the study.
+    number : int
+        Number of the pair.
+
+    Returns
+    -------
+    lines : tuple of numpy.ndarray
+        Shapes (N1,) and (N2,), float32 height steps.
+    generator : numpy.random.Generator
+        For all else that is chosen at random on this pair.
+    """
+    # The first two children draw the lines of the realisation of this number.
+    children = np.random.SeedSequence((seed, number)).spawn(5)[2:]
+    *drawing, choosing = map(np.random.default_rng, children)
+    return tuple(draw_gaussian_line(spec, r, one) for r, one in enumerate(drawing)), choosing
+
+
+def rare_contact(
+    spec: LineSpecLike, seed: int, number: int, films: Array, widths: Array, factor: float
+) -> Pair:
+    r"""Estimate probabilities and rates of contact from one pair of lines.
+
+    Parameters
+    ----------
+    spec, seed, number
+        As in `draw_pair`.
+    films : numpy.ndarray
+        Shape (P,), film thickness, height steps, above zero.
+    widths : numpy.ndarray
+        Shape (P,), points in the contact window.
+    factor : float
+        From `lube.kernels.layer.layer_factor`.
+
+    Returns
+    -------
+    windows : numpy.ndarray
+        Shape (2, P): probabilities of geometric contact and of breakthrough in a window.
+    runs : numpy.ndarray
+        Shape (6, P), per point of the line: runs of touching points; runs whose boundary layer
+        breaks; groups of these, a longest wavelength apart; those of these that appear in a
+        relative step of one point; the points of broken runs; and those of the runs that appear.
+    """
+    lines, generator = draw_pair(spec, seed, number)
+    size = min(spec.points)
+    line = lines[0][:size] + lines[1][:size]
+    log_chosen, place = np.log(generator.random(WINDOWS)), generator.random(WINDOWS)
+    reach = int(np.ceil(2.0 * np.pi / (spec.q_min * spec.spacing)))
+    both = sum_of_lines(spec, max(reach + 1, int(widths.max())))
+    covariances = tuple(_both_sides(each, reach + 1) for each in both.covariances)
+    places = _spread(size, 2 * reach + 1, RUNS) + reach
+    windows, runs = np.empty((2, films.size)), np.empty((6, films.size))
+    for i, (film, width) in enumerate(zip(films, widths, strict=True)):
+        log_tail = scipy.special.log_ndtr(-film / both.rms)
+        # Heights above the film as they are by themselves: the inverse of the Gaussian tail.
+        heights = -both.rms * scipy.special.ndtri_exp(log_chosen + log_tail)
+        touching = (place * width).astype(np.int64), heights.astype(np.float32)
+        shape = np.full(width, film, np.float32)
+        starts, correlation = _spread(size, width, WINDOWS), _both_sides(both.correlation, width)
+        found = touching_windows(line, starts, correlation, touching, shape, factor)
+        windows[:, i] = np.array(found) * (width * np.exp(log_tail))
+        found = touching_runs(lines, places, covariances, touching[1][:RUNS], film, factor)
+        runs[:, i] = found * (np.exp(log_tail) / RUNS)
+    return windows, runs
+
+
+def _both_sides(covariance, lags):
+    """Covariance at the lags -(n - 1) .. n - 1 points, single precision."""
+    return np.concatenate([covariance[lags - 1 : 0 : -1], covariance[:lags]]).astype(np.float32)
+
+
+def _spread(size, width, count):
+    """First points of pieces of a width, evenly spread over a line."""
+    return np.arange(count) * (size - width) // (count - 1)

@@ -1,0 +1,54 @@
+"""Crossings and summits of a Gaussian line: limits, then numerical integration."""
+
+import numpy as np
+import pytest
+import scipy.integrate
+import scipy.stats
+
+from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
+
+MOMENTS = 2.0, 3.0, 40.0
+
+
+def test_a_narrow_band_crosses_zero_once_a_wave():
+    wavenumber = 5.0
+    moments = tuple(wavenumber**order for order in (0, 2, 4))
+    assert crossing_rate(0.0, moments) == pytest.approx(wavenumber / (2.0 * np.pi))
+
+
+def test_crossings_fall_as_the_density_of_heights_does():
+    ratio = crossing_rate(3.0, MOMENTS) / crossing_rate(1.0, MOMENTS)
+    assert ratio == pytest.approx(np.exp(-(9.0 - 1.0) / (2.0 * MOMENTS[0])))
+
+
+def test_all_summits_are_sharper_than_flat_and_none_than_a_needle():
+    levels = np.array([0.5, 2.0, 9.0])
+    np.testing.assert_allclose(sharp_summit_share(levels, MOMENTS, 0.0), 1.0)
+    assert np.all(sharp_summit_share(levels, MOMENTS, 1e3) < 1e-100)
+
+
+@pytest.mark.parametrize("level", [1.0, 4.0, 8.0])
+def test_sharp_summits_by_numerical_integration(level):
+    m0, m2, m4 = MOMENTS
+    density = scipy.stats.multivariate_normal([0.0, 0.0], [[m0, m2], [m2, m4]])
+
+    def summits(least):
+        top, sharpest = level + 10.0, least + 60.0
+        grid = np.linspace(level, top, 801)[:, None], np.linspace(least, sharpest, 801)
+        values = grid[1] * density.pdf(np.stack(np.broadcast_arrays(*grid), axis=-1))
+        inner = scipy.integrate.simpson(values, grid[1], axis=1)
+        return scipy.integrate.simpson(inner, grid[0][:, 0])
+
+    expected = summits(9.0) / summits(0.0)
+    assert sharp_summit_share(np.array([level]), MOMENTS, 9.0) == pytest.approx(expected, rel=1e-4)
+
+
+def test_the_layer_breaks_at_the_curvature_where_the_remaining_thickness_is_critical():
+    """Of a parabola of any height: Eqs. 5 and 6 by hand."""
+    modulus, critical, strength = 1.154e11, 5e-9, 1e6
+    curvature = breaking_curvature(modulus, critical, strength)
+    for height in (1e-9, 3e-8):
+        length = np.sqrt(8.0 * height / curvature)
+        force = modulus * 2.0 / 3.0 * length * height
+        thickness = np.pi * strength / 12.0 * length**3 / force
+        assert thickness == pytest.approx(critical)

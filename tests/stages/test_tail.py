@@ -1,0 +1,178 @@
+"""Contact at any rarity over the grid: theory and limits, then counting, then stored numbers."""
+
+import numpy as np
+import pytest
+
+from lube import contact_statistics, gather, roughness_lines
+from lube.errors import DataError
+from lube.grid.discretise import speed_ratios
+from lube.kernels.layer import layer_factor
+from lube.kernels.motion import surface_position
+from lube.schema import CONTACT_DIMS, OPERATING_DIMS
+from lube.stages.tail import tail_probabilities
+from lube.surfaces.rare_contact import draw_pair
+
+SEED = 1
+RATIOS = (0.0, -0.1, 0.5)
+PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
+
+
+@pytest.fixture(scope="module")
+def few(film):
+    return film.isel(temperature=[0, 3], speed=[1], force=[0, 2, 4])
+
+
+@pytest.fixture(scope="module")
+def spec(make_spec):
+    return make_spec(100_000)
+
+
+@pytest.fixture(scope="module")
+def tail(spec, few, study):
+    return tail_probabilities(spec, few, study.boundary_layer, SEED, RATIOS)
+
+
+@pytest.fixture(scope="module")
+def rare(spec, few, study):
+    """Contact with twice as thick films; on the coarse lines only a weak layer breaks."""
+    thick = few.isel(film_formula=[0], temperature=[0])
+    thick = thick.assign(film_thickness=2.0 * thick["film_thickness"])
+    weak = study.boundary_layer.model_copy(update={"shear_strength": 3e4})
+    return tail_probabilities(spec, thick, weak, SEED)
+
+
+# --- Theory and limits -------------------------------------------------------------------
+
+
+def test_results_are_over_the_dimensions_of_the_contact_model(tail, few):
+    assert tail["breakthrough_rate"].dims == CONTACT_DIMS
+    assert tail["touching_pair_share"].dims == OPERATING_DIMS
+    assert tail["slide_to_roll_ratio"].values.tolist() == list(RATIOS)
+    for name in OPERATING_DIMS:
+        np.testing.assert_array_equal(tail[name], few[name])
+
+
+def test_each_interval_encloses_its_estimate(tail):
+    for name in (*PROBABILITIES, "breakthrough_rate", "touching_pair_share"):
+        lower, upper = tail[f"{name}_lower"], tail[f"{name}_upper"]
+        assert np.all((lower >= 0.0) & (lower < upper))
+        assert np.all((lower < tail[name]) & (tail[name] <= upper))
+    for name in PROBABILITIES:
+        assert np.all(tail[f"{name}_upper"] <= 1.0)
+
+
+def test_probabilities_do_not_depend_on_slip_but_contacts_become_more_and_shorter(tail):
+    for name in PROBABILITIES:
+        assert np.all(tail[name] == tail[name].isel(slide_to_roll_ratio=0))
+    rate, duration = tail["breakthrough_rate"], tail["breakthrough_duration"]
+    assert np.all(rate.diff("slide_to_roll_ratio") > 0.0)
+    assert np.all(duration.diff("slide_to_roll_ratio") < 0.0)
+    present = rate * duration
+    np.testing.assert_allclose(present, present.isel(slide_to_roll_ratio=[0] * len(RATIOS)))
+
+
+def test_in_pure_rolling_a_breakthrough_lasts_as_long_as_its_passage(tail, few):
+    width = 2.0 * few["contact_half_width"]
+    passage = width / few["entrainment_speed"]
+    longer = tail["breakthrough_duration"].isel(slide_to_roll_ratio=0) / passage
+    assert longer.min() > 0.97 and longer.max() < 1.1
+
+
+def test_rare_breakthroughs_come_to_few_pairs_in_the_middle_of_the_revolution(rare):
+    count = rare["breakthroughs_per_revolution"].squeeze()
+    share = rare["touching_pair_share"].squeeze()
+    assert np.all(count < 1e-6) and count.min() < 1e-20
+    assert np.all((0.6 * count < share) & (share <= count))
+    revolution = 60.0 / rare["speed"].item()
+    np.testing.assert_allclose(rare["first_breakthrough_time"], revolution / 2.0, rtol=1e-4)
+
+
+def test_where_breakthroughs_are_many_every_pair_has_one_at_once(tail):
+    often = tail.isel(film_formula=0, force=2, temperature=1, slide_to_roll_ratio=0).squeeze()
+    assert often["touching_pair_share"] == pytest.approx(1.0, abs=1e-6)
+    assert often["first_breakthrough_time"] < 0.1 * 60.0 / often["speed"]
+
+
+def test_for_high_films_the_probabilities_approach_theory(rare):
+    for name in PROBABILITIES:
+        ratio = rare[name] / rare[name.replace("probability", "asymptote")]
+        # A line of points misses some crossings.
+        assert np.all((ratio > 0.85) & (ratio < 1.02))
+
+
+def test_an_unreasonable_film_is_refused(spec, few, study):
+    none = few.assign(film_thickness=0.0 * few["film_thickness"])
+    with pytest.raises(DataError, match="film thickness: got 0 m, need above 0"):
+        tail_probabilities(spec, none, study.boundary_layer, SEED)
+
+
+# --- Counting ----------------------------------------------------------------------------
+
+
+def test_an_ensemble_finds_the_same_probabilities(tail, spec, few, study):
+    lines = roughness_lines(spec, SEED, range(24))
+    contact = gather([contact_statistics(lines, few, study.boundary_layer)], few)
+    rolling = tail.sel(slide_to_roll_ratio=0.0)
+    seen = 0
+    for name in PROBABILITIES:
+        mean = contact[f"{name}_mean"].isel(slide_to_roll_ratio=0)
+        often = (mean > 1e-3).values
+        error = contact[name].std("realisation", ddof=1).isel(slide_to_roll_ratio=0) / 24**0.5
+        half = (rolling[name] - rolling[f"{name}_lower"]) / 2.0
+        deviation = (mean - rolling[name]).values / np.hypot(error.values, half.values)
+        assert np.all(np.abs(deviation[often]) < 4.0)
+        seen += often.sum()
+    assert seen >= 8
+
+
+def broken_runs(lines, starts, film, window, factor):
+    """Whole runs with a broken boundary layer that reach into a window of the sum of lines.
+
+    As sets of points, counted from the window's first point.
+    """
+    margin = 60
+    points = np.arange(-margin, window + margin)
+    first, second = (
+        line[(start + points) % line.size] for line, start in zip(lines, starts, strict=True)
+    )
+    overlap = first + second - film
+    pieces = np.split(np.arange(points.size), np.flatnonzero(np.diff(overlap > 0.0)) + 1)
+    for piece in pieces:
+        breaks = overlap[piece[0]] > 0.0 and piece.size**3 < factor * overlap[piece].sum()
+        if breaks and points[piece[-1]] >= 0 and points[piece[0]] < window:
+            yield set(points[piece].tolist())
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.4])
+def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study, ratio):
+    """A broken run is new unless it overlaps one of the step before, seen from a surface."""
+    spec = make_spec(20_000)
+    point = few.isel(film_formula=[0], temperature=[1], force=[2])
+    weak = study.boundary_layer.model_copy(update={"shear_strength": 3e4})
+    tail = tail_probabilities(spec, point, weak, SEED, [ratio]).squeeze()
+    factor = layer_factor(
+        point["reduced_modulus"].item(), weak.critical_thickness, 3e4, spec.spacing, 1e-12
+    )
+    film = point["film_thickness"].item() / spec.height_step
+    window = 2 * int(point["contact_half_width"].item() / spec.spacing) + 1
+    ratios, counts = speed_ratios(ratio), []
+    for number in range(8):
+        lines, _ = draw_pair(spec, SEED, 100 + number)
+        count, old, starts = 0, None, None
+        for step in range(2000):
+            moved = [surface_position(step, one) for one in ratios]
+            runs = list(broken_runs(lines, moved, film, window, factor))
+            if old is not None:
+                steps = [new - before for new, before in zip(moved, starts, strict=True)]
+                # The points of the step before, as each surface has carried them on.
+                seen = [{i - one for i in run} for run in old for one in set(steps)]
+                count += sum(not any(run & known for known in seen) for run in runs)
+            old, starts = runs, moved
+        counts.append(count / 1999)
+    duration = spec.spacing / (point["entrainment_speed"].item() * (1.0 + ratio / 2.0))
+    expected = tail["breakthrough_rate"].item() * duration
+    half = expected - tail["breakthrough_rate_lower"].item() * duration
+    error = np.hypot(np.std(counts, ddof=1) / 8**0.5, half / 2.0)
+    print(np.mean(counts), expected, error)
+    assert abs(np.mean(counts) - expected) < 4.0 * error
+    assert error < 0.15 * expected
