@@ -14,6 +14,7 @@ from lube.stages.gauge import gauge_records
 from lube.stages.lubricant import lubricant_table
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
+from lube.stages.tail import tail_probabilities
 from lube.stages.trace import contact_trace
 
 
@@ -58,6 +59,7 @@ def datasets_of_every_kind(study):
         "roughness": lines,
         "contact_batch": run,
         "contact": contact,
+        "tail": tail_probabilities(spec, film, layer, study.seed, study.slips),
         "master_batch": mapped,
         "master": master,
         "trace": contact_trace(lines, film, points, layer, study.resistivity),

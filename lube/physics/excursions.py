@@ -73,7 +73,7 @@ def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float)
     Examples
     --------
     >>> sharp_summit_share(np.array([5.0]), (1.0, 4.0, 100.0), 20.0).round(3)
-    array([0.562])
+    array([0.707])
     """
     return _summits(level, moments, curvature) / _summits(level, moments, 0.0)
 

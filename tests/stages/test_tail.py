@@ -173,6 +173,5 @@ def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study
     expected = tail["breakthrough_rate"].item() * duration
     half = expected - tail["breakthrough_rate_lower"].item() * duration
     error = np.hypot(np.std(counts, ddof=1) / 8**0.5, half / 2.0)
-    print(np.mean(counts), expected, error)
     assert abs(np.mean(counts) - expected) < 4.0 * error
     assert error < 0.15 * expected
