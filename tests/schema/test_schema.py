@@ -77,9 +77,11 @@ def test_the_cell_methods_of_a_mean_name_what_it_is_over():
     words = ("mean ", "share of time", "breakthrough probability", "probability of", "rms diff")
     for kind, name in VARIABLES:
         row = FILES[kind][name]
+        if kind == "tail":
+            continue  # expectations, not means
         if row.long_name.startswith(words) and "limit" not in row.long_name:
             over, method = row.attributes["cell_methods"].split(": ", 1)
-            assert over in (*row.dims, "revolutions", "duration", "time")
+            assert over in (*row.dims, "revolutions", "duration")
             assert method.startswith(("mean", "root_mean_square"))
 
 
