@@ -86,6 +86,13 @@ _AXIS_UNITS = {
 }
 
 
+# Coordinates that force, speed and temperature leave open, and the words before their values.
+_OTHER_COORDINATES = {
+    "lubricant": "",
+    "film_formula": "film formula ",
+    "slide_to_roll_ratio": "slide-to-roll ratio ",
+}
+
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
 _FOOTNOTE_LINE = 130  # characters that fit below a figure
 _MOST_LABELS = 9  # on a logarithmic axis
@@ -208,6 +215,29 @@ def point_name(point: xr.Dataset | xr.DataArray, *variables: str) -> str:
     return ", ".join(level_name(point[name].item(), COORDINATES[name].units) for name in names)
 
 
+def other_names(points: xr.Dataset) -> list[str]:
+    """Operating points as text, by that in which they differ besides force, speed and temperature.
+
+    Parameters
+    ----------
+    points : xarray.Dataset
+        With the dimension ``operating_point``.
+
+    Returns
+    -------
+    list of str
+        For each operating point its lubricant, film formula and slide-to-roll ratio, where these
+        are not the same for all, such as ``n-dodecane``; empty where they are.
+    """
+    columns = [
+        [f"{word}{value}" for value in points[name].values]
+        for name, word in _OTHER_COORDINATES.items()
+        if name in points.coords and np.unique(points[name]).size > 1
+    ]
+    rows = zip(*columns, strict=True) if columns else [()] * points.sizes["operating_point"]
+    return [", ".join(words) for words in rows]
+
+
 def rig_name(dataset: xr.Dataset) -> str:
     """Rig that produced some records, as text: ``simulated rig, 1 pair of rollers``.
 
@@ -282,26 +312,22 @@ def level_groups(
     return groups
 
 
-def footnote(figure: Figure, dataset: xr.Dataset | xr.DataArray) -> None:
+def footnote(figure: Figure, *shown: xr.Dataset | xr.DataArray) -> None:
     """Write below a figure which lubricant, film formula and slide-to-roll ratio it shows.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
         The figure, in constrained layout.
-    dataset : xarray.Dataset or xarray.DataArray
+    *shown : xarray.Dataset or xarray.DataArray
         What it shows; of a coordinate with several values all are written.
     """
-    words = {
-        "lubricant": "",
-        "film_formula": "film formula ",
-        "slide_to_roll_ratio": "slide-to-roll ratio ",
-    }
-    parts = [
-        word + ", ".join(str(value) for value in np.unique(dataset[name]))
-        for name, word in words.items()
-        if name in dataset.coords
-    ]
+    parts = []
+    for name, word in _OTHER_COORDINATES.items():
+        values = [np.ravel(one[name]) for one in shown if name in one.coords]
+        if values:
+            different = np.unique(np.concatenate(values)).tolist()
+            parts.append(word + ", ".join(map(str, different)))
     # An empty line keeps the stamp's place free.
     line = textwrap.fill(" · ".join(parts), _FOOTNOTE_LINE) + "\n"
     figure.supxlabel(line, x=0.99, ha="right", fontsize=6.5, color="#5F5F5F")

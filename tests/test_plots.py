@@ -112,6 +112,20 @@ def test_rig_and_records_are_named(records):
     assert plots.record_name(simulated, pairs=2) == f"pair A\n{conditions}"
 
 
+def test_operating_points_are_named_by_what_else_differs():
+    coords = {
+        "lubricant": ("operating_point", ["n-dodecane", "squalane"]),
+        "film_formula": ("operating_point", ["paper", "moes"]),
+        "slide_to_roll_ratio": ("operating_point", [0.0, 0.0]),
+    }
+    points = xr.Dataset(coords=coords)
+    assert plots.other_names(points) == [
+        "n-dodecane, film formula paper",
+        "squalane, film formula moes",
+    ]
+    assert plots.other_names(points.isel(operating_point=[0, 0])) == ["", ""]
+
+
 def test_records_are_grouped_by_their_levels(records):
     groups = plots.level_groups(records, "force")
     assert [name for name, *_ in groups] == ["800 N", "1600 N", "not at a level"]
@@ -151,6 +165,13 @@ def test_a_logarithmic_axis_has_plain_labels_however_short_it_is():
 def shown(study):
     """An empty dataset with the origin of a film table."""
     return xr.Dataset(attrs=global_attributes(study, "film"))
+
+
+def test_a_footnote_names_all_that_several_datasets_hold():
+    figure, _ = plt.subplots()
+    one = xr.Dataset(coords={"lubricant": "squalane", "slide_to_roll_ratio": 0.1})
+    plots.footnote(figure, one, one.assign_coords(slide_to_roll_ratio=[0.0, 0.1]))
+    assert figure.get_supxlabel().strip() == "squalane · slide-to-roll ratio 0.0, 0.1"
 
 
 def test_stamp_and_footnote_stand_below_everything_else(tmp_path, shown):
