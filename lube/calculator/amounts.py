@@ -87,7 +87,7 @@ def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArra
 
 
 def _numbers(value, units):
-    match value:
+    match value.tolist() if isinstance(value, np.ndarray) else value:
         case (str(), *_) | [str(), *_] if not _has_unit_last(value):
             return [parse_quantity(one, units) for one in value]
         case (numbers, str(given)):
