@@ -27,7 +27,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         out.
     """
     parser = _parser()
-    options = parser.parse_args(arguments)
+    options, more = parser.parse_known_args(arguments)
+    if "figure" in options and not any(word.startswith("-") for word in more):
+        options.figure += more  # argparse does not know those after --to
+    elif more:
+        parser.error(f"unrecognized arguments: {' '.join(more)}")
     compute_alike()
     try:
         code = options.run(options) if hasattr(options, "run") else parser.print_help() or 0

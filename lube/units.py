@@ -16,7 +16,7 @@ import numpy as np
 from lube.errors import LubeError, shown
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_QUANTITY = re.compile(rf"({_NUMBER}(?:\s*/\s*\d+)?)\s*([^\s,;].*)?")
+_QUANTITY = re.compile(rf"((?>{_NUMBER})(?:\s*/\s*\d+)?)\s*([^\s,;].*)?")
 
 # For speeds of rotation. Pint treats an angle as a pure number, so 100 1/min would be 15.9 rpm;
 # but a rotation given as 1/min or in hertz counts turns.

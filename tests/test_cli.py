@@ -25,6 +25,19 @@ def test_what_is_missing_or_no_archive_is_refused_in_one_line(files, tmp_path, m
         assert printed.err.count("\n") == 1
 
 
+def test_figures_may_be_named_before_and_after_their_folder(monkeypatch, capsys):
+    asked = []
+    monkeypatch.setattr("lube.archive.redraw.redraw", lambda *words: asked.append(words) or [])
+    archive = os.path.dirname(__file__)
+    for words in (["a", "b", "--to", "new"], ["a", "--to", "new", "b"], ["--to", "new", "a", "b"]):
+        assert main(["figures", archive, *words]) == 0
+    assert [words[1:] for words in asked] == [("new", ["a", "b"])] * 3
+    for words in (["figures", archive, "--to", "new", "--b"], ["verify", archive, "b"]):
+        with pytest.raises(SystemExit):
+            main(words)
+        assert f"unrecognized arguments: {words[-1]}" in capsys.readouterr().err
+
+
 def test_a_realisation_is_a_number_or_all(capsys):
     with pytest.raises(SystemExit):
         main(["explain", "contact.nc", "--realisation", "1.5"])

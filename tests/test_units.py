@@ -95,7 +95,7 @@ def test_a_voltage_or_resistance_says_which_it_is():
 
 
 def test_what_is_no_number_with_a_unit_is_refused_with_the_unit_that_is_needed():
-    for value in [50, 50.0, True, None, [1], {"a": 1}, "", "50", "mm", "fifty mm"]:
+    for value in [50, 50.0, True, None, [1], {"a": 1}, "", "50", "mm", "fifty mm", "50,5 mm"]:
         needed = f"got {value!r}, need a number with its unit, such as '1 m'"
         assert refusal(parse_quantity, value, "m") == needed
     assert refusal(parse_quantity, "1e999 mm", "m") == "got '1e999', need a finite number"

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import LubeError, StudyError, shown
-from lube.schema import COORDINATES, FILES, REGIMES
+from lube.schema import COORDINATES, FILES, REGIMES, Variable
 from lube.study.field_types import bounded
 from lube.units import convert, parse_quantity
 
@@ -26,9 +26,23 @@ _CUSTOMARY = dict.fromkeys(_MICROMETRES, ("um", 1e6)) | {
     "kinematic_viscosity": ("mm2 s-1", 1e6),
     "pressure_viscosity_coefficient": ("GPa-1", 1e9),
     "time": ("ms", 1e3),
+    "radius": ("mm", 1e3),
+    "second_radius": ("mm", 1e3),
 }
 """Customary unit of a variable, and its number of them in one SI unit."""
+_OWN = {
+    "radius": ("radius of the first roller", "m"),
+    "second_radius": ("radius of the second roller", "m"),
+    "surface_speed": ("surface speed of the first roller", "m s-1"),
+    "second_surface_speed": ("surface speed of the second roller", "m s-1"),
+    "share": ("share of the duty cycle", "1"),
+    "roughness_factor": ("factor of the roughness of both rollers", "1"),
+}
+"""Variables of no file: what each is, and its SI unit."""
 _VARIABLES = COORDINATES | FILES["lubricant"] | FILES["trace"] | FILES["film"] | FILES["contact"]
+_VARIABLES |= {
+    name: Variable((), units, long_name, "f", "") for name, (long_name, units) in _OWN.items()
+}
 
 
 def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArray:
@@ -64,7 +78,7 @@ def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArra
     try:
         numbers = np.asarray(_numbers(value, units), float)
         for number in numbers.ravel():
-            bounded(number, units, **limits)
+            bounded(number, None if units == "1" else units, **limits)
         if numbers.ndim > 1 or not numbers.size:
             raise LubeError(f"got {shown(value)}, need one number with its unit, or a list of them")
     except LubeError as error:
@@ -73,7 +87,7 @@ def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArra
 
 
 def _numbers(value, units):
-    match value:
+    match value.tolist() if isinstance(value, np.ndarray) else value:
         case (str(), *_) | [str(), *_] if not _has_unit_last(value):
             return [parse_quantity(one, units) for one in value]
         case (numbers, str(given)):

@@ -18,7 +18,7 @@ from lube.calculator.operating_points import (
     ensemble,
     one_formula,
 )
-from lube.calculator.parts import Oil, Rollers
+from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import DataError, LubeError, right_one, shown
 from lube.physics.hertz import reduced_radius
 from lube.rig.map_curves import windows_in
@@ -43,6 +43,7 @@ _COLUMNS = {
 _SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed")
 
 
+@with_parts
 def duty(
     points: pd.DataFrame | Mapping[str, Sequence] | Sequence[Mapping[str, Any]] | File,
     rollers: Rollers,
@@ -109,7 +110,7 @@ def duty(
     whole = (contact["breakthrough_probability"] * share).sum("point")
     windows = windows_in(contact, 2.0 * table["contact_half_width"].max().item())
     for ending, value in zip(LIMITS, probability_interval(whole.values, windows), strict=True):
-        labels = {"long_name": "breakthrough probability of the whole duty cycle"}
+        labels = {"long_name": "breakthrough probability of the whole duty cycle", "units": "1"}
         found[f"whole_probability{ending}"] = (), value, labels
     return found
 
@@ -145,7 +146,14 @@ def _columns(points):
         frame = pd.read_csv(points, skipinitialspace=True) if is_file else pd.DataFrame(points)
     except (OSError, ValueError) as error:
         raise DataError(f"points: got {shown(points)}, need a table: {error}") from None
-    columns = dict(_column(f"{header}".strip(), frame[header].tolist()) for header in frame)
+    if frame.empty:
+        raise DataError("points: got no rows, need one for each duty point")
+    columns = {}
+    for header, values in frame.items():
+        name, numbers = _column(f"{header}".strip(), values.tolist())
+        if name in columns:
+            raise DataError(f"points: got the column {name!r} twice, need it once")
+        columns[name] = numbers
     for name in ("force", "temperature"):
         if name not in columns:
             raise DataError(f"points: no column {name!r}, need one, as '{name} [{_COLUMNS[name]}]'")

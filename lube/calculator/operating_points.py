@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.amounts import Amount, amount, described
-from lube.calculator.parts import Oil, Rollers
+from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import LubeError, StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.rig.map_curves import windows_in
@@ -21,7 +21,8 @@ from lube.stages.roughness import roughness_batch
 from lube.stages.trace import contact_trace
 from lube.statistics.confidence import probability_interval
 from lube.study.field_types import bounded
-from lube.study.rollers import BoundaryLayer
+from lube.study.rig_settings import RIG_REALISATIONS
+from lube.study.rollers import BoundaryLayer, check_width
 from lube.units import parse_number
 
 FORMULA = "pan-hamrock"
@@ -36,6 +37,7 @@ FILM_VARIABLES = (
 _PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 
 
+@with_parts
 def film(
     rollers: Rollers,
     oil: Oil,
@@ -101,7 +103,10 @@ def film_in_si(
     if not temperature.dims:
         temperature = temperature.assign_coords(temperature=temperature)
     properties = oil.at(temperature)
-    formulas = [film_formula] if isinstance(film_formula, str) else list(film_formula)
+    several = not isinstance(film_formula, str) and np.iterable(film_formula)
+    formulas = list(film_formula) if several else [film_formula]
+    if not formulas or not all(isinstance(one, str) for one in formulas):
+        raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
     table = film_at(properties, rollers.pair, force, speed, formulas)
     table = table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
     table = table.assign_coords(force=force, speed=speed)
@@ -154,6 +159,18 @@ def one_formula(name: str) -> str:
     return name
 
 
+def check_widths(half_widths: xr.DataArray, rollers: Rollers) -> None:
+    """Refuse a contact that is finer than the grid or wider than a roller's perimeter.
+
+    Raises
+    ------
+    StudyError
+        With the contact width, and what is needed.
+    """
+    for half_width in half_widths.values.ravel():
+        check_width(rollers.lines, 2.0 * half_width, "force: the contact")
+
+
 def _checked_slip(slip):
     try:
         return bounded(parse_number(slip), None, least=-2.0, most=2.0)
@@ -161,6 +178,7 @@ def _checked_slip(slip):
         raise StudyError(f"slide_to_roll_ratio: {error}") from None
 
 
+@with_parts
 def contact_probability(
     rollers: Rollers,
     oil: Oil,
@@ -241,6 +259,7 @@ def ensemble(
     xarray.Dataset
         From `with_limits`.
     """
+    check_widths(table["contact_half_width"], rollers)
     run = partial(probabilities, table=table, layer=rollers.layer, slip=slip)
     return with_limits(run_all(run, rollers, realisations, seed), table["contact_half_width"], slip)
 
@@ -281,6 +300,8 @@ def run_all(
     for name, number, least in (("realisations", realisations, 1), ("seed", seed, 0)):
         if isinstance(number, bool) or not isinstance(number, int) or number < least:
             raise StudyError(f"{name}: got {shown(number)}, need a whole number, at least {least}")
+    if realisations > RIG_REALISATIONS:
+        raise StudyError(f"realisations: got {realisations}, need at most {RIG_REALISATIONS}")
 
     def of_realisation(number):
         return run(roughness_batch(rollers.lines, seed, [number]))
@@ -320,6 +341,7 @@ def with_limits(contact: xr.Dataset, half_width: xr.DataArray, slip: float = 0.0
     return contact
 
 
+@with_parts
 def trace(
     rollers: Rollers,
     oil: Oil,
@@ -366,6 +388,7 @@ def trace(
     table = film_table(properties, rollers.pair, [force], [speed], [one_formula(film_formula)])
     point = {name: table[name].item() for name in OPERATING_DIMS}
     point["slide_to_roll_ratio"] = slip
+    check_widths(table["contact_half_width"], rollers)
     lines = roughness_batch(rollers.lines, seed, [0])
     found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]

@@ -1,8 +1,11 @@
 """Rollers and oils, from numbers with units or from a lubricant record."""
 
+import functools
+import inspect
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import scipy.fft
@@ -12,7 +15,7 @@ from lube.calculator.amounts import Amount, amount, described
 from lube.errors import LubeError, RecordError, StudyError, shown
 from lube.physics.pressure_viscosity import GOLD_BASES
 from lube.stages.lubricant import lubricant_table
-from lube.study.field_types import validate
+from lube.study.field_types import bounded, validate
 from lube.study.lubricant_record import (
     LubricantRecord,
     check_points,
@@ -29,6 +32,10 @@ _PROPERTIES = (
 )
 _POINTS_PER_WAVE = 10
 """Grid points in the shortest wavelength, as in the paper."""
+_HEIGHT_STEP = "1 pm"
+_ROUGHNESS = {"least": 1e-9, "most": 1e-5}
+"""Rms roughness that suits this step, m."""
+_Function = TypeVar("_Function", bound=Callable)
 
 
 class Rollers:
@@ -110,12 +117,22 @@ class Rollers:
             "young_modulus": young_modulus,
             "poisson_ratio": poisson_ratio,
         }
+        if not isinstance(second, Mapping | None):
+            raise StudyError(
+                f"Rollers: second: got {shown(second)}, need what differs, such as "
+                "{'radius': '30 mm'}"
+            )
         other = first | dict(second or {})
         self.pair = RollerPair(
             length=_metres("length", length),
             first=validate(Roller, first, "Rollers", StudyError),
             second=validate(Roller, other, "Rollers: second", StudyError),
         )
+        for roller in (self.pair.first, self.pair.second):
+            try:
+                bounded(roller.rms_roughness, "m", **_ROUGHNESS)
+            except LubeError as error:
+                raise StudyError(f"Rollers: rms_roughness: {error}") from None
         layer = {"critical_thickness": critical_thickness, "shear_strength": shear_strength}
         self.layer = validate(BoundaryLayer, layer, "Rollers", StudyError)
         self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
@@ -129,7 +146,7 @@ class Rollers:
             # Lengths only: the other choices of a study depend on its grid.
             "longest_wavelength": _metres("longest_wavelength", longest_wavelength),
             "shortest_wavelength": _metres("shortest_wavelength", shortest_wavelength),
-            "height_step": "1 pm",
+            "height_step": _HEIGHT_STEP,
         }
         texture = validate(Roughness, roughness, "Rollers", StudyError)
         self.lines = line_spec(self.pair, texture, largest_force=math.nan)
@@ -162,12 +179,13 @@ class Oil:
         ``{"40 degC": "320 mm^2/s", "100 degC": "38 mm^2/s"}``; or the path of a CSV file with the
         columns ``temperature [degC]`` and ``kinematic_viscosity [mm^2/s]``.
     density : str, optional
-        At 15 degC.
+        Without a record: at 15 degC, by default 870 kg/m^3.
     base : str, optional
-        Base oil, for the pressure-viscosity coefficient by Gold's form: ``mineral``,
-        ``polyalphaolefin``, ``ester`` or ``polyglycol``.
+        Without a record: base oil, for the pressure-viscosity coefficient by Gold's form:
+        ``mineral`` (by default), ``polyalphaolefin``, ``ester`` or ``polyglycol``.
     pressure_viscosity : str, optional
-        Pressure-viscosity coefficient such as ``"18 1/GPa"``, in place of that of the base oil.
+        Without a record: pressure-viscosity coefficient such as ``"18 1/GPa"``, in place of that
+        of the base oil.
 
     Attributes
     ----------
@@ -193,8 +211,8 @@ class Oil:
         name: File | None = None,
         *,
         viscosity: Mapping[str, str] | File | None = None,
-        density: str = "870 kg/m^3",
-        base: str = "mineral",
+        density: str | None = None,
+        base: str | None = None,
         pressure_viscosity: str | None = None,
     ) -> None:
         if (name is None) == (viscosity is None):
@@ -203,9 +221,21 @@ class Oil:
                 "lubricant record or viscosity={...}"
             )
         if name is None:
-            self.record = _record(viscosity, density, base, pressure_viscosity)
-        else:
+            self.record = _record(
+                viscosity, density or "870 kg/m^3", base or "mineral", pressure_viscosity
+            )
+            return
+        more = {"density": density, "base": base, "pressure_viscosity": pressure_viscosity}
+        for key, value in more.items():
+            if value is not None:
+                raise RecordError(
+                    f"Oil: {key}: got {shown(value)} beside a lubricant record, which has its own, "
+                    "need one of the two"
+                )
+        try:
             self.record = load_record(name)
+        except RecordError as error:
+            raise RecordError(f"Oil: name: {error}") from None
 
     def properties(self, temperature: Amount) -> xr.Dataset:
         """Viscosity, density and pressure-viscosity coefficient at some temperatures.
@@ -239,6 +269,23 @@ class Oil:
     def __repr__(self) -> str:
         lowest, highest = self.record.valid_temperatures
         return f"<Oil: {self.record.title}, valid from {lowest:g} to {highest:g} degC>"
+
+
+def with_parts(function: _Function) -> _Function:
+    """Make a function refuse other things than `Rollers` and `Oil` as ``rollers`` and ``oil``."""
+    signature = inspect.signature(function)
+
+    @functools.wraps(function)
+    def checked(*args, **kwargs):
+        given = signature.bind_partial(*args, **kwargs).arguments
+        for name, kind in (("rollers", Rollers), ("oil", Oil)):
+            if name in given and not isinstance(given[name], kind):
+                raise StudyError(
+                    f"{name}: got {shown(given[name])}, need lube.{kind.__name__}(...)"
+                )
+        return function(*args, **kwargs)
+
+    return checked
 
 
 def _record(viscosity, density, base, pressure_viscosity):

@@ -13,6 +13,7 @@ from lube.calculator.operating_points import (
     FORMULA,
     REALISATIONS,
     SEED,
+    check_widths,
     ensemble,
     film_in_si,
     one_formula,
@@ -22,7 +23,7 @@ from lube.calculator.operating_points import (
     single,
     with_limits,
 )
-from lube.calculator.parts import Oil, Rollers
+from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import LubeError, RangeError, StudyError
 from lube.schema import LIMITS
 from lube.statistics.curves import falling_curve
@@ -38,6 +39,7 @@ TEMPERATURES = 241
 """Number of temperatures that are tried, over the range of the lubricant record."""
 
 
+@with_parts
 def required_film(
     rollers: Rollers,
     force: str,
@@ -80,6 +82,7 @@ def required_film(
     return _labelled(_film_variables(films, rollers))
 
 
+@with_parts
 def required_viscosity(
     rollers: Rollers,
     oil: Oil,
@@ -129,6 +132,7 @@ def required_viscosity(
     )
 
 
+@with_parts
 def required_speed(
     rollers: Rollers,
     oil: Oil,
@@ -169,6 +173,7 @@ def required_speed(
     return _labelled(speeds | _film_variables(films, rollers))
 
 
+@with_parts
 def required_temperature(
     rollers: Rollers,
     oil: Oil,
@@ -217,6 +222,7 @@ def required_temperature(
     return _labelled({"temperature": found} | _film_variables(films, rollers))
 
 
+@with_parts
 def required_roughness(
     rollers: Rollers,
     oil: Oil,
@@ -256,6 +262,7 @@ def required_roughness(
     single("speed", rotation_speed(speed, rollers.pair.first.radius))
     _temperature(temperature)
     film = _film(rollers, oil, force, speed, temperature, film_formula)
+    check_widths(film["contact_half_width"], rollers)
     share = _checked(share, rollers, film["contact_half_width"].item(), realisations)
     ratios = LAMBDA_RATIOS[::2]
     factors = film["lambda_ratio"].item() / ratios

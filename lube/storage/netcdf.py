@@ -12,8 +12,8 @@ import netCDF4  # noqa: F401  (if it is missing, say so on import, not when the 
 import numpy as np
 import xarray as xr
 
-from lube.errors import DataError
-from lube.schema import check
+from lube.errors import DataError, right_one, shown
+from lube.schema import FILES, check
 from lube.storage.files import written_whole
 from lube.storage.provenance import check_config, global_attributes
 from lube.types import File, Files
@@ -79,6 +79,8 @@ def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
         values than the study's.
     """
     path = Path(path)
+    if kind not in FILES:
+        raise DataError(f"kind: got {shown(kind)}, {right_one(f'{kind}', FILES)}")
     if not path.is_file():
         raise DataError(f"{path}: no such file, need a {kind} dataset")
     try:

@@ -193,6 +193,31 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     return spec
 
 
+def check_width(spec: LineSpec, width: float, what: str) -> None:
+    """Refuse a contact that is finer than the grid or wider than a roller's perimeter.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        The roughness lines.
+    width : float
+        Width of the contact, m.
+    what : str
+        What is so wide, for the message.
+
+    Raises
+    ------
+    StudyError
+        With the contact width, and what is needed.
+    """
+    least, most = 2.0 * spec.spacing, min(spec.points) * spec.spacing
+    if not least <= width < most:
+        raise StudyError(
+            f"{what} is {width:.3g} m wide, need at least two grid spacings of {least:.3g} m, and "
+            f"less than a perimeter, {most:.3g} m"
+        )
+
+
 def _check_waves(spec, longest, shortest):
     if shortest < 2.0 * spec.spacing * (1.0 - 1e-9):
         raise StudyError(

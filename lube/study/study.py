@@ -38,7 +38,14 @@ from lube.study.lubricant_record import (
 from lube.study.metadata import About
 from lube.study.resolve import resolved_content
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
-from lube.study.rollers import BoundaryLayer, LineSpec, RollerPair, Roughness, line_spec
+from lube.study.rollers import (
+    BoundaryLayer,
+    LineSpec,
+    RollerPair,
+    Roughness,
+    check_width,
+    line_spec,
+)
 from lube.study.size_limits import check_sizes
 from lube.study.written_forms import Written
 from lube.types import File
@@ -187,13 +194,8 @@ class Study(StrictModel):
         StudyError
             With the contact width, and what is needed.
         """
-        spec, width = self.line_spec, 2.0 * self.rollers.contact_half_width(force)
-        least, most = 2.0 * spec.spacing, min(spec.points) * spec.spacing
-        if not least <= width < most:
-            raise StudyError(
-                f"operating_grid.force: the contact at {force:g} N is {width:.3g} m wide, need at "
-                f"least two grid spacings of {least:.3g} m, and less than a perimeter, {most:.3g} m"
-            )
+        width = 2.0 * self.rollers.contact_half_width(force)
+        check_width(self.line_spec, width, f"operating_grid.force: the contact at {force:g} N")
 
     @property
     def evaluation(self) -> dict:

@@ -5,6 +5,8 @@ import json
 import os
 from collections.abc import Sequence
 from contextlib import suppress
+from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 from lube.errors import StudyError, shown
@@ -35,12 +37,21 @@ def check_command_line(arguments: Sequence[str]) -> None:
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--configfile", "--configfiles", nargs="+", default=[])
     parser.add_argument("--config", "-C", nargs="*", default=[])
-    options, _ = parser.parse_known_args(arguments)
+    options, others = parser.parse_known_args(arguments)
+    _check_targets(others)
     _check_number(options.configfile)
     for file in options.configfile:
         study_files(file)  # refuses what it cannot read
     for entry in options.config:
         _check_entry(entry)
+
+
+def _check_targets(words):
+    """Refuse a study in the place of a target; results, such as ``study.yaml``, are targets."""
+    for before, word in pairwise(["", *words]):
+        is_target = word.endswith((".yaml", ".yml")) and not before.startswith("--")
+        if is_target and "results" not in Path(word).parts:
+            raise StudyError(f"got the target {word}, need `--configfile {word}` for a study")
 
 
 def _check_number(files):

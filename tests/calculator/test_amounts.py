@@ -14,6 +14,7 @@ from lube.calculator.amounts import amount, described
     [
         ["400 N", "0.8 kN"],
         ("400 N", "800 N"),
+        np.array(["400 N", "800 N"]),
         ([0.4, 0.8], "kN"),
         (np.array([400, 800]), "N"),
         pint.UnitRegistry().Quantity([0.4, 0.8], "kN"),

@@ -73,6 +73,9 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
         expected = lube.film(own, oil, "400 N", f"{speed} m/s", "60 degC")
         for name in ("film_thickness", "contact_half_width", "hertz_pressure"):
             np.testing.assert_allclose(found[name][number], expected[name], rtol=1e-12)
+    np.testing.assert_allclose(found["radius"], table["radius [mm]"])
+    assert all("units" in variable.attrs for variable in found.variables.values())
+    assert found["radius"].attrs["units"] == "mm"
 
 
 @pytest.mark.parametrize(
@@ -86,6 +89,8 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
         ({"force [N]": None}, "points: no column 'force', need one, as 'force [N]'"),
         ({"force [N]": [1.0, np.nan, 1.0]}, "points: force: got nan, need a value above 0 N"),
         ({"force [m]": [1.0] * 3, "force [N]": None}, "points: force: wrong dimension or unit 'm'"),
+        ({"force [kN]": [1.0] * 3}, "points: got the column 'force' twice, need it once"),
+        ({name: [] for name in POINTS}, "points: got no rows, need one for each duty point"),
         ({"temperature [degC]": [60.0, 60.0, 20.0]}, "got 20 degC, need 40 to 100 degC"),
     ],
 )

@@ -72,6 +72,12 @@ def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
         ({"speed": "3 kg"}, "or 'm/s'"),
         ({"temperature": "300 K"}, "got 26.85 degC, need 40 to 100 degC"),
         ({"film_formula": "moe"}, "unknown film formula 'moe', did you mean 'moes'?"),
+        ({"film_formula": []}, "film_formula: got [], need a name, or a list of them"),
+        ({"film_formula": 3}, "film_formula: got 3, need a name, or a list of them"),
+        ({"oil": "water"}, "oil: got 'water', need lube.Oil(...)"),
+        ({"rollers": None}, "rollers: got None, need lube.Rollers(...)"),
+        ({"force": "1e12 N"}, "force: the contact is"),
+        ({"realisations": 10**9}, "realisations: got 1000000000, need at most 1000000"),
         ({"realisations": 0}, "realisations: got 0, need a whole number, at least 1"),
         ({"seed": 1.5}, "seed: got 1.5, need a whole number, at least 0"),
         ({"slide_to_roll_ratio": 3}, "slide_to_roll_ratio: got 3, need a value"),
@@ -79,10 +85,15 @@ def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
 )
 def test_a_mistake_is_one_line_that_names_the_argument(rollers, oil, change, message):
     with pytest.raises(LubeError) as error:
-        lube.contact_probability(rollers, oil, **POINT | change)
+        lube.contact_probability(**{"rollers": rollers, "oil": oil} | POINT | change)
     assert message in str(error.value)
 
 
 def test_a_trace_is_of_one_point(rollers, oil):
     with pytest.raises(LubeError, match="speed: got 2 values, need one"):
         lube.trace(rollers, oil, **POINT | {"speed": ["1 rpm", "2 rpm"]})
+
+
+def test_a_trace_needs_a_contact_that_the_grid_resolves(rollers, oil):
+    with pytest.raises(LubeError, match=r"force: the contact is .* need at least two grid spac"):
+        lube.trace(rollers, oil, **POINT | {"force": "1e-6 N"})

@@ -69,6 +69,14 @@ def test_both_show_themselves_and_travel_between_processes():
             "Rollers: second: raduis: unknown key, did you mean 'radius'?",
         ),
         (
+            lambda: Rollers("50 mm", "0.2 um", second="30 mm"),
+            "Rollers: second: got '30 mm', need what differs, such as {'radius': '30 mm'}",
+        ),
+        (
+            lambda: Rollers("50 mm", "0.2 um", second={"rms_roughness": "20 um"}),
+            "Rollers: rms_roughness: got 2e-05, need a value at least 1e-09 and at most 1e-05 m",
+        ),
+        (
             lambda: Rollers("50 mm", "0.2 um", longest_wavelength="contact width"),
             "longest_wavelength: got 'contact width', need a number with its unit",
         ),
@@ -76,12 +84,13 @@ def test_both_show_themselves_and_travel_between_processes():
             lambda: Rollers("50 mm", "0.2 um", hurst_exponent=1.5),
             "Rollers: hurst_exponent: got 1.5, need a value above 0 and below 1",
         ),
-        (lambda: Oil("mobilgear-shc-xmp-32"), "did you mean 'mobilgear-shc-xmp-320'?"),
+        (lambda: Oil("mobilgear-shc-xmp-32"), "Oil: name: got 'mobilgear-shc-xmp-32', need one of"),
         (
             lambda: Oil(),
             "Oil: got neither, need either the name of a lubricant record or",
         ),
         (lambda: Oil(OIL, viscosity=TWO), "Oil: got both"),
+        (lambda: Oil(OIL, base="ester"), "Oil: base: got 'ester' beside a lubricant record"),
         (
             lambda: Oil(viscosity={"40 degC": "30 mm^2/s", "100 degC": "300 mm^2/s"}),
             "Oil: viscosity: need less at 100 degC than at 40 degC",

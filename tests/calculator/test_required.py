@@ -67,6 +67,7 @@ def test_the_viscosity_gives_that_film(rollers, oil, needed):
 def test_the_roughness_has_the_share(rollers, oil, busy):
     """Rollers of that roughness, drawn anew, have the share asked for."""
     found = lube.required_roughness(rollers, oil, **POINT, share=0.02, **RUNS)
+    assert found["roughness_factor"].attrs["units"] == "1"
     rms = f"{0.2 * found['roughness_factor'].item()!r} um"
     spec = busy.study.line_spec
     lengths = {

@@ -204,6 +204,7 @@ def test_a_trace_is_drawn_where_one_was_kept_and_found_from_elsewhere(visit, exp
         assert max(drawn(page, part)["length"]) == pytest.approx(length.max(), rel=1e-15)
     share = 100 * (length > 0).mean()
     assert f"in contact {rounded(share)}\u00a0% of this" in page.inner_text("#trace-text")
+    assert page.inner_text("#trace-text").endswith("and around the peak in every step.")
 
 
 def test_records_near_the_point_are_told_with_their_intervals(visit, explored, page_file):

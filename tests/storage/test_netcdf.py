@@ -46,6 +46,11 @@ def test_a_dataset_saved_twice_or_loaded_and_saved_again_is_the_same(
         xr.testing.assert_identical(load(again, kind), first)
 
 
+def test_a_kind_that_there_is_not_is_refused(files):
+    with pytest.raises(DataError, match=r"kind: got 'films', did you mean 'film'\?"):
+        load(files / "film.nc", "films")
+
+
 def test_a_file_of_other_values_than_the_studys_is_refused(files, study):
     load(files / "contact.nc", "contact", study)
     other = study.model_copy(update={"seed": 1})

@@ -37,6 +37,8 @@ def test_a_command_that_snakemake_understands_passes():
         ("--configfile", str(SMOKE), "--", "archive"),
         ("--config", "name=mine", "rig={revolutions: 3}", "--forcerun", "film"),
         ("--summary",),
+        ("results/smoke/study.yaml", "--configfile", str(SMOKE)),
+        ("--report-metadata", "me.yaml", "-n"),
     ]:
         check_command_line(arguments)
 
@@ -47,6 +49,12 @@ def test_a_target_after_an_option_is_to_be_put_first():
     )
     assert "begins with `based_on: a.yaml`" in refusal("--configfile", "a.yaml", "b.yaml")
     assert "`snakemake archive --config key=value`" in refusal("--config", "seed=3", "archive")
+
+
+def test_a_study_is_no_target():
+    for before in ((), ("-n",), ("--cores", "2"), ("archive",)):
+        line = refusal(*before, "mine.yaml")
+        assert "got the target mine.yaml, need `--configfile mine.yaml` for a study" in line
 
 
 def test_a_nested_key_is_to_be_written_as_snakemake_reads_it():

@@ -222,10 +222,11 @@ function showTrace(point, sources, figures) {
         element("trace-text").textContent = "The study kept no trace at this point, but at";
         return;
     }
+    const close = trace.close.steps > 1 ? `within every ${trace.close.steps}` : "in every step";
     element("trace-text").textContent =
         `One realisation of the roughness, in contact ${percent(trace.share)} of this revolution. An asperity takes ` +
         `${rounded(1e3 * trace.crossing)} ms to cross the contact. Drawn: the longest contact and the lowest ` +
-        `resistance within every ${trace.whole.steps} time steps, and around the peak within every ${trace.close.steps}.`;
+        `resistance within every ${trace.whole.steps} time steps, and around the peak ${close}.`;
     const { time, contact_length } = trace.close;
     const peak = time[contact_length.indexOf(Math.max(...contact_length))];
     for (const [part, scale, zero] of [["whole", 1, 0], ["close", 1e3, peak]]) {
