@@ -42,8 +42,15 @@ rule all:
         f"Done: datasets, figures, executed notebooks and explorer.html are in {RESULTS}"
 
 
+rule areal_contact:
+    input:
+        products(figures_of("areal_contact")),
+    message:
+        f"Done: areal.nc and its figure are in {RESULTS}"
+
+
 rule benchmark:
     input:
-        products(TIMINGS),
+        products(figures_of("benchmark")),
     message:
         f"Done: measured times and their figures are in {RESULTS}"

@@ -1,4 +1,4 @@
-r"""Theory of a Gaussian line that rises above a high film.
+r"""Theory of a Gaussian line or surface that rises above a high film.
 
 A stationary Gaussian line z(x) is described by its moments :math:`m_0 = \langle z^2 \rangle`,
 :math:`m_2 = \langle z'^2 \rangle` and :math:`m_4 = \langle z''^2 \rangle`.
@@ -17,7 +17,10 @@ import scipy.special
 
 from lube.types import Array, Values
 
-_NODES, _WEIGHTS = np.polynomial.laguerre.laggauss(60)
+_HEIGHTS, _HEIGHT_WEIGHTS = np.polynomial.laguerre.laggauss(60)
+_CURVATURES, _CURVATURE_WEIGHTS = np.polynomial.legendre.leggauss(60)
+_WIDE = 9.0
+"""Standard deviations beyond which a normal density is left out."""
 
 
 def crossing_rate(level: Values, moments: Sequence[float]) -> Values:
@@ -47,7 +50,7 @@ def crossing_rate(level: Values, moments: Sequence[float]) -> Values:
 
 
 def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float) -> Array:
-    r"""Share of the summits above a level that are sharper than a given curvature.
+    r"""Share of the summits of a line above a level that are sharper than a given curvature.
 
     Summits at the height z with the curvature :math:`\kappa = -z''` have the density
 
@@ -75,7 +78,119 @@ def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float)
     >>> sharp_summit_share(np.array([5.0]), (1.0, 4.0, 100.0), 20.0).round(3)
     array([0.707])
     """
-    return _summits(level, moments, curvature) / _summits(level, moments, 0.0)
+    return _share(level, moments, curvature, lambda kappa: kappa)
+
+
+def expected_contacts(level: Array, moments: Sequence[float], length: float, width: Array) -> Array:
+    r"""Expected number of contacts of an isotropic surface above a level, in a rectangle.
+
+    It is the Euler characteristic: contacts less the holes in them, which high levels do not have.
+    With :math:`u = h / \sqrt{m_0}` and the sides a and b,
+
+    .. math::
+
+        Q(u) + (a + b) \frac{1}{2 \pi} \sqrt{\frac{m_2}{2 m_0}}\, e^{-u^2/2}
+        + a b \frac{u}{(2 \pi)^{3/2}} \frac{m_2}{2 m_0}\, e^{-u^2/2}
+
+    Parameters
+    ----------
+    level : numpy.ndarray
+        Levels h, m.
+    moments : sequence of float
+        Moments of the line that the surface corresponds to, as in `crossing_rate`. The surface's
+        mean square slope in one direction is :math:`m_2 / 2`.
+    length : float
+        One side, m.
+    width : numpy.ndarray
+        The other side, m; it broadcasts against the levels.
+
+    Returns
+    -------
+    numpy.ndarray
+        Expected number.
+
+    References
+    ----------
+    R. J. Adler and J. E. Taylor, Random Fields and Geometry, Springer, 2007, chapter 11.
+
+    Examples
+    --------
+    >>> expected_contacts(np.array([4.0]), (1.0, 8.0, 100.0), 10.0, 20.0).round(3)
+    array([0.071])
+    """
+    m0, m2, _ = moments
+    height = np.asarray(level) / math.sqrt(m0)
+    density = math.sqrt(0.5 * m2 / m0) / (2.0 * math.pi)
+    area = length * width * height * math.sqrt(2.0 * math.pi) * density**2
+    edges = (length + width) * density
+    return scipy.special.ndtr(-height) + (edges + area) * np.exp(-0.5 * height**2)
+
+
+def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature: float) -> Array:
+    r"""Share of the summits of an isotropic surface that are sharper than a given curvature.
+
+    The mean curvature :math:`\kappa` of a summit in two directions and the difference between the
+    directions are independent. Averaged over the difference, summits have the density (Nayak)
+
+    .. math::
+
+        \left[ \kappa^2 - \mu (1 - e^{-\kappa^2/\mu}) \right] p(z, \kappa), \qquad
+        \mu = \frac{m_4}{4} ,
+
+    where p is Gaussian with the variances :math:`m_0` and :math:`m_4/4` and the covariance
+    :math:`m_2/2`.
+
+    Parameters
+    ----------
+    level, moments
+        As in `expected_contacts`.
+    curvature : float
+        Mean curvature, 1/m.
+
+    Returns
+    -------
+    numpy.ndarray
+        Share of each level, from 0 to 1.
+
+    References
+    ----------
+    P. R. Nayak, Random process model of rough surfaces, J. Lubr. Technol. 93 (1971) 398-407.
+
+    Examples
+    --------
+    >>> sharp_surface_summit_share(np.array([5.0]), (1.0, 4.0, 100.0), 10.0).round(3)
+    array([0.866])
+    """
+    m0, m2, m4 = moments
+    spread = 0.25 * m4
+    return _share(
+        level,
+        (m0, 0.5 * m2, 0.25 * m4),
+        curvature,
+        lambda kappa: kappa**2 + spread * np.expm1(-(kappa**2) / spread),
+    )
+
+
+def _share(level, moments, least_curvature, weight):
+    """Share of summits above levels that have a curvature, if they have it with some weight."""
+    m0, covariance, variance = moments
+    # Over the height by Gauss-Laguerre quadrature, with z = h + m0 t / h.
+    scale = np.asarray(level, float)[..., None]
+    height = scale + m0 / scale * _HEIGHTS
+    heights = _HEIGHT_WEIGHTS * np.exp(-0.5 * m0 * (_HEIGHTS / scale) ** 2)
+    # Over the curvature, which is normal at a given height, by Gauss-Legendre quadrature.
+    mean = covariance / m0 * height
+    deviation = math.sqrt(variance - covariance**2 / m0)
+
+    def summits(least):
+        low = np.maximum(least, mean - _WIDE * deviation)
+        half = 0.5 * np.maximum(mean + _WIDE * deviation - low, 0.0)
+        kappa = (low + half)[..., None] + half[..., None] * _CURVATURES
+        normal = np.exp(-0.5 * ((kappa - mean[..., None]) / deviation) ** 2)
+        inner = half * np.sum(_CURVATURE_WEIGHTS * weight(kappa) * normal, axis=-1)
+        return np.sum(heights * inner, axis=-1)
+
+    return summits(least_curvature) / summits(0.0)
 
 
 def breaking_curvature(
@@ -111,17 +226,3 @@ def breaking_curvature(
     '5445'
     """
     return math.pi * shear_strength / (reduced_modulus * critical_thickness)
-
-
-def _summits(level, moments, least_curvature):
-    """Count the summits above levels and a curvature, up to a factor of each level."""
-    m0, m2, m4 = moments
-    # Gauss-Laguerre quadrature over t, where z = h + m0 t / h.
-    scale = np.asarray(level)[..., None]
-    height = scale + m0 / scale * _NODES
-    mean = m2 / m0 * height  # of the curvature at this height
-    deviation = math.sqrt(m4 - m2**2 / m0)
-    excess = (mean - least_curvature) / deviation
-    normal = np.exp(-0.5 * excess**2) / math.sqrt(2.0 * math.pi)
-    expected = mean * scipy.special.ndtr(excess) + deviation * normal
-    return np.sum(_WEIGHTS * np.exp(-0.5 * m0 * (_NODES / scale) ** 2) * expected, axis=-1)

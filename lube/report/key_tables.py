@@ -10,7 +10,7 @@ from pathlib import Path
 
 from lube.physics.film_formulas import FORMULAS, TOLERANCE
 from lube.recordings.manifest import manifest_schema
-from lube.schema import BENCHMARKS, COORDINATES, DATASETS, FILES, SUMMARIES
+from lube.schema import ON_REQUEST, COORDINATES, DATASETS, FILES, SUMMARIES
 from lube.study.lubricant_record import LubricantRecord
 from lube.study.study import Study
 
@@ -42,7 +42,7 @@ def table(name: str) -> str:
         case "variables":
             return "\n\n".join(
                 f"### `{kind}.nc`\n\n{SUMMARIES[kind]}\n\n{_variables(FILES[kind])}"
-                for kind in (*DATASETS, *BENCHMARKS)
+                for kind in (*DATASETS, *ON_REQUEST)
             )
         case "study":
             return _table(("key", "value", "meaning"), study_keys())

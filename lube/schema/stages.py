@@ -26,15 +26,16 @@ class Stage:
         ``config`` to the dotted attribute of `lube.study.study.Study`, or a mapping of such.
     same_values : tuple of str
         Stages whose values it uses too, without reading their files.
-    benchmark : bool
-        True for files that `snakemake benchmark` makes. They are not results of the study.
+    target : str
+        Target of Snakemake that makes the file: ``all``, or one that is made on request only,
+        such as ``areal_contact``. Files of ``benchmark`` are not results of the study.
     """
 
     name: str
     inputs: tuple[str, ...] = ()
     values: dict = field(default_factory=dict)
     same_values: tuple[str, ...] = ()
-    benchmark: bool = False
+    target: str = "all"
 
 
 _LINES = {"seed": "seed", "lines": "line_spec"}
@@ -95,23 +96,29 @@ _ROWS = (
     Stage("comparison", inputs=("film", "contact", "experiment")),
     Stage("gauge", inputs=("master", "contact", "comparison")),
     Stage(
+        "areal",
+        inputs=("film",),
+        values=_LINES | _CONTACT | {"length": "rollers.length"},
+        target="areal_contact",
+    ),
+    Stage(
         "coverage",
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),
-        benchmark=True,
+        target="benchmark",
     ),
-    Stage("speed", same_values=("contact",), benchmark=True),
-    Stage("reading", benchmark=True),
+    Stage("speed", same_values=("contact",), target="benchmark"),
+    Stage("reading", target="benchmark"),
 )
 
 STAGES = {row.name: row for row in _ROWS}
 """The registry: from name to `Stage`, each after those it depends on."""
 
-DATASETS = tuple(row.name for row in _ROWS if not row.benchmark)
+DATASETS = tuple(row.name for row in _ROWS if row.target == "all")
 """The results of a study, one file each."""
 
-BENCHMARKS = tuple(row.name for row in _ROWS if row.benchmark)
-"""Files that `snakemake benchmark` makes; they are not among the results of a study."""
+ON_REQUEST = {row.name: row.target for row in _ROWS if row.target != "all"}
+"""Files that are made on request only, each with the target of Snakemake that makes it."""
 
 
 def forerunners(stage: str) -> tuple[str, ...]:

@@ -6,6 +6,8 @@ there on both are treated alike, so that the intervals of simulation and experim
 Without scatter, the number of independent windows takes its place.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.special
 
@@ -204,3 +206,47 @@ def mean_interval(values: Array) -> tuple[Array, Array, Array]:
     error = np.sqrt(mean_over_first(np.square(values - mean)) / (count - 1))
     half = scipy.special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0) * error
     return mean, np.maximum(mean - half, 0.0), mean + half
+
+
+def jackknife_interval(
+    values: Array, function: Callable[[Array], Array], upper: float = np.inf
+) -> tuple[Array, Array, Array]:
+    r"""Function of the mean of independent values, and its 95 % interval.
+
+    Each value is left out once. With the results :math:`f_{(r)}` and their mean
+    :math:`f_{(\cdot)}` the error of f is
+
+    .. math:: s^2 = \frac{R - 1}{R} \sum_r \left( f_{(r)} - f_{(\cdot)} \right)^2
+
+    and the interval follows with Student's t for R - 1 degrees of freedom.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        Shape (R, ...), of R two or more.
+    function : callable
+        Of the mean over R.
+    upper : float, optional
+        Largest possible result.
+
+    Returns
+    -------
+    result, lower, upper : numpy.ndarray
+        Shape of the function's result; the lower limit is at least zero.
+
+    References
+    ----------
+    J. W. Tukey, Bias and confidence in not quite large samples, Ann. Math. Stat. 29 (1958) 614.
+
+    Examples
+    --------
+    >>> [f"{x:.2f}" for x in jackknife_interval(np.array([1.0, 2.0, 3.0]), lambda mean: mean)]
+    ['2.00', '0.00', '4.48']
+    """
+    count = values.shape[0]
+    mean = mean_over_first(values)
+    without = np.stack([function((count * mean - one) / (count - 1)) for one in values])
+    error = np.sqrt((count - 1) * mean_over_first(np.square(without - mean_over_first(without))))
+    half = scipy.special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0) * error
+    result = np.minimum(function(mean), upper)
+    return result, np.maximum(result - half, 0.0), np.minimum(result + half, upper)

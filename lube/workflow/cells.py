@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from lube.errors import LubeError
-from lube.schema import BENCHMARKS, DATASETS
+from lube.schema import ON_REQUEST, DATASETS
 from lube.types import File
 
 
@@ -148,7 +148,7 @@ def datasets_of(notebook: File) -> dict[str, str]:
     LubeError
         As from `parameters_of`.
     """
-    kinds = {f"{kind}.nc": kind for kind in (*DATASETS, *BENCHMARKS)}
+    kinds = {f"{kind}.nc": kind for kind in (*DATASETS, *ON_REQUEST)}
     values = parameters_of(notebook).items()
     names = {parameter: str(value).rsplit("/", 1)[-1] for parameter, value in values}
     return {parameter: kinds[name] for parameter, name in names.items() if name in kinds}

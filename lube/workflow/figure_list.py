@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lube.report.markdown import title_and_text
-from lube.schema import BENCHMARKS
+from lube.schema import ON_REQUEST
 from lube.study.study import Study
 from lube.types import File
 from lube.workflow.cells import cells_of, datasets_of, python_of
@@ -47,9 +47,9 @@ class Figure:
     tags: list[str]
 
     @property
-    def benchmark(self) -> bool:
-        """Whether it shows a benchmark; such a figure is made on request only."""
-        return not set(self.datasets).isdisjoint(BENCHMARKS)
+    def target(self) -> str:
+        """Target of Snakemake that makes it: ``all``, or that of a dataset made on request only."""
+        return next((ON_REQUEST[name] for name in self.datasets if name in ON_REQUEST), "all")
 
     @property
     def chapter(self) -> str:
@@ -130,6 +130,6 @@ def chapters(figures: dict[str, Figure]) -> dict[str, str]:
         From each figure's name to its chapter, such as ``1 Oil and film``: in the order of the
         figures, measured times last.
     """
-    ordered = sorted(figures.values(), key=lambda figure: (figure.benchmark, figure.name))
+    ordered = sorted(figures.values(), key=lambda one: (one.target == "benchmark", one.name))
     names = list(dict.fromkeys(figure.chapter for figure in ordered))
     return {name: f"{1 + names.index(one.chapter)} {one.chapter}" for name, one in figures.items()}

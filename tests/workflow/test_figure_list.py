@@ -22,7 +22,7 @@ def test_a_figure_says_what_it_needs(write, study):
     figure = study_figures(study, write("fig01_mine", code))["fig01_mine"]
     assert figure.datasets == ["contact", "film"]
     assert {"lube/stages/ensemble.py", "lube/workflow/notebooks.py"} <= set(figure.sources)
-    assert not figure.benchmark
+    assert figure.target == "all"
     assert (figure.title, figure.text) == ("Film", "Some *words*.")
 
 
@@ -51,7 +51,7 @@ def test_chapters_are_numbered_by_their_figures_measured_times_last(write, study
     write("bench01_speed", "clocks = '../speed.nc'", tags=["chapter-measured-times"])
     write("fig02_b", tags=["chapter-oil-and-film"])
     figures = study_figures(study, write("fig01_a", tags=["chapter-oil-and-film"]))
-    assert figures["bench01_speed"].benchmark
+    assert figures["bench01_speed"].target == "benchmark"
     assert chapters(figures) == {
         "bench01_speed": "2 Measured times",
         "fig01_a": "1 Oil and film",

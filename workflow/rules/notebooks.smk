@@ -6,9 +6,8 @@ from lube.workflow.figure_list import chapters, study_figures
 with one_line_errors():
     FIGURES = study_figures(STUDY)
 
-# Figures of measured times are made by `snakemake benchmark` only.
-TIMINGS = [name for name, figure in FIGURES.items() if figure.benchmark]
-ARCHIVED = [name for name in FIGURES if name not in TIMINGS]
+# Others are made on request only, such as `snakemake benchmark`.
+ARCHIVED = [name for name, figure in FIGURES.items() if figure.target == "all"]
 CHAPTERS = chapters(FIGURES)
 
 products = FILES.products

@@ -1,0 +1,188 @@
+"""Contacts of a rough surface in a strip, found from one point that is known to touch.
+
+Heights are height steps in single precision, as in `lube.kernels.tail`. The strip is the contact
+area: its rows lie across it, in the direction of rolling, and follow one another along the rollers.
+A *contact* is a group of touching points that are neighbours in a row or a column.
+"""
+
+import numpy as np
+
+from lube.kernels.compiler import inlined, kernel
+from lube.types import Array, Pair
+
+
+@kernel
+def touching_strips(
+    fields: Pair,
+    covariances: Pair,
+    places: Pair,
+    touching: Pair,
+    film: float,
+    sharp: float,
+    width: int,
+    around: int,
+) -> tuple[Array, Array, Array]:
+    r"""Weigh rows of a strip in which one point is known to touch.
+
+    The surface is moved so that it passes through a given height at the known point,
+
+    .. math:: z = z' + \rho \, (z_\tau - z'_\tau) ,
+
+    and its curvature with it. The boundary layer of a contact breaks if the surface is sharp
+    enough at the contact's highest point. A row of n touching points could have been chosen by any
+    of them, so it counts 1/n.
+
+    Parameters
+    ----------
+    fields : tuple of numpy.ndarray
+        Heights and curvatures of a Gaussian surface, shape (M, M) each, float32, height steps and
+        height steps per square metre.
+    covariances : tuple of numpy.ndarray
+        Shape (R + 1, 2 C - 1) each, float32: covariance of the height at a point with heights and
+        with curvatures around it, over the variance of the heights; at distances of 0 .. R rows
+        and of -(C - 1) .. C - 1 columns.
+    places : tuple of numpy.ndarray
+        Shape (K,) each: the surface's row that is each strip's known row, at least R, and the
+        column that is the strip's first.
+    touching : tuple of numpy.ndarray
+        Shape (K,) each: column of the strip in which the known point lies, and its height,
+        float32 height steps.
+    film : float
+        Film thickness, height steps.
+    sharp : float
+        Curvature above which the boundary layer breaks, in the unit of the curvatures.
+    width : int
+        Points in a row, at most C.
+    around : int
+        Rows on either side of the known one in which its contact is followed.
+
+    Returns
+    -------
+    contact, breakthrough : numpy.ndarray
+        Shape (R - `around` + 1,) each, sums of weights. First of the known rows, 1/n each for n
+        touching points. Then of the contacts of which no row is touched in the row before their
+        first one, in the two rows before it, and so on, 1/m each for m points. In `breakthrough`
+        only contacts count whose boundary layer breaks.
+    contacts : numpy.ndarray
+        Shape (2,), sums of 1/m of all contacts, and of those whose boundary layer breaks.
+    """
+    reach = covariances[0].shape[0] - 1
+    rows = reach - around
+    contact, breakthrough = np.zeros(rows + 1), np.zeros(rows + 1)
+    contacts = np.zeros(2)
+    seen = np.zeros((reach + 1 + around, width), np.int32)
+    stack = np.empty((seen.size, 2), np.int32)
+    heights = np.empty(width, np.float32)
+    for k in range(places[0].size):
+        origin = touching[0][k]
+        rise = touching[1][k] - fields[0][places[0][k], places[1][k] + origin]
+        moved = fields, covariances, places[0][k], places[1][k], origin, rise
+        search = film, sharp, seen, np.int32(2 * k + 1), stack
+        touched, _, broken, _ = _row(moved, search, heights, 0)
+        contact[0] += 1.0 / max(touched, 1)
+        breakthrough[0] += (broken > 0) / max(touched, 1)
+        search = film, sharp, seen, np.int32(2 * k + 2), stack
+        points, breaks, first = _contact(moved, search, 0, origin)
+        contacts[0] += 1.0 / points
+        contacts[1] += breaks / points
+        if first <= -around:
+            continue  # too large a contact to be a first one
+        _, others, broken, earliest = _row(moved, search, heights, first)
+        # Several contacts that begin in the same row are a first one together.
+        alone, alone_broken = 1 + others, 1 + broken
+        if not breaks or earliest < first:
+            alone_broken = 0
+        for before in range(1, rows + 1):
+            if _fill_row(moved, first - before, heights) > film:
+                alone = 0
+                if alone_broken > 0:
+                    _, _, broken, _ = _row(moved, search, heights, first - before)
+                    if broken > 0:
+                        alone_broken = 0
+            if alone > 0:
+                contact[before] += 1.0 / (points * alone)
+            if alone_broken > 0:
+                breakthrough[before] += 1.0 / (points * alone_broken)
+            if alone == 0 and alone_broken == 0:
+                break
+    return contact, breakthrough, contacts
+
+
+@kernel
+def _row(moved, search, heights, row):
+    """Follow the contacts of a row that were not followed before.
+
+    Returns the number of touching points; of new contacts; of those whose boundary layer breaks;
+    and the earliest row of these.
+    """
+    film, seen, mark = search[0], search[2], search[3]
+    reach = moved[1][0].shape[0] - 1
+    touched, contacts, broken, earliest = 0, 0, 0, row
+    _fill_row(moved, row, heights)
+    for column in range(heights.size):
+        if heights[column] > film:
+            touched += 1
+            if seen[reach + row, column] != mark:
+                _, breaks, first = _contact(moved, search, row, column)
+                contacts += 1
+                if breaks:
+                    broken += 1
+                    earliest = min(earliest, first)
+    return touched, contacts, broken, earliest
+
+
+@inlined
+def _fill_row(moved, row, heights):
+    """Fill in the heights of a row, counted from the known one, and return the highest."""
+    fields, covariances, first_row, first_column, origin, rise = moved
+    width = heights.size
+    drawn = fields[0][first_row + row, first_column : first_column + width]
+    middle = covariances[0].shape[1] // 2
+    known = covariances[0][abs(row), middle - origin : middle - origin + width]
+    highest = np.float32(-np.inf)
+    for column in range(width):  # without a branch, so the compiler vectorises it
+        heights[column] = drawn[column] + known[column] * rise
+        highest = max(highest, heights[column])
+    return highest
+
+
+@inlined
+def _moved(surface, moved, row, column):
+    """Height (0) or curvature (1) at a point of the strip, rows counted from the known one."""
+    fields, covariances, first_row, first_column, origin, rise = moved
+    drawn = fields[surface][first_row + row, first_column + column]
+    middle = covariances[surface].shape[1] // 2
+    return drawn + covariances[surface][abs(row), middle + column - origin] * rise
+
+
+@kernel
+def _contact(moved, search, row, column):
+    """Follow the contact at a touching point.
+
+    Returns the number of its points, whether its boundary layer breaks, and its earliest row.
+    """
+    film, sharp, seen, mark, stack = search
+    reach = moved[1][0].shape[0] - 1
+    ahead = seen.shape[0] - reach - 1
+    seen[reach + row, column] = mark
+    stack[0, 0], stack[0, 1] = row, column
+    waiting, points, earliest = 1, 0, row
+    highest, summit_row, summit_column = np.float32(-np.inf), row, column
+    while waiting > 0:
+        waiting -= 1
+        here_row, here_column = stack[waiting, 0], stack[waiting, 1]
+        points += 1
+        earliest = min(earliest, here_row)
+        height = _moved(0, moved, here_row, here_column)
+        if height > highest:
+            highest, summit_row, summit_column = height, here_row, here_column
+        for side in range(4):
+            next_row = here_row + (side == 0) - (side == 1)
+            next_column = here_column + (side == 2) - (side == 3)
+            inside = -reach <= next_row <= ahead and 0 <= next_column < seen.shape[1]
+            if inside and seen[reach + next_row, next_column] != mark:
+                if _moved(0, moved, next_row, next_column) > film:
+                    seen[reach + next_row, next_column] = mark
+                    stack[waiting, 0], stack[waiting, 1] = next_row, next_column
+                    waiting += 1
+    return points, _moved(1, moved, summit_row, summit_column) > sharp, earliest

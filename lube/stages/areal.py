@@ -1,0 +1,210 @@
+"""The areal stage: contact of the isotropic surface that the lines stand for, in the whole strip."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.special
+import xarray as xr
+
+from lube.errors import DataError
+from lube.kernels.areal import touching_strips
+from lube.physics.excursions import (
+    breaking_curvature,
+    expected_contacts,
+    sharp_surface_summit_share,
+)
+from lube.schema import CONTACT_DIMS, LIMITS, OPERATING_DIMS, label
+from lube.statistics.confidence import jackknife_interval
+from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.synthetic import ROLLERS, spectrum_moments
+
+SURFACES = 24
+"""Surfaces drawn; the errors follow from the scatter between them."""
+STRIPS = 400
+"""Strips on each surface."""
+FEWER_STRIPS = 40
+"""Strips where theory expects more contacts than `MANY`: there is no doubt that some touch."""
+MANY = 30.0
+AROUND = 100
+"""Rows on either side of a known point in which its contact is followed."""
+
+
+def strip_contacts(
+    spec: LineSpec,
+    film: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    length: float,
+    seed: int,
+    slide_to_roll_ratio: Sequence[float] = (0.0,),
+) -> xr.Dataset:
+    r"""Compute the contact of rough surfaces over the whole length of the rollers.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        Parameters of the lines; `Study.line_spec` of a study.
+    film : xarray.Dataset
+        A ``film`` dataset; its first film formula is used.
+    boundary_layer : BoundaryLayer
+        The boundary layer.
+    length : float
+        Length L' of the rollers, m.
+    seed : int
+        Seed of the study.
+    slide_to_roll_ratio : sequence of float, optional
+        Levels of the slide-to-roll ratio, on which nothing depends here.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``areal`` file of `lube.schema`.
+
+    Raises
+    ------
+    DataError
+        If the rollers are shorter than the contact is wide, a film thickness is not above zero, or
+        the band of wavelengths is too wide for a surface.
+
+    Notes
+    -----
+    The strip 2a x L' is followed row by row along the rollers. Row j is the first of the strip that
+    touches with the probability :math:`g_j`, so that a strip of n rows touches with
+
+    .. math:: P = \sum_{j=0}^{n-1} g_j
+
+    Importance sampling finds :math:`g_0` from rows that touch, and the others from contacts: a
+    contact begins in row j, and no row of the strip before it touches. Rows further apart than a
+    longest wavelength are independent, so from there on a row is the first with the same
+    probability if none before it has touched.
+
+    A contact breaks its boundary layer if the mean curvature of its highest point exceeds
+    :math:`\pi \tau_0/(2 E^* h_c)`. The line's criterion is twice that, because the mapping doubles
+    the curvature of a summit.
+    """
+    film = film.isel(film_formula=[0]).transpose(*OPERATING_DIMS)
+    thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
+    widest, lowest = 2.0 * half_width.max().item(), thickness.min().item()
+    if not lowest > 0.0:
+        raise DataError(f"film thickness: got {lowest:g} m, need above 0")
+    if length < widest:
+        raise DataError(
+            f"rollers.length: got {length:g} m, need the contact width of {widest:g} m or more"
+        )
+    modulus = film["reduced_modulus"].item()
+    sharp = 0.5 * breaking_curvature(
+        modulus, boundary_layer.critical_thickness, boundary_layer.shear_strength
+    )
+    lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
+    names = ("rms_height", "rms_slope", "rms_curvature")
+    moments = [sum(line[name] ** 2 for line in lines) for name in names]
+    films, widths = thickness.values.ravel(), 2.0 * half_width.values.ravel()
+    contacts = expected_contacts(films, moments, length, widths)
+    broken = contacts * sharp_surface_summit_share(films, moments, sharp)
+    found = {"expected_contacts": contacts, "expected_breakthroughs": broken}
+    strips = np.where(contacts > MANY, FEWER_STRIPS, STRIPS)
+    found |= _sampled(spec, (films, widths, strips), sharp, length, seed)
+    slips = np.asarray(slide_to_roll_ratio, float)
+    shape = (slips.size, *thickness.shape)
+    variables = {
+        name: (CONTACT_DIMS, np.broadcast_to(values.reshape(thickness.shape), shape).copy())
+        for name, values in found.items()
+    }
+    levels = {name: film[name] for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slips}
+    return label(xr.Dataset(variables, levels).assign(length=length), "areal")
+
+
+def _sampled(spec, points, sharp, length, seed):
+    """Probabilities and numbers of contacts, with their intervals, shape (points,) each."""
+    films, widths, strips = points
+    surface = isotropic_surface(spec)
+    reach = math.ceil(2.0 * np.pi / spec.q_min / surface.spacing) + AROUND
+    columns = np.maximum(np.floor(widths / surface.spacing).astype(np.int64), 1)
+    rows = max(int(length / surface.spacing), 1)
+    covariances = tuple(surface.covariances(reach + 1, columns.max()))
+    weights = np.empty((SURFACES, films.size, 2, reach - AROUND + 1))
+    numbers = np.empty((SURFACES, films.size, 2))
+    for number in range(SURFACES):
+        # The first two children draw the lines of the realisation of this number, the next three
+        # are those of `lube.surfaces.rare_contact`.
+        children = np.random.SeedSequence((seed, number)).spawn(7)[5:]
+        drawing, choosing = map(np.random.default_rng, children)
+        fields, chosen = surface.draw(drawing), choosing.random((4, STRIPS))
+        each = zip(films / spec.height_step, columns, strips, strict=True)
+        for i, (film, width, count) in enumerate(each):
+            touching, share = _touching(surface.rms, chosen[2:, :count], film, width)
+            places = (
+                reach + (chosen[0] * (surface.points - reach - AROUND)).astype(np.int64)[:count],
+                (chosen[1] * (surface.points - width + 1)).astype(np.int64)[:count],
+            )
+            *first, contacts = touching_strips(
+                fields, covariances, places, touching, film, sharp / spec.height_step, width, AROUND
+            )
+            weights[number, i] = np.stack(first) * share
+            numbers[number, i] = contacts * share * rows
+    found = {}
+    for name, which in (("geometric_contact", 0), ("breakthrough", 1)):
+        limits = jackknife_interval(
+            weights[:, :, which], lambda mean: strip_probability(mean, rows), upper=1.0
+        )
+        found |= _named(f"{name}_probability", limits)
+        counted = jackknife_interval(numbers[:, :, which], lambda mean: mean)
+        found |= _named(
+            {"geometric_contact": "contacts", "breakthrough": "breakthroughs"}[name], counted
+        )
+    return found
+
+
+def _touching(rms, chosen, film, width):
+    """Known points of strips, and the share of touching rows that each strip stands for.
+
+    As in `lube.surfaces.rare_contact`.
+    """
+    log_tail = scipy.special.log_ndtr(-film / rms)
+    heights = -rms * scipy.special.ndtri_exp(np.log(chosen[0]) + log_tail)
+    known = (chosen[1] * width).astype(np.int64), heights.astype(np.float32)
+    return known, width * np.exp(log_tail) / chosen.shape[1]
+
+
+def _named(name, limits):
+    return {name + suffix: limit for suffix, limit in zip(LIMITS, limits, strict=True)}
+
+
+def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:
+    """Compute the probability that any row of a strip touches.
+
+    Parameters
+    ----------
+    first : numpy.ndarray
+        Shape (..., R + 1): probability that a row touches while none of the 0, 1, ... R rows
+        before it does.
+    rows : int
+        Rows of the strip.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (...).
+
+    Examples
+    --------
+    Independent rows, one in ten of which touches:
+
+    >>> first = 0.1 * 0.9 ** np.arange(4)
+    >>> [f"{strip_probability(first, rows):.6f}" for rows in (2, 10)]
+    ['0.190000', '0.651322']
+    """
+    touched = np.cumsum(first, axis=-1)
+    if rows <= first.shape[-1]:
+        return np.minimum(touched[..., rows - 1], 1.0)
+    # Continue after R rows, or where half of the strips have been touched, as the second half of
+    # these rows went on.
+    before = np.concatenate([np.zeros_like(touched[..., :1]), touched[..., :-1]], axis=-1)
+    counted = np.minimum(np.sum(before < 0.5, axis=-1), first.shape[-1] - 1)[..., None]
+    number = np.arange(first.shape[-1])
+    late = (number >= counted // 2) & (number <= counted)
+    hazard = np.sum(first * late, axis=-1) / np.sum((1.0 - before) * late, axis=-1)
+    here = np.take_along_axis(before, counted, axis=-1)[..., 0]
+    further = (rows - counted[..., 0]) * np.log1p(-np.minimum(hazard, 1.0 - 1e-12))
+    return -np.expm1(np.log1p(-np.minimum(here, 1.0 - 1e-12)) + further)

@@ -1,0 +1,74 @@
+"""Contacts in a strip with a known touching point, by a naive implementation."""
+
+import numpy as np
+import pytest
+import scipy.ndimage
+
+from lube.kernels.areal import touching_strips
+
+REACH, AROUND, WIDTH, SHARP = 60, 20, 24, 0.9
+
+
+def smooth_surface(rng, size):
+    noise = rng.standard_normal((size, size))
+    heights = 3.0 * scipy.ndimage.gaussian_filter(noise, 1.5, mode="wrap")
+    return heights.astype(np.float32), (-scipy.ndimage.laplace(heights)).astype(np.float32)
+
+
+def bump(width, rows, columns):
+    down, across = np.arange(rows)[:, None], np.arange(1 - columns, columns)
+    return np.exp(-0.5 * (down**2 + across**2) / width**2).astype(np.float32)
+
+
+def naive(fields, covariances, row, column, origin, height, film):
+    """First touching row and contacts of one strip, with all contacts labelled at once."""
+    rows = np.arange(-REACH, AROUND + 1)
+    columns = np.arange(WIDTH)
+    rise = height - fields[0][row, column + origin]
+    lags = covariances[0].shape[1] // 2 + columns - origin
+    heights, curvatures = (
+        field[np.ix_(row + rows, column + columns)] + known[np.abs(rows)][:, lags] * rise
+        for field, known in zip(fields, covariances, strict=True)
+    )
+    labels, count = scipy.ndimage.label(heights > film)
+    breaks = {0: False}
+    for number in range(1, count + 1):
+        summit = np.argmax(np.where(labels == number, heights, -np.inf))
+        breaks[number] = curvatures.ravel()[summit] > SHARP
+    mine = labels[REACH, origin]
+    size, begin = np.sum(labels == mine), np.min(np.nonzero(labels == mine)[0])
+    results = [np.zeros(REACH - AROUND + 1), np.zeros(REACH - AROUND + 1)]
+    numbers = np.array([1.0, breaks[mine]]) / size
+    here = labels[REACH][labels[REACH] > 0]
+    for which, result in enumerate(results):
+        counted = [number for number in breaks if number and (which == 0 or breaks[number])]
+        result[0] = bool(set(here) & set(counted)) / here.size
+        if mine not in counted or begin <= REACH - AROUND:
+            continue
+        together = len(set(labels[begin]) & set(counted))
+        for before in range(1, REACH - AROUND + 1):
+            if set(labels[begin - before]) & set(counted):
+                break
+            result[before] = 1.0 / (size * together)
+    return *results, numbers
+
+
+@pytest.mark.parametrize("film", [1.0, 1.6, 2.4])
+def test_strips_are_weighed_as_by_a_naive_implementation(film):
+    rng = np.random.default_rng(5)
+    fields = smooth_surface(rng, 200)
+    covariances = bump(2.0, REACH + 1, WIDTH), 0.5 * bump(1.5, REACH + 1, WIDTH)
+    count = 150
+    places = rng.integers(REACH, 200 - AROUND, count), rng.integers(0, 200 - WIDTH, count)
+    heights = (film + rng.exponential(0.3, count)).astype(np.float32)
+    touching = rng.integers(0, WIDTH, count), heights
+    expected = [0.0, 0.0, 0.0]
+    for each in zip(*places, *touching, strict=True):
+        parts = naive(fields, covariances, *each, film)
+        expected = [total + part for total, part in zip(expected, parts, strict=True)]
+    found = touching_strips(
+        fields, covariances, places, touching, np.float32(film), SHARP, WIDTH, AROUND
+    )
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-6)
+    assert 0.0 < found[1][1] < found[0][1] and 0.0 < found[2][1] < found[2][0]
