@@ -5,6 +5,7 @@ import xarray as xr
 from experiments import model_of_records
 
 from lube.schema import COORDINATES, FILES, label
+from lube.stages.areal import strip_contacts
 from lube.stages.comparison import compare
 from lube.stages.contact import contact_map, contact_statistics
 from lube.stages.ensemble import gather, gather_map
@@ -59,6 +60,7 @@ def datasets_of_every_kind(study):
         "roughness": lines,
         "contact_batch": run,
         "contact": contact,
+        "areal": strip_contacts(spec, film, layer, own.rollers.length, study.seed, study.slips),
         "tail": tail_probabilities(spec, film, layer, study.seed, study.slips),
         "master_batch": mapped,
         "master": master,

@@ -180,9 +180,10 @@ def _contact(moved, search, row, column):
             next_row = here_row + (side == 0) - (side == 1)
             next_column = here_column + (side == 2) - (side == 3)
             inside = -reach <= next_row <= ahead and 0 <= next_column < seen.shape[1]
-            if inside and seen[reach + next_row, next_column] != mark:
-                if _moved(0, moved, next_row, next_column) > film:
-                    seen[reach + next_row, next_column] = mark
-                    stack[waiting, 0], stack[waiting, 1] = next_row, next_column
-                    waiting += 1
+            if not inside or seen[reach + next_row, next_column] == mark:
+                continue
+            if _moved(0, moved, next_row, next_column) > film:
+                seen[reach + next_row, next_column] = mark
+                stack[waiting, 0], stack[waiting, 1] = next_row, next_column
+                waiting += 1
     return points, _moved(1, moved, summit_row, summit_column) > sharp, earliest

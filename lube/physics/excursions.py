@@ -82,7 +82,7 @@ def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float)
 
 
 def expected_contacts(level: Array, moments: Sequence[float], length: float, width: Array) -> Array:
-    r"""Expected number of contacts of an isotropic surface above a level, in a rectangle.
+    r"""Count the contacts to expect of an isotropic surface above a level, in a rectangle.
 
     It is the Euler characteristic: contacts less the holes in them, which high levels do not have.
     With :math:`u = h / \sqrt{m_0}` and the sides a and b,

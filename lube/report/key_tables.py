@@ -10,7 +10,7 @@ from pathlib import Path
 
 from lube.physics.film_formulas import FORMULAS, TOLERANCE
 from lube.recordings.manifest import manifest_schema
-from lube.schema import ON_REQUEST, COORDINATES, DATASETS, FILES, SUMMARIES
+from lube.schema import COORDINATES, DATASETS, FILES, ON_REQUEST, SUMMARIES
 from lube.study.lubricant_record import LubricantRecord
 from lube.study.study import Study
 

@@ -9,7 +9,7 @@ not fit its kind, before it is saved and when it is read.
 """
 
 from lube.schema.labels import check, label
-from lube.schema.stages import ON_REQUEST, DATASETS, STAGES, Stage, forerunners
+from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, Stage, forerunners
 from lube.schema.tables import (
     AT_RECORDS,
     ATTRIBUTES,
@@ -31,7 +31,6 @@ from lube.schema.tables import (
 __all__ = [
     "ATTRIBUTES",
     "AT_RECORDS",
-    "ON_REQUEST",
     "CONTACT_DIMS",
     "COORDINATES",
     "DATASETS",
@@ -40,6 +39,7 @@ __all__ = [
     "LAYER_DIMS",
     "LIMITS",
     "MASTER_DIMS",
+    "ON_REQUEST",
     "OPERATING_DIMS",
     "ORIGINS",
     "POINT_DIMS",

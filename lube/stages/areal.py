@@ -1,7 +1,9 @@
-"""The areal stage: contact of the isotropic surface that the lines stand for, in the whole strip."""
+"""The areal stage: contact of the isotropic surface that the lines stand for, over its length."""
 
+import functools
 import math
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import scipy.special
@@ -15,7 +17,7 @@ from lube.physics.excursions import (
     sharp_surface_summit_share,
 )
 from lube.schema import CONTACT_DIMS, LIMITS, OPERATING_DIMS, label
-from lube.statistics.confidence import jackknife_interval
+from lube.statistics.confidence import jackknife_interval, mean_interval
 from lube.study.rollers import BoundaryLayer, LineSpec
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.synthetic import ROLLERS, spectrum_moments
@@ -27,6 +29,7 @@ STRIPS = 400
 FEWER_STRIPS = 40
 """Strips where theory expects more contacts than `MANY`: there is no doubt that some touch."""
 MANY = 30.0
+_NAMES = {"geometric_contact_probability": "contacts", "breakthrough_probability": "breakthroughs"}
 AROUND = 100
 """Rows on either side of a known point in which its contact is followed."""
 
@@ -38,6 +41,7 @@ def strip_contacts(
     length: float,
     seed: int,
     slide_to_roll_ratio: Sequence[float] = (0.0,),
+    threads: int = 1,
 ) -> xr.Dataset:
     r"""Compute the contact of rough surfaces over the whole length of the rollers.
 
@@ -55,6 +59,8 @@ def strip_contacts(
         Seed of the study.
     slide_to_roll_ratio : sequence of float, optional
         Levels of the slide-to-roll ratio, on which nothing depends here.
+    threads : int, optional
+        Threads that share the work; they do not change the results.
 
     Returns
     -------
@@ -104,7 +110,10 @@ def strip_contacts(
     broken = contacts * sharp_surface_summit_share(films, moments, sharp)
     found = {"expected_contacts": contacts, "expected_breakthroughs": broken}
     strips = np.where(contacts > MANY, FEWER_STRIPS, STRIPS)
-    found |= _sampled(spec, (films, widths, strips), sharp, length, seed)
+    # Of a parabola as high as summits rise above the film on average.
+    smallest = math.sqrt(8.0 / moments[1]) * moments[0] / films.max()
+    surface = isotropic_surface(spec, widths.max(), smallest)
+    found |= _sampled(spec, surface, (films, widths, strips), sharp, length, seed, threads)
     slips = np.asarray(slide_to_roll_ratio, float)
     shape = (slips.size, *thickness.shape)
     variables = {
@@ -115,45 +124,55 @@ def strip_contacts(
     return label(xr.Dataset(variables, levels).assign(length=length), "areal")
 
 
-def _sampled(spec, points, sharp, length, seed):
+def _sampled(spec, surface, points, sharp, length, seed, threads=1):
     """Probabilities and numbers of contacts, with their intervals, shape (points,) each."""
-    films, widths, strips = points
-    surface = isotropic_surface(spec)
-    reach = math.ceil(2.0 * np.pi / spec.q_min / surface.spacing) + AROUND
+    _, widths, _ = points
+    longest = math.ceil(2.0 * np.pi / spec.q_min / surface.spacing)
+    reach = longest, min(AROUND, longest)
     columns = np.maximum(np.floor(widths / surface.spacing).astype(np.int64), 1)
+    covariances = tuple(surface.covariances(sum(reach) + 1, columns.max()))
+    # The first two children draw the lines of the realisation of this number, the next three are
+    # those of `lube.surfaces.rare_contact`.
+    seeds = [np.random.SeedSequence((seed, number)).spawn(7)[5:] for number in range(SURFACES)]
+    one = functools.partial(
+        _on_one_surface,
+        surface=surface,
+        covariances=covariances,
+        points=(points[0] / spec.height_step, columns, points[2]),
+        sharp=sharp / spec.height_step,
+        reach=reach,
+    )
+    # Drawing and counting release Python's lock, so threads share the work.
+    with ThreadPoolExecutor(threads) as pool:
+        found = zip(*pool.map(one, seeds), strict=True)
+    first, numbers = map(np.stack, found)
     rows = max(int(length / surface.spacing), 1)
-    covariances = tuple(surface.covariances(reach + 1, columns.max()))
-    weights = np.empty((SURFACES, films.size, 2, reach - AROUND + 1))
-    numbers = np.empty((SURFACES, films.size, 2))
-    for number in range(SURFACES):
-        # The first two children draw the lines of the realisation of this number, the next three
-        # are those of `lube.surfaces.rare_contact`.
-        children = np.random.SeedSequence((seed, number)).spawn(7)[5:]
-        drawing, choosing = map(np.random.default_rng, children)
-        fields, chosen = surface.draw(drawing), choosing.random((4, STRIPS))
-        each = zip(films / spec.height_step, columns, strips, strict=True)
-        for i, (film, width, count) in enumerate(each):
-            touching, share = _touching(surface.rms, chosen[2:, :count], film, width)
-            places = (
-                reach + (chosen[0] * (surface.points - reach - AROUND)).astype(np.int64)[:count],
-                (chosen[1] * (surface.points - width + 1)).astype(np.int64)[:count],
-            )
-            *first, contacts = touching_strips(
-                fields, covariances, places, touching, film, sharp / spec.height_step, width, AROUND
-            )
-            weights[number, i] = np.stack(first) * share
-            numbers[number, i] = contacts * share * rows
-    found = {}
-    for name, which in (("geometric_contact", 0), ("breakthrough", 1)):
+    results = {}
+    for which, (name, counts) in enumerate(_NAMES.items()):
         limits = jackknife_interval(
-            weights[:, :, which], lambda mean: strip_probability(mean, rows), upper=1.0
+            first[:, :, which], functools.partial(strip_probability, rows=rows), upper=1.0
         )
-        found |= _named(f"{name}_probability", limits)
-        counted = jackknife_interval(numbers[:, :, which], lambda mean: mean)
-        found |= _named(
-            {"geometric_contact": "contacts", "breakthrough": "breakthroughs"}[name], counted
+        results |= _named(name, limits) | _named(counts, mean_interval(rows * numbers[:, :, which]))
+    return results
+
+
+def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
+    """First rows that touch, shape (points, 2, R + 1), and contacts in a row, shape (points, 2)."""
+    drawing, choosing = map(np.random.default_rng, seeds)
+    fields, chosen = surface.draw(drawing), choosing.random((4, STRIPS))
+    longest, around = reach
+    first, numbers = [], []
+    for film, width, count in zip(*points, strict=True):
+        touching, share = _touching(surface.rms, chosen[2:, :count], film, width)
+        room = surface.points - longest - 2 * around, surface.points - width + 1
+        row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
+        places = longest + around + row, column
+        *each, contacts = touching_strips(
+            fields, covariances, places, touching, film, sharp, width, around
         )
-    return found
+        first.append(share * np.stack(each))
+        numbers.append(share * contacts)
+    return np.stack(first), np.stack(numbers)
 
 
 def _touching(rms, chosen, film, width):

@@ -211,7 +211,7 @@ def mean_interval(values: Array) -> tuple[Array, Array, Array]:
 def jackknife_interval(
     values: Array, function: Callable[[Array], Array], upper: float = np.inf
 ) -> tuple[Array, Array, Array]:
-    r"""Function of the mean of independent values, and its 95 % interval.
+    r"""Compute a function of the mean of independent values, and its 95 % interval.
 
     Each value is left out once. With the results :math:`f_{(r)}` and their mean
     :math:`f_{(\cdot)}` the error of f is

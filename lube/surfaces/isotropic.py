@@ -10,6 +10,7 @@ all directions:
 """
 
 import functools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,10 +22,12 @@ from lube.types import Array, Pair
 
 POINTS_PER_WAVE = 5
 """Grid points in the shortest wavelength."""
-LONGEST_WAVES = 3
+LONGEST_WAVES = 4
 """Longest wavelengths along a side of the surface."""
-LARGEST = 8192
-"""Largest number of points along a side."""
+POINTS_PER_CONTACT = 4
+"""Grid points in the smallest contacts, if the surface does not get too large by it."""
+LARGE, LARGEST = 4096, 8192
+"""Points along a side up to which the grid is refined for small contacts, and at most."""
 
 
 @dataclass(frozen=True)
@@ -95,13 +98,17 @@ class Surface:
 
 
 @functools.lru_cache(maxsize=1)
-def isotropic_surface(spec: LineSpecLike) -> Surface:
+def isotropic_surface(spec: LineSpecLike, width: float = 0.0, contact: float = math.inf) -> Surface:
     """Find the isotropic surface that a pair of lines stands for.
 
     Parameters
     ----------
     spec : LineSpecLike
         Parameters of the lines.
+    width : float, optional
+        Width that the surface must have, and a longest wavelength besides, m.
+    contact : float, optional
+        Length of the smallest contacts, m.
 
     Returns
     -------
@@ -113,47 +120,34 @@ def isotropic_surface(spec: LineSpecLike) -> Surface:
     DataError
         If the band of wavelengths is too wide for a square grid.
     """
+    longest = 2.0 * np.pi / spec.q_min
+    side = max(LONGEST_WAVES * longest, width + longest)
     spacing = 2.0 * np.pi / spec.q_max / POINTS_PER_WAVE
-    least = LONGEST_WAVES * 2.0 * np.pi / spec.q_min / spacing
+    spacing = min(spacing, max(contact / POINTS_PER_CONTACT, side / LARGE))
+    least = side / spacing
     if least > LARGEST:
         raise DataError(
-            f"roughness: got a longest wavelength {spec.q_max / spec.q_min:.0f} times the "
-            f"shortest, need at most {LARGEST / LONGEST_WAVES / POINTS_PER_WAVE:.0f} for a surface"
+            f"roughness: got a shortest wavelength of {2.0 * np.pi / spec.q_max:.3g} m, too short "
+            f"for a surface of {side:.3g} m, need {least / LARGEST:.3g} times as much"
         )
-    points = scipy.fft.next_fast_len(int(np.ceil(least)), real=True)
+    points = scipy.fft.next_fast_len(math.ceil(least), real=True)
+    waves = np.hypot(np.fft.fftfreq(points, 1.0 / points)[:, None], np.arange(points // 2 + 1))
     step = 2.0 * np.pi / (points * spacing)
-    waves = np.fft.fftfreq(points, 1.0 / points)[:, None], np.arange(points // 2 + 1)
-    wavenumber = step * np.hypot(*waves)
-    density = sum(line_density(spec, roller, wavenumber) for roller in range(len(ROLLERS)))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        variances = np.where(density > 0.0, density / (2.0 * np.pi * wavenumber), 0.0)
-    # All waves but the first and, of an even number, the last column stand for their mirror image.
-    mirrored = np.full(points // 2 + 1, 2.0)
-    mirrored[0] = 1.0
-    mirrored[-1] = 2.0 if points % 2 else 1.0
-    variance = sum(rms**2 for rms in spec.rms_height) / spec.height_step**2
-    variances *= variance / np.sum(variances * mirrored)
-    return Surface(spacing, points, np.sqrt(variance), variances, 0.5 * wavenumber**2)
+    # The waves of equal length share what the lines' waves of this length have.
+    shell = np.rint(waves).astype(np.int64)
+    power = sum(_power(spec, roller, step, shell.max() + 1) for roller in range(len(ROLLERS)))
+    # But in the first column, and in the last of an even number, a wave is also its mirror image.
+    number = np.full(waves.shape, 2)
+    number[:, 0] = 1
+    number[:, -1] -= 1 - points % 2
+    number = np.bincount(shell.ravel(), number.ravel())
+    variances = (power / number)[shell]
+    return Surface(spacing, points, np.sqrt(power.sum()), variances, 0.5 * (step * waves) ** 2)
 
 
-def line_density(spec: LineSpecLike, roller: int, wavenumber: Array) -> Array:
-    r"""One-sided power spectral density of a line at any wavenumber.
-
-    Parameters
-    ----------
-    spec : LineSpecLike
-        Parameters of the lines.
-    roller : int
-        0 for the first roller, 1 for the second.
-    wavenumber : numpy.ndarray
-        rad/m, any shape.
-
-    Returns
-    -------
-    numpy.ndarray
-        m^3, zero outside the band.
-    """
+def _power(spec, roller, step, shells):
+    """Variance of a line's waves, rounded to whole multiples of a wavenumber, height steps."""
     first, amplitudes = wave_amplitudes(spec, roller)
-    step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
-    known = step * np.arange(first, first + amplitudes.size)
-    return np.interp(wavenumber, known, amplitudes**2 / (2.0 * step), left=0.0, right=0.0)
+    own_step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    shell = np.rint(own_step / step * np.arange(first, first + amplitudes.size)).astype(np.int64)
+    return np.bincount(shell, 0.5 * (amplitudes / spec.height_step) ** 2, minlength=shells)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from lube.errors import LubeError
-from lube.schema import ON_REQUEST, DATASETS
+from lube.schema import DATASETS, ON_REQUEST
 from lube.types import File
 
 

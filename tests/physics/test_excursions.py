@@ -5,7 +5,13 @@ import pytest
 import scipy.integrate
 import scipy.stats
 
-from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
+from lube.physics.excursions import (
+    breaking_curvature,
+    crossing_rate,
+    expected_contacts,
+    sharp_summit_share,
+    sharp_surface_summit_share,
+)
 
 MOMENTS = 2.0, 3.0, 40.0
 
@@ -52,3 +58,43 @@ def test_the_layer_breaks_at_the_curvature_where_the_remaining_thickness_is_crit
         force = modulus * 2.0 / 3.0 * length * height
         thickness = np.pi * strength / 12.0 * length**3 / force
         assert thickness == pytest.approx(critical)
+
+
+def test_contacts_of_a_point_a_line_and_a_large_area():
+    height = 3.0
+    level, tail = height * np.sqrt(MOMENTS[0]), scipy.stats.norm.sf(height)
+    assert expected_contacts(level, MOMENTS, 0.0, 0.0) == pytest.approx(tail)
+    one_direction = MOMENTS[0], MOMENTS[1] / 2.0, 0.0
+    along = 5.0 * crossing_rate(level, one_direction)
+    assert expected_contacts(level, MOMENTS, 5.0, 0.0) == pytest.approx(tail + along)
+    # Adler & Taylor: (2 pi)^(-3/2) lambda_2 u exp(-u^2/2) per area.
+    dense = height * np.exp(-(height**2) / 2.0) / (2.0 * np.pi) ** 1.5
+    dense *= MOMENTS[1] / 2.0 / MOMENTS[0]
+    assert expected_contacts(level, MOMENTS, 1e4, 1e4) == pytest.approx(1e8 * dense, rel=1e-3)
+
+
+def test_all_summits_of_a_surface_are_sharper_than_flat_and_none_than_a_needle():
+    levels = np.array([0.5, 2.0, 9.0])
+    np.testing.assert_allclose(sharp_surface_summit_share(levels, MOMENTS, 0.0), 1.0)
+    assert np.all(sharp_surface_summit_share(levels, MOMENTS, 1e3) < 1e-100)
+
+
+def test_sharp_summits_of_a_surface_are_those_of_drawn_critical_points():
+    """Heights and second derivatives drawn at points without slope, weighed by |det H| (Rice)."""
+    m0, m2, m4 = MOMENTS
+    m2, cross = m2 / 2.0, m4 / 8.0
+    covariance = [
+        [m0, -m2, -m2, 0.0],
+        [-m2, 3.0 * cross, cross, 0.0],
+        [-m2, cross, 3.0 * cross, 0.0],
+        [0.0, 0.0, 0.0, cross],
+    ]
+    rng = np.random.default_rng(4)
+    z, xx, yy, xy = rng.multivariate_normal(np.zeros(4), covariance, 2_000_000).T
+    weight = xx * yy - xy**2
+    maximum = (weight > 0.0) & (xx < 0.0) & (z > 2.0)
+    sharp = maximum & (-(xx + yy) / 2.0 > 4.0)
+    expected = weight[sharp].sum() / weight[maximum].sum()
+    found = sharp_surface_summit_share(np.array([2.0]), MOMENTS, 4.0)
+    assert found == pytest.approx(expected, abs=0.01)
+    assert 0.1 < expected < 0.9

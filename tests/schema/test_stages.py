@@ -4,7 +4,7 @@ import json
 
 from studies import ROOT, SMOKE
 
-from lube.schema import ON_REQUEST, DATASETS, FILES, STAGES, SUMMARIES, forerunners
+from lube.schema import DATASETS, FILES, ON_REQUEST, STAGES, SUMMARIES, forerunners
 from lube.study.study import load_study
 
 

@@ -6,9 +6,16 @@ from lube.workflow.figure_list import chapters, study_figures
 with one_line_errors():
     FIGURES = study_figures(STUDY)
 
-# Others are made on request only, such as `snakemake benchmark`.
-ARCHIVED = [name for name, figure in FIGURES.items() if figure.target == "all"]
 CHAPTERS = chapters(FIGURES)
+
+
+def figures_of(target):
+    """Figures that a target of Snakemake makes."""
+    return [name for name, figure in FIGURES.items() if figure.target == target]
+
+
+# Others are made on request only, such as `snakemake benchmark`.
+ARCHIVED = figures_of("all")
 
 products = FILES.products
 

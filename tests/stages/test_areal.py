@@ -1,0 +1,109 @@
+"""Contact of a surface over the rollers' length: theory and limits, then counting."""
+
+import numpy as np
+import pytest
+import scipy.ndimage
+
+from lube.errors import DataError
+from lube.schema import CONTACT_DIMS
+from lube.stages import areal
+from lube.stages.areal import strip_contacts, strip_probability
+from lube.stages.tail import tail_probabilities
+from lube.surfaces.isotropic import isotropic_surface
+
+SEED = 2
+
+
+@pytest.fixture(scope="module")
+def spec(make_spec):
+    return make_spec(50_000)
+
+
+@pytest.fixture(scope="module")
+def few(film):
+    return film.isel(film_formula=[0], temperature=[0, 2], speed=[1], force=[2, 4])
+
+
+@pytest.fixture(scope="module")
+def contacts(spec, few, study):
+    return strip_contacts(spec, few, study.boundary_layer, 0.01, SEED, [0.0, 0.1])
+
+
+# --- Theory and limits -------------------------------------------------------------------
+
+
+def test_independent_rows_touch_as_by_the_binomial_distribution():
+    for share in (1e-12, 0.02, 0.4):
+        first = share * (1.0 - share) ** np.arange(30)
+        for rows in (1, 7, 30, 1000):
+            expected = -np.expm1(rows * np.log1p(-share))
+            assert strip_probability(first, rows) == pytest.approx(expected, rel=1e-9)
+
+
+def test_results_have_the_dimensions_of_the_contact_model_and_do_not_depend_on_slip(contacts):
+    for name, array in contacts.data_vars.items():
+        if name != "length":
+            assert array.dims == CONTACT_DIMS
+            assert np.all(array == array.isel(slide_to_roll_ratio=0))
+
+
+def test_a_surface_touches_more_often_than_its_line_and_the_longer_the_more(
+    contacts, spec, few, study
+):
+    line = tail_probabilities(spec, few, study.boundary_layer, SEED, [0.0, 0.1])
+    short = strip_contacts(spec, few, study.boundary_layer, 0.001, SEED, [0.0, 0.1])
+    name = "geometric_contact_probability"
+    assert np.all(contacts[name] > line[name])
+    rare = contacts[name] < 0.1
+    assert rare.any()
+    ratio = (contacts[name] / short[name]).where(rare)
+    assert ratio.min() > 5.0 and ratio.max() < 11.0
+
+
+def test_counted_contacts_are_those_of_theory_where_they_are_few(spec, few, study):
+    """Theory counts contacts less the holes in them, which high films do not have."""
+    rare = few.isel(temperature=[0], force=[0])
+    contacts = strip_contacts(spec, rare, study.boundary_layer, 0.01, SEED)
+    half = (contacts["contacts_upper"] - contacts["contacts"]).item()
+    deviation = (contacts["contacts"] - contacts["expected_contacts"]).item()
+    assert abs(deviation) < 2.0 * half < 0.2 * contacts["contacts"].item()
+
+
+def test_threads_do_not_change_a_bit(spec, few, study, contacts):
+    other = strip_contacts(spec, few, study.boundary_layer, 0.01, SEED, [0.0, 0.1], threads=3)
+    assert other.identical(contacts)
+
+
+def test_rollers_shorter_than_the_contact_is_wide_are_refused(spec, few, study):
+    with pytest.raises(DataError, match=r"rollers\.length: got 0\.0001 m, need the contact width"):
+        strip_contacts(spec, few, study.boundary_layer, 1e-4, SEED)
+    none = few.assign(film_thickness=0.0 * few["film_thickness"])
+    with pytest.raises(DataError, match="film thickness: got 0 m, need above 0"):
+        strip_contacts(spec, none, study.boundary_layer, 0.01, SEED)
+
+
+# --- Counting ----------------------------------------------------------------------------
+
+
+def test_strips_touch_as_often_as_counted(spec, study):
+    """On whole surfaces, and with all their contacts labelled."""
+    surface = isotropic_surface(spec)
+    ratio, width, rows = 2.6, 12, 40
+    rng = np.random.default_rng(8)
+    shares, numbers = [], []
+    for _ in range(150):
+        heights, _ = surface.draw(rng)
+        above = heights > ratio * surface.rms
+        wide = scipy.ndimage.maximum_filter1d(above.astype(int), width, axis=1, mode="wrap")
+        shares.append(scipy.ndimage.maximum_filter1d(wide, rows, axis=0, mode="wrap").mean())
+        numbers.append(scipy.ndimage.label(above)[1] / above.size)
+    films = np.array([ratio * surface.rms * spec.height_step])
+    widths = np.array([(width + 0.5) * surface.spacing])
+    length = (rows + 0.5) * surface.spacing
+    points = films, widths, np.array([areal.STRIPS])
+    found = areal._sampled(spec, surface, points, 0.0, length, SEED)
+    name = "geometric_contact_probability"
+    half = (found[f"{name}_upper"] - found[name]).item()
+    error = np.hypot(np.std(shares, ddof=1) / 150**0.5, half / 2.0)
+    assert abs(found[name].item() - np.mean(shares)) < 4.0 * error
+    assert error < 0.1 * np.mean(shares)

@@ -1,0 +1,77 @@
+"""Isotropic surfaces: the moments that their line's spectrum prescribes."""
+
+import numpy as np
+import pytest
+
+from lube.errors import DataError
+from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.synthetic import wave_amplitudes
+
+
+@pytest.fixture(scope="module")
+def spec(make_spec):
+    return make_spec(50_000, second_roughness=0.31e-6)
+
+
+@pytest.fixture(scope="module")
+def surface(spec):
+    return isotropic_surface(spec)
+
+
+@pytest.fixture(scope="module")
+def drawn(surface):
+    return [surface.draw(np.random.default_rng(seed)) for seed in range(60)]
+
+
+def test_heights_slopes_and_curvatures_are_those_that_the_line_prescribes(spec, surface, drawn):
+    """Slopes in one direction have half the line's mean square, mean curvatures a quarter."""
+    squares = []
+    for heights, curvatures in drawn:
+        heights = heights.astype(float) * spec.height_step
+        # By the exact derivative of the waves, as the grid is coarse.
+        waves = np.fft.fft2(heights)
+        wavenumber = 2.0 * np.pi * np.fft.fftfreq(surface.points, surface.spacing)
+        slope = np.fft.ifft2(1j * wavenumber * waves).real
+        curvature = curvatures.astype(float) * spec.height_step
+        squares.append([np.mean(one**2) for one in (heights, slope, curvature)])
+    found = np.mean(squares, axis=0)
+    error = np.std(squares, axis=0, ddof=1) / np.sqrt(len(drawn))
+    expected = np.zeros(3)
+    for roller in range(2):
+        first, amplitudes = wave_amplitudes(spec, roller)
+        waves = np.arange(first, first + amplitudes.size)
+        wavenumber = 2.0 * np.pi * waves / (spec.points[roller] * spec.spacing)
+        powers = np.array([wavenumber**0, wavenumber**2 / 2.0, wavenumber**4 / 4.0])
+        expected += powers @ amplitudes**2 / 2.0
+    # Rounded to whole waves around the square, the longest waves are a little shorter.
+    assert np.all(np.abs(found - expected) < 4.0 * error + 0.02 * expected)
+    assert np.all(error < 0.05 * expected)
+
+
+def test_the_covariance_is_that_of_drawn_surfaces(surface, drawn):
+    known = list(surface.covariances(8, 6))
+    for which, covariance in enumerate(known):
+        for rows, columns in ((0, 0), (3, 0), (0, -4), (7, 5)):
+            products = [
+                np.mean(fields[0] * np.roll(fields[which], (-rows, -columns), (0, 1)), dtype=float)
+                for fields in drawn
+            ]
+            found = np.mean(products) / surface.rms**2
+            error = np.std(products, ddof=1) / len(drawn) ** 0.5 / surface.rms**2
+            assert abs(found - covariance[rows, 5 + columns]) < 4.0 * error
+    np.testing.assert_array_equal(known[0], known[0][:, ::-1])
+    assert known[0][0, 5] == pytest.approx(1.0)
+
+
+def test_the_surface_is_isotropic(surface):
+    heights = next(iter(surface.covariances(41, 41)))[:, 40:]
+    np.testing.assert_allclose(heights, heights.T, atol=1e-6)
+    for rows, columns in ((3, 4), (6, 8), (24, 32)):  # as far as 5, 10 and 40 along a row
+        distance = int(np.hypot(rows, columns))
+        assert heights[rows, columns] == pytest.approx(heights[0, distance], abs=0.05)
+
+
+def test_a_band_too_wide_for_a_grid_is_refused(make_spec):
+    wide = make_spec(1_000_000, shortest_wavelength=1e-6)
+    with pytest.raises(DataError, match=r"roughness: got a shortest wavelength of 1e-06 m"):
+        isotropic_surface(wide.model_copy(update={"q_min": wide.q_min / 10.0}))
