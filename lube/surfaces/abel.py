@@ -83,7 +83,7 @@ def monotone(density: Array, estimates: Array) -> Array:
     return scipy.optimize.isotonic_regression(density, weights=estimates, increasing=False).x
 
 
-def line_of_profile(wave_vector: Array, density: Array) -> Array:
+def line_of_profile(wave_vector: Array, density: Array, wanted: Array) -> Array:
     r"""Density of the line from that of a profile, by Abel inversion.
 
     With :math:`x = q \cosh u` and the local exponent :math:`p(x) = -d \ln C_p / d \ln x` the
@@ -97,16 +97,18 @@ def line_of_profile(wave_vector: Array, density: Array) -> Array:
         Shape (n,), rising, rad/m.
     density : numpy.ndarray
         The profile's densities, shape (n,), positive and never rising, m^3.
+    wanted : numpy.ndarray
+        Wave vectors of the result, shape (m,), rad/m, within the others.
 
     Returns
     -------
     numpy.ndarray
-        Shape (n,), m^3.
+        Shape (m,), m^3.
 
     Examples
     --------
     >>> q = np.geomspace(1e3, 1e6, 60)
-    >>> f"{np.median(line_of_profile(q, q**-2.4) / q**-2.4):.3f}"
+    >>> f"{np.median(line_of_profile(q, q**-2.4, q) / q**-2.4):.3f}"
     '1.754'
     """
     known, values = np.log(wave_vector), np.log(density)
@@ -115,7 +117,7 @@ def line_of_profile(wave_vector: Array, density: Array) -> Array:
     last_slope = np.polyfit(known[end], values[end], 1)[0]
     step = _REACH / _NODES
     stretch = np.cosh(step * np.arange(_NODES + 1))
-    place = known[:, None] + np.log(stretch)
+    place = np.log(wanted)[:, None] + np.log(stretch)
     inside = np.minimum(place, known[-1])
     beyond = place - inside
     exponent = -np.where(beyond > 0.0, last_slope, curve(inside, 1))

@@ -75,7 +75,7 @@ def hurst_exponent(spectrum: LineSpectrum, longest: float, shortest: float) -> E
         )
     basis = np.stack([np.ones(used.sum()), np.log(wave_vector[used])], axis=1)
     fit, covariance = _least_squares(basis, logarithm[used], error[used])
-    exponent, half = -0.5 * (fit[1] + 1.0), 0.5 * 1.96 * np.sqrt(covariance[1, 1])
+    exponent, half = -0.5 * float(fit[1] + 1.0), 0.98 * float(np.sqrt(covariance[1, 1]))
     return Estimate(exponent, exponent - half, exponent + half)
 
 
@@ -122,7 +122,8 @@ def roll_off(spectrum: LineSpectrum) -> Estimate | None:
     # Limits where the profile likelihood falls by 3.84 / 2, larger if the fit is poor.
     poor = max(misfit[best] / max(places.size - 3, 1), 1.0)
     inside = tried[misfit <= misfit[best] + 3.84 * poor]
-    return Estimate(*(2.0 * np.pi / np.exp([tried[best], inside[-1], inside[0]])))
+    limits = (tried[best], inside[-1], inside[0])
+    return Estimate(*(float(2.0 * np.pi / np.exp(place)) for place in limits))
 
 
 def height_distribution(heights: Array) -> dict[str, Estimate]:
