@@ -35,7 +35,7 @@ import scipy.optimize
 from lube.errors import DataError
 from lube.surfaces.abel import line_of_profile, monotone
 from lube.surfaces.synthetic import power_spectrum
-from lube.surfaces.topography import Preparation, Topography, power_transfer
+from lube.surfaces.topography import Preparation, Topography, power_transfer, used_directions
 from lube.types import Array, Pair
 
 LEAST_POINTS_PER_WAVE = 4
@@ -63,6 +63,9 @@ more."""
 
 LEAST_WAVES_OF_RING = 50
 """Fewest waves of a ring that counts for the `anisotropy`."""
+
+LEAST_RMS_HEIGHT = 1e-13
+"""A surface smoother than this, m, a thousandth of an atom, is rounding errors."""
 
 TABLE_VALUES = 200
 """Values of a spectrum's table."""
@@ -136,7 +139,7 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
         If the surface is flat, too small, or not as isotropic as the settings say.
     """
     shortest = max(
-        LEAST_POINTS_PER_WAVE * max(surface.spacing),
+        LEAST_POINTS_PER_WAVE * max(used_directions(surface.spacing, settings)),
         surface.resolution,
         settings.short_cutoff or 0.0,
     )
@@ -146,7 +149,7 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
     else:
         bins = _map_bins(surface, 2.0 * np.pi / shortest, isotropic)
     wave_vector, density, estimates, windowed = bins
-    if wave_vector.size < 3 or not np.all(density > 0.0):
+    if wave_vector.size < 3 or windowed < LEAST_RMS_HEIGHT**2 or not np.all(density > 0.0):
         raise DataError(f"{surface.name}: its spectrum is empty, need rough heights on more points")
     if settings.long_cutoff is not None:
         excess = np.vdot(surface.heights, surface.heights) / surface.heights.size - windowed

@@ -2,8 +2,8 @@ r"""A measured topography: profile or map, without form, tilt and holes, and fil
 
 Heights are in metres, on an even grid. A hole, where the instrument measured nothing, is NaN.
 
-The Gaussian filters are those of ISO 16610-21 (profiles) and ISO 16610-61 (maps, separable in
-both directions). Their weighting function and their transmission of a wave of length
+The Gaussian filters are those of ISO 16610-21 (profiles, and maps along rolling) and of ISO 16610-61
+(isotropic maps; it is separable in both directions). Their weighting function and their transmission of a wave of length
 :math:`\lambda` are
 
 .. math::
@@ -135,16 +135,29 @@ def prepare(topography: Topography, settings: Preparation) -> Topography:
     >>> f"{np.std(prepare(profile, Preparation('isotropic')).heights):.1e}"
     '7.1e-07'
     """
-    _check(topography, settings)
-    heights, spacing = topography.heights, topography.spacing
-    if heights.ndim == 2 and settings.rolling == "y":
-        heights, spacing = heights.T, spacing[::-1]
-    heights = fill_holes(remove_form(heights, settings.form))
+    if topography.heights.ndim == 2 and settings.rolling == "y":
+        heights, spacing = topography.heights.T, topography.spacing[::-1]
+        topography = replace(topography, heights=heights, spacing=spacing)
+    _check_points(topography, settings)
+    _check_cutoffs(topography, settings)
+    heights = fill_holes(remove_form(topography.heights, settings.form))
+    spacing = used_directions(topography.spacing, settings)
     heights = gaussian_filter(heights, spacing, settings.long_cutoff, settings.short_cutoff)
-    return replace(topography, heights=heights, spacing=spacing)
+    return replace(topography, heights=heights)
 
 
-def _check(topography, settings):
+def used_directions(sides: tuple[float, ...], settings: Preparation) -> tuple[float, ...]:
+    """Return the sides of a map that matter: if it is taken along rolling, only the first.
+
+    Examples
+    --------
+    >>> used_directions((1e-3, 2e-3), Preparation("along rolling"))
+    (0.001,)
+    """
+    return sides[:1] if settings.texture == "along rolling" else sides
+
+
+def _check_points(topography, settings):
     name, heights = topography.name, topography.heights
     if min(heights.shape) < LEAST_POINTS:
         raise DataError(f"{name}: got {heights.shape} points, need {LEAST_POINTS} or more a side")
@@ -153,7 +166,12 @@ def _check(topography, settings):
         raise DataError(f"{name}: got holes, {holes:.2%} of the points, need none or `interpolate`")
     if holes > MOST_HOLES:
         raise DataError(f"{name}: got {holes:.2%} of holes, need at most {MOST_HOLES:.0%}")
-    longest, finest = min(topography.lengths), max(topography.spacing)
+
+
+def _check_cutoffs(topography, settings):
+    name = topography.name
+    longest = min(used_directions(topography.lengths, settings))
+    finest = max(used_directions(topography.spacing, settings))
     long_cutoff, short_cutoff = settings.long_cutoff, settings.short_cutoff
     if long_cutoff is not None and not 4.0 * finest <= long_cutoff <= longest:
         raise DataError(
@@ -262,7 +280,8 @@ def gaussian_filter(
     heights : numpy.ndarray
         Shape (n,) or (nx, ny).
     spacing : tuple of float
-        Distance of neighbouring points in each direction, m.
+        Distance of neighbouring points in each direction, m; of the first only to filter a map
+        along it.
     long_cutoff, short_cutoff : float or None
         Cutoffs of long and of short waves, m; without one, this filter is not applied.
 
@@ -321,11 +340,10 @@ def _transmission(wave_vector, cutoff):
 
 def _smoothed(heights, spacing, cutoff):
     """Weighted means over the points around each point."""
-    smooth = np.array(heights, float)
-    lines = np.atleast_2d(smooth)  # a view
-    for step in reversed(spacing):
+    smooth = np.array(heights, float, order="C")
+    columns = smooth.reshape(len(smooth), -1)
+    for lines, step in zip((columns.T, columns), spacing, strict=False):
         _smooth_lines(lines, step, cutoff)
-        lines = lines.T
     return smooth
 
 
