@@ -22,7 +22,8 @@ spectrum differs from that of the measured heights by chance. What is missing or
 added to the densities in proportion to their variance: to those of the long waves, of which there
 are few, and hardly to those of the short ones, which are known much better than the rms height.
 This is done only after a filter of long waves: without one the rms height is that of the measured
-length, which no spectrum of shorter waves can have.
+length, which no spectrum of shorter waves can have. In both cases the table as a whole has the
+power of the waves it is made of, though a mean in logarithms between scattered values is lower.
 """
 
 import math
@@ -148,12 +149,12 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
         bins = _profile_bins(surface, 2.0 * np.pi / shortest)
     else:
         bins = _map_bins(surface, 2.0 * np.pi / shortest, isotropic)
-    wave_vector, density, estimates, windowed = bins
-    if wave_vector.size < 3 or windowed < LEAST_RMS_HEIGHT**2 or not np.all(density > 0.0):
+    wave_vector, density, estimates, inside, windowed = bins
+    mean_square = np.vdot(surface.heights, surface.heights) / surface.heights.size
+    if wave_vector.size < 3 or mean_square < LEAST_RMS_HEIGHT**2 or not np.all(density > 0.0):
         raise DataError(f"{surface.name}: its spectrum is empty, need rough heights on more points")
-    if settings.long_cutoff is not None:
-        excess = np.vdot(surface.heights, surface.heights) / surface.heights.size - windowed
-        density = with_power(wave_vector, density, estimates, excess)
+    whole = windowed if settings.long_cutoff is None else mean_square
+    density = with_power(wave_vector, density, estimates, whole - (windowed - inside))
     transfer = power_transfer(wave_vector, settings.long_cutoff, settings.short_cutoff)
     if isotropic and surface.heights.ndim == 1:
         # A profile's filter acts on the profile, a surface's on the surface.
@@ -350,7 +351,7 @@ def power_law_integral(wave_vector: Array, density: Array) -> float:
     return float(means @ steps)
 
 
-def with_power(wave_vector: Array, density: Array, estimates: Array, excess: float) -> Array:
+def with_power(wave_vector: Array, density: Array, estimates: Array, power: float) -> Array:
     r"""Change a spectrum to one of another mean square height, most where it is least certain.
 
     The densities are multiplied by :math:`\exp(\mu\, q\, C / n)`, where :math:`n` is the number of
@@ -360,8 +361,8 @@ def with_power(wave_vector: Array, density: Array, estimates: Array, excess: flo
     ----------
     wave_vector, density, estimates : numpy.ndarray
         Shape (n,), rad/m, m^3 and numbers.
-    excess : float
-        Mean square height to be added, m^2. The whole is at most doubled or halved.
+    power : float
+        Mean square height wanted, m^2; the spectrum's is at most doubled or halved.
 
     Returns
     -------
@@ -371,12 +372,11 @@ def with_power(wave_vector: Array, density: Array, estimates: Array, excess: flo
     Examples
     --------
     >>> q = np.geomspace(1.0, 100.0, 20)
-    >>> changed = with_power(q, q**-2.0, q, 0.1)
-    >>> f"{power_law_integral(q, changed) - power_law_integral(q, q**-2.0):.6f}"
-    '0.100000'
+    >>> f"{power_law_integral(q, with_power(q, q**-2.0, q, 1.2)):.6f}"
+    '1.200000'
     """
     before = power_law_integral(wave_vector, density)
-    target = min(max(before + excess, 0.5 * before), 2.0 * before)
+    target = min(max(power, 0.5 * before), 2.0 * before)
     share = wave_vector * density / estimates
     share /= share.max()
 
@@ -395,9 +395,9 @@ def _profile_bins(surface, q_max):
         _binned(inside, values, edges) for values in (None, density, wave_vector**-2.0)
     )
     # Where a power law of the exponent -2 has its mean over the bin.
-    windowed = np.sum(density) * wave_vector[0]
     middle, estimates = (places / counts) ** -0.5, np.maximum(counts / _BLUR, 1.0)
-    return middle, total / counts, estimates, windowed
+    powers = (np.sum(part) * wave_vector[0] for part in (total, density))
+    return middle, total / counts, estimates, *powers
 
 
 def _map_bins(surface, q_max, isotropic):
@@ -430,7 +430,8 @@ def _ring_means(power, lengths, q_max):
     cell = (2.0 * np.pi) ** 2 / (lengths[0] * lengths[1])
     surface_density = _binned(ring, power, edges) / (waves * cell)
     estimates = np.maximum(0.5 * waves / _BLUR**2, 1.0)
-    return middle, 2.0 * np.pi * middle * surface_density, estimates
+    inside = np.sum(surface_density * waves) * cell
+    return middle, 2.0 * np.pi * middle * surface_density, estimates, inside
 
 
 def _column_means(power, length, q_max):
@@ -451,7 +452,8 @@ def _column_means(power, length, q_max):
     with np.errstate(invalid="ignore"):
         estimates = 2.0 * total**2 / _binned(inside, squares, edges)
     most = 2.0 * counts * power.shape[1]
-    return middle, total / (counts * step), np.maximum(np.minimum(estimates, most) / _BLUR**2, 1.0)
+    estimates = np.maximum(np.minimum(estimates, most) / _BLUR**2, 1.0)
+    return middle, total / (counts * step), estimates, total.sum()
 
 
 def _inverted(wave_vector, density, estimates):

@@ -2,9 +2,9 @@ r"""A measured topography: profile or map, without form, tilt and holes, and fil
 
 Heights are in metres, on an even grid. A hole, where the instrument measured nothing, is NaN.
 
-The Gaussian filters are those of ISO 16610-21 (profiles, and maps along rolling) and of ISO 16610-61
-(isotropic maps; it is separable in both directions). Their weighting function and their transmission of a wave of length
-:math:`\lambda` are
+The Gaussian filters are those of ISO 16610-21 (profiles, and maps along rolling) and of
+ISO 16610-61 (isotropic maps; it is separable in both directions). Their weighting function and
+their transmission of a wave of length :math:`\lambda` are
 
 .. math::
 
