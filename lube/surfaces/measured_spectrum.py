@@ -51,16 +51,16 @@ BINS_PER_DECADE = 20
 
 BINS_PER_DECADE_INVERTED = 4
 """The Abel inversion takes slopes of a profile's density, whose scatter grows as bins become
-narrower. With this width, on profiles 40 roll-offs long, the density is within 3 % at H = 0.5, 0.7
-and 0.9 on the mean of 40 profiles, 16 % too low at the roll-off, and the rms height 2 % too low;
-see ``tests/benchmarks/bench_topography.py``. The waves longer than three times the roll-off, of
-which the line has few, are too strong."""
+narrower. With this width the mean over 40 profiles, each 40 roll-offs long, at H = 0.5, 0.7 and
+0.9, is within 3 % of the true density at a third of the roll-off and shorter, 8 to 10 % too low at
+the roll-off, and 20 to 70 % too high at two to five times the roll-off, where the line has little;
+the rms height is 2 % too high. See ``tests/benchmarks/bench_topography.py``."""
 
 MOST_ANISOTROPY = 0.3
 """Largest `anisotropy` of a surface that counts as isotropic. At H = 0.8 this is a surface whose
 asperities are 1.4 times longer than wide; its profiles along both axes differ by the factor 1.7
-in density, so that either is within 15 % of the mean in rms height. Ground surfaces have 0.8 and
-more."""
+in density, so that either is within 15 % of the mean in rms height. Scratches five times longer
+than wide have 0.9."""
 
 LEAST_WAVES_OF_RING = 50
 """Fewest waves of a ring that counts for the `anisotropy`."""

@@ -184,7 +184,26 @@ def test_filters_of_a_profile_become_those_of_the_surface():
     )
 
 
-def test_anisotropy_is_that_of_stretched_surfaces():
+@pytest.mark.parametrize("stretch", [1.0, 1.4, 2.0, 5.0])
+def test_anisotropy_is_that_of_a_stretched_surface(stretch):
+    """C2D ~ (q_x^2 + s^2 q_y^2)^-(H + 1) on every ring: waves along x are stronger."""
+    points, hurst = 512, 0.8
+    x, y = np.meshgrid(
+        scipy.fft.fftfreq(points, 1 / points), np.arange(points // 2 + 1), indexing="ij"
+    )
+    waves = np.maximum(np.hypot(x, stretch * y), 1.0)
+    noise = scipy.fft.rfft2(np.random.default_rng(8).normal(size=(points, points)))
+    heights = scipy.fft.irfft2(noise * waves ** (-hurst - 1.0), (points, points))
+    angle = np.linspace(0, np.pi, 20_001)
+    density = (np.cos(angle) ** 2 + (stretch * np.sin(angle)) ** 2) ** (-hurst - 1.0)
+    expected = np.mean(density * np.cos(2 * angle)) / np.mean(density)
+    measure, direction = anisotropy(map_power(heights), (LENGTH, LENGTH), 8e5)
+    assert measure == pytest.approx(expected, abs=0.06)
+    assert (measure > MOST_ANISOTROPY) == (stretch > 1.5)
+    assert stretch == 1.0 or abs(direction) < 0.1
+
+
+def test_anisotropy_finds_the_direction():
     surface = drawn_map(0.8, 5, 512).heights
     lengths = (LENGTH, LENGTH)
     assert anisotropy(map_power(surface), lengths, 8e5)[0] < 0.06
