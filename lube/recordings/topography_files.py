@@ -103,6 +103,10 @@ def _read_netcdf(path):
 
 
 def _read_instrument(path):
+    # Before the library, which imports h5py: their wheels have two HDF5 libraries, and where these
+    # quarrel, it is because h5py's came first (h5py issue 1541).
+    import netCDF4  # noqa: F401
+
     # Imported on first use: it takes two seconds.
     import SurfaceTopography
 
