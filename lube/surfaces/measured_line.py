@@ -4,10 +4,8 @@ The line is the profile's Fourier series at the points of the roller: smooth bet
 points, where a piecewise linear line would have kinks that break the boundary layer. Waves shorter
 than the study's shortest are left out. Two cases:
 
-- The profile covers the circumference, so its ends meet by nature. Where they do not, the
-  instrument has drifted, or a tilt has been removed that a closed profile has not; the step is
-  removed as a straight line over the whole turn. The profile's length is made the circumference,
-  from which it may differ by 1 %.
+- The profile covers the circumference, so its ends meet; it is prepared as a closed one. Its
+  length is made the circumference, from which it may differ by 1 %.
 - The profile's length is the repeat length. Its ends do not meet. The profile is longer than the
   line by the share `FADED`; over this length at its beginning the surplus of the end is faded out
   and the beginning is faded in, by weights :math:`\cos` and :math:`\sin` of a quarter turn, which
@@ -20,15 +18,11 @@ import scipy.fft
 
 from lube.errors import DataError
 from lube.kernels.synthesis import whole_steps
-from lube.surfaces.topography import Topography
+from lube.surfaces.topography import Topography, step_at_join
 from lube.types import Array
 
 FADED = 0.02
 """Length over which the ends of a profile are joined, as a share of the repeat length."""
-
-USUAL_STEPS = 3.0
-"""A step from the last point to the first, of so many times the rms step between neighbours, is
-that of an instrument that has drifted."""
 
 CLOSED_TO = 0.01
 """Largest relative difference between the length of a closed profile and the circumference."""
@@ -42,8 +36,8 @@ def closed_line(
     Parameters
     ----------
     profile : Topography
-        As `lube.surfaces.topography.prepare` returns it: one turn, the last point one spacing
-        before the first.
+        As `lube.surfaces.topography.prepare` returns a closed one: one turn, the last point one
+        spacing before the first.
     points : int
         Points N around the roller.
     point_spacing : float
@@ -62,8 +56,8 @@ def closed_line(
     Raises
     ------
     DataError
-        If the surface is a map, or its length is not the circumference, or its points are too few
-        for the shortest wavelength.
+        If the surface is a map, or its length is not the circumference, or its ends do not meet,
+        or its points are too few for the shortest wavelength.
 
     Examples
     --------
@@ -78,11 +72,12 @@ def closed_line(
             f"{profile.name}: got a profile of {length:.4g} m, need the circumference, "
             f"{needed:.4g} m, to {CLOSED_TO:.0%}"
         )
-    heights = profile.heights
-    step, usual = heights[0] - heights[-1], np.sqrt(np.mean(np.diff(heights) ** 2))
-    if abs(step) > USUAL_STEPS * usual:
-        heights = heights + step * (np.arange(heights.size) / (heights.size - 1) - 0.5)
-    return _resampled(heights, points, point_spacing, shortest, height_step)
+    if step := step_at_join(profile.heights):
+        raise DataError(
+            f"{profile.name}: got a step of {abs(step):.3g} m from the last point to the first, "
+            "need one turn whose ends meet, prepared as a closed profile"
+        )
+    return _resampled(profile.heights, points, point_spacing, shortest, height_step)
 
 
 def repeated_line(

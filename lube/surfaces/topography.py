@@ -36,6 +36,10 @@ MOST_HOLES = 0.05
 """Largest share of holes that is interpolated. The heights filled in are smoother than measured
 ones: at most this share of the mean square height is lost, and half as much of the rms height."""
 
+USUAL_STEPS = 3.0
+"""A step from the last point of a closed profile to the first, of more times the rms step between
+neighbours, shows that the ends do not meet."""
+
 LEAST_POINTS = 64
 """Fewest points of a profile, or along either side of a map."""
 
@@ -89,6 +93,10 @@ class Preparation:
         One of `HOLES`.
     rolling : str
         Direction of rolling on a map, ``x`` or ``y``.
+    closed : bool
+        Whether a profile is one turn around the circumference. Its ends meet: instead of a tilt
+        the step between them is removed as the instrument's drift, and the filters go on across
+        the join.
     """
 
     texture: str
@@ -97,6 +105,7 @@ class Preparation:
     short_cutoff: float | None = None
     holes: str = "refuse"
     rolling: str = "x"
+    closed: bool = False
 
     def __post_init__(self):
         allowed = {"texture": TEXTURES, "form": FORMS, "holes": HOLES, "rolling": ("x", "y")}
@@ -105,6 +114,8 @@ class Preparation:
                 raise DataError(
                     f"{field}: got {getattr(self, field)!r}, need one of {', '.join(values)}"
                 )
+        if self.closed and self.form == "curvature":
+            raise DataError("form: got 'curvature', need none or tilt for a closed profile")
 
 
 def prepare(topography: Topography, settings: Preparation) -> Topography:
@@ -140,10 +151,13 @@ def prepare(topography: Topography, settings: Preparation) -> Topography:
         topography = replace(topography, heights=heights, spacing=spacing)
     _check_points(topography, settings)
     _check_cutoffs(topography, settings)
-    heights = fill_holes(remove_form(topography.heights, settings.form))
+    form = "none" if settings.closed else settings.form
+    heights = fill_holes(remove_form(topography.heights, form))
+    if settings.closed and settings.form == "tilt":
+        heights = without_drift(heights)
     spacing = used_directions(topography.spacing, settings)
-    heights = gaussian_filter(heights, spacing, settings.long_cutoff, settings.short_cutoff)
-    return replace(topography, heights=heights)
+    cutoffs = settings.long_cutoff, settings.short_cutoff
+    return replace(topography, heights=gaussian_filter(heights, spacing, *cutoffs, settings.closed))
 
 
 def used_directions(sides: tuple[float, ...], settings: Preparation) -> tuple[float, ...]:
@@ -161,6 +175,8 @@ def _check_points(topography, settings):
     name, heights = topography.name, topography.heights
     if min(heights.shape) < LEAST_POINTS:
         raise DataError(f"{name}: got {heights.shape} points, need {LEAST_POINTS} or more a side")
+    if settings.closed and heights.ndim == 2:
+        raise DataError(f"{name}: got a map, need a profile if it is closed")
     holes = np.count_nonzero(~np.isfinite(heights)) / heights.size
     if holes > 0.0 and settings.holes == "refuse":
         raise DataError(f"{name}: got holes, {holes:.2%} of the points, need none or `interpolate`")
@@ -235,6 +251,50 @@ def remove_form(heights: Array, form: str) -> Array:
     return (columns - along @ coefficients @ across.T).reshape(heights.shape)
 
 
+def step_at_join(heights: Array) -> float:
+    """Step from the last to the first point of a closed profile, zero if it is a usual one.
+
+    Parameters
+    ----------
+    heights : numpy.ndarray
+        Shape (n,), m.
+
+    Returns
+    -------
+    float
+        The step, m; zero up to `USUAL_STEPS` times the rms step between neighbours.
+
+    Examples
+    --------
+    >>> turn = np.sin(2 * np.pi * np.arange(100) / 100)
+    >>> float(step_at_join(turn)), float(step_at_join(turn + np.arange(100))) < -98
+    (0.0, True)
+    """
+    step, usual = heights[0] - heights[-1], np.sqrt(np.mean(np.diff(heights) ** 2))
+    return step if abs(step) > USUAL_STEPS * usual else 0.0
+
+
+def without_drift(heights: Array) -> Array:
+    """Remove the step between the ends of a closed profile as a straight line.
+
+    Parameters
+    ----------
+    heights : numpy.ndarray
+        Shape (n,), m.
+
+    Returns
+    -------
+    numpy.ndarray
+        Same shape.
+
+    Examples
+    --------
+    >>> without_drift(np.linspace(0.0, 50.0, 400))[[0, 200, -1]].round(9)
+    array([25., 25., 25.])
+    """
+    return heights + step_at_join(heights) * np.linspace(-0.5, 0.5, heights.size)
+
+
 def fill_holes(heights: Array) -> Array:
     """Interpolate holes by the smoothest surface between the points around them.
 
@@ -272,6 +332,7 @@ def gaussian_filter(
     spacing: tuple[float, ...],
     long_cutoff: float | None,
     short_cutoff: float | None,
+    closed: bool = False,
 ) -> Array:
     """Filter heights by the Gaussian filters of ISO 16610-21 and -61.
 
@@ -284,6 +345,8 @@ def gaussian_filter(
         along it.
     long_cutoff, short_cutoff : float or None
         Cutoffs of long and of short waves, m; without one, this filter is not applied.
+    closed : bool, optional
+        Whether the last point is followed by the first.
 
     Returns
     -------
@@ -297,9 +360,9 @@ def gaussian_filter(
     '0.500'
     """
     if short_cutoff is not None:
-        heights = _smoothed(heights, spacing, short_cutoff)
+        heights = _smoothed(heights, spacing, short_cutoff, closed)
     if long_cutoff is not None:
-        heights = heights - _smoothed(heights, spacing, long_cutoff)
+        heights = heights - _smoothed(heights, spacing, long_cutoff, closed)
     return heights
 
 
@@ -338,20 +401,21 @@ def _transmission(wave_vector, cutoff):
     return np.exp(-np.pi * (_ALPHA * cutoff * wave_vector / (2.0 * np.pi)) ** 2)
 
 
-def _smoothed(heights, spacing, cutoff):
+def _smoothed(heights, spacing, cutoff, closed):
     """Weighted means over the points around each point."""
     smooth = np.array(heights, float, order="C")
     columns = smooth.reshape(len(smooth), -1)
     for lines, step in zip((columns.T, columns), spacing, strict=False):
-        _smooth_lines(lines, step, cutoff)
+        _smooth_lines(lines, step, cutoff, closed)
     return smooth
 
 
-def _smooth_lines(lines, step, cutoff):
+def _smooth_lines(lines, step, cutoff, closed):
     """Smooth lines in place, shape (m, n), by Fourier transforms padded with zeros."""
     points = lines.shape[-1]
     # At one cutoff from the centre the weight is 7e-7 of the largest.
     padded = scipy.fft.next_fast_len(points + math.ceil(cutoff / step), real=True)
+    padded = points if closed else padded
     passed = _transmission(2.0 * np.pi * scipy.fft.rfftfreq(padded, step), cutoff)
 
     def smooth(part):

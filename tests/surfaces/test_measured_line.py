@@ -5,7 +5,7 @@ import pytest
 
 from lube.errors import DataError
 from lube.surfaces.measured_line import FADED, closed_line, repeated_line
-from lube.surfaces.topography import Topography
+from lube.surfaces.topography import Preparation, Topography, prepare
 
 STEP = 1e-12
 
@@ -42,11 +42,15 @@ def test_a_closed_profile_keeps_its_rms_height_and_has_no_step(points):
 def test_drift_is_removed_and_a_length_a_little_wrong_is_made_right():
     heights = turn_of(4000)
     drifted = heights + 2e-6 * np.arange(4000) / 4000
+    settings = Preparation("along rolling", closed=True, long_cutoff=4e-4)
     plain, found = (
-        closed_line(Topography("t", each, (1.005e-6,)), 4000, 1e-6, 1e-5, STEP) * STEP
+        closed_line(prepare(Topography("t", each, (1.005e-6,)), settings), 4000, 1e-6, 1e-5, STEP)
+        * STEP
         for each in (heights, drifted)
     )
-    np.testing.assert_allclose(found, plain, atol=0.1 * np.std(heights))
+    np.testing.assert_allclose(found, plain, atol=0.05 * np.std(heights))
+    with pytest.raises(DataError, match=r"t: got a step of 2.* m from the last point to the first"):
+        closed_line(Topography("t", drifted, (1e-6,)), 4000, 1e-6, 1e-5, STEP)
 
 
 def test_waves_shorter_than_the_studys_are_left_out():

@@ -77,6 +77,24 @@ def test_gaussian_filter_is_the_weighted_mean_up_to_the_edges():
     np.testing.assert_allclose(gaussian_filter(z, (1.0,), None, cutoff), expected, atol=1e-5)
 
 
+def test_a_filter_goes_on_across_the_join_of_a_closed_profile():
+    z = np.random.default_rng(4).normal(size=300)
+    settings = Preparation("along rolling", closed=True, form="none", long_cutoff=40.0)
+    once, thrice = (
+        prepare(Topography("a", each, (1.0,)), settings).heights for each in (z, np.tile(z, 3))
+    )
+    np.testing.assert_allclose(once, thrice[300:600], atol=1e-12)
+    turned = prepare(Topography("a", np.roll(z, 37), (1.0,)), settings).heights
+    np.testing.assert_allclose(turned, np.roll(once, 37), atol=1e-12)
+
+
+def test_only_a_profile_is_closed_and_it_has_no_curvature(rough):
+    with pytest.raises(DataError, match="form: got 'curvature', need none or tilt for a closed"):
+        Preparation("isotropic", closed=True, form="curvature")
+    with pytest.raises(DataError, match="a: got a map, need a profile if it is closed"):
+        prepare(Topography("a", rough, (1.0, 1.0)), Preparation("isotropic", closed=True))
+
+
 def test_a_constant_passes_or_vanishes_up_to_the_edges():
     level = np.full((90, 70), 3.0)
     np.testing.assert_allclose(gaussian_filter(level, (1.0, 2.0), None, 20.0), level, rtol=1e-12)
