@@ -16,7 +16,8 @@ _CODE = (
     *("notebooks/*.ipynb", "tests/benchmarks/*.py", "profiles/*/config.yaml"),
     *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
     *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
-    *("workflow/report/*", "config/README.md", "config/config.yaml"),
+    *("workflow/config/surfaces/example.x3p", "workflow/report/*"),
+    *("config/README.md", "config/config.yaml"),
 )
 
 _CACHE = re.compile(r"(^|/)(\.|__pycache__/)")

@@ -1,0 +1,153 @@
+r"""A measured profile as the line around a roller, without drawing another.
+
+The line is the profile's Fourier series at the points of the roller: smooth between the measured
+points, where a piecewise linear line would have kinks that break the boundary layer. Waves shorter
+than the study's shortest are left out. Two cases:
+
+- The profile covers the circumference, so its ends meet; it is prepared as a closed one. Its
+  length is made the circumference, from which it may differ by 1 %.
+- The profile's length is the repeat length. Its ends do not meet. The profile is longer than the
+  line by the share `FADED`; over this length at its beginning the surplus of the end is faded out
+  and the beginning is faded in, by weights :math:`\cos` and :math:`\sin` of a quarter turn, which
+  keep the mean square of independent heights. The line is then scaled to the rms height of the
+  profile.
+"""
+
+import numpy as np
+import scipy.fft
+
+from lube.errors import DataError
+from lube.kernels.synthesis import whole_steps
+from lube.surfaces.topography import Topography, step_at_join
+from lube.types import Array
+
+FADED = 0.02
+"""Length over which the ends of a profile are joined, as a share of the repeat length."""
+
+CLOSED_TO = 0.01
+"""Largest relative difference between the length of a closed profile and the circumference."""
+
+
+def closed_line(
+    profile: Topography, points: int, point_spacing: float, shortest: float, height_step: float
+) -> Array:
+    """Turn a profile that covers the circumference into the line around a roller.
+
+    Parameters
+    ----------
+    profile : Topography
+        As `lube.surfaces.topography.prepare` returns a closed one: one turn, the last point one
+        spacing before the first.
+    points : int
+        Points N around the roller.
+    point_spacing : float
+        Their distance, m.
+    shortest : float
+        Shortest wavelength of the study, m.
+    height_step : float
+        Height of one step of the whole-number heights, m.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,), int32: heights in height steps, of the profile's rms height but for the waves
+        left out.
+
+    Raises
+    ------
+    DataError
+        If the surface is a map, or its length is not the circumference, or its ends do not meet,
+        or its points are too few for the shortest wavelength.
+
+    Examples
+    --------
+    >>> turn = Topography("turn", 1e-6 * np.sin(2 * np.pi * np.arange(100) / 20), (1e-6,))
+    >>> closed_line(turn, 50, 2e-6, 5e-6, 1e-9)[:6].tolist()
+    [0, 588, 951, 951, 588, 0]
+    """
+    _check(profile, shortest)
+    length, needed = profile.lengths[0], points * point_spacing
+    if abs(length - needed) > CLOSED_TO * needed:
+        raise DataError(
+            f"{profile.name}: got a profile of {length:.4g} m, need the circumference, "
+            f"{needed:.4g} m, to {CLOSED_TO:.0%}"
+        )
+    if step := step_at_join(profile.heights):
+        raise DataError(
+            f"{profile.name}: got a step of {abs(step):.3g} m from the last point to the first, "
+            "need one turn whose ends meet, prepared as a closed profile"
+        )
+    return _resampled(profile.heights, points, point_spacing, shortest, height_step)
+
+
+def repeated_line(
+    profile: Topography, points: int, point_spacing: float, shortest: float, height_step: float
+) -> Array:
+    """Turn a profile of about the repeat length into a line that repeats without a step.
+
+    Parameters
+    ----------
+    profile : Topography
+        As `lube.surfaces.topography.prepare` returns it, longer than the line by the share
+        `FADED`.
+    points, point_spacing, shortest, height_step
+        As in `closed_line`; the repeat length is `points` times `point_spacing`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,), int32: heights in height steps, of the rms height of the profile but for the
+        waves left out.
+
+    Raises
+    ------
+    DataError
+        If the surface is a map, or is too short, or its points are too few for the shortest
+        wavelength.
+
+    Examples
+    --------
+    >>> profile = Topography("a", 1e-6 * np.sin(np.arange(2000) / 5), (1e-6,))
+    >>> line = repeated_line(profile, 950, 2e-6, 1e-5, 1e-9)
+    >>> f"{np.std(line) * 1e-9:.2e} {abs(np.diff(line, append=line[0])).max()}"
+    '7.07e-07 401'
+    """
+    _check(profile, shortest)
+    spacing, needed = profile.spacing[0], points * point_spacing
+    count = round(needed / spacing)
+    faded = round(FADED * count)
+    if profile.heights.size < count + faded:
+        raise DataError(
+            f"{profile.name}: got a profile of {profile.lengths[0]:.4g} m, need "
+            f"{(count + faded) * spacing:.4g} m, the repeat length and {FADED:.0%} to join its ends"
+        )
+    line = profile.heights[:count].copy()
+    rms = np.std(line)
+    angle = 0.5 * np.pi * (np.arange(faded) + 0.5) / faded
+    line[:faded] *= np.sin(angle)
+    line[:faded] += np.cos(angle) * profile.heights[count : count + faded]
+    line -= line.mean()
+    line *= rms / np.std(line)
+    return _resampled(line, points, point_spacing, shortest, height_step)
+
+
+def _check(profile, shortest):
+    if profile.heights.ndim != 1:
+        raise DataError(f"{profile.name}: got a map, need a profile to use it directly")
+    finest = max(2.0 * profile.spacing[0], profile.resolution)
+    if finest > shortest * (1.0 + 1e-9):
+        raise DataError(
+            f"{profile.name}: got waves down to {finest:.3g} m, need down to {shortest:.3g} m, the "
+            "shortest wavelength of the study"
+        )
+
+
+def _resampled(heights, points, point_spacing, shortest, height_step):
+    """Evaluate the Fourier series of one period at the points of a roller, in height steps."""
+    spectrum = scipy.fft.rfft(heights, norm="forward")
+    last_wave = int(points * point_spacing / shortest * (1.0 + 1e-9))
+    kept = min(last_wave, (heights.size - 1) // 2, (points - 1) // 2) + 1
+    waves = np.zeros(points // 2 + 1, complex)
+    waves[1:kept] = spectrum[1:kept]
+    line = scipy.fft.irfft(waves, points, norm="forward") / height_step
+    return whole_steps(line.astype(np.float32))

@@ -1,0 +1,508 @@
+r"""Spectrum of a measured topography: the density of the line that stands for it.
+
+A line's density :math:`C(q)` is one-sided over the angular wave vector, and its integral is the
+mean square height. It is
+
+- of a map of an isotropic surface: :math:`C = 2 \pi q\, C_{2D}(q)`, where :math:`C_{2D}` is the
+  mean over all directions and its integral over the plane of wave vectors is the mean square
+  height (in the two-sided convention, :math:`C_{1D} = \pi q\, C_{2D}`);
+- of a profile cut from an isotropic surface: the Abel inversion of the profile's own density;
+- of a surface taken along rolling, such as a ground one: the density of its profiles along
+  rolling.
+
+Library conventions: SurfaceTopography's densities ``power_spectrum_from_profile`` and
+``power_spectrum_from_area`` are two-sided; the mean square height is :math:`1/\pi` times the
+integral of the first over :math:`q > 0`, and :math:`1/(2\pi)` times that of :math:`q` times the
+second.
+
+A Hann window of mean square one keeps the jump between opposite edges out of the spectrum. It
+blurs the two or three longest waves, so the spectrum begins at two waves on the measured length.
+The window also gives the middle more weight than the edges, so that the mean square height of the
+spectrum differs from that of the measured heights by chance. What is missing or too much is
+added to the densities in proportion to their variance: to those of the long waves, of which there
+are few, and hardly to those of the short ones, which are known much better than the rms height.
+This is done only after a filter of long waves: without one the rms height is that of the measured
+length, which no spectrum of shorter waves can have. In both cases the table as a whole has the
+power of the waves it is made of, though a mean in logarithms between scattered values is lower.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+import scipy.optimize
+
+from lube.errors import DataError
+from lube.surfaces.abel import line_of_profile, monotone
+from lube.surfaces.synthetic import power_spectrum
+from lube.surfaces.topography import Preparation, Topography, power_transfer, used_directions
+from lube.types import Array, Pair
+
+LEAST_POINTS_PER_WAVE = 4
+"""A wave of fewer points is left out: waves too short for the grid pass for longer ones, which
+adds a twelfth to the density here (H = 0.7), and doubles it at two points a wave."""
+
+LEAST_WAVES = 2
+"""A wave that fits fewer times into the measured length is left out."""
+
+BINS_PER_DECADE = 20
+"""Densities are means over bins of this width, or of one wave where waves are fewer."""
+
+BINS_PER_DECADE_INVERTED = 4
+"""The Abel inversion takes slopes of a profile's density, whose scatter grows as bins become
+narrower. With this width the mean over 40 profiles, each 40 roll-offs long, at H = 0.5, 0.7 and
+0.9, is within 3 % of the true density at a third of the roll-off and shorter, 8 to 10 % too low at
+the roll-off, and 20 to 70 % too high at two to five times the roll-off, where the line has little;
+the rms height is 2 % too high. See ``tests/benchmarks/bench_topography.py``."""
+
+MOST_ANISOTROPY = 0.3
+"""Largest `anisotropy` of a surface that counts as isotropic. At H = 0.8 this is a surface whose
+asperities are 1.4 times longer than wide; its profiles along both axes differ by the factor 1.7
+in density, so that either is within 15 % of the mean in rms height. Scratches five times longer
+than wide have 0.9."""
+
+LEAST_WAVES_OF_RING = 50
+"""Fewest waves of a ring that counts for the `anisotropy`."""
+
+LEAST_RMS_HEIGHT = 1e-13
+"""A surface smoother than this, m, a thousandth of an atom, is rounding errors."""
+
+TABLE_VALUES = 200
+"""Values of a spectrum's table."""
+
+_BLUR = 1.0 + 2.0 * ((2.0 / 3.0) ** 2 + (1.0 / 6.0) ** 2)
+"""Variance of a mean over neighbouring waves, for the Hann window makes them dependent."""
+
+_REPLICATES = 100
+
+
+@dataclass(frozen=True, eq=False)
+class LineSpectrum:
+    """Density of the line that stands for a measured surface.
+
+    Attributes
+    ----------
+    name : str
+        File or other name, for messages.
+    wave_vector : numpy.ndarray
+        Shape (n,), rising, rad/m.
+    density : numpy.ndarray
+        Shape (n,), m^3, one-sided.
+    estimates : numpy.ndarray
+        Shape (n,): number of independent estimates of which each density is the mean; the
+        relative standard error is one over its square root.
+    transfer : numpy.ndarray
+        Shape (n,): share of the power that the Gaussian filters have left.
+    isotropic : bool
+        Whether the surface is isotropic.
+    """
+
+    name: str
+    wave_vector: Array
+    density: Array
+    estimates: Array
+    transfer: Array
+    isotropic: bool
+
+    def rms_height(self, q_min: float | None = None, q_max: float | None = None) -> float:
+        """Rms height of the waves between two wave vectors, m; by default of all.
+
+        Raises
+        ------
+        DataError
+            If the spectrum does not reach so far.
+        """
+        begin, end = self.wave_vector[[0, -1]]
+        wave_vector, density = band_table(self, q_min or begin, q_max or end)
+        return math.sqrt(power_law_integral(wave_vector, density))
+
+
+def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
+    """Compute the density of the line that stands for a surface.
+
+    Parameters
+    ----------
+    surface : Topography
+        As `lube.surfaces.topography.prepare` returns it.
+    settings : Preparation
+        With which it was prepared.
+
+    Returns
+    -------
+    LineSpectrum
+        From two waves on the measured length to four points a wave, the instrument's resolution
+        or the cutoff of short waves.
+
+    Raises
+    ------
+    DataError
+        If the surface is flat, too small, or not as isotropic as the settings say.
+    """
+    shortest = max(
+        LEAST_POINTS_PER_WAVE * max(used_directions(surface.spacing, settings)),
+        surface.resolution,
+        settings.short_cutoff or 0.0,
+    )
+    isotropic = settings.texture == "isotropic"
+    if surface.heights.ndim == 1:
+        bins = _profile_bins(surface, 2.0 * np.pi / shortest)
+    else:
+        bins = _map_bins(surface, 2.0 * np.pi / shortest, isotropic)
+    wave_vector, density, estimates, inside, windowed = bins
+    mean_square = np.vdot(surface.heights, surface.heights) / surface.heights.size
+    if wave_vector.size < 3 or mean_square < LEAST_RMS_HEIGHT**2 or not np.all(density > 0.0):
+        raise DataError(f"{surface.name}: its spectrum is empty, need rough heights on more points")
+    whole = windowed if settings.long_cutoff is None else mean_square
+    density = with_power(wave_vector, density, estimates, whole - (windowed - inside))
+    transfer = power_transfer(wave_vector, settings.long_cutoff, settings.short_cutoff)
+    if isotropic and surface.heights.ndim == 1:
+        # A profile's filter acts on the profile, a surface's on the surface.
+        density, estimates = _inverted(wave_vector, density / transfer, estimates)
+        density = density * transfer
+    return LineSpectrum(surface.name, wave_vector, density, estimates, transfer, isotropic)
+
+
+def profile_density(heights: Array, spacing: float) -> Pair:
+    """One-sided density of a profile, through a Hann window.
+
+    Parameters
+    ----------
+    heights : numpy.ndarray
+        Shape (n,), m, of mean zero.
+    spacing : float
+        Distance of neighbouring points, m.
+
+    Returns
+    -------
+    wave_vector, density : numpy.ndarray
+        Shape (n // 2,), rad/m and m^3.
+
+    Examples
+    --------
+    >>> wave = np.sin(2 * np.pi * np.arange(1000) / 50)
+    >>> wave_vector, density = profile_density(wave, 1.0)
+    >>> f"{np.sum(density) * wave_vector[0]:.4f}"
+    '0.5000'
+    """
+    return power_spectrum(hann(heights.size) * heights, spacing)
+
+
+def map_power(heights: Array) -> Array:
+    """Mean square height of every wave of a map, through a Hann window in both directions.
+
+    Parameters
+    ----------
+    heights : numpy.ndarray
+        Shape (nx, ny), m, of mean zero.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (nx, ny // 2 + 1), m^2, in the order of ``numpy.fft.rfft2``; each value of the half
+        plane stands for both waves of opposite wave vectors, and their sum is the mean square
+        height seen through the window.
+
+    Examples
+    --------
+    >>> wave = np.add.outer(np.zeros(60), np.sin(2 * np.pi * np.arange(80) / 10))
+    >>> f"{map_power(wave).sum():.4f}"
+    '0.5000'
+    """
+    rows, columns = heights.shape
+    spectrum = scipy.fft.rfft2(
+        heights * hann(rows)[:, None] * hann(columns), overwrite_x=True, norm="forward"
+    )
+    power = spectrum.real**2
+    power += spectrum.imag**2
+    power[:, 1 : (columns + 1) // 2] *= 2.0
+    power[0, 0] = 0.0
+    return power
+
+
+def hann(points: int) -> Array:
+    """Hann window of mean square one, shape (points,).
+
+    Examples
+    --------
+    >>> f"{np.mean(hann(100) ** 2):.12f}"
+    '1.000000000000'
+    """
+    return math.sqrt(8.0 / 3.0) * np.sin(np.pi * np.arange(points) / points) ** 2
+
+
+def anisotropy(power: Array, lengths: Pair, q_max: float) -> tuple[float, float]:
+    r"""Measure how far the spectrum of a map depends on the direction.
+
+    .. math:: A\, e^{2 i \theta_0} = \left\langle \frac{\sum P e^{2 i \theta}}{\sum P}
+        \right\rangle
+
+    The sums are over the waves of directions :math:`\theta` in a ring of wave vectors, and the
+    mean is over rings of equal logarithmic width.
+
+    Parameters
+    ----------
+    power : numpy.ndarray
+        From `map_power`, shape (nx, ny // 2 + 1).
+    lengths : tuple of float
+        Measured length in both directions, m.
+    q_max : float
+        Largest wave vector, rad/m, at most pi over the wider spacing.
+
+    Returns
+    -------
+    measure : float
+        0 if isotropic, 1 if all waves have one direction.
+    direction : float
+        Direction of the strongest waves from the first axis, rad, between -pi/2 and pi/2; the
+        lay is perpendicular to it.
+
+    Examples
+    --------
+    >>> rows = np.random.default_rng(1).normal(size=128)
+    >>> power = map_power(np.outer(rows, np.ones(128)))
+    >>> "{:.2f} {:.2f}".format(*anisotropy(power, (128.0, 128.0), 1.5))
+    '1.00 0.00'
+    """
+    along, across = _wave_vectors(power, lengths)
+    edges = _bin_edges(min(lengths), q_max)
+    ring = np.digitize(np.hypot(along, across).ravel(), edges)
+    total, cosine, sine = (
+        np.bincount(ring, weights.ravel(), edges.size + 1)[1:-1]
+        for weights in _double_angle(power, along, across)
+    )
+    # Rings of few waves are left out: their scatter alone looks like a direction.
+    many = (np.bincount(ring, minlength=edges.size + 1)[1:-1] >= LEAST_WAVES_OF_RING) & (total > 0)
+    if not many.any():
+        return 0.0, 0.0
+    cosine, sine = (np.mean(part[many] / total[many]) for part in (cosine, sine))
+    return float(np.hypot(cosine, sine)), 0.5 * float(np.arctan2(sine, cosine))
+
+
+def band_table(
+    spectrum: LineSpectrum, q_min: float, q_max: float, values: int = TABLE_VALUES
+) -> Pair:
+    """Tabulate a spectrum within a band, for drawing lines.
+
+    Parameters
+    ----------
+    spectrum : LineSpectrum
+        The spectrum.
+    q_min, q_max : float
+        Smallest and largest wave vector, rad/m.
+    values : int, optional
+        Number of values.
+
+    Returns
+    -------
+    wave_vector, density : numpy.ndarray
+        Shape (values,), equally spaced in the logarithm, rad/m and m^3; between them the density
+        is a power law.
+
+    Raises
+    ------
+    DataError
+        If the spectrum does not reach so far, or is not positive in the band.
+    """
+    known = spectrum.wave_vector
+    longest, shortest = 2.0 * np.pi / known[[0, -1]]
+    if q_min < known[0] * (1.0 - 1e-9):
+        raise DataError(
+            f"{spectrum.name}: got waves up to {longest:.3g} m, half the measured length, need up "
+            f"to {2.0 * np.pi / q_min:.3g} m, the longest wavelength of the study"
+        )
+    if q_max > known[-1] * (1.0 + 1e-9):
+        raise DataError(
+            f"{spectrum.name}: got waves down to {shortest:.3g} m, need down to "
+            f"{2.0 * np.pi / q_max:.3g} m, the shortest wavelength of the study"
+        )
+    if not np.all(spectrum.density > 0.0):
+        raise DataError(f"{spectrum.name}: got a density of zero or less, need a positive spectrum")
+    wave_vector = np.geomspace(q_min, q_max, values)
+    return wave_vector, np.exp(
+        np.interp(np.log(wave_vector), np.log(known), np.log(spectrum.density))
+    )
+
+
+def power_law_integral(wave_vector: Array, density: Array) -> float:
+    """Integrate a density that is a power law between the given values.
+
+    Parameters
+    ----------
+    wave_vector, density : numpy.ndarray
+        Shape (n,), rad/m and m^3.
+
+    Returns
+    -------
+    float
+        The integral, m^2.
+
+    Examples
+    --------
+    >>> q = np.array([1.0, 2.0, 10.0])
+    >>> f"{power_law_integral(q, q**-2.0):.6f}"
+    '0.900000'
+    """
+    # The integrand over ln q is exponential: its mean is the logarithmic mean of both ends.
+    power = wave_vector * density
+    steps, ratio = np.diff(np.log(wave_vector)), np.diff(np.log(power))
+    flat = np.abs(ratio) < 1e-9
+    means = np.where(flat, power[:-1], np.diff(power) / np.where(flat, 1.0, ratio))
+    return float(means @ steps)
+
+
+def with_power(wave_vector: Array, density: Array, estimates: Array, power: float) -> Array:
+    r"""Change a spectrum to one of another mean square height, most where it is least certain.
+
+    The densities are multiplied by :math:`\exp(\mu\, q\, C / n)`, where :math:`n` is the number of
+    estimates: to first order the smallest change in units of the standard errors.
+
+    Parameters
+    ----------
+    wave_vector, density, estimates : numpy.ndarray
+        Shape (n,), rad/m, m^3 and numbers.
+    power : float
+        Mean square height wanted, m^2; the spectrum's is at most doubled or halved.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n,), m^3.
+
+    Examples
+    --------
+    >>> q = np.geomspace(1.0, 100.0, 20)
+    >>> f"{power_law_integral(q, with_power(q, q**-2.0, q, 1.2)):.6f}"
+    '1.200000'
+    """
+    before = power_law_integral(wave_vector, density)
+    target = min(max(power, 0.5 * before), 2.0 * before)
+    share = wave_vector * density / estimates
+    share /= share.max()
+
+    def missing(factor):
+        return power_law_integral(wave_vector, density * np.exp(factor * share)) / target - 1.0
+
+    return density * np.exp(scipy.optimize.brentq(missing, -60.0, 60.0, xtol=1e-12) * share)
+
+
+def _profile_bins(surface, q_max):
+    """Means of a profile's density over bins, and the number of independent estimates."""
+    wave_vector, density = profile_density(surface.heights, surface.spacing[0])
+    edges = _bin_edges(surface.lengths[0], q_max)
+    inside = np.digitize(wave_vector, edges)
+    counts, total, places = (
+        _binned(inside, values, edges) for values in (None, density, wave_vector**-2.0)
+    )
+    # Where a power law of the exponent -2 has its mean over the bin.
+    middle, estimates = (places / counts) ** -0.5, np.maximum(counts / _BLUR, 1.0)
+    powers = (np.sum(part) * wave_vector[0] for part in (total, density))
+    return middle, total / counts, estimates, *powers
+
+
+def _map_bins(surface, q_max, isotropic):
+    """Means over the rings of a map's waves, or over the columns of equal wave along rolling."""
+    power = map_power(surface.heights)
+    if not isotropic:
+        return *_column_means(power, surface.lengths[0], q_max), power.sum()
+    measure, direction = anisotropy(power, surface.lengths, q_max)
+    if measure > MOST_ANISOTROPY:
+        raise DataError(
+            f"{surface.name}: got an anisotropy of {measure:.2f}, the lay at "
+            f"{90.0 - abs(math.degrees(direction)):.0f} degrees to rolling, need at most "
+            f"{MOST_ANISOTROPY} for `isotropic`, or else `along rolling`"
+        )
+    return *_ring_means(power, surface.lengths, q_max), power.sum()
+
+
+def _ring_means(power, lengths, q_max):
+    """Density of the isotropic surface's line, by rings of the half plane of wave vectors."""
+    along, across = _wave_vectors(power, lengths)
+    wave_vector = np.hypot(along, across)
+    edges = _bin_edges(min(lengths), q_max)
+    ring = np.digitize(wave_vector, edges)
+    # Each wave of the half plane stands for two, but not those of the first column.
+    waves = 2 * _binned(ring, None, edges) - _binned(ring[:, 0], None, edges)
+    wave_vector[0, 0] = 1.0
+    wave_vector **= -3.0
+    # Where a power law of the exponent -3 has its mean over the ring.
+    middle = (_binned(ring, wave_vector, edges) / _binned(ring, None, edges)) ** (-1.0 / 3.0)
+    cell = (2.0 * np.pi) ** 2 / (lengths[0] * lengths[1])
+    surface_density = _binned(ring, power, edges) / (waves * cell)
+    estimates = np.maximum(0.5 * waves / _BLUR**2, 1.0)
+    inside = np.sum(surface_density * waves) * cell
+    return middle, 2.0 * np.pi * middle * surface_density, estimates, inside
+
+
+def _column_means(power, length, q_max):
+    """Density of the profiles along the first axis, by bins of the wave vector along it."""
+    last = (power.shape[0] - 1) // 2
+    step = 2.0 * np.pi / length
+    wave_vector = step * np.arange(1, last + 1)
+    sums, squares = (
+        np.sum(part[1 : last + 1], axis=1) + np.sum(part[: -last - 1 : -1], axis=1)
+        for part in (power, power**2)
+    )
+    edges = _bin_edges(length, q_max)
+    inside = np.digitize(wave_vector, edges)
+    counts = _binned(inside, None, edges)
+    total = _binned(inside, sums, edges)
+    middle = (_binned(inside, wave_vector**-2.0, edges) / counts) ** -0.5
+    # Of exponentially distributed powers P the variance of the sum is half the sum of P^2.
+    with np.errstate(invalid="ignore"):
+        estimates = 2.0 * total**2 / _binned(inside, squares, edges)
+    most = 2.0 * counts * power.shape[1]
+    estimates = np.maximum(np.minimum(estimates, most) / _BLUR**2, 1.0)
+    return middle, total / (counts * step), estimates, total.sum()
+
+
+def _inverted(wave_vector, density, estimates):
+    """Density of the line from that of a profile, and its estimates by parametric bootstrap."""
+    decades = np.log10(wave_vector / wave_vector[0])
+    knot = np.unique((decades * BINS_PER_DECADE_INVERTED).astype(int), return_inverse=True)[1]
+    number = np.bincount(knot, estimates)
+    # Means as of a power law of the exponent -2, so that wide bins do not change its level.
+    places = np.exp(np.bincount(knot, estimates * np.log(wave_vector)) / number)
+    means = np.bincount(knot, estimates * density * (wave_vector / places[knot]) ** 2) / number
+
+    def invert(values):
+        return line_of_profile(places, monotone(values, number), wave_vector)
+
+    fit = monotone(means, number)
+    generator = np.random.default_rng(0)
+    noise = generator.gamma(number, 1.0 / number, (_REPLICATES, number.size))
+    replicates = [invert(fit * factors) for factors in noise]
+    spread = np.std(replicates, axis=0) / np.mean(replicates, axis=0)
+    return invert(means), np.maximum(spread**-2.0, 1.0)
+
+
+def _wave_vectors(power, lengths):
+    """Wave vectors along both axes, shapes (nx, 1) and (ny // 2 + 1,), rad/m."""
+    rows, columns = power.shape
+    along = 2.0 * np.pi / lengths[0] * scipy.fft.fftfreq(rows, 1.0 / rows)
+    return along[:, None], 2.0 * np.pi / lengths[1] * np.arange(columns)
+
+
+def _double_angle(power, along, across):
+    """Yield power, and power times the cosine and the sine of twice the direction."""
+    yield power
+    square = along**2 + across**2
+    square[0, 0] = 1.0
+    weighted = power / square
+    yield weighted * (along**2 - across**2)
+    yield weighted * (2.0 * along * across)
+
+
+def _bin_edges(length, q_max):
+    """Edges of bins in each of which at least one multiple of 2 pi / length lies, rad/m."""
+    step, growth = 2.0 * np.pi / length, 10.0 ** (1.0 / BINS_PER_DECADE)
+    edges = [(LEAST_WAVES - 0.5) * step]
+    while (following := max(edges[-1] + step, edges[-1] * growth)) <= q_max * (1.0 + 1e-9):
+        edges.append(following)
+    return np.array(edges)
+
+
+def _binned(inside, values, edges):
+    """Return the sums of values by bin, or numbers of values; without those outside all bins."""
+    values = None if values is None else values.ravel()
+    return np.bincount(inside.ravel(), values, edges.size + 1)[1:-1]

@@ -1,0 +1,283 @@
+"""Spectra of measured surfaces: exact theory, known surfaces, drawn lines, refusals."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.fft
+
+from lube.errors import DataError
+from lube.recordings.example_surface import isotropic_surface
+from lube.surfaces.abel import line_over_profile, profile_of_line
+from lube.surfaces.measured_spectrum import (
+    MOST_ANISOTROPY,
+    LineSpectrum,
+    anisotropy,
+    band_table,
+    hann,
+    line_spectrum,
+    map_power,
+    power_law_integral,
+    profile_density,
+    with_power,
+)
+from lube.surfaces.synthetic import power_spectrum
+from lube.surfaces.topography import Preparation, Topography, prepare
+
+ISOTROPIC, ALONG = Preparation("isotropic"), Preparation("along rolling")
+LENGTH, ROLL_OFF, RMS = 1e-3, 1e-4, 0.2e-6
+
+
+def true_line(q, hurst, points=1024, roll_off=ROLL_OFF):
+    """Density of the isotropic line, of the rms height that the map's waves have."""
+    waves = (
+        2
+        * np.pi
+        / LENGTH
+        * np.hypot(*np.meshgrid(scipy.fft.fftfreq(points, 1 / points), np.arange(points // 2 + 1)))
+    )
+
+    def shape(vector):
+        return np.maximum(vector * roll_off / (2 * np.pi), 1.0) ** (-2 * hurst - 2)
+
+    weights = np.full(points // 2 + 1, 2.0)
+    weights[[0, -1]] = 1.0
+    whole = np.sum(weights[:, None] * shape(waves)) - 1.0
+    surface = RMS**2 / whole * shape(q) / (2 * np.pi / LENGTH) ** 2
+    return 2 * np.pi * q * surface
+
+
+def drawn_map(hurst, seed, points=1024):
+    heights = isotropic_surface(points, LENGTH, hurst, ROLL_OFF, RMS, np.random.default_rng(seed))
+    return Topography("map.x3p", heights, (LENGTH / points,) * 2)
+
+
+def cut(surface, points):
+    return replace(surface, heights=surface.heights[:points, :points])
+
+
+def spectrum_of(surface, settings=ISOTROPIC):
+    return line_spectrum(prepare(surface, settings), settings)
+
+
+def drawn_line(table, length, generator):
+    """A periodic line with the table's density, fixed amplitudes and random phases."""
+    q, density = table
+    waves = 2 * np.pi / length * np.arange(1, int(q[-1] * length / np.pi))
+    powers = np.exp(np.interp(np.log(waves), np.log(q), np.log(density))) * waves[0]
+    powers[(waves < q[0]) | (waves > q[-1])] = 0.0
+    phases = np.exp(2j * np.pi * generator.random(waves.size))
+    points = 2 * waves.size + 2
+    spectrum = np.concatenate([[0.0], np.sqrt(0.5 * powers) * phases, [0.0]])
+    return scipy.fft.irfft(spectrum, points, norm="forward")
+
+
+# --- Exact theory ------------------------------------------------------------------------
+
+
+def test_integral_without_a_window_is_the_mean_square():
+    heights = np.random.default_rng(1).normal(size=1001)
+    heights -= heights.mean()
+    wave_vector, density = power_spectrum(heights, 1e-6)
+    found = np.sum(density) * wave_vector[0]
+    assert found == pytest.approx(np.mean(heights**2), rel=1e-12)
+
+
+def test_a_sine_has_its_mean_square_at_its_wave_vector():
+    x = 1e-6 * np.arange(4000)
+    sine = 0.3e-6 * np.sin(2 * np.pi * x / 5e-5 + 1.0)
+    wave_vector, density = profile_density(sine, 1e-6)
+    assert np.sum(density) * wave_vector[0] == pytest.approx(0.045e-12, rel=0.01)
+    near = np.abs(wave_vector - 2 * np.pi / 5e-5) < 2.5 * wave_vector[0]
+    assert np.sum(density[near]) * wave_vector[0] == pytest.approx(0.045e-12, rel=1e-6)
+
+
+@pytest.mark.parametrize("shape", [(128, 96), (101, 128), (64, 65)])
+def test_the_power_of_a_map_is_its_windowed_mean_square(shape):
+    heights = np.random.default_rng(2).normal(size=shape)
+    windowed = heights * np.outer(hann(shape[0]), hann(shape[1]))
+    expected = np.mean(windowed**2) - np.mean(windowed) ** 2
+    assert map_power(heights).sum() == pytest.approx(expected, rel=1e-12)
+
+
+def test_power_law_integral_is_exact():
+    q = np.array([1.0, 1.5, 4.0, 10.0])
+    for exponent in (-2.4, -1.0, 0.0, 1.0):
+        exact = np.log(10) if exponent == -1 else (10 ** (exponent + 1) - 1) / (exponent + 1)
+        assert power_law_integral(q, q**exponent) == pytest.approx(exact, rel=1e-9)
+
+
+def test_missing_power_goes_to_the_least_certain_densities():
+    q = np.geomspace(1.0, 1e3, 60)
+    changed = with_power(q, q**-2.0, q**2, 1.05)
+    assert power_law_integral(q, changed) == pytest.approx(1.05, rel=1e-9)
+    assert np.all(np.diff(changed / q**-2.0) <= 0.0)
+    assert changed[-20:] == pytest.approx(q[-20:] ** -2.0, rel=1e-3)
+
+
+# --- Known surfaces ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("hurst", [0.5, 0.8])
+def test_a_map_gives_the_line_of_its_surface(hurst):
+    found = [spectrum_of(cut(drawn_map(hurst, seed), 800)) for seed in range(4)]
+    true = true_line(found[0].wave_vector, hurst)
+    ratios = np.array([each.density / true for each in found])
+    error = 1.0 / np.sqrt(len(found) * found[0].estimates)
+    away = np.abs(2 * np.pi / found[0].wave_vector / ROLL_OFF - 1.0) > 0.3  # from the kink
+    assert np.all(np.abs(ratios.mean(axis=0) - 1.0)[away] < 4.0 * error[away] + 0.03)
+    deviations = (ratios / ratios.mean(axis=0) - 1.0) * np.sqrt(found[0].estimates)
+    assert 0.5 < np.std(deviations[:, 5:]) < 1.5
+
+
+def test_profiles_cut_from_it_are_1_75_times_lower():
+    """physics-beyond.md, section 12, far above the roll-off of H = 0.7."""
+    surface = drawn_map(0.7, 3)
+    line = spectrum_of(cut(surface, 900))
+    along = spectrum_of(cut(surface, 900), ALONG)
+    np.testing.assert_allclose(along.wave_vector[-15:], line.wave_vector[-15:], rtol=0.02)
+    q = along.wave_vector
+    wide = np.geomspace(1e3, 2 * np.pi * 1024 / LENGTH, 4000)
+    expected = np.interp(q, wide, profile_of_line(wide, true_line(wide, 0.7)))
+    inside = (q > 3e5) & (q < 1e6)
+    np.testing.assert_allclose(along.density[inside], expected[inside], rtol=0.25)
+    ratio = np.exp(np.interp(np.log(q), np.log(line.wave_vector), np.log(line.density)))
+    assert np.mean(ratio[inside] / along.density[inside]) == pytest.approx(
+        line_over_profile(0.7), rel=0.03
+    )
+
+
+@pytest.mark.parametrize("hurst", [0.5, 0.7, 0.9])
+def test_profiles_go_back_to_the_line_of_their_surface(hurst):
+    """Means over profiles drawn from the exact spectrum; the bench has the whole table."""
+    points, spacing = 8000, 0.5e-6
+    wide = np.geomspace(1e2, 1e8, 3000)
+    line = wide * np.maximum(wide * 1e-4 / (2 * np.pi), 1.0) ** (-2 * hurst - 2)
+    line *= RMS**2 / power_law_integral(wide, line)
+    waves = 2 * np.pi / (8 * points * spacing) * np.arange(1, 4 * points)
+    powers = np.interp(waves, wide, profile_of_line(wide, line)) * waves[0]
+    found = []
+    for seed in range(20):
+        normal = np.random.default_rng(seed).standard_normal((waves.size, 2)) @ [1.0, 1.0j]
+        spectrum = np.append(0.0, np.sqrt(powers / 4) * normal)
+        heights = scipy.fft.irfft(spectrum, 8 * points, norm="forward")[:points]
+        found.append(spectrum_of(Topography("profile.csv", heights, (spacing,))))
+    q = found[0].wave_vector
+    ratio = np.mean([each.density for each in found], axis=0) / np.interp(q, wide, line)
+    short = q > 2 * np.pi / 30e-6
+    assert np.mean(ratio[short]) == pytest.approx(1.0, abs=0.04)
+    rms = np.mean([each.rms_height() ** 2 for each in found]) ** 0.5
+    assert rms == pytest.approx(RMS, rel=0.05)
+
+
+def test_filters_of_a_profile_become_those_of_the_surface():
+    generator = np.random.default_rng(4)
+    heights = np.cumsum(generator.normal(size=20000))
+    profile = Topography("profile.csv", heights, (1e-6,))
+    plain = spectrum_of(profile)
+    filtered = spectrum_of(profile, replace(ISOTROPIC, long_cutoff=1e-3, short_cutoff=1e-5))
+    assert 2 * np.pi / filtered.wave_vector[-1] > 1e-5
+    size = filtered.wave_vector.size
+    short = slice(size - 20, size)
+    np.testing.assert_allclose(
+        filtered.density[short], (plain.density[:size] * filtered.transfer)[short], rtol=0.1
+    )
+
+
+@pytest.mark.parametrize("stretch", [1.0, 1.4, 2.0, 5.0])
+def test_anisotropy_is_that_of_a_stretched_surface(stretch):
+    """C2D ~ (q_x^2 + s^2 q_y^2)^-(H + 1) on every ring: waves along x are stronger."""
+    points, hurst = 512, 0.8
+    x, y = np.meshgrid(
+        scipy.fft.fftfreq(points, 1 / points), np.arange(points // 2 + 1), indexing="ij"
+    )
+    waves = np.maximum(np.hypot(x, stretch * y), 1.0)
+    noise = scipy.fft.rfft2(np.random.default_rng(8).normal(size=(points, points)))
+    heights = scipy.fft.irfft2(noise * waves ** (-hurst - 1.0), (points, points))
+    angle = np.linspace(0, np.pi, 20_001)
+    density = (np.cos(angle) ** 2 + (stretch * np.sin(angle)) ** 2) ** (-hurst - 1.0)
+    expected = np.mean(density * np.cos(2 * angle)) / np.mean(density)
+    measure, direction = anisotropy(map_power(heights), (LENGTH, LENGTH), 8e5)
+    assert measure == pytest.approx(expected, abs=0.06)
+    assert (measure > MOST_ANISOTROPY) == (stretch > 1.5)
+    assert stretch == 1.0 or abs(direction) < 0.1
+
+
+def test_anisotropy_finds_the_direction():
+    surface = drawn_map(0.8, 5, 512).heights
+    lengths = (LENGTH, LENGTH)
+    assert anisotropy(map_power(surface), lengths, 8e5)[0] < 0.06
+    # Scratches along the first axis: a row's heights hardly change along it.
+    ground = np.cumsum(np.random.default_rng(1).normal(size=(512, 512)), axis=0)
+    measure, direction = anisotropy(map_power(ground), lengths, 8e5)
+    assert measure > 2 * MOST_ANISOTROPY
+    assert abs(direction) == pytest.approx(np.pi / 2, abs=0.05)
+    turned, direction = anisotropy(map_power(ground.T.copy()), lengths, 8e5)
+    assert turned == pytest.approx(measure, rel=0.05) and abs(direction) < 0.05
+
+
+# --- The measured rms height -------------------------------------------------------------
+
+
+@pytest.mark.parametrize("texture", ["isotropic", "along rolling"])
+def test_drawn_lines_have_the_measured_rms_height(texture):
+    """To 1 %: of a filtered map, whose waves are all in the band."""
+    settings = Preparation(texture, long_cutoff=LENGTH / 8)
+    surface = prepare(cut(drawn_map(0.8, 6), 800), settings)
+    spectrum = line_spectrum(surface, settings)
+    band = spectrum.wave_vector[[0, -1]]
+    generator = np.random.default_rng(9)
+    drawn = [np.std(drawn_line(band_table(spectrum, *band), 0.1, generator)) for _ in range(3)]
+    assert drawn == pytest.approx([spectrum.rms_height()] * 3, rel=1e-3)
+    assert drawn[0] == pytest.approx(np.std(surface.heights), rel=0.01)
+
+
+def test_drawn_lines_have_the_rms_height_of_a_narrower_band():
+    spectrum = spectrum_of(cut(drawn_map(0.8, 7), 800))
+    band = 2 * np.pi / 2e-4, 2 * np.pi / 1e-5
+    line = drawn_line(band_table(spectrum, *band), 0.1, np.random.default_rng(2))
+    inside = (spectrum.wave_vector > band[0]) & (spectrum.wave_vector < band[1])
+    assert np.std(line) == pytest.approx(spectrum.rms_height(*band), rel=1e-3)
+    near = np.trapezoid(spectrum.density[inside], spectrum.wave_vector[inside]) ** 0.5
+    assert np.std(line) == pytest.approx(near, rel=0.05)
+
+
+# --- Refusals ----------------------------------------------------------------------------
+
+
+def test_a_ground_surface_is_not_isotropic():
+    heights = np.cumsum(np.random.default_rng(1).normal(size=(256, 256)), axis=0)
+    ground = Topography("ground.x3p", heights, (1e-6, 1e-6))
+    with pytest.raises(DataError, match=r"ground.x3p: got an anisotropy of 0\.\d+, the lay at 0 d"):
+        spectrum_of(ground)
+    assert np.all(spectrum_of(ground, ALONG).density > 0.0)
+
+
+def test_a_flat_surface_has_no_spectrum():
+    for shape, spacing in (((100, 100), (1e-6, 1e-6)), ((500,), (1e-6,))):
+        flat = Topography("flat.nc", np.full(shape, 1e-3), spacing)
+        with pytest.raises(DataError, match=r"flat.nc: its spectrum is empty"):
+            spectrum_of(flat, ALONG)
+
+
+def test_bands_beyond_the_measurement_are_refused():
+    q = np.geomspace(1e4, 1e6, 30)
+    known = LineSpectrum("a.csv", q, q**-2.4, np.ones(30), np.ones(30), True)
+    with pytest.raises(DataError, match=r"a.csv: got waves up to 0.000628 m.* to 0.00126 m"):
+        band_table(known, 5e3, 1e6)
+    with pytest.raises(DataError, match=r"a.csv: got waves down to 6.28e-06 m.* to 3.14e-06 m"):
+        band_table(known, 1e4, 2e6)
+    negative = replace(known, density=-known.density)
+    with pytest.raises(DataError, match="got a density of zero or less"):
+        band_table(negative, 1e4, 1e6)
+
+
+def test_resolution_and_short_cutoff_end_the_spectrum():
+    surface = cut(drawn_map(0.8, 1, 512), 400)
+    for changed, settings, shortest in (
+        (surface, ISOTROPIC, 4 * surface.spacing[0]),
+        (replace(surface, resolution=2e-5), ISOTROPIC, 2e-5),
+        (surface, replace(ISOTROPIC, short_cutoff=3e-5), 3e-5),
+    ):
+        end = 2 * np.pi / spectrum_of(changed, settings).wave_vector[-1]
+        assert shortest <= end < 1.3 * shortest

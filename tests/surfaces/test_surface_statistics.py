@@ -1,0 +1,107 @@
+"""Fits and moments of measured surfaces: exact cases, and how often intervals hold the truth."""
+
+import numpy as np
+import pytest
+import scipy.stats
+
+from lube.errors import DataError
+from lube.recordings.example_surface import isotropic_surface
+from lube.surfaces.measured_spectrum import LineSpectrum, line_spectrum
+from lube.surfaces.surface_statistics import height_distribution, hurst_exponent, roll_off
+from lube.surfaces.topography import Preparation, Topography, power_transfer, prepare
+
+Q = np.geomspace(1e4, 1e6, 40)
+WAVELENGTHS = 2 * np.pi / Q[-1], 2 * np.pi / Q[0]
+
+
+def spectrum(density, estimates=1e6, transfer=1.0, isotropic=True):
+    filled = (np.full(Q.size, estimates), np.full(Q.size, transfer))
+    return LineSpectrum("a", Q, density, *filled, isotropic)
+
+
+@pytest.mark.parametrize("hurst", [0.3, 0.7, 0.95])
+def test_hurst_exponent_of_a_power_law_is_exact(hurst):
+    shortest, longest = WAVELENGTHS
+    found = hurst_exponent(spectrum(Q ** (-2 * hurst - 1)), longest, shortest)
+    assert found.value == pytest.approx(hurst, abs=1e-5)
+    assert found.lower < hurst + 1e-5 and found.upper > hurst - 1e-5
+
+
+def test_filters_do_not_change_the_fits():
+    shortest, longest = WAVELENGTHS
+    passed = power_transfer(Q, 3e-4, 1e-5)
+    filtered = LineSpectrum("a", Q, Q**-2.4 * passed, np.full(40, 1e6), passed, True)
+    assert hurst_exponent(filtered, longest, shortest).value == pytest.approx(0.7, abs=1e-4)
+    assert roll_off(filtered) is None
+
+
+def test_intervals_of_scattered_spectra_hold_the_exponent_in_95_of_100_cases():
+    shortest, longest = WAVELENGTHS
+    generator = np.random.default_rng(1)
+    estimates = np.linspace(2.0, 60.0, Q.size)
+    inside, values = 0, []
+    for _ in range(300):
+        noisy = Q**-2.4 * generator.gamma(estimates, 1 / estimates)
+        each = LineSpectrum("a", Q, noisy, estimates, np.ones(Q.size), False)
+        found = hurst_exponent(each, longest, shortest)
+        inside += found.lower <= 0.7 <= found.upper
+        values.append(found.value)
+    assert 0.91 < inside / 300 <= 1.0
+    assert np.mean(values) == pytest.approx(0.7, abs=4 * np.std(values) / np.sqrt(300))
+
+
+@pytest.mark.parametrize("isotropic", [True, False])
+def test_roll_off_is_found_and_none_without_one(isotropic):
+    power = 1.0 if isotropic else 0.0
+    density = Q**power * np.maximum(Q / 1e5, 1.0) ** (-2.4 - power)
+    found = roll_off(spectrum(density, isotropic=isotropic))
+    assert 2 * np.pi / found.value == pytest.approx(1e5, rel=0.02)
+    assert found.lower <= found.value <= found.upper
+    assert roll_off(spectrum(Q**-2.4, isotropic=isotropic)) is None
+
+
+def test_a_drawn_map_has_its_hurst_exponent_and_roll_off():
+    settings = Preparation("isotropic")
+    fits = []
+    for seed in range(6):
+        heights = isotropic_surface(512, 4e-4, 0.8, 5e-5, 2e-7, np.random.default_rng(seed))
+        surface = Topography("map", heights[:400, :400], (4e-4 / 512,) * 2)
+        found = line_spectrum(prepare(surface, settings), settings)
+        fits.append((hurst_exponent(found, 4e-5, 4e-6), roll_off(found)))
+    hurst, wavelength = zip(*fits, strict=True)
+    assert np.mean([each.value for each in hurst]) == pytest.approx(0.8, abs=0.03)
+    assert np.mean([each.value for each in wavelength]) == pytest.approx(5e-5, rel=0.1)
+    assert sum(each.lower <= 0.8 <= each.upper for each in hurst) >= 5
+
+
+def test_moments_are_those_of_the_heights():
+    heights = np.random.default_rng(2).gamma(3.0, size=(130, 101))
+    found = height_distribution(heights)
+    z = heights - heights.mean()
+    assert {name: each.value for name, each in found.items()} == pytest.approx(
+        {
+            "rms_height": np.std(z),
+            "mean_deviation": np.mean(np.abs(z)),
+            "skewness": scipy.stats.skew(z, axis=None),
+            "kurtosis": scipy.stats.kurtosis(z, axis=None, fisher=False),
+        },
+        rel=1e-9,
+    )
+    assert all(each.lower < each.value < each.upper for each in found.values())
+
+
+def test_intervals_of_moments_hold_the_truth_in_95_of_100_cases():
+    generator = np.random.default_rng(3)
+    truth = {"rms_height": 1.0, "mean_deviation": np.sqrt(2 / np.pi), "skewness": 0, "kurtosis": 3}
+    inside = dict.fromkeys(truth, 0)
+    kernel = np.full(20, 20**-0.5)  # waves of some 20 points, blocks of 250
+    for _ in range(300):
+        heights = np.convolve(generator.normal(size=4019), kernel, "valid")
+        for name, each in height_distribution(heights).items():
+            inside[name] += each.lower <= truth[name] <= each.upper
+    assert all(0.9 < count / 300 <= 0.99 for count in inside.values()), inside
+
+
+def test_too_narrow_a_range_is_refused():
+    with pytest.raises(DataError, match="a: got 0 densities between 1e-09 and 2e-09 m, need three"):
+        hurst_exponent(spectrum(Q**-2.4), 2e-9, 1e-9)
