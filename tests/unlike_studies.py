@@ -8,6 +8,7 @@ from lube.grid.operating_points import operating_points
 from lube.recordings.manifest import read_manifest
 from lube.rig.at_records import model_at_records
 from lube.rig.simulator import SimulatedRig
+from lube.stages.areal import strip_contacts
 from lube.stages.comparison import compare
 from lube.stages.contact import contact_map, contact_statistics
 from lube.stages.ensemble import gather, gather_map
@@ -17,6 +18,7 @@ from lube.stages.gauge import gauge_records
 from lube.stages.lubricant import lubricant_table
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
+from lube.stages.tail import tail_probabilities
 from lube.stages.trace import contact_trace
 from lube.storage.netcdf import save
 from lube.study.study import load_study
@@ -137,6 +139,10 @@ def _datasets(study):
         "film": film,
         "roughness": lines,
         "contact": contact,
+        "tail": tail_probabilities(study.line_spec, film, layer, study.seed, study.slips),
+        "areal": strip_contacts(
+            study.line_spec, film, layer, study.rollers.length, study.seed, study.slips
+        ),
         "master": master,
         "trace": contact_trace(lines, film, study.trace_points, layer, study.resistivity),
         "rig": rig_records(rig_lines, film, study),
