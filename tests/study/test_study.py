@@ -108,7 +108,7 @@ def changed_stages(paper_with):
     return compare
 
 
-MECHANICS = {"contact", "trace", "experiment"}
+MECHANICS = {"contact", "tail", "trace", "experiment"}
 LAYER = MECHANICS | {"master"}  # which is for pure rolling
 LINES = LAYER | {"roughness"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near

@@ -71,7 +71,7 @@ def test_rms_height_is_exactly_the_rollers_and_the_mean_is_zero_up_to_rounding(s
 def test_waves_within_the_band_have_their_amplitudes_and_all_others_are_zero(spec, unequal):
     for each, roller in ((spec, 0), (unequal, 0), (unequal, 1)):
         inside, radius = band(each, roller)
-        power_law = (inside / radius) ** (-2.0 * each.hurst_exponent - 1.0)  # C1D
+        power_law = (inside / radius) ** (-2.0 * each.lines[roller].hurst_exponent - 1.0)  # C1D
         variance = each.rms_height[roller] ** 2 * power_law / power_law.sum()
         expected = np.zeros(each.points[roller] // 2 + 1)
         expected[inside] = np.sqrt(2.0 * variance)
