@@ -47,8 +47,8 @@ _ShortestWavelength = length_or_words(
     _is_points, "a number of grid points such as `10 points`", " points$"
 )
 _Hurst = pure_number(above=0.0, below=1.0)
-_Skewness = pure_number(least=-4.0, most=4.0)
-_Kurtosis = pure_number(above=1.0, most=30.0)
+_Skewness = pure_number(least=-3.0, most=3.0)
+_Kurtosis = pure_number(above=1.0, most=20.0)
 
 
 class Texture(StrictModel):
@@ -181,7 +181,8 @@ class Roughness(StrictModel):
     skewness: _Skewness = 0.0
     """skewness of the heights, 0 for Gaussian heights; negative where peaks are worn"""
     kurtosis: _Kurtosis = 3.0
-    """kurtosis of the heights, 3 for Gaussian heights, more than the skewness squared plus one"""
+    """kurtosis of the heights, 3 for Gaussian heights; at least 1.5 + 1.25 times the skewness squared
+    """
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
 
@@ -304,8 +305,8 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     ------
     StudyError
         If the grid is too coarse for a shortest wavelength, a perimeter too short for a
-        longest, the height step unsuitable for the roughness, or there is no distribution of
-        such skewness and kurtosis.
+        longest, the height step unsuitable for the roughness, or the kurtosis too small for
+        the skewness.
     """
     spacing = 2.0 * math.pi * rollers.first.radius / roughness.points
     width = 2.0 * float(rollers.contact_half_width(largest_force))
@@ -411,9 +412,12 @@ def _check_height_step(rms, step):
 
 
 def _check_distribution(own, key):
-    least = own.skewness**2 + 1.0
-    if own.kurtosis <= least:
+    """Close to the least kurtosis the heights are two levels, whose spectrum cannot be chosen."""
+    square = own.skewness**2
+    least = 1.5 + 1.25 * square
+    if own.kurtosis < least:
         raise StudyError(
-            f"{key('kurtosis')}: got {own.kurtosis:g}, need more than {least:g}: the skewness, "
-            f"{own.skewness:g}, squared plus one"
+            f"{key('kurtosis')}: got {own.kurtosis:g} with a skewness of {own.skewness:g}, need at "
+            f"least {least:g}: none is below {square + 1.0:g}, the skewness squared plus one, and "
+            "close to it the spectrum cannot be kept"
         )

@@ -12,6 +12,9 @@ by the power spectrum (paper, section 2):
 With fixed amplitudes the rms height of every line is exactly that of the roller, up to the
 rounding to height steps; with random amplitudes it would be that of the roller in expectation
 only. The paper does not say which of the two it uses.
+
+Lines with another skewness or kurtosis than that of Gaussian heights are translations of such a
+line, see `lube.surfaces.translation`.
 """
 
 import functools
@@ -20,7 +23,13 @@ from typing import Protocol
 import numpy as np
 import scipy.fft
 
-from lube.kernels.synthesis import gaussian_phasors, random_phasors, whole_steps
+from lube.kernels.synthesis import (
+    gaussian_phasors,
+    random_phasors,
+    translated_steps,
+    whole_steps,
+)
+from lube.surfaces.translation import REACH, gaussian_power, johnson_curve
 
 ROLLERS = (1, 2)
 """Labels of the two rollers in files."""
@@ -145,6 +154,17 @@ def _spectrum(spec, roller):
     return first_wave, scaled.astype(np.float32)
 
 
+@functools.lru_cache(maxsize=4)
+def _translation(spec, roller):
+    """Spectrum of rms one of the line to translate, as `_spectrum`, and the curve that does it."""
+    first_wave, amplitudes = wave_amplitudes(spec, roller)
+    line = spec.lines[roller]
+    curve = johnson_curve(line.skewness, line.kurtosis)
+    power = gaussian_power(amplitudes**2, first_wave, line.points, curve)
+    scaled = 0.5 * line.points * np.sqrt(2.0 * power)
+    return (first_wave, scaled.astype(np.float32)), curve
+
+
 def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> np.ndarray:
     """Draw one roughness line.
 
@@ -162,7 +182,14 @@ def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> 
     numpy.ndarray
         Shape (N,), int32: heights in height steps, positive towards the other roller.
     """
-    return whole_steps(_superposition(spec, roller, random_phasors, np.random.default_rng(seed)))
+    generator, line = np.random.default_rng(seed), spec.lines[roller]
+    if line.is_gaussian:
+        spectrum = _spectrum(spec, roller)
+        return whole_steps(_superposition(spectrum, line.points, random_phasors, generator))
+    same = spec.lines.index(line)  # the first of two equal rollers
+    spectrum, curve = _translation(spec, same)
+    gaussian = _superposition(spectrum, line.points, random_phasors, generator)
+    return translated_steps(gaussian, curve, REACH, line.rms_height / spec.height_step)
 
 
 def draw_gaussian_line(
@@ -183,13 +210,13 @@ def draw_gaussian_line(
         Shape (N,), float32: heights in height steps, not rounded. Their rms is that of the
         roller in expectation only.
     """
-    return _superposition(spec, roller, gaussian_phasors, generator)
-
-
-def _superposition(spec, roller, phasors, generator):
-    """Sum of the waves, each times a random number of the complex plane."""
-    first_wave, amplitudes = _spectrum(spec, roller)
     points = spec.points[roller]
+    return _superposition(_spectrum(spec, roller), points, gaussian_phasors, generator)
+
+
+def _superposition(spectrum, points, phasors, generator):
+    """Sum of the waves, each times a random number of the complex plane."""
+    first_wave, amplitudes = spectrum
     waves = np.zeros(points // 2 + 1, np.complex64)
     band = waves[first_wave : first_wave + amplitudes.size]
     np.multiply(amplitudes, phasors(generator, amplitudes.size), out=band)
