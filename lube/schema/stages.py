@@ -77,6 +77,12 @@ _ROWS = (
         same_values=("roughness",),  # each batch draws its lines itself
     ),
     Stage("tail", inputs=("film",), values=_LINES | _CONTACT),
+    Stage(
+        "height_distribution",
+        inputs=("film",),
+        values=_LINES | _LAYER,
+        same_values=("roughness",),  # whose lines have other distributions here
+    ),
     Stage("master", inputs=("film",), values=_LINES | _LAYER, same_values=("roughness",)),
     Stage(
         "trace",

@@ -181,7 +181,8 @@ class Roughness(StrictModel):
     skewness: _Skewness = 0.0
     """skewness of the heights, 0 for Gaussian heights; negative where peaks are worn"""
     kurtosis: _Kurtosis = 3.0
-    """kurtosis of the heights, 3 for Gaussian heights; at least 1.5 + 1.25 times the skewness squared
+    """kurtosis of the heights, 3 for Gaussian heights; at least 1.5 plus 1.25 times the skewness
+    squared
     """
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
@@ -272,6 +273,11 @@ class LineSpec(StrictModel):
     def rms_height(self) -> tuple[float, float]:
         """Rms height of either line, m."""
         return tuple(line.rms_height for line in self.lines)
+
+    @property
+    def is_gaussian(self) -> bool:
+        """Whether the heights of both lines are Gaussian."""
+        return all(line.is_gaussian for line in self.lines)
 
     @property
     def q_min(self) -> float:

@@ -76,6 +76,8 @@ class LineSpecLike(Protocol):
         Parameters of either line.
     points : tuple of int
         Points N around each roller.
+    is_gaussian : bool
+        Whether the heights of both lines are Gaussian.
     q_min : float
         Smallest angular wavenumber of both lines, rad/m.
     spacing : float
@@ -86,6 +88,7 @@ class LineSpecLike(Protocol):
 
     lines: tuple[RoughLineLike, RoughLineLike]
     points: tuple[int, int]
+    is_gaussian: bool
     q_min: float
     spacing: float
     height_step: float
