@@ -113,7 +113,7 @@ def translated_steps(
     Examples
     --------
     >>> translated_steps(np.array([-1, 0, 1], np.float32), np.array([-9.0, 0.0, 3.0]), 3.0, 1e3)
-    array([-1336,   267,  1069], dtype=int32)
+    array([-1373,   392,   981], dtype=int32)
     """
     translated = np.empty(heights.size)
     last = curve.size - 1

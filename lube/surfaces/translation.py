@@ -153,7 +153,11 @@ def translated_power(gaussian: Array, first_wave: int, points: int, curve: Array
     for coefficient in _hermite_coefficients(curve)[:0:-1]:
         translated += coefficient**2
         translated *= correlation
-    return 2.0 * scipy.fft.rfft(translated, norm="forward", overwrite_x=True).real
+    power = 2.0 * scipy.fft.rfft(translated, norm="forward", overwrite_x=True).real
+    power[0] /= 2.0  # the mean and the wave of two points have no partner
+    if points % 2 == 0:
+        power[-1] /= 2.0
+    return power
 
 
 def _standardised(heights):

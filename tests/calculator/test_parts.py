@@ -32,6 +32,25 @@ def test_the_second_roller_differs_in_what_is_said():
     assert pair.second.rms_roughness == pair.first.rms_roughness
 
 
+def test_rollers_take_ra_a_composite_or_a_texture_of_each():
+    ra = Rollers("50 mm", ra_roughness="0.16 um", second={"rms_roughness": "0.1 um"}).pair
+    assert ra.rms_heights == pytest.approx((0.16e-6 * np.sqrt(np.pi / 2.0), 0.1e-6))
+    both = Rollers("50 mm", composite_rms_roughness="0.3 um").pair
+    assert both.composite_rms_roughness == pytest.approx(0.3e-6)
+    worn = Rollers(
+        "50 mm",
+        "0.2 um",
+        second={"roughness": {"hurst_exponent": 0.8}},
+        roll_off_wavelength="0.1 mm",
+        skewness=-1.0,
+        kurtosis=5.0,
+    ).lines
+    assert [line.hurst_exponent for line in worn.lines] == [0.7, 0.8]
+    for line in worn.lines:
+        assert (line.skewness, line.kurtosis) == (-1.0, 5.0)
+        assert 2.0 * np.pi / line.q_roll_off == pytest.approx(1e-4)
+
+
 def test_an_oil_of_numbers_is_that_of_a_record():
     record, given = Oil(OIL), Oil(viscosity=TWO, density="860 kg/m^3", base="polyalphaolefin")
     temperatures = ["40 degC", "57 degC", "100 degC"]
