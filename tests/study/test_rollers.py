@@ -123,7 +123,7 @@ REFUSED = [
     (OWN, {"shortest_wavelength": "1 mm"}, f"{OWN}.shortest_wavelength: got 0.001 m, need less"),
     (OWN, {"shortest_wavelength": "0.1 um"}, "too coarse a grid: its spacing is 3.14e-07 m"),
     (OWN, {"longest_wavelength": "1 m"}, "rollers.second.radius: the perimeter, 0.314 m, is too"),
-    (OWN, {"hurst": 1}, f"{OWN}.hurst: unknown key, did you mean 'hurst_exponent'?"),
+    (OWN, {"hurst_exp": 1}, f"{OWN}.hurst_exp: unknown key, did you mean 'hurst_exponent'?"),
     (OWN, {"kurtosis": 1.2}, f"{OWN}.kurtosis: got 1.2 with a skewness of 0, need at least 1.5"),
     ("roughness.kurtosis", 0.9, "roughness.kurtosis: got 0.9, need a value above 1"),
     (

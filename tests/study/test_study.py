@@ -109,7 +109,7 @@ def changed_stages(paper_with):
 
 
 MECHANICS = {"contact", "tail", "trace", "experiment"}
-LAYER = MECHANICS | {"master"}  # which is for pure rolling
+LAYER = MECHANICS | {"master", "height_distribution"}  # which are for pure rolling
 LINES = LAYER | {"roughness"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 
