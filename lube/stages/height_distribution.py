@@ -60,7 +60,7 @@ def height_distributions(
         along = (*dims, "lambda_ratio")[: 1 + values.ndim]
         table[name] = along, values.reshape(shape + values.shape[1:])
     coordinates = dict(zip(dims, (list(SKEWNESS), list(KURTOSIS)), strict=True))
-    coordinates["lambda_ratio"] = LAMBDA_RATIOS
+    coordinates |= {"lambda_ratio": LAMBDA_RATIOS, "revolutions": 1}
     attributes = {"travel": travel, "longest_wavelength": longest}
     return label(xr.Dataset(table, coordinates, attributes), "height_distribution")
 

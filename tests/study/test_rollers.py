@@ -143,6 +143,11 @@ def test_a_mistake_is_refused_in_one_line(paper_with, key, value, needed):
     assert NEEDED.search(message)
 
 
+def test_a_drift_of_lines_that_are_not_gaussian_is_refused(paper_with):
+    message = refusal(paper_with(("rig.drift", 0.1), ("roughness.kurtosis", 4)))
+    assert "rig.drift: got 0.1, need 0 for a simulated rig with roughness that is not" in message
+
+
 def test_with_value_does_not_change_the_papers_content():
     with_value(PAPER_CONTENT, "rollers.first.roughness.kurtosis", 4)
     assert "roughness" not in PAPER_CONTENT["rollers"]["first"]
