@@ -16,8 +16,9 @@ polynomials :math:`h_n` and :math:`c_n = \langle g\, h_n \rangle` the autocorrel
 so that the spectrum of y is chosen such that z has the prescribed one within its band. A small part
 of the variance of z lies outside the band, mostly in longer waves.
 
-The other known method imposes the sorted heights and the spectrum by turns (Perez-Rafols and Almqvist).
-It leaves nothing outside the band but takes 20 turns or more, each of several times a line's cost.
+The other known method imposes the sorted heights and the spectrum by turns (Perez-Rafols and
+Almqvist). It leaves nothing outside the band but takes 20 turns or more, each of several times a
+line's cost.
 
 References
 ----------
