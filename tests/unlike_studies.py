@@ -14,9 +14,11 @@ from lube.stages.ensemble import gather, gather_map
 from lube.stages.experiment import measured_experiment, simulated_experiment
 from lube.stages.film import film_at_records, film_table
 from lube.stages.gauge import gauge_records
+from lube.stages.height_distribution import height_distributions
 from lube.stages.lubricant import lubricant_table
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
+from lube.stages.tail import tail_probabilities
 from lube.stages.trace import contact_trace
 from lube.storage.netcdf import save
 from lube.study.study import load_study
@@ -50,7 +52,14 @@ _SILICON_NITRIDE = {
     "radius": "20 mm",
     "young_modulus": "310 GPa",
     "poisson_ratio": 0.27,
-    "rms_roughness": "0.05 um",
+    "ra_roughness": "0.04 um",
+    "roughness": {
+        "hurst_exponent": 0.8,
+        "longest_wavelength": "0.15 mm",
+        "roll_off_wavelength": "0.1 mm",
+        "skewness": -1,
+        "kurtosis": 5,
+    },
 }
 
 STUDIES = {
@@ -137,6 +146,8 @@ def _datasets(study):
         "film": film,
         "roughness": lines,
         "contact": contact,
+        "tail": tail_probabilities(study.line_spec, film, layer, study.seed, study.slips),
+        "height_distribution": height_distributions(study.line_spec, film, layer, study.seed),
         "master": master,
         "trace": contact_trace(lines, film, study.trace_points, layer, study.resistivity),
         "rig": rig_records(rig_lines, film, study),
