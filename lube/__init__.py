@@ -41,6 +41,7 @@ _HOMES = {
     "lube.study.rollers": (
         "BoundaryLayer",
         "LineSpec",
+        "RoughLine",
         "Roller",
         "RollerPair",
         "Roughness",

@@ -48,6 +48,7 @@ from lube.study.rollers import BoundaryLayer as BoundaryLayer
 from lube.study.rollers import LineSpec as LineSpec
 from lube.study.rollers import Roller as Roller
 from lube.study.rollers import RollerPair as RollerPair
+from lube.study.rollers import RoughLine as RoughLine
 from lube.study.rollers import Roughness as Roughness
 from lube.study.rollers import line_spec as line_spec
 from lube.study.study import Study as Study

@@ -12,6 +12,7 @@ from lube.stages.ensemble import gather, gather_map
 from lube.stages.experiment import simulated_experiment
 from lube.stages.film import film_table
 from lube.stages.gauge import gauge_records
+from lube.stages.height_distribution import height_distributions
 from lube.stages.lubricant import lubricant_table
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
@@ -62,6 +63,7 @@ def datasets_of_every_kind(study):
         "contact": contact,
         "areal": strip_contacts(spec, film, layer, own.rollers.length, study.seed, study.slips),
         "tail": tail_probabilities(spec, film, layer, study.seed, study.slips),
+        "height_distribution": height_distributions(spec, film, layer, study.seed),
         "master_batch": mapped,
         "master": master,
         "trace": contact_trace(lines, film, points, layer, study.resistivity),

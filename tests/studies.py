@@ -21,7 +21,7 @@ def with_value(content, key, value):
     *path, last = [int(part) if part.isdigit() else part for part in key.split(".")]
     section = content
     for part in path:
-        section = section[part]
+        section = section.setdefault(part, {}) if isinstance(section, dict) else section[part]
     if value is REMOVED:
         del section[last]
     else:

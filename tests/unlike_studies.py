@@ -15,6 +15,7 @@ from lube.stages.ensemble import gather, gather_map
 from lube.stages.experiment import measured_experiment, simulated_experiment
 from lube.stages.film import film_at_records, film_table
 from lube.stages.gauge import gauge_records
+from lube.stages.height_distribution import height_distributions
 from lube.stages.lubricant import lubricant_table
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
@@ -52,7 +53,14 @@ _SILICON_NITRIDE = {
     "radius": "20 mm",
     "young_modulus": "310 GPa",
     "poisson_ratio": 0.27,
-    "rms_roughness": "0.05 um",
+    "ra_roughness": "0.04 um",
+    "roughness": {
+        "hurst_exponent": 0.8,
+        "longest_wavelength": "0.15 mm",
+        "roll_off_wavelength": "0.1 mm",
+        "skewness": -1,
+        "kurtosis": 5,
+    },
 }
 
 STUDIES = {
@@ -134,15 +142,19 @@ def _datasets(study):
     at_records = film_at_records(experiment, oils, study.rollers, study.film_formulas)
     model = model_at_records(at_records, experiment, film, contact, study)
     comparison = compare(model, experiment, contact)
-    return {
+    areal = {}
+    if study.line_spec.is_gaussian:
+        length = study.rollers.length
+        areal["areal"] = strip_contacts(
+            study.line_spec, film, layer, length, study.seed, study.slips
+        )
+    return areal | {
         "lubricant": oil,
         "film": film,
         "roughness": lines,
         "contact": contact,
         "tail": tail_probabilities(study.line_spec, film, layer, study.seed, study.slips),
-        "areal": strip_contacts(
-            study.line_spec, film, layer, study.rollers.length, study.seed, study.slips
-        ),
+        "height_distribution": height_distributions(study.line_spec, film, layer, study.seed),
         "master": master,
         "trace": contact_trace(lines, film, study.trace_points, layer, study.resistivity),
         "rig": rig_records(rig_lines, film, study),

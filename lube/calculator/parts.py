@@ -45,20 +45,29 @@ class Rollers:
     ----------
     radius : str
         Radius of the first roller, such as ``"50 mm"``.
-    rms_roughness : str
-        Rms roughness of the first roller by itself, such as ``"0.2 um"``.
+    rms_roughness : str, optional
+        Rms roughness of the first roller by itself, such as ``"0.2 um"``. In place of it either
+        `ra_roughness` or `composite_rms_roughness` is needed.
     length : str, optional
         Length of the line contact.
     young_modulus, poisson_ratio : str, float, optional
         Of the first roller's material; the default is steel.
     second : dict, optional
-        What differs of the second roller, such as ``{"radius": "30 mm"}``. Without it the rollers
-        are equal.
+        What differs of the second roller, such as ``{"radius": "30 mm"}`` or
+        ``{"roughness": {"hurst_exponent": 0.8}}``. Without it the rollers are equal.
     longest_wavelength, shortest_wavelength : str, optional
         Of the roughness; the defaults are the paper's. The longest is customarily the width of
         the contact, the shortest what a profilometer resolves.
     hurst_exponent : float, optional
         Hurst exponent of the roughness, from 0 to 1.
+    ra_roughness : str, optional
+        Mean absolute height Ra of the first roller; the rms is taken as Ra (pi / 2)^0.5.
+    composite_rms_roughness : str, optional
+        Rms roughness of both rollers together; each then has this / 2^0.5.
+    roll_off_wavelength : str, optional
+        Beyond it the spectral density of the surface is constant; by default nowhere.
+    skewness, kurtosis : float, optional
+        Of the heights; by default Gaussian.
     points : int, optional
         Grid points around the first roller; by default about ten in the shortest wavelength.
     critical_thickness, shear_strength : str, optional
@@ -97,7 +106,7 @@ class Rollers:
     def __init__(
         self,
         radius: str,
-        rms_roughness: str,
+        rms_roughness: str | None = None,
         length: str = "10 mm",
         *,
         young_modulus: str = "210 GPa",
@@ -106,6 +115,11 @@ class Rollers:
         longest_wavelength: str = "0.42 mm",
         shortest_wavelength: str = "3.1416 um",
         hurst_exponent: float = 0.7,
+        ra_roughness: str | None = None,
+        composite_rms_roughness: str | None = None,
+        roll_off_wavelength: str | None = None,
+        skewness: float = 0.0,
+        kurtosis: float = 3.0,
         points: int | None = None,
         critical_thickness: str = "5 nm",
         shear_strength: str = "1 MPa",
@@ -113,24 +127,27 @@ class Rollers:
     ) -> None:
         first = {
             "radius": radius,
-            "rms_roughness": rms_roughness,
             "young_modulus": young_modulus,
             "poisson_ratio": poisson_ratio,
         }
+        heights = {"rms_roughness": rms_roughness, "ra_roughness": ra_roughness}
         if not isinstance(second, Mapping | None):
             raise StudyError(
                 f"Rollers: second: got {shown(second)}, need what differs, such as "
                 "{'radius': '30 mm'}"
             )
-        other = first | dict(second or {})
-        self.pair = RollerPair(
-            length=_metres("length", length),
-            first=validate(Roller, first, "Rollers", StudyError),
-            second=validate(Roller, other, "Rollers: second", StudyError),
-        )
-        for roller in (self.pair.first, self.pair.second):
+        own = dict(second or {})
+        other = first | ({} if heights.keys() & own.keys() else heights) | own
+        pair = {
+            "length": _metres("length", length),
+            "first": validate(Roller, first | heights, "Rollers", StudyError),
+            "second": validate(Roller, other, "Rollers: second", StudyError),
+            "composite_rms_roughness": composite_rms_roughness,
+        }
+        self.pair = validate(RollerPair, pair, "Rollers", StudyError)
+        for rms in self.pair.rms_heights:
             try:
-                bounded(roller.rms_roughness, "m", **_ROUGHNESS)
+                bounded(rms, "m", **_ROUGHNESS)
             except LubeError as error:
                 raise StudyError(f"Rollers: rms_roughness: {error}") from None
         layer = {"critical_thickness": critical_thickness, "shear_strength": shear_strength}
@@ -146,6 +163,9 @@ class Rollers:
             # Lengths only: the other choices of a study depend on its grid.
             "longest_wavelength": _metres("longest_wavelength", longest_wavelength),
             "shortest_wavelength": _metres("shortest_wavelength", shortest_wavelength),
+            "roll_off_wavelength": roll_off_wavelength,
+            "skewness": skewness,
+            "kurtosis": kurtosis,
             "height_step": _HEIGHT_STEP,
         }
         texture = validate(Roughness, roughness, "Rollers", StudyError)
@@ -153,10 +173,8 @@ class Rollers:
 
     def __repr__(self) -> str:
         pair = self.pair
-        radii, rms = (
-            " and ".join(f"{scale * getattr(each, name):.4g}" for each in (pair.first, pair.second))
-            for name, scale in (("radius", 1e3), ("rms_roughness", 1e6))
-        )
+        radii = " and ".join(f"{1e3 * one.radius:.4g}" for one in (pair.first, pair.second))
+        rms = " and ".join(f"{1e6 * height:.4g}" for height in pair.rms_heights)
         return (
             f"<Rollers: radii {radii} mm, rms roughness {rms} um, {1e3 * pair.length:.4g} mm long>"
         )

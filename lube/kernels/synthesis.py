@@ -1,4 +1,4 @@
-"""Random phases and rounded heights: the steps around a roughness line's Fourier transform."""
+"""Random phases, translated and rounded heights: the steps around a line's Fourier transform."""
 
 import math
 
@@ -84,4 +84,50 @@ def whole_steps(heights: np.ndarray) -> np.ndarray:
     steps = np.empty(heights.size, np.int32)
     for i in range(heights.size):
         steps[i] = np.int32(np.rint(heights[i]))
+    return steps
+
+
+@kernel
+def translated_steps(
+    heights: np.ndarray, curve: np.ndarray, reach: float, rms: float
+) -> np.ndarray:
+    """Translate heights by a curve, and scale them to an rms height in whole height steps.
+
+    Parameters
+    ----------
+    heights : numpy.ndarray
+        Shape (N,), float32, of rms one.
+    curve : numpy.ndarray
+        Shape (nodes,), translated heights at equally spaced heights from -reach to reach; straight
+        lines between them.
+    reach : float
+        Where the curve ends; no height is beyond it.
+    rms : float
+        Rms height of the result, height steps.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,), int32, of mean zero up to rounding.
+
+    Examples
+    --------
+    >>> translated_steps(np.array([-1, 0, 1], np.float32), np.array([-9.0, 0.0, 3.0]), 3.0, 1e3)
+    array([-1373,   392,   981], dtype=int32)
+    """
+    translated = np.empty(heights.size)
+    last = curve.size - 1
+    total, squares = 0.0, 0.0
+    for i in range(heights.size):
+        place = min(max((heights[i] / reach + 1.0) * 0.5 * last, 0.0), float(last))
+        node = min(int(place), last - 1)
+        height = curve[node] + (place - node) * (curve[node + 1] - curve[node])
+        translated[i] = height
+        total += height
+        squares += height * height
+    mean = total / heights.size
+    scale = rms / math.sqrt(squares / heights.size - mean * mean)
+    steps = np.empty(heights.size, np.int32)
+    for i in range(heights.size):
+        steps[i] = np.int32(np.rint((translated[i] - mean) * scale))
     return steps

@@ -25,7 +25,7 @@ def configuration(study: Study, text: str) -> str:
     str
         HTML.
     """
-    content = study.model_dump(mode="json")
+    content = study.model_dump(mode="json", by_alias=True)
     stages = {
         stage: [(key, _in_si(value)) for key, value in single_values(inputs) if value is not None]
         for stage in DATASETS

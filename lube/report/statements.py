@@ -48,7 +48,7 @@ def assumptions_of(study: Study, paper: Study, text: str) -> str:
         The text, with those lines whose values the study shares with the paper's.
     """
     general, _, table = text.partition(_HEADING)
-    values = [one.model_dump(mode="json") for one in (study, paper)]
+    values = [one.model_dump(mode="json", by_alias=True) for one in (study, paper)]
 
     def shared(row):
         keys = re.findall(r"`([\w.]+)`", row.rpartition(" | ")[2])

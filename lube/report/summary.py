@@ -59,8 +59,9 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
         study=study,
         oils=oils,
         points=math.prod(len(levels) for levels in study.operating_grid.model_dump().values()),
-        shortest=2.0 * math.pi / study.line_spec.q_max,
-        longest=2.0 * math.pi / study.line_spec.q_min,
+        rms=study.rollers.rms_heights,
+        lines=study.line_spec.lines,
+        two_pi=2.0 * math.pi,
     )
 
 

@@ -38,6 +38,12 @@ class Stage:
     target: str = "all"
 
 
+def _cylinder(roller):
+    """Values of a roller without its roughness."""
+    names = ("radius", "young_modulus", "poisson_ratio")
+    return {name: f"rollers.{roller}.{name}" for name in names}
+
+
 _LINES = {"seed": "seed", "lines": "line_spec"}
 _LAYER = {"reduced_modulus": "rollers.reduced_modulus", "boundary_layer": "boundary_layer"}
 _CONTACT = _LAYER | {"slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"}
@@ -51,7 +57,11 @@ _ROWS = (
         "film",
         inputs=("lubricant",),
         values={
-            "rollers": "rollers",
+            "rollers": {
+                "length": "rollers.length",
+                "first": _cylinder("first"),
+                "second": _cylinder("second"),
+            },
             "reduced_radius": "rollers.reduced_radius",
             "reduced_modulus": "rollers.reduced_modulus",
             "composite_rms_roughness": "rollers.composite_rms_roughness",
@@ -68,6 +78,12 @@ _ROWS = (
         same_values=("roughness",),  # each batch draws its lines itself
     ),
     Stage("tail", inputs=("film",), values=_LINES | _CONTACT),
+    Stage(
+        "height_distribution",
+        inputs=("film",),
+        values=_LINES | _LAYER,
+        same_values=("roughness",),  # whose lines have other distributions here
+    ),
     Stage("master", inputs=("film",), values=_LINES | _LAYER, same_values=("roughness",)),
     Stage(
         "trace",

@@ -204,5 +204,8 @@ def contact_at(
     for name in ("critical_thickness", "shear_strength"):
         variables[name] = ((), getattr(boundary_layer, name))
     coords = {"realisation": lines["realisation"].values, **thickness.coords}
-    travel, longest = spacing * min(lines.attrs["points"]), 2.0 * np.pi / lines.attrs["q_min"]
+    travel, longest = (
+        spacing * min(lines.attrs["points"]),
+        2.0 * np.pi / np.min(lines.attrs["q_min"]),
+    )
     return xr.Dataset(variables, coords, {"travel": travel, "longest_wavelength": longest})

@@ -56,6 +56,8 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
     expected = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
     for name in expected[0]:
         dataset[f"spectrum_{name}"] = "roller", [line[name] for line in expected]
+    for name in ("skewness", "kurtosis"):
+        dataset[f"prescribed_{name}"] = "roller", [getattr(line, name) for line in spec.lines]
     dataset["seed"] = "realisation", np.full(len(realisations), seed, np.int64)
     dataset["position"] = spec.spacing * np.arange(max(spec.points))
     return label(dataset, "roughness")

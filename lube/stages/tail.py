@@ -6,14 +6,14 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.errors import DataError
+from lube.errors import DataError, StudyError
 from lube.grid.discretise import layer_factor_of
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
-from lube.schema import CONTACT_DIMS, LIMITS, OPERATING_DIMS, label
+from lube.schema import CONTACT_DIMS, FILES, LIMITS, OPERATING_DIMS, label
 from lube.statistics.confidence import mean_interval
 from lube.study.rollers import BoundaryLayer, LineSpec
-from lube.surfaces.rare_contact import rare_contact
+from lube.surfaces.rare_contact import check_gaussian, rare_contact
 from lube.surfaces.synthetic import ROLLERS, line_attributes, spectrum_moments
 
 PAIRS = 32
@@ -47,7 +47,8 @@ def tail_probabilities(
     Returns
     -------
     xarray.Dataset
-        The ``tail`` file of `lube.schema`.
+        The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty, but where the lines
+        are not Gaussian: then it says so, and all values are NaN.
 
     Raises
     ------
@@ -77,7 +78,12 @@ def tail_probabilities(
     lowest = film["film_thickness"].min().item()
     if not lowest > 0.0:
         raise DataError(f"film thickness: got {lowest:g} m, need above 0")
-    formulas, levels = film.sizes["film_formula"], np.asarray(slide_to_roll_ratio, float)
+    levels = np.asarray(slide_to_roll_ratio, float)
+    try:
+        check_gaussian(spec)
+    except StudyError as error:
+        return _unknown(film, levels, str(error))
+    formulas = film.sizes["film_formula"]
     parts = [(slice(0, 1), PAIRS), (slice(1, formulas), FEWER_PAIRS)][: min(formulas, 2)]
     tables = [
         _table(spec, film.isel(film_formula=part), boundary_layer, (seed, pairs), levels)
@@ -86,7 +92,19 @@ def tail_probabilities(
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
     table = table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
-    return label(table, "tail")
+    return label(table.assign_attrs(remarks=""), "tail")
+
+
+def _unknown(film, slide_to_roll_ratio, remark):
+    """Table without any value."""
+    coordinates = {name: film[name] for name in OPERATING_DIMS}
+    coordinates["slide_to_roll_ratio"] = slide_to_roll_ratio
+    sizes = {name: len(values) for name, values in coordinates.items()}
+    empty = {
+        name: (row.dims, np.full([sizes[dim] for dim in row.dims], np.nan))
+        for name, row in FILES["tail"].items()
+    }
+    return label(xr.Dataset(empty, coordinates, {"remarks": remark}), "tail")
 
 
 def _table(spec, film, boundary_layer, draws, slide_to_roll_ratio):

@@ -30,7 +30,8 @@ def _with_descriptions(schema, model):
         for field, below in pairwise(ast.parse(inspect.getsource(base)).body[0].body):
             match field, below:
                 case ast.AnnAssign(), ast.Expr(ast.Constant(str(text))):
-                    schema["properties"][field.target.id]["description"] = " ".join(text.split())
+                    name = base.model_fields[field.target.id].alias or field.target.id
+                    schema["properties"][name]["description"] = " ".join(text.split())
 
 
 class StrictModel(BaseModel, extra="forbid", frozen=True, json_schema_extra=_with_descriptions):
@@ -361,7 +362,8 @@ def _right_key(location, model):
     for part in sections:
         if isinstance(part, str):
             model = next(_models(model.model_fields[part].annotation))
-    return right_one(str(wrong), model.model_fields)
+    keys = [field.alias or name for name, field in model.model_fields.items()]
+    return right_one(str(wrong), keys)
 
 
 def _models(annotation):

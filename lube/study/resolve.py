@@ -3,7 +3,8 @@
 A study's file may name another with the key ``based_on`` and then holds only what differs. The
 contents are merged from the last base up: mappings key by key; lists and single values are
 replaced. Each study needs a name of its own, so that the results of different values are not
-mixed in one folder. What ``about`` says of one study's results is not said of another's.
+mixed in one folder. What ``about`` says of one study's results is not said of another's. A
+roller's roughness takes the place of one that the base gives in another way, such as Ra for rms.
 """
 
 import io
@@ -16,6 +17,9 @@ from lube.errors import StudyError, shown
 from lube.study.lubricant_record import is_record_path
 from lube.study.text_files import read_yaml
 from lube.types import File
+
+_PARTS, _WHOLE = ("rms_roughness", "ra_roughness"), "composite_rms_roughness"
+"""Keys of a roller's roughness, of which it has one, and of that of both rollers together."""
 
 _OF_ONE_STUDY = {"title", "summary", "date", "doi"}
 """Keys of ``about`` that a study does not take over from its base."""
@@ -131,7 +135,28 @@ def _on_top(base, changes, where):
         case {"about": dict(about)}:
             kept = {key: value for key, value in about.items() if key not in _OF_ONE_STUDY}
             base = base | {"about": kept}
+    match base, changes:
+        case {"rollers": dict(below)}, {"rollers": dict(above)}:
+            base = base | {"rollers": _without_replaced(below, above)}
     return _merged(base, changes)
+
+
+def _without_replaced(below, above):
+    """Leave out roughness of rollers in whose place the changes give one of another kind."""
+    rollers = [name for name in ("first", "second") if isinstance(below.get(name), dict)]
+    whole = bool(above.get(_WHOLE))
+    parts = {name: _is_given(above.get(name), _PARTS) for name in rollers}
+    kept = dict(below)
+    if any(parts.values()):
+        kept.pop(_WHOLE, None)
+    for name in rollers:
+        if whole or parts[name]:
+            kept[name] = {key: value for key, value in below[name].items() if key not in _PARTS}
+    return kept
+
+
+def _is_given(roller, keys):
+    return isinstance(roller, dict) and any(roller.get(key) for key in keys)
 
 
 def _merged(base, changes):

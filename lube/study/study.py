@@ -270,6 +270,12 @@ class Study(StrictModel):
                 f"experiment.threshold: got {self.experiment.threshold:g} ohm, need one of "
                 f"experiment.thresholds: {shown(self.experiment.thresholds)} ohm"
             )
+        simulated = self.experiment.manifest is None
+        if simulated and self.rig.drift > 0.0 and not self.line_spec.is_gaussian:
+            raise ValueError(
+                f"rig.drift: got {self.rig.drift:g}, need 0 for a simulated rig with roughness "
+                "that is not Gaussian, which a mixture of old and new lines would not keep"
+            )
         largest = max(self.experiment.thresholds) * self.experiment.release_ratio
         voltage = divider_voltage(largest, self.rig)
         if voltage >= self.rig.amplifier_range:

@@ -12,7 +12,8 @@ where n counts the points of a window that touch, and X is one if the window cou
 geometric contact, and for breakthrough if the boundary layer breaks on a segment. The estimate has
 no bias at any rarity, and its relative error hardly depends on the rarity.
 
-The amplitudes of the lines are random, so that the lines are exactly Gaussian.
+The amplitudes of the lines are random, so that the lines are exactly Gaussian. Lines of another
+skewness or kurtosis are refused: their tail is not Gaussian.
 
 References
 ----------
@@ -26,6 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.special
 
+from lube.errors import StudyError
 from lube.kernels.tail import touching_runs, touching_windows
 from lube.surfaces.synthetic import ROLLERS, LineSpecLike, autocovariance, draw_gaussian_line
 from lube.types import Array, Pair
@@ -79,6 +81,27 @@ def sum_of_lines(spec: LineSpecLike, lags: int) -> SumOfLines:
     return SumOfLines(np.sqrt(variance), tuple(line / variance for line in lines))
 
 
+def check_gaussian(spec: LineSpecLike) -> None:
+    """Refuse lines whose heights are not Gaussian.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines.
+
+    Raises
+    ------
+    StudyError
+        With the skewness and the kurtosis that came.
+    """
+    for line in spec.lines:
+        if not line.is_gaussian:
+            raise StudyError(
+                f"roughness: got a skewness of {line.skewness:g} and a kurtosis of "
+                f"{line.kurtosis:g}, need 0 and 3: importance sampling is for Gaussian lines"
+            )
+
+
 def draw_pair(spec: LineSpecLike, seed: int, number: int) -> tuple[Pair, np.random.Generator]:
     """Draw a pair of Gaussian lines.
 
@@ -128,7 +151,13 @@ def rare_contact(
         Shape (6, P), per point of the line: runs of touching points; runs whose boundary layer
         breaks; groups of these, a longest wavelength apart; those of these that appear in a
         relative step of one point; the points of broken runs; and those of the runs that appear.
+
+    Raises
+    ------
+    StudyError
+        If the lines are not Gaussian.
     """
+    check_gaussian(spec)
     lines, generator = draw_pair(spec, seed, number)
     size = min(spec.points)
     line = lines[0][:size] + lines[1][:size]

@@ -12,6 +12,9 @@ by the power spectrum (paper, section 2):
 With fixed amplitudes the rms height of every line is exactly that of the roller, up to the
 rounding to height steps; with random amplitudes it would be that of the roller in expectation
 only. The paper does not say which of the two it uses.
+
+Lines with another skewness or kurtosis than that of Gaussian heights are translations of such a
+line, see `lube.surfaces.translation`.
 """
 
 import functools
@@ -20,10 +23,48 @@ from typing import Protocol
 import numpy as np
 import scipy.fft
 
-from lube.kernels.synthesis import gaussian_phasors, random_phasors, whole_steps
+from lube.kernels.synthesis import (
+    gaussian_phasors,
+    random_phasors,
+    translated_steps,
+    whole_steps,
+)
+from lube.surfaces.translation import REACH, gaussian_power, johnson_curve
 
 ROLLERS = (1, 2)
 """Labels of the two rollers in files."""
+
+
+class RoughLineLike(Protocol):
+    """Parameters of one roughness line, such as `lube.study.rollers.RoughLine`.
+
+    Attributes
+    ----------
+    points : int
+        Points N around the roller.
+    rms_height : float
+        Rms height, m.
+    hurst_exponent : float
+        Hurst exponent H.
+    q_min, q_max : float
+        Smallest and largest angular wavenumber, rad/m.
+    q_roll_off : float
+        Angular wavenumber below which the density rises with q, rad/m; `q_min` for nowhere.
+    skewness, kurtosis : float
+        Of the heights.
+    is_gaussian : bool
+        Whether the heights are Gaussian.
+    """
+
+    points: int
+    rms_height: float
+    hurst_exponent: float
+    q_min: float
+    q_max: float
+    q_roll_off: float
+    skewness: float
+    kurtosis: float
+    is_gaussian: bool
 
 
 class LineSpecLike(Protocol):
@@ -31,33 +72,37 @@ class LineSpecLike(Protocol):
 
     Attributes
     ----------
+    lines : tuple of RoughLineLike
+        Parameters of either line.
     points : tuple of int
         Points N around each roller.
+    is_gaussian : bool
+        Whether the heights of both lines are Gaussian.
+    q_min : float
+        Smallest angular wavenumber of both lines, rad/m.
     spacing : float
         Distance dx of neighbouring points, m.
-    rms_height : tuple of float
-        Rms height of each line, m.
-    hurst_exponent : float
-        Hurst exponent H.
-    q_min, q_max : float
-        Smallest and largest angular wavenumber, rad/m.
     height_step : float
         Height step, m.
     """
 
+    lines: tuple[RoughLineLike, RoughLineLike]
     points: tuple[int, int]
-    spacing: float
-    rms_height: tuple[float, float]
-    hurst_exponent: float
+    is_gaussian: bool
     q_min: float
-    q_max: float
+    spacing: float
     height_step: float
 
 
 def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     r"""Amplitudes of the waves around one roller (paper, section 2).
 
-    .. math:: a_k \propto k^{-H - 1/2}, \qquad \frac12 \sum_k a_k^2 = h_{rms}^2
+    .. math::
+
+        a_k \propto q_k^{-H - 1/2}, \qquad \frac12 \sum_k a_k^2 = h_{rms}^2
+
+    Below the roll-off wavenumber the isotropic surface's density :math:`C_{2D}` is constant, so
+    that :math:`C_{1D} = \pi q\, C_{2D}` and :math:`a_k \propto q_k^{1/2}`.
 
     Parameters
     ----------
@@ -76,33 +121,31 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
 
     Examples
     --------
-    >>> from lube import LineSpec
-    >>> spec = LineSpec(
-    ...     points=(1000, 1000),
-    ...     spacing=1e-6,
-    ...     rms_height=(2e-7, 2e-7),
-    ...     hurst_exponent=0.7,
-    ...     q_min=2 * np.pi / 1e-4,
-    ...     q_max=2 * np.pi / 1e-5,
-    ...     height_step=1e-12,
-    ... )
+    >>> from lube import LineSpec, RoughLine
+    >>> band = {"q_min": 2 * np.pi / 1e-4, "q_max": 2 * np.pi / 1e-5}
+    >>> line = RoughLine(points=1000, rms_height=2e-7, hurst_exponent=0.7, **band)
+    >>> spec = LineSpec(lines=(line, line), spacing=1e-6, height_step=1e-12)
     >>> first_wave, amplitudes = wave_amplitudes(spec, 0)
     >>> first_wave, amplitudes.size
     (10, 91)
     >>> f"{np.sqrt(0.5 * np.sum(amplitudes**2)):.3g}"
     '2e-07'
     """
-    perimeter = spec.points[roller] * spec.spacing
-    turn = perimeter / (2.0 * np.pi)
+    line = spec.lines[roller]
+    turn = line.points * spec.spacing / (2.0 * np.pi)
     # A limit that is a whole number of waves belongs to the band, despite rounding.
-    first_wave = int(np.ceil(spec.q_min * turn * (1.0 - 1e-9)))
-    last_wave = int(np.floor(spec.q_max * turn * (1.0 + 1e-9)))
+    first_wave = int(np.ceil(line.q_min * turn * (1.0 - 1e-9)))
+    last_wave = int(np.floor(line.q_max * turn * (1.0 + 1e-9)))
     # Leave out the wave of two points: its rms height on the grid would depend on its phase.
-    last_wave = min(last_wave, (spec.points[roller] - 1) // 2)
+    last_wave = min(last_wave, (line.points - 1) // 2)
     waves = np.arange(first_wave, last_wave + 1)
-    shape = (waves / first_wave) ** (-spec.hurst_exponent - 0.5)
+    shape = (waves / first_wave) ** (-line.hurst_exponent - 0.5)
+    roll_off = line.q_roll_off * turn
+    below = waves < roll_off * (1.0 - 1e-9)
+    shape[below] = (roll_off / first_wave) ** (-line.hurst_exponent - 0.5)
+    shape[below] *= np.sqrt(waves[below] / roll_off)
     rms = np.sqrt(0.5 * np.sum(shape**2))
-    return first_wave, spec.rms_height[roller] / rms * shape
+    return first_wave, line.rms_height / rms * shape
 
 
 @functools.lru_cache(maxsize=4)
@@ -112,6 +155,17 @@ def _spectrum(spec, roller):
     points = spec.points[roller]
     scaled = 0.5 * points / spec.height_step * amplitudes
     return first_wave, scaled.astype(np.float32)
+
+
+@functools.lru_cache(maxsize=4)
+def _translation(spec, roller):
+    """Spectrum of rms one of the line to translate, as `_spectrum`, and the curve that does it."""
+    first_wave, amplitudes = wave_amplitudes(spec, roller)
+    line = spec.lines[roller]
+    curve = johnson_curve(line.skewness, line.kurtosis)
+    power = gaussian_power(amplitudes**2, first_wave, line.points, curve)
+    scaled = 0.5 * line.points * np.sqrt(2.0 * power)
+    return (first_wave, scaled.astype(np.float32)), curve
 
 
 def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> np.ndarray:
@@ -131,7 +185,14 @@ def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> 
     numpy.ndarray
         Shape (N,), int32: heights in height steps, positive towards the other roller.
     """
-    return whole_steps(_superposition(spec, roller, random_phasors, np.random.default_rng(seed)))
+    generator, line = np.random.default_rng(seed), spec.lines[roller]
+    if line.is_gaussian:
+        spectrum = _spectrum(spec, roller)
+        return whole_steps(_superposition(spectrum, line.points, random_phasors, generator))
+    same = spec.lines.index(line)  # the first of two equal rollers
+    spectrum, curve = _translation(spec, same)
+    gaussian = _superposition(spectrum, line.points, random_phasors, generator)
+    return translated_steps(gaussian, curve, REACH, line.rms_height / spec.height_step)
 
 
 def draw_gaussian_line(
@@ -152,13 +213,13 @@ def draw_gaussian_line(
         Shape (N,), float32: heights in height steps, not rounded. Their rms is that of the
         roller in expectation only.
     """
-    return _superposition(spec, roller, gaussian_phasors, generator)
-
-
-def _superposition(spec, roller, phasors, generator):
-    """Sum of the waves, each times a random number of the complex plane."""
-    first_wave, amplitudes = _spectrum(spec, roller)
     points = spec.points[roller]
+    return _superposition(_spectrum(spec, roller), points, gaussian_phasors, generator)
+
+
+def _superposition(spectrum, points, phasors, generator):
+    """Sum of the waves, each times a random number of the complex plane."""
+    first_wave, amplitudes = spectrum
     waves = np.zeros(points // 2 + 1, np.complex64)
     band = waves[first_wave : first_wave + amplitudes.size]
     np.multiply(amplitudes, phasors(generator, amplitudes.size), out=band)
@@ -211,16 +272,11 @@ def draw_realisation(
 
     Examples
     --------
-    >>> from lube import LineSpec
-    >>> spec = LineSpec(
-    ...     points=(1000, 800),
-    ...     spacing=1e-6,
-    ...     rms_height=(2e-7, 1e-7),
-    ...     hurst_exponent=0.7,
-    ...     q_min=2 * np.pi / 1e-4,
-    ...     q_max=2 * np.pi / 1e-5,
-    ...     height_step=1e-12,
-    ... )
+    >>> from lube import LineSpec, RoughLine
+    >>> band = {"q_min": 2 * np.pi / 1e-4, "q_max": 2 * np.pi / 1e-5}
+    >>> one = RoughLine(points=1000, rms_height=2e-7, hurst_exponent=0.7, **band)
+    >>> other = RoughLine(points=800, rms_height=1e-7, hurst_exponent=0.8, **band)
+    >>> spec = LineSpec(lines=(one, other), spacing=1e-6, height_step=1e-12)
     >>> [f"{line.size}: {np.std(line) * 1e-12:.3g}" for line in draw_realisation(spec, 1, 0)]
     ['1000: 2e-07', '800: 1e-07']
     """
@@ -340,14 +396,24 @@ def line_attributes(spec: LineSpecLike) -> dict[str, float | np.ndarray]:
     Returns
     -------
     dict
-        Attribute names and values; lengths in m, wavenumbers in rad/m.
+        Attribute names and values; lengths in m, wavenumbers in rad/m. Those of the spectrum are
+        single values where both rollers have the same, else arrays of shape (2,).
     """
+    of_rollers = {
+        "hurst": [line.hurst_exponent for line in spec.lines],
+        "q_min": [line.q_min for line in spec.lines],
+        "q_max": [line.q_max for line in spec.lines],
+        "q_roll_off": [line.q_roll_off for line in spec.lines],
+    }
     return {
-        "hurst": spec.hurst_exponent,
-        "q_min": spec.q_min,
-        "q_max": spec.q_max,
-        "rms": np.array(spec.rms_height),
+        **{name: _one_or_both(values) for name, values in of_rollers.items()},
+        "rms": np.array([line.rms_height for line in spec.lines]),
         "spacing": spec.spacing,
         "points": np.array(spec.points),
         "height_step": spec.height_step,
     }
+
+
+def _one_or_both(values):
+    """Return the value that both rollers have, or an array of both values."""
+    return values[0] if values[0] == values[1] else np.array(values)

@@ -16,6 +16,9 @@ FURTHER = "further-figures"
 NO_FIGURE = "no-figure"
 """Tag of a notebook that is none of the study's figures."""
 
+GAUSSIAN = "gaussian-lines"
+"""Tag of a notebook that needs Gaussian roughness lines."""
+
 
 @dataclass(frozen=True)
 class Figure:
@@ -69,8 +72,10 @@ class Figure:
         -------
         bool
             False if a tag such as ``several-force`` asks for several levels where the study
-            has one.
+            has one, or the tag ``gaussian-lines`` for Gaussian lines where it has others.
         """
+        if GAUSSIAN in self.tags and not study.line_spec.is_gaussian:
+            return False
         levels = study.operating_grid.model_dump()
         return all(len(levels.get(name, ())) > 1 for name in self._tagged("several-"))
 

@@ -20,14 +20,35 @@ def test_the_defaults_are_the_papers_rollers(study):
 
 
 def test_rollers_have_the_lines_of_a_study_with_the_same_wavelengths(rollers, busy):
-    for name, value in busy.study.line_spec.model_dump().items():
-        np.testing.assert_allclose(getattr(rollers.lines, name), value, rtol=1e-14)
+    given, wanted = rollers.lines, busy.study.line_spec
+    assert (given.spacing, given.height_step) == (wanted.spacing, wanted.height_step)
+    for line, same in zip(given.lines, wanted.lines, strict=True):
+        np.testing.assert_allclose(*(list(dict(one).values()) for one in (line, same)), rtol=1e-14)
 
 
 def test_the_second_roller_differs_in_what_is_said():
     pair = Rollers("50 mm", "0.2 um", second={"radius": "30 mm", "young_modulus": "310 GPa"}).pair
     assert (pair.second.radius, pair.second.young_modulus) == (0.03, 310e9)
     assert pair.second.rms_roughness == pair.first.rms_roughness
+
+
+def test_rollers_take_ra_a_composite_or_a_texture_of_each():
+    ra = Rollers("50 mm", ra_roughness="0.16 um", second={"rms_roughness": "0.1 um"}).pair
+    assert ra.rms_heights == pytest.approx((0.16e-6 * np.sqrt(np.pi / 2.0), 0.1e-6))
+    both = Rollers("50 mm", composite_rms_roughness="0.3 um").pair
+    assert both.composite_rms_roughness == pytest.approx(0.3e-6)
+    worn = Rollers(
+        "50 mm",
+        "0.2 um",
+        second={"roughness": {"hurst_exponent": 0.8}},
+        roll_off_wavelength="0.1 mm",
+        skewness=-1.0,
+        kurtosis=5.0,
+    ).lines
+    assert [line.hurst_exponent for line in worn.lines] == [0.7, 0.8]
+    for line in worn.lines:
+        assert (line.skewness, line.kurtosis) == (-1.0, 5.0)
+        assert 2.0 * np.pi / line.q_roll_off == pytest.approx(1e-4)
 
 
 def test_an_oil_of_numbers_is_that_of_a_record():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lube.report.summary import facts, findings, made
+from lube.study.rollers import Texture
 
 
 def test_the_numbers_of_the_study_are_stated(study, datasets):
@@ -42,6 +43,17 @@ def test_unequal_rollers_many_levels_and_measured_records_are_stated(study, data
     assert "second: radius 30 mm, Young's modulus 310 GPa" in text
     assert "14 levels from 1590 to 1600 N" in text
     assert "measured records; below 100 Ω" in text and "simulated" not in text
+
+
+def test_rollers_with_a_roughness_of_their_own_are_stated(study, datasets):
+    own = {"rms_roughness": None, "ra_roughness": 1.6e-7}
+    own["roughness"] = Texture(hurst_exponent=0.9, roll_off_wavelength="0.2 mm", kurtosis=4)
+    second = study.rollers.second.model_copy(update=own)
+    rollers = study.rollers.model_copy(update={"second": second})
+    text = facts(study.model_copy(update={"rollers": rollers}), datasets["lubricant"])
+    assert "rms roughness 0.201 µm (from Ra 0.16 µm)" in text
+    assert "first: Hurst exponent 0.7, wavelengths 157 µm to 420 µm; second: Hurst exp" in text
+    assert "roll-off at 200 µm, skewness 0 and kurtosis 4 |" in text
 
 
 @pytest.fixture

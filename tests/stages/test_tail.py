@@ -175,3 +175,19 @@ def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study
     error = np.hypot(np.std(counts, ddof=1) / 8**0.5, half / 2.0)
     assert abs(np.mean(counts) - expected) < 4.0 * error
     assert error < 0.15 * expected
+
+
+# --- Lines that are not Gaussian ---------------------------------------------------------
+
+
+def test_lines_that_are_not_gaussian_have_no_value_and_a_remark(make_spec, few, study, tail):
+    worn = make_spec(100_000, second_texture={"skewness": -1.0, "kurtosis": 5.0})
+    found = tail_probabilities(worn, few, study.boundary_layer, SEED, RATIOS)
+    assert found.attrs["remarks"] == (
+        "roughness: got a skewness of -1 and a kurtosis of 5, need 0 and 3: importance sampling is "
+        "for Gaussian lines"
+    )
+    assert tail.attrs["remarks"] == ""
+    for name, values in tail.data_vars.items():
+        assert found[name].dims == values.dims and found[name].attrs == values.attrs
+        assert found[name].shape == values.shape and np.isnan(found[name]).all()

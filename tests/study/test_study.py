@@ -108,8 +108,8 @@ def changed_stages(paper_with):
     return compare
 
 
-MECHANICS = {"contact", "trace", "experiment"}
-LAYER = MECHANICS | {"master"}  # which is for pure rolling
+MECHANICS = {"contact", "tail", "trace", "experiment"}
+LAYER = MECHANICS | {"master", "height_distribution"}  # which are for pure rolling
 LINES = LAYER | {"roughness"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 

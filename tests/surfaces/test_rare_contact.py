@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import scipy.stats
 
+from lube.errors import StudyError
 from lube.surfaces.rare_contact import draw_pair, rare_contact, sum_of_lines
 
 SEED = 7
@@ -132,3 +133,19 @@ def test_the_same_pair_gives_the_same_estimate_beside_any_other_points(spec):
     part = rare_contact(spec, SEED, 2, films[1:], widths[1:], FACTOR)
     for one, other in zip(whole, part, strict=True):
         np.testing.assert_array_equal(one[:, 1:], other)
+
+
+def test_lines_that_are_not_gaussian_are_refused(make_spec):
+    worn = make_spec(50_000, skewness=-1.0, kurtosis=5.0)
+    with pytest.raises(StudyError, match="got a skewness of -1 and a kurtosis of 5, need 0 and 3"):
+        rare_contact(worn, SEED, 0, np.array([3e5]), np.array([75]), FACTOR)
+
+
+def test_a_window_of_two_lines_of_their_own_has_the_longer_reach(make_spec):
+    own = {"hurst_exponent": 0.5, "longest_wavelength": "0.2 mm", "roll_off_wavelength": "0.1 mm"}
+    spec = make_spec(50_000, second_texture=own, shortest_wavelength=2e-5)
+    (windows, error), (runs, runs_error) = estimates(spec, [2.0], [41])
+    expected, scatter = counted(spec, 2.0, 41, 24)
+    found = np.concatenate([windows[:, 0], runs[[0, 1, 4], 0]])
+    errors = np.concatenate([error[:, 0], runs_error[[0, 1, 4], 0]])
+    assert np.all(np.abs(found - expected) < 4.0 * np.hypot(errors, scatter))

@@ -9,11 +9,13 @@ from lube.kernels.runs import find_runs
 from lube.surfaces.synthetic import (
     draw_line,
     draw_realisation,
+    line_attributes,
     line_moments,
     power_spectrum,
     spectrum_moments,
     wave_amplitudes,
 )
+from lube.surfaces.translation import NODES, REACH, gaussian_power, johnson_curve
 
 SEED = 20181109
 REALISATIONS = 40
@@ -71,7 +73,7 @@ def test_rms_height_is_exactly_the_rollers_and_the_mean_is_zero_up_to_rounding(s
 def test_waves_within_the_band_have_their_amplitudes_and_all_others_are_zero(spec, unequal):
     for each, roller in ((spec, 0), (unequal, 0), (unequal, 1)):
         inside, radius = band(each, roller)
-        power_law = (inside / radius) ** (-2.0 * each.hurst_exponent - 1.0)  # C1D
+        power_law = (inside / radius) ** (-2.0 * each.lines[roller].hurst_exponent - 1.0)  # C1D
         variance = each.rms_height[roller] ** 2 * power_law / power_law.sum()
         expected = np.zeros(each.points[roller] // 2 + 1)
         expected[inside] = np.sqrt(2.0 * variance)
@@ -150,6 +152,38 @@ def test_moments_are_those_of_the_heights_and_of_the_spectrum(unequal):
         assert {name: found[name] for name in expected} == pytest.approx(expected, rel=1e-5)
 
 
+def test_density_of_the_surface_is_constant_below_the_roll_off(make_spec):
+    spec = make_spec(100_000, roll_off_wavelength=1e-4)
+    rms, gaussian = 2e-7, make_spec(100_000)
+    first, amplitudes = wave_amplitudes(spec, 0)
+    q = np.arange(first, first + amplitudes.size) / 0.05  # radius of 50 mm
+    surface = amplitudes**2 / q  # C2D = C1D / (pi q)
+    below = q < 2.0 * np.pi / 1e-4
+    np.testing.assert_allclose(surface[below] / surface[below][0], 1.0, rtol=1e-9)
+    expected = (q[~below] * 1e-4 / (2.0 * np.pi)) ** -3.4  # 2 H + 2
+    np.testing.assert_allclose(surface[~below] / surface[0], expected, rtol=1e-9)
+    assert np.sqrt(0.5 * np.sum(amplitudes**2)) == pytest.approx(rms, rel=1e-12)
+    longest = 2.0 * np.pi / spec.q_min
+    same = make_spec(100_000, roll_off_wavelength=longest)
+    np.testing.assert_array_equal(wave_amplitudes(same, 0)[1], wave_amplitudes(gaussian, 0)[1])
+
+
+def test_each_roller_has_a_spectrum_of_its_own(make_spec):
+    own = {"hurst_exponent": 0.4, "longest_wavelength": "0.2 mm", "shortest_wavelength": "20 um"}
+    both, same = make_spec(50_000, second_texture=own), make_spec(50_000)
+    first, amplitudes = wave_amplitudes(both, 1)
+    assert (first, first + amplitudes.size - 1) == (1571, 15707)
+    slope, _ = np.polyfit(np.log(first + np.arange(amplitudes.size)), np.log(amplitudes), 1)
+    assert slope == pytest.approx(-0.9)
+    lines, others = draw_realisation(both, SEED, 1), draw_realisation(same, SEED, 1)
+    np.testing.assert_array_equal(lines[0], others[0])
+    assert np.std(lines[1]) == pytest.approx(np.std(others[1]), rel=1e-6)
+    attributes = line_attributes(both)
+    assert attributes["hurst"].tolist() == [0.7, 0.4]
+    assert line_attributes(same)["hurst"] == 0.7
+    assert both.q_min == same.q_min < attributes["q_min"][1]
+
+
 # --- Distribution and independence -------------------------------------------------------
 
 
@@ -187,6 +221,74 @@ def test_realisation_depends_on_study_seed_and_its_number_only(make_spec):
         np.testing.assert_array_equal(line, draw_line(spec, roller, children[roller]))
     drawn = [draw_realisation(spec, *pair)[0] for pair in [(0, 1), (1, 0), (1, 1), (0, 0)]]
     assert len({line.tobytes() for line in drawn}) == 4
+
+
+@pytest.fixture(scope="module")
+def run_in(make_spec):
+    """Lines of the skewness and kurtosis of worn surfaces, and many realisations of them."""
+    spec = make_spec(100_000, skewness=-1.0, kurtosis=5.0)
+    return spec, np.array([draw_realisation(spec, SEED, r) for r in range(REALISATIONS)])
+
+
+def test_worn_lines_have_their_rms_exactly_and_their_moments_on_average(run_in):
+    spec, pairs = run_in
+    lines = pairs.reshape(-1, pairs.shape[-1])
+    moments = [line_moments(line * spec.height_step, spec.spacing) for line in lines]
+    rms = [one["rms_height"] for one in moments]
+    np.testing.assert_allclose(rms, spec.rms_height[0], rtol=1e-6)
+    assert np.abs(lines.mean(axis=1)).max() < 0.01
+    for name, prescribed, tolerance in (("skewness", -1.0, 0.02), ("kurtosis", 5.0, 0.1)):
+        found = np.array([one[name] for one in moments])
+        error = four_standard_errors(found)
+        assert found.mean() == pytest.approx(prescribed, abs=error + 0.25 * tolerance)
+        assert error < 8.0 * tolerance
+
+
+def test_worn_lines_keep_the_spectrum_on_average(run_in):
+    spec, pairs = run_in
+    first, amplitudes = wave_amplitudes(spec, 0)
+    lines = pairs.reshape(-1, pairs.shape[-1])
+    power = np.mean([measured_amplitudes(line, spec.height_step) ** 2 for line in lines], axis=0)
+    band = power[first : first + amplitudes.size] / amplitudes**2
+    assert power[1:first].sum() / power[1:].sum() == pytest.approx(0.0125, abs=0.001)
+    parts = [part.mean() for part in np.array_split(band, 20)]
+    np.testing.assert_allclose(parts, 1.0 - 0.0125, rtol=0.02)
+
+
+def test_worn_lines_rise_above_a_height_as_often_as_theory_says(run_in):
+    """A translation crosses a height where its Gaussian line crosses the height before."""
+    spec, pairs = run_in
+    curve = johnson_curve(-1.0, 5.0)
+    first, amplitudes = wave_amplitudes(spec, 0)
+    weights = gaussian_power(amplitudes**2, first, spec.points[0], curve)
+    waves = np.arange(first, first + weights.size)
+    lag_one = np.sum(weights * np.cos(2.0 * np.pi * waves / spec.points[0]))
+    slope = np.sqrt((1.0 - lag_one) / (1.0 + lag_one))
+    lines = pairs.reshape(-1, pairs.shape[-1])
+    for height in (-2.0, 0.0, 1.0, 1.5):
+        before = np.interp(height, curve, np.linspace(-REACH, REACH, NODES))
+        expected = 2.0 * scipy.special.owens_t(before, slope) * spec.points[0]
+        above = lines > height * spec.rms_height[0] / spec.height_step
+        found = np.sum(above & ~np.roll(above, 1, axis=1), axis=1)
+        assert found.mean() == pytest.approx(expected, abs=four_standard_errors(found))
+        share = scipy.stats.norm.sf(before)
+        assert above.mean() == pytest.approx(share, abs=four_standard_errors(above.mean(axis=1)))
+
+
+def test_worn_lines_are_the_same_in_any_order_and_for_equal_rollers(run_in, make_spec):
+    spec, pairs = run_in
+    for number in (3, 0, 3):
+        np.testing.assert_array_equal(draw_realisation(spec, SEED, number), pairs[number])
+    own = {"skewness": -1.0, "kurtosis": 5.0}
+    mixed = make_spec(100_000, second_texture=own)
+    first, second = draw_realisation(mixed, SEED, 3)
+    np.testing.assert_array_equal(first, draw_realisation(make_spec(100_000), SEED, 3)[0])
+    np.testing.assert_array_equal(second, pairs[3, 1])
+
+
+def test_stored_worn_line(run_in):
+    # Drawn when this test was written: if it changes, so do the results of such studies.
+    np.testing.assert_allclose(run_in[1][0, 0, :4], [-28850, -12207, 7666, 29910], rtol=0, atol=2)
 
 
 def test_lines_close_around_the_roller_without_a_step(pairs, spec):

@@ -42,6 +42,13 @@ def test_a_figure_that_compares_levels_asks_for_several(write, study):
     ]
 
 
+def test_a_figure_may_need_gaussian_lines(write, study):
+    folder = write("fig01_tail", tags=["gaussian-lines"])
+    worn = study.roughness.model_copy(update={"skewness": -0.5})
+    assert list(study_figures(study, folder)) == ["fig01_tail"]
+    assert not study_figures(study.model_copy(update={"roughness": worn}), folder)
+
+
 def test_a_notebook_may_be_no_figure(write, study):
     write("start_here", "study = 1", tags=["no-figure"])
     assert list(study_figures(study, write("fig01_mine"))) == ["fig01_mine"]

@@ -50,7 +50,9 @@ def test_a_changed_script_or_lubricant_record_reruns_what_follows(spare):
         ({"rig__noise": "30 uV"}, ("experiment", "rig"), set()),
         ({"realisations": 6}, ("contact", "master"),
          {"batches/contact_4.nc", "batches/master_4.nc"}),
-        ({"seed": 1}, ("roughness", "contact", "master", "trace", "experiment"), BATCHES),
+        ({"seed": 1},
+         ("roughness", "contact", "tail", "height_distribution", "master", "trace", "experiment"),
+         BATCHES),
     ],
     ids=["rig", "realisations", "seed"],
 )  # fmt: skip

@@ -1,0 +1,100 @@
+"""The height distribution stage: contact of lines of other skewness and kurtosis."""
+
+import numpy as np
+import xarray as xr
+
+from lube.grid.discretise import layer_factor_of, whole_numbers
+from lube.kernels.strips import strip_statistics
+from lube.schema import label
+from lube.statistics.confidence import probability_interval
+from lube.statistics.sample_size import independent_windows
+from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.surfaces.synthetic import draw_realisation, line_attributes
+
+SKEWNESS = (-1.0, -0.5, 0.0, 0.5, 1.0)
+"""Levels of the skewness of both lines; those of run-in rollers are negative."""
+KURTOSIS = (3.0, 4.0, 6.0)
+"""Levels of the kurtosis of both lines."""
+LAMBDA_RATIOS = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0])
+"""Levels of the lambda ratio."""
+PAIRS = 16
+"""Realisations, the first of the study: all distributions have the same random phases."""
+
+
+def height_distributions(
+    spec: LineSpec, film: xr.Dataset, boundary_layer: BoundaryLayer, seed: int
+) -> xr.Dataset:
+    """Compute probabilities by skewness and kurtosis of the heights, in pure rolling.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        Parameters of the lines; their own skewness and kurtosis are replaced.
+    film : xarray.Dataset
+        A ``film`` dataset.
+    boundary_layer : BoundaryLayer
+        The boundary layer.
+    seed : int
+        Seed of the study.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``height_distribution`` file of `lube.schema`.
+    """
+    half_width = film["contact_half_width"].max().item()
+    films = LAMBDA_RATIOS * film["composite_rms_roughness"].item()
+    lines = xr.Dataset(attrs=line_attributes(spec))
+    points = whole_numbers(films, np.full(films.size, half_width), lines)
+    factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
+    levels = [(skewness, kurtosis) for skewness in SKEWNESS for kurtosis in KURTOSIS]
+    # Both rollers turn as one, so a revolution of the smaller one shows all of its line.
+    travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
+    windows = np.full(films.size, independent_windows(travel, 2.0 * half_width, longest))
+    rows = [_row(_with_heights(spec, *level), seed, points, factor, windows) for level in levels]
+    shape = len(SKEWNESS), len(KURTOSIS)
+    dims = ("height_skewness", "height_kurtosis")
+    table = {"contact_half_width": half_width}
+    for name in rows[0]:
+        values = np.array([row[name] for row in rows])
+        along = (*dims, "lambda_ratio")[: 1 + values.ndim]
+        table[name] = along, values.reshape(shape + values.shape[1:])
+    coordinates = dict(zip(dims, (list(SKEWNESS), list(KURTOSIS)), strict=True))
+    coordinates |= {"lambda_ratio": LAMBDA_RATIOS, "revolutions": 1}
+    attributes = {"travel": travel, "longest_wavelength": longest}
+    return label(xr.Dataset(table, coordinates, attributes), "height_distribution")
+
+
+def _with_heights(spec, skewness, kurtosis):
+    heights = {"skewness": skewness, "kurtosis": kurtosis}
+    return spec.model_copy(
+        update={"lines": tuple(line.model_copy(update=heights) for line in spec.lines)}
+    )
+
+
+def _row(spec, seed, points, factor, windows):
+    """Probabilities with their intervals over the films, and the moments that were attained."""
+    counts, moments = [], []
+    for number in range(PAIRS):
+        pair = draw_realisation(spec, seed, number)
+        steps = pair[0].size
+        counts.append(strip_statistics(pair, (1.0, 1.0), steps, *points, factor) / steps)
+        moments += map(_moments, pair)
+    contact, breakthrough, _, _ = np.moveaxis(np.array(counts), -1, 0)
+    skewness, kurtosis = np.mean(moments, axis=0)
+    row = {"attained_skewness": skewness, "attained_kurtosis": kurtosis}
+    for name, values in (
+        ("breakthrough_probability", breakthrough),
+        ("geometric_contact_probability", contact),
+    ):
+        interval = probability_interval(values, windows)
+        for suffix, limits in zip(("mean", "lower", "upper"), interval, strict=True):
+            row[f"{name}_{suffix}"] = limits
+    return row
+
+
+def _moments(line):
+    """Skewness and kurtosis; products, not powers, which take ten times as long."""
+    square = np.square(line, dtype=float)
+    variance = np.mean(square)
+    return np.mean(square * line) / variance**1.5, np.mean(square * square) / variance**2

@@ -1,0 +1,153 @@
+"""Each roller with a roughness of its own: what was measured of it, its band, its heights."""
+
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+import yaml
+from refusals import NEEDED, one_line
+from studies import PAPER, PAPER_CONTENT, REMOVED, with_value
+
+from lube.errors import LubeError
+from lube.study.resolve import resolved_content
+from lube.study.rollers import RA_TO_RMS
+from lube.study.study import load_study
+
+refusal = partial(one_line, LubeError, load_study)
+MICRO = 1e-6
+
+
+@pytest.fixture
+def study_with(paper_with):
+    return lambda *changes: load_study(paper_with(*changes))
+
+
+@pytest.fixture
+def based(tmp_path):
+    """Write a study based on another, and return its file."""
+
+    def write(name="mine", base=PAPER, **content):
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(yaml.safe_dump({"based_on": str(base), "name": name, **content}))
+        return path
+
+    return write
+
+
+# What was measured
+
+
+def test_ra_of_gaussian_heights_is_the_mean_of_their_absolute_values(study_with):
+    heights = np.random.default_rng(1).normal(size=1_000_000)
+    assert np.std(heights) / np.mean(np.abs(heights)) == pytest.approx(RA_TO_RMS, rel=3e-3)
+    study = study_with(
+        ("rollers.first.rms_roughness", REMOVED), ("rollers.first.ra_roughness", "0.16 um")
+    )
+    expected = 0.16 * MICRO * math.sqrt(math.pi / 2.0), 0.2 * MICRO
+    assert study.rollers.rms_heights == pytest.approx(expected)
+    assert study.line_spec.rms_height == pytest.approx(expected)
+    assert study.rollers.composite_rms_roughness == pytest.approx(math.hypot(*expected))
+
+
+def test_a_composite_roughness_is_shared_equally(study_with):
+    study = study_with(
+        ("rollers.first.rms_roughness", REMOVED),
+        ("rollers.second.rms_roughness", REMOVED),
+        ("rollers.composite_rms_roughness", "0.3 um"),
+    )
+    assert study.rollers.rms_heights == pytest.approx([0.3 * MICRO / 2**0.5] * 2)
+    assert study.rollers.composite_rms_roughness == pytest.approx(0.3 * MICRO)
+    assert study.stage_inputs("film")["composite_rms_roughness"] == pytest.approx(0.3 * MICRO)
+
+
+def test_a_roughness_takes_the_place_of_one_given_otherwise_in_the_base(based):
+    ra = based("ra", rollers={"first": {"ra_roughness": "0.1 um"}})
+    assert "rms_roughness" not in resolved_content(ra)["rollers"]["first"]
+    first, second = load_study(ra).rollers.rms_heights
+    assert (first, second) == pytest.approx((0.1 * MICRO * RA_TO_RMS, 0.2 * MICRO))
+    both = based("both", rollers={"composite_rms_roughness": "0.1 um"})
+    assert load_study(both).rollers.rms_heights == pytest.approx([0.1 * MICRO / 2**0.5] * 2)
+    each = {name: {"rms_roughness": "0.4 um"} for name in ("first", "second")}
+    again = based("again", both, rollers=each)
+    assert load_study(again).rollers.rms_heights == pytest.approx([0.4 * MICRO] * 2)
+
+
+# Each its own band and heights
+
+
+def test_a_roller_without_values_of_its_own_has_the_studys(study_with):
+    own = {
+        "hurst_exponent": 0.9,
+        "longest_wavelength": "0.2 mm",
+        "shortest_wavelength": "20 points",
+        "roll_off_wavelength": "0.1 mm",
+        "skewness": -0.5,
+        "kurtosis": 4,
+    }
+    first, second = study_with(("rollers.second.roughness", own)).line_spec.lines
+    assert first == load_study(PAPER).line_spec.lines[0]
+    assert second.hurst_exponent == 0.9
+    lengths = [2.0 * math.pi / q for q in (second.q_min, second.q_max, second.q_roll_off)]
+    assert lengths == pytest.approx([2e-4, 20 * 2.0 * math.pi * 0.05 / 1e6, 1e-4])
+    assert (second.skewness, second.kurtosis) == (-0.5, 4.0)
+    assert first.is_gaussian and not second.is_gaussian
+    assert first.q_roll_off == first.q_min
+
+
+def test_the_longest_wavelength_of_both_is_that_of_the_pair(study_with):
+    spec = study_with(("rollers.first.roughness", {"longest_wavelength": "0.2 mm"})).line_spec
+    assert spec.q_min == spec.lines[1].q_min < spec.lines[0].q_min
+    assert not study_with(("roughness.skewness", -0.1)).line_spec.is_gaussian
+
+
+def test_a_rollers_texture_is_an_input_of_its_lines_but_not_of_the_film(study_with):
+    before, after = load_study(PAPER), study_with(("rollers.first.roughness", {"kurtosis": 4}))
+    assert before.stage_inputs("film") == after.stage_inputs("film")
+    assert before.stage_inputs("roughness") != after.stage_inputs("roughness")
+
+
+# Mistakes
+
+BOTH = "rollers.composite_rms_roughness"
+OWN = "rollers.second.roughness"
+REFUSED = [
+    ("rollers.first.ra_roughness", "0.1 um", "rollers.first: ra_roughness: got 1e-07 m beside an"),
+    (BOTH, "0.3 um", "composite_rms_roughness: got 3e-07 m beside a roughness of the first roller"),
+    ("rollers.second.rms_roughness", REMOVED, "second.rms_roughness: missing, need it, or ra_"),
+    ("rollers.composite_roughness", "1 um", "did you mean 'composite_rms_roughness'?"),
+    ("roughness.roll_off_wavelength", "1 mm", "roughness.roll_off_wavelength: got 0.001 m, need"),
+    ("roughness.roll_off_wavelength", "3 um", "from the shortest to the longest wavelength, 3.14"),
+    (OWN, {"roll_off_wavelength": "1 mm"}, f"{OWN}.roll_off_wavelength: got 0.001 m, need one"),
+    (OWN, {"longest_wavelength": "3 um"}, "got 3.14e-06 m, need less than the longest, 3e-06 m"),
+    (OWN, {"shortest_wavelength": "1 mm"}, f"{OWN}.shortest_wavelength: got 0.001 m, need less"),
+    (OWN, {"shortest_wavelength": "0.1 um"}, "too coarse a grid: its spacing is 3.14e-07 m"),
+    (OWN, {"longest_wavelength": "1 m"}, "rollers.second.radius: the perimeter, 0.314 m, is too"),
+    (OWN, {"hurst_exp": 1}, f"{OWN}.hurst_exp: unknown key, did you mean 'hurst_exponent'?"),
+    (OWN, {"kurtosis": 1.2}, f"{OWN}.kurtosis: got 1.2 with a skewness of 0, need at least 1.5"),
+    ("roughness.kurtosis", 0.9, "roughness.kurtosis: got 0.9, need a value above 1"),
+    (
+        "roughness.skewness",
+        -1.5,
+        "roughness.kurtosis: got 3 with a skewness of -1.5, need at least",
+    ),
+    ("roughness.skewness", -1.5, "none is below 3.25, the skewness squared plus one, and close"),
+    ("roughness.skewness", -3.5, "got -3.5, need a value at least -3 and at most 3"),
+]
+
+
+@pytest.mark.parametrize(("key", "value", "needed"), REFUSED)
+def test_a_mistake_is_refused_in_one_line(paper_with, key, value, needed):
+    message = refusal(paper_with((key, value)))
+    assert needed in message
+    assert NEEDED.search(message)
+
+
+def test_a_drift_of_lines_that_are_not_gaussian_is_refused(paper_with):
+    message = refusal(paper_with(("rig.drift", 0.1), ("roughness.kurtosis", 4)))
+    assert "rig.drift: got 0.1, need 0 for a simulated rig with roughness that is not" in message
+
+
+def test_with_value_does_not_change_the_papers_content():
+    with_value(PAPER_CONTENT, "rollers.first.roughness.kurtosis", 4)
+    assert "roughness" not in PAPER_CONTENT["rollers"]["first"]

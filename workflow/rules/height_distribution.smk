@@ -1,0 +1,18 @@
+rule height_distribution:
+    input:
+        **stage_files("height_distribution"),
+        sources=script_sources("height_distribution"),
+    output:
+        result("height_distribution.nc"),
+    log:
+        result("logs/height_distribution.log"),
+    benchmark:
+        result("benchmarks/height_distribution.tsv")
+    # A long job: started early, it runs beside the others.
+    priority: 2
+    params:
+        study=stage_inputs("height_distribution"),
+    message:
+        "Height distribution: probabilities by skewness and kurtosis"
+    script:
+        "../scripts/height_distribution.py"
