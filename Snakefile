@@ -46,13 +46,13 @@ rule all:
 
 rule areal_contact:
     input:
-        products(figures_of("areal_contact")),
+        products(made_by("areal_contact", FIGURES)),
     message:
         f"Done: areal.nc and its figure are in {RESULTS}"
 
 
 rule benchmark:
     input:
-        products(figures_of("benchmark")),
+        products(made_by("benchmark", FIGURES)),
     message:
         f"Done: measured times and their figures are in {RESULTS}"

@@ -17,7 +17,7 @@ KURTOSIS = (3.0, 4.0, 6.0)
 """Levels of the kurtosis of both lines."""
 LAMBDA_RATIOS = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0])
 """Levels of the lambda ratio."""
-PAIRS = 16
+PAIRS = 8
 """Realisations, the first of the study: all distributions have the same random phases."""
 
 

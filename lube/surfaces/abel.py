@@ -124,7 +124,7 @@ def line_of_profile(wave_vector: Array, density: Array, wanted: Array) -> Array:
     profile = np.exp(curve(inside) + last_slope * beyond)
     # The trapezoidal rule: the integrand is even in u and vanishes at the end.
     weights = np.where(np.arange(_NODES + 1) == 0, 0.5 * step, step)
-    return (exponent * profile / stretch) @ weights
+    return np.sum(exponent * profile / stretch * weights, axis=-1)
 
 
 def profile_of_line(wave_vector: Array, density: Array) -> Array:
@@ -156,4 +156,5 @@ def profile_of_line(wave_vector: Array, density: Array) -> Array:
     second = np.sqrt(reached**2 - x**2)
     slope = np.diff(density) / np.diff(wave_vector)
     constant = density[:-1] - slope * wave_vector[:-1]
-    return 2.0 / np.pi * (np.diff(first) @ constant + np.diff(second) @ slope)
+    parts = np.diff(first) * constant + np.diff(second) * slope
+    return 2.0 / np.pi * np.sum(parts, axis=-1)

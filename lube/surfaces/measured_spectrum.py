@@ -150,7 +150,7 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
     else:
         bins = _map_bins(surface, 2.0 * np.pi / shortest, isotropic)
     wave_vector, density, estimates, inside, windowed = bins
-    mean_square = np.vdot(surface.heights, surface.heights) / surface.heights.size
+    mean_square = np.mean(np.square(surface.heights))
     if wave_vector.size < 3 or mean_square < LEAST_RMS_HEIGHT**2 or not np.all(density > 0.0):
         raise DataError(f"{surface.name}: its spectrum is empty, need rough heights on more points")
     whole = windowed if settings.long_cutoff is None else mean_square
@@ -348,7 +348,7 @@ def power_law_integral(wave_vector: Array, density: Array) -> float:
     steps, ratio = np.diff(np.log(wave_vector)), np.diff(np.log(power))
     flat = np.abs(ratio) < 1e-9
     means = np.where(flat, power[:-1], np.diff(power) / np.where(flat, 1.0, ratio))
-    return float(means @ steps)
+    return float(np.sum(means * steps))
 
 
 def with_power(wave_vector: Array, density: Array, estimates: Array, power: float) -> Array:

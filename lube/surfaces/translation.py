@@ -71,7 +71,7 @@ def standard_moments(heights: Array) -> tuple[float, float]:
     '0.000 3.000'
     """
     standard = _standardised(heights)
-    return float(_WEIGHTS @ standard**3), float(_WEIGHTS @ standard**4)
+    return float(_mean(standard**3)), float(_mean(standard**4))
 
 
 def johnson_curve(skewness: float, kurtosis: float) -> Array:
@@ -165,9 +165,14 @@ def translated_power(gaussian: Array, first_wave: int, points: int, curve: Array
     return power
 
 
+def _mean(values):
+    """Mean of a function of the Gaussian line."""
+    return np.sum(_WEIGHTS * values)
+
+
 def _standardised(heights):
-    centred = heights - _WEIGHTS @ heights
-    return centred / np.sqrt(_WEIGHTS @ centred**2)
+    centred = heights - _mean(heights)
+    return centred / np.sqrt(_mean(centred**2))
 
 
 def _heights(family, steepness, kappa):
@@ -199,6 +204,6 @@ def _hermite_coefficients(curve):
     """Coefficients of a curve in normalised Hermite polynomials of orders 0, 1, ..."""
     before, now, found = np.zeros(NODES), np.ones(NODES), []
     for order in range(_ORDERS + 1):
-        found.append(_WEIGHTS @ (curve * now))
+        found.append(_mean(curve * now))
         before, now = now, (_Y * now - np.sqrt(order) * before) / np.sqrt(order + 1.0)
     return np.array(found)

@@ -121,6 +121,11 @@ def study_figures(study: Study, folder: File = "notebooks") -> dict[str, Figure]
     return {figure.name: figure for figure in figures if figure.fits(study)}
 
 
+def made_by(target: str, figures: dict[str, Figure]) -> list[str]:
+    """List the figures that a target of Snakemake makes, such as ``all`` or ``benchmark``."""
+    return [name for name, figure in figures.items() if figure.target == target]
+
+
 def chapters(figures: dict[str, Figure]) -> dict[str, str]:
     """Return each figure's chapter of the report, with the chapter's number.
 

@@ -108,7 +108,7 @@ def changed_stages(paper_with):
     return compare
 
 
-MECHANICS = {"contact", "tail", "trace", "experiment"}
+MECHANICS = {"contact", "tail", "areal", "trace", "experiment"}
 LAYER = MECHANICS | {"master", "height_distribution"}  # which are for pure rolling
 LINES = LAYER | {"roughness"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near

@@ -37,8 +37,9 @@ class Repository:
 
     @property
     def notebooks(self):
-        """Those of the study's figures; the others draw what `snakemake benchmark` measures."""
-        return sorted(path.stem for path in (self.folder / "notebooks").glob("fig*.ipynb"))
+        """Those of the figures that bare `snakemake` makes; others are made on request only."""
+        paths = sorted((self.folder / "notebooks").glob("fig*.ipynb"))
+        return [path.stem for path in paths if "areal.nc" not in path.read_text("utf-8")]
 
     def command(self, *arguments, study=SMOKE):
         options = ["--configfile", study] if study else []

@@ -129,8 +129,8 @@ def test_each_job_says_in_words_what_is_made_and_nothing_alarms(smoke):
     assert len(messages) == int(re.search(r"^total +(\d+)$", said, re.MULTILINE)[1])
     for message in messages:
         assert re.match(
-            r"(Lubricant|Film|Roughness|Batch|Contact|Master map|Trace|Rig|Experiment|Comparison"
-            r"|Gauge|Figures?|Explorer|Report|Done): \S+",
+            r"(Lubricant|Film|Roughness|Batch|Contact|Tail|Height distribution|Master map|Trace|Rig"
+            r"|Experiment|Comparison|Gauge|Figures?|Explorer|Report|Done): \S+",
             message,
         )
     assert len(set(messages)) == len(messages)

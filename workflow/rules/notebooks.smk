@@ -1,21 +1,14 @@
 # The figures of the study, read from their notebooks before any job.
 from lube.report.markdown import plain, to_html
 from lube.study.metadata import PAPER as PAPER_TITLE
-from lube.workflow.figure_list import chapters, study_figures
+from lube.workflow.figure_list import chapters, made_by, study_figures
 
 with one_line_errors():
     FIGURES = study_figures(STUDY)
 
-CHAPTERS = chapters(FIGURES)
-
-
-def figures_of(target):
-    """Figures that a target of Snakemake makes."""
-    return [name for name, figure in FIGURES.items() if figure.target == target]
-
-
 # Others are made on request only, such as `snakemake benchmark`.
-ARCHIVED = figures_of("all")
+ARCHIVED = made_by("all", FIGURES)
+CHAPTERS = chapters(FIGURES)
 
 products = FILES.products
 
