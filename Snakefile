@@ -15,6 +15,7 @@ include: "workflow/rules/study.smk"
 include: "workflow/rules/lubricant.smk"
 include: "workflow/rules/film.smk"
 include: "workflow/rules/roughness.smk"
+include: "workflow/rules/surface.smk"
 include: "workflow/rules/batch.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/tail.smk"
@@ -36,7 +37,7 @@ include: "workflow/rules/archive.smk"
 rule all:
     default_target: True
     input:
-        [result(f"{kind}.nc") for kind in DATASETS],
+        [result(f"{kind}.nc") for kind in STUDY.datasets],
         products(ARCHIVED),
         result("explorer.html"),
         [result(f"report/{page}.html") for page in ("configuration", "assumptions", "run_times")],

@@ -20,13 +20,12 @@ from lube.archive.crate import CATALOGUE, crate_metadata
 from lube.archive.page import archive_page
 from lube.errors import DataError, StudyError, shown
 from lube.report import SUMMARISED
-from lube.schema import DATASETS
 from lube.storage.files import why_not, written_whole
 from lube.storage.git import ROOT, code_files, commit
 from lube.storage.netcdf import load
 from lube.storage.provenance import config_text, digest, fingerprint
 from lube.study.lubricant_record import SHIPPED_FOLDER, is_record_path
-from lube.study.resolve import study_files
+from lube.study.resolve import study_files, with_topographies
 from lube.study.study import Study
 from lube.study.text_files import read_yaml
 from lube.types import File
@@ -101,7 +100,7 @@ def archive_contents(
     summarised = {kind: load(results / f"{kind}.nc", kind) for kind in SUMMARISED}
     drawn = [name for figure in figures for name in (*products(figure), origin(figure))]
     return {
-        **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in DATASETS},
+        **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in study.datasets},
         **{name: results / name for name in drawn},
         "explorer.html": results / "explorer.html",
         **{f"study/{name}": path for name, path in written.items()},
@@ -131,7 +130,7 @@ def written_files(study: Study, path: File) -> dict[str, Path]:
     dict
         From their paths relative to their common folder, with slashes, to the files: first the
         study's own file, then the files it is based on, lubricant records that do not come with
-        the package, and the manifest of its measured records.
+        the package, the measured topographies, and the manifest of its measured records.
 
     Raises
     ------
@@ -144,6 +143,7 @@ def written_files(study: Study, path: File) -> dict[str, Path]:
     for record in study.lubricants:
         if Path(record.files[0]).parent != SHIPPED_FOLDER:
             files += record.files
+    files += [topography.file for topography in study.topographies.values()]
     if study.experiment.manifest is not None:
         files.append(study.experiment.manifest)
     # By the names that the study uses, even where one is a symbolic link.
@@ -161,7 +161,9 @@ def _check_paths(study_file):
     content, folder = read_yaml(study_file, StudyError), os.path.abspath(Path(study_file).parent)
     records = [name for name in content.get("lubricants", ()) if is_record_path(name)]
     manifest = content.get("experiment", {}).get("manifest")
-    for name in filter(None, [content.get("based_on"), *records, manifest]):
+    topographies = []
+    with_topographies(content, lambda file: topographies.append(file) or file)
+    for name in filter(None, [content.get("based_on"), *records, *topographies, manifest]):
         direct = os.path.relpath(os.path.join(folder, name), folder)
         if Path(name) != Path(direct):
             message = f"got {shown(name)}, an archive needs the direct relative path"
@@ -199,8 +201,8 @@ def values_text(study: Study, study_file: str) -> str:
         "seed": study.seed,
         "realisations": study.realisations,
         "about": study.about.in_files,
-        "config_sha256": {kind: digest(config_text(study, kind)) for kind in DATASETS},
-        "values": {kind: study.stage_inputs(kind) for kind in DATASETS},
+        "config_sha256": {kind: digest(config_text(study, kind)) for kind in study.datasets},
+        "values": {kind: study.stage_inputs(kind) for kind in study.datasets},
     }
     return json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 

@@ -6,7 +6,7 @@ import xarray as xr
 
 from lube.report.pages import render
 from lube.report.summary import facts, findings
-from lube.schema import DATASETS, SUMMARIES
+from lube.schema import SUMMARIES
 from lube.storage.git import changed_code, commit
 from lube.study.metadata import LICENCES, PAPER
 from lube.study.study import Study
@@ -36,7 +36,7 @@ def archive_page(study: Study, study_file: str, results: Mapping[str, xr.Dataset
         about=study.about,
         licence=LICENCES[study.about.licence],
         paper=PAPER,
-        datasets={kind: SUMMARIES[kind] for kind in DATASETS},
+        datasets={kind: SUMMARIES[kind] for kind in study.datasets},
         study_file=study_file,
         commit=commit(),
         changed=changed_code(),

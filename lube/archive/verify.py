@@ -15,7 +15,6 @@ from pathlib import Path
 
 from lube.archive.build import SUMS, VALUES, check_is_archive, files_of, values_text
 from lube.errors import DataError, LubeError, shown
-from lube.schema import DATASETS
 from lube.storage.netcdf import load
 from lube.storage.provenance import REMEDY, descriptive_attributes, fingerprint, input_sums
 from lube.study.study import load_study
@@ -119,7 +118,7 @@ def _wrong_datasets(folder):
     except LubeError as error:
         yield str(error)
         return
-    for kind in DATASETS:
+    for kind in study.datasets:
         path = folder / "data" / f"{kind}.nc"
         try:
             yield from _wrong_origin(load(path, kind, study), path, kind, study)
@@ -142,7 +141,8 @@ def _wrong_origin(dataset, path, kind, study):
         other = [name for name, sha in sums.items() if sha not in made_from.get(name, ())]
     else:
         sums = _sums(path.parents[1]).items()
-        archived = {sha for name, sha in sums if name.startswith(("data/", "lubricants/"))}
+        folders = ("data/", "lubricants/", "study/")
+        archived = {sha for name, sha in sums if name.startswith(folders)}
         other = [name for name, shas in made_from.items() if not shas <= archived]
     for name in other:
         yield f"{path}: was made from another {name} than the archive's"

@@ -145,7 +145,7 @@ class Rollers:
             "composite_rms_roughness": composite_rms_roughness,
         }
         self.pair = validate(RollerPair, pair, "Rollers", StudyError)
-        for rms in self.pair.rms_heights:
+        for rms in filter(None, self.pair.rms_heights):
             try:
                 bounded(rms, "m", **_ROUGHNESS)
             except LubeError as error:
@@ -170,6 +170,7 @@ class Rollers:
         }
         texture = validate(Roughness, roughness, "Rollers", StudyError)
         self.lines = line_spec(self.pair, texture, largest_force=math.nan)
+        self.pair = self.pair.with_lines(self.lines)
 
     def __repr__(self) -> str:
         pair = self.pair

@@ -4,7 +4,6 @@ import re
 
 from lube.report.key_tables import record_keys, study_keys
 from lube.report.pages import render
-from lube.schema import DATASETS
 from lube.storage.provenance import single_values
 from lube.study.study import Study
 from lube.units import with_unit
@@ -28,7 +27,7 @@ def configuration(study: Study, text: str) -> str:
     content = study.model_dump(mode="json", by_alias=True)
     stages = {
         stage: [(key, _in_si(value)) for key, value in single_values(inputs) if value is not None]
-        for stage in DATASETS
+        for stage in study.datasets
         if (inputs := study.stage_inputs(stage))  # the other stages follow from these
     }
     return render(

@@ -29,6 +29,8 @@ class Stage:
     target : str
         Target of Snakemake that makes the file: ``all``, or one that is made on request only,
         such as ``areal_contact``. Files of ``benchmark`` are not results of the study.
+    only_with : str
+        Attribute of the study without which there is no such file; by default none.
     """
 
     name: str
@@ -36,6 +38,7 @@ class Stage:
     values: dict = field(default_factory=dict)
     same_values: tuple[str, ...] = ()
     target: str = "all"
+    only_with: str = ""
 
 
 def _cylinder(roller):
@@ -64,13 +67,18 @@ _ROWS = (
             },
             "reduced_radius": "rollers.reduced_radius",
             "reduced_modulus": "rollers.reduced_modulus",
-            "composite_rms_roughness": "rollers.composite_rms_roughness",
+            "composite_rms_roughness": "rough_rollers.composite_rms_roughness",
             "film_formulas": "film_formulas",
             "force": "operating_grid.force",
             "speed": "operating_grid.speed",
         },
     ),
     Stage("roughness", values=_LINES),
+    Stage(
+        "surface",
+        values={"surfaces": "measured_surfaces", "lines": "line_spec"},
+        only_with="measured_surfaces",
+    ),
     Stage(
         "contact",
         inputs=("film",),
@@ -131,7 +139,7 @@ STAGES = {row.name: row for row in _ROWS}
 """The registry: from name to `Stage`, each after those it depends on."""
 
 DATASETS = tuple(row.name for row in _ROWS if row.target == "all")
-"""The results of a study, one file each."""
+"""The results of a study, one file each, some of them `only_with` what the study may lack."""
 
 ON_REQUEST = {row.name: row.target for row in _ROWS if row.target != "all"}
 """Files that are made on request only, each with the target of Snakemake that makes it."""

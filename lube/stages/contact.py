@@ -204,8 +204,7 @@ def contact_at(
     for name in ("critical_thickness", "shear_strength"):
         variables[name] = ((), getattr(boundary_layer, name))
     coords = {"realisation": lines["realisation"].values, **thickness.coords}
-    travel, longest = (
-        spacing * min(lines.attrs["points"]),
-        2.0 * np.pi / np.min(lines.attrs["q_min"]),
-    )
+    # NaN if both lines are measured: one pair has no ensemble, hence no interval.
+    longest = 2.0 * np.pi / np.fmin.reduce(np.atleast_1d(lines.attrs["q_min"]))
+    travel = spacing * min(lines.attrs["points"])
     return xr.Dataset(variables, coords, {"travel": travel, "longest_wavelength": longest})

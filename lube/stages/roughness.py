@@ -12,11 +12,15 @@ from lube.surfaces.synthetic import (
     draw_realisation,
     line_attributes,
     line_moments,
+    spectrum_bands,
     spectrum_moments,
 )
 
 PADDING = np.iinfo(np.int32).min
 """Fill value beyond the end of the shorter of two lines."""
+
+BANDS = 60
+"""Bands of waves of the prescribed spectrum."""
 
 
 def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> xr.Dataset:
@@ -56,6 +60,10 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
     expected = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
     for name in expected[0]:
         dataset[f"spectrum_{name}"] = "roller", [line[name] for line in expected]
+    bands = [spectrum_bands(spec, roller, BANDS) for roller in range(len(ROLLERS))]
+    for number, name in enumerate(("wave_vector", "prescribed_density")):
+        dataset[name] = ("roller", "wave"), [band[number] for band in bands]
+    dataset["wave"] = np.arange(BANDS)
     for name in ("skewness", "kurtosis"):
         dataset[f"prescribed_{name}"] = "roller", [getattr(line, name) for line in spec.lines]
     dataset["seed"] = "realisation", np.full(len(realisations), seed, np.int64)

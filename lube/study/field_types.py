@@ -291,7 +291,13 @@ Pressure = quantity("Pa", above=0.0)
 Model = TypeVar("Model", bound=StrictModel)
 
 
-def validate(model: type[Model], content: dict, where: File, error_type: type) -> Model:
+def validate(
+    model: type[Model],
+    content: dict,
+    where: File,
+    error_type: type,
+    context: dict[str, Any] | None = None,
+) -> Model:
     """Build a model from a mapping, or report the first mistake in one line.
 
     Parameters
@@ -304,6 +310,8 @@ def validate(model: type[Model], content: dict, where: File, error_type: type) -
         File the values came from, for the message.
     error_type : type
         The subclass of LubeError to raise.
+    context : dict, optional
+        For pydantic's validators.
 
     Returns
     -------
@@ -316,7 +324,7 @@ def validate(model: type[Model], content: dict, where: File, error_type: type) -
         Of `error_type`: which key, what came, what is needed.
     """
     try:
-        return model.model_validate(content)
+        return model.model_validate(content, context=context)
     except ValidationError as error:
         # A misspelt key comes first: that the right one is missing only follows from it.
         mistakes = sorted(error.errors(), key=lambda mistake: mistake["type"] not in _UNKNOWN)

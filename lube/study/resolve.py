@@ -9,6 +9,7 @@ roller's roughness takes the place of one that the base gives in another way, su
 
 import io
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from ruamel.yaml import YAML
@@ -18,7 +19,7 @@ from lube.study.lubricant_record import is_record_path
 from lube.study.text_files import read_yaml
 from lube.types import File
 
-_PARTS, _WHOLE = ("rms_roughness", "ra_roughness"), "composite_rms_roughness"
+_PARTS, _WHOLE = ("rms_roughness", "ra_roughness", "topography"), "composite_rms_roughness"
 """Keys of a roller's roughness, of which it has one, and of that of both rollers together."""
 
 _OF_ONE_STUDY = {"title", "summary", "date", "doi"}
@@ -180,4 +181,30 @@ def _with_paths_from(content, here, there):
     match content:
         case {"experiment": {"manifest": str(manifest)} as experiment}:
             content = content | {"experiment": experiment | {"manifest": moved(manifest)}}
+    return with_topographies(content, moved)
+
+
+def with_topographies(content: dict, moved: Callable[[str], str]) -> dict:
+    """Rewrite the paths of the rollers' measured topographies.
+
+    Parameters
+    ----------
+    content : dict
+        Of a study, not yet checked.
+    moved : callable
+        From path to path.
+
+    Returns
+    -------
+    dict
+        The same content with other paths.
+    """
+    for name in ("first", "second"):
+        match content:
+            case {"rollers": {**rollers}} if isinstance(rollers.get(name), dict):
+                match rollers[name]:
+                    case {"topography": {"file": str(file), **others}}:
+                        topography = {"file": moved(file)} | others
+                        roller = rollers[name] | {"topography": topography}
+                        content = content | {"rollers": rollers | {name: roller}}
     return content

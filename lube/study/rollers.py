@@ -8,9 +8,9 @@ import math
 from typing import Annotated
 
 import numpy as np
-from pydantic import Field, StrictInt, model_validator
+from pydantic import Field, PlainSerializer, StrictInt, model_validator
 
-from lube.errors import StudyError
+from lube.errors import LubeError, StudyError
 from lube.physics.hertz import contact_half_width, reduced_modulus, reduced_radius
 from lube.study.field_types import (
     Length,
@@ -20,6 +20,7 @@ from lube.study.field_types import (
     length_or_words,
     pure_number,
 )
+from lube.study.roller_topography import MeasuredHeights, RollerTopography
 from lube.study.size_limits import MOST_POINTS
 from lube.units import parse_number
 
@@ -86,10 +87,14 @@ class Roller(StrictModel):
     ra_roughness: Length | None = None
     """mean absolute height Ra, in place of the rms height, which is taken as Ra (pi / 2)^0.5"""
     roughness: Texture | None = None
+    topography: RollerTopography | None = None
 
     @property
     def rms_height(self) -> float | None:
-        """Rms height of the roughness, m; None if only that of both rollers together is known."""
+        """Rms height of the roughness, m.
+
+        None if it is measured, or only that of both rollers together is known.
+        """
         return RA_TO_RMS * self.ra_roughness if self.ra_roughness else self.rms_roughness
 
     @model_validator(mode="after")
@@ -99,6 +104,17 @@ class Roller(StrictModel):
                 f"ra_roughness: got {self.ra_roughness:g} m beside an rms_roughness of "
                 f"{self.rms_roughness:g} m, need one of the two"
             )
+        if self.topography and self.rms_height:
+            raise ValueError(
+                f"topography: got {self.topography.file} beside a roughness of "
+                f"{self.rms_height:.3g} m rms, need one of the two"
+            )
+        for name in ("hurst_exponent", "roll_off_wavelength"):
+            if self.topography and self.roughness and getattr(self.roughness, name):
+                raise ValueError(
+                    f"roughness.{name}: got {getattr(self.roughness, name):g} beside a topography, "
+                    "whose spectrum has its own, need one of the two"
+                )
         return self
 
 
@@ -134,6 +150,16 @@ class RollerPair(StrictModel):
             return self.first.rms_height, self.second.rms_height
         return self.composite / math.sqrt(2.0), self.composite / math.sqrt(2.0)
 
+    def with_lines(self, spec: "LineSpec") -> "RollerPair":
+        """Return the same rollers, each measured one with the rms height of its line."""
+        changed = {}
+        for name, line in zip(ROLLERS, spec.lines, strict=True):
+            roller = getattr(self, name)
+            if roller.topography:
+                known = {"topography": None, "rms_roughness": line.rms_height}
+                changed[name] = roller.model_copy(update=known)
+        return self.model_copy(update=changed)
+
     @property
     def composite_rms_roughness(self) -> float:
         r"""Composite roughness :math:`(\sigma_1^2 + \sigma_2^2)^{1/2}` of independent lines, m."""
@@ -146,11 +172,17 @@ class RollerPair(StrictModel):
     @model_validator(mode="after")
     def _check_roughness(self):
         for name in ROLLERS:
-            rms = getattr(self, name).rms_height
-            if rms is None and self.composite is None:
+            roller = getattr(self, name)
+            rms = roller.rms_height
+            if rms is None and self.composite is None and not roller.topography:
                 raise ValueError(
-                    f"{name}.rms_roughness: missing, need it, or ra_roughness, or "
+                    f"{name}.rms_roughness: missing, need it, or ra_roughness, or a topography, or "
                     "composite_rms_roughness of both rollers"
+                )
+            if roller.topography and self.composite is not None:
+                raise ValueError(
+                    f"composite_rms_roughness: got {self.composite:g} m beside a topography of the "
+                    f"{name} roller, need one of the two"
                 )
             if rms is not None and self.composite is not None:
                 raise ValueError(
@@ -213,7 +245,10 @@ class BoundaryLayer(StrictModel):
     """limiting shear stress tau0"""
 
 
-class RoughLine(StrictModel):
+_Heights = Annotated[MeasuredHeights, PlainSerializer(lambda heights: heights.sha256)]
+
+
+class RoughLine(StrictModel, arbitrary_types_allowed=True):
     """Everything that determines the roughness line of one roller, except seed and realisation.
 
     Attributes
@@ -223,28 +258,34 @@ class RoughLine(StrictModel):
     rms_height : float
         Rms height, m.
     hurst_exponent : float
-        Hurst exponent H of C1D ~ q^(-2H - 1).
+        Hurst exponent H of C1D ~ q^(-2H - 1); None if the line has a measured spectrum or heights.
     q_min, q_max : float
         Smallest and largest wave number, rad/m.
     q_roll_off : float
         Wave number below which C1D ~ q, rad/m; by default `q_min`: nowhere.
     skewness, kurtosis : float
         Of the heights; by default 0 and 3: Gaussian.
+    spectrum : tuple of tuple of float, optional
+        Measured spectrum: wave vectors, rad/m, and densities, m^3, between which it is a power law.
+    heights : MeasuredHeights, optional
+        Measured heights of the line itself.
     """
 
     points: int
     rms_height: float
-    hurst_exponent: float
+    hurst_exponent: float | None = None
     q_min: float
     q_max: float
     q_roll_off: float = Field(default_factory=lambda given: given["q_min"])
     skewness: float = 0.0
     kurtosis: float = 3.0
+    spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+    heights: _Heights | None = None
 
     @property
     def is_gaussian(self) -> bool:
-        """Whether the heights are Gaussian."""
-        return (self.skewness, self.kurtosis) == (0.0, 3.0)
+        """Whether the line is drawn, with Gaussian heights."""
+        return (self.skewness, self.kurtosis, self.heights) == (0.0, 3.0, None)
 
 
 class LineSpec(StrictModel):
@@ -276,8 +317,13 @@ class LineSpec(StrictModel):
 
     @property
     def is_gaussian(self) -> bool:
-        """Whether the heights of both lines are Gaussian."""
+        """Whether both lines are drawn, with Gaussian heights."""
         return all(line.is_gaussian for line in self.lines)
+
+    @property
+    def is_one_pair(self) -> bool:
+        """Whether both lines are measured profiles, so that there is no ensemble."""
+        return all(line.heights is not None for line in self.lines)
 
     @property
     def q_min(self) -> float:
@@ -316,30 +362,47 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     """
     spacing = 2.0 * math.pi * rollers.first.radius / roughness.points
     width = 2.0 * float(rollers.contact_half_width(largest_force))
-    lines = []
-    for name, rms in zip(ROLLERS, rollers.rms_heights, strict=True):
-        roller = getattr(rollers, name)
-        own = roughness.of(roller.roughness)
-        longest, shortest = own.wavelengths(width, spacing)
-        roll_off = longest if own.roll_off_wavelength is None else own.roll_off_wavelength
-        line = RoughLine(
-            points=round(roughness.points * roller.radius / rollers.first.radius),
-            rms_height=rms,
-            hurst_exponent=own.hurst_exponent,
-            q_min=2.0 * math.pi / longest,
-            q_max=2.0 * math.pi / shortest,
-            q_roll_off=2.0 * math.pi / roll_off,
-            skewness=own.skewness,
-            kurtosis=own.kurtosis,
-        )
-        key = _Keys(name, roller.roughness)
-        _check_band(longest, shortest, roughness.points, spacing, key)
-        _check_roll_off(longest, shortest, roll_off, key)
-        _check_perimeter(line.points * spacing, longest, shortest, name)
-        _check_height_step(rms, roughness.height_step)
-        _check_distribution(own, key)
-        lines.append(line)
-    return LineSpec(lines=tuple(lines), spacing=spacing, height_step=roughness.height_step)
+    lines = tuple(
+        _rough_line(rollers, roughness, name, rms, (spacing, width))
+        for name, rms in zip(ROLLERS, rollers.rms_heights, strict=True)
+    )
+    return LineSpec(lines=lines, spacing=spacing, height_step=roughness.height_step)
+
+
+def _rough_line(rollers, roughness, name, rms, lengths):
+    """Line of one roller, at a grid spacing and the largest contact width."""
+    spacing, width = lengths
+    roller = getattr(rollers, name)
+    own, key = roughness.of(roller.roughness), _Keys(name, roller.roughness)
+    longest, shortest = own.wavelengths(width, spacing)
+    points = round(roughness.points * roller.radius / rollers.first.radius)
+    if roller.topography and roller.topography.is_line:
+        longest = roller.topography.long_cutoff or points * spacing
+    roll_off = own.roll_off_wavelength
+    if roller.topography or roll_off is None:
+        roll_off = longest
+    _check_band(longest, shortest, roughness.points, spacing, key)
+    _check_roll_off(longest, shortest, roll_off, key)
+    _check_perimeter(points * spacing, longest, shortest, name)
+    _check_distribution(own, key)
+    if roller.topography:
+        try:
+            grid = points, spacing, (longest, shortest)
+            shape = roller.topography.line(grid, width, roughness.height_step)
+        except LubeError as error:
+            raise StudyError(f"rollers.{name}.topography: {error}") from None
+    else:
+        shape = {"rms_height": rms, "hurst_exponent": own.hurst_exponent}
+    _check_height_step(shape["rms_height"], roughness.height_step)
+    return RoughLine(
+        points=points,
+        q_min=2.0 * math.pi / longest,
+        q_max=2.0 * math.pi / shortest,
+        q_roll_off=2.0 * math.pi / roll_off,
+        skewness=own.skewness,
+        kurtosis=own.kurtosis,
+        **shape,
+    )
 
 
 def check_width(spec: LineSpec, width: float, what: str) -> None:

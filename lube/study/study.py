@@ -18,7 +18,7 @@ from lube.errors import LubeError, StudyError, shown
 from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.film_formulas import FORMULAS, formula
-from lube.schema.stages import STAGES, forerunners
+from lube.schema.stages import DATASETS, STAGES, forerunners
 from lube.study.field_types import (
     Slug,
     StrictModel,
@@ -36,9 +36,11 @@ from lube.study.lubricant_record import (
     shipped_records,
 )
 from lube.study.metadata import About
-from lube.study.resolve import resolved_content
+from lube.study.resolve import resolved_content, with_topographies
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
+from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import (
+    ROLLERS,
     BoundaryLayer,
     LineSpec,
     RollerPair,
@@ -154,6 +156,40 @@ class Study(StrictModel):
         return line_spec(self.rollers, self.roughness, max(self.operating_grid.force))
 
     @property
+    def rough_rollers(self) -> RollerPair:
+        """The rollers, each measured one with the rms height of its line."""
+        return self.rollers.with_lines(self.line_spec)
+
+    @property
+    def topographies(self) -> dict[str, RollerTopography]:
+        """Measured topographies, by roller."""
+        found = {name: getattr(self.rollers, name).topography for name in ROLLERS}
+        return {name: topography for name, topography in found.items() if topography}
+
+    @property
+    def measured_surfaces(self) -> dict[str, dict]:
+        """What each topography is and how it is used, by roller."""
+        return {name: one.content for name, one in self.topographies.items()}
+
+    @property
+    def readings(self) -> dict[str, dict]:
+        """Argument of `load_study` that saves it from reading large topographies again."""
+        read = {}
+        for topography in self.topographies.values():
+            read |= topography.reading
+        return {"readings": read} if read else {}
+
+    @property
+    def datasets(self) -> tuple[str, ...]:
+        """Names of the study's results, one file each."""
+        return tuple(name for name in DATASETS if self.has(name))
+
+    def has(self, stage: str) -> bool:
+        """Whether the study has what a stage is about."""
+        needed = STAGES[stage].only_with
+        return not needed or bool(attrgetter(needed)(self))
+
+    @property
     def batches(self) -> range:
         """First realisation of each batch."""
         return range(0, self.realisations, self.batch_size)
@@ -257,6 +293,11 @@ class Study(StrictModel):
                 f"kept_realisations: got {shown(self.kept_realisations)}, need 0, which the traces "
                 f"use, and none above {self.realisations - 1}"
             )
+        if self.line_spec.is_one_pair and self.realisations > 1:
+            raise ValueError(
+                f"realisations: got {self.realisations}, need 1: both lines are measured, so there "
+                "is one pair"
+            )
         # All traces share one time axis, whose step is set by the faster surface.
         axes = {(point["speed"], point["slide_to_roll_ratio"]) for point in self.trace_points}
         if len(axes) > 1:
@@ -316,7 +357,9 @@ def _plain(study, values):
     return to_jsonable_python(attrgetter(values)(study))
 
 
-def load_study(path: File, changes: dict | None = None) -> Study:
+def load_study(
+    path: File, changes: dict | None = None, readings: dict[str, dict] | None = None
+) -> Study:
     """Read and check a study.
 
     Parameters
@@ -326,6 +369,8 @@ def load_study(path: File, changes: dict | None = None) -> Study:
     changes : dict, optional
         Values to change, nested as in the file, as Snakemake's ``--config`` gives them.
         They must contain a new ``name``.
+    readings : dict, optional
+        From `Study.readings`: what was read of the topographies that it names.
 
     Returns
     -------
@@ -347,7 +392,8 @@ def load_study(path: File, changes: dict | None = None) -> Study:
         except LubeError as error:
             raise type(error)(f"{path}: lubricants: {error}") from None
         content = content | {"lubricants": records}
-    study = validate(Study, content, path, StudyError)
+    content = with_topographies(content, lambda file: str(folder / file))
+    study = validate(Study, content, path, StudyError, readings)
     if study.experiment.manifest is None:
         return study
     manifest = folder / study.experiment.manifest

@@ -6,12 +6,14 @@ than the study's shortest are left out. Two cases:
 
 - The profile covers the circumference, so its ends meet; it is prepared as a closed one. Its
   length is made the circumference, from which it may differ by 1 %.
-- The profile's length is the repeat length. Its ends do not meet. The profile is longer than the
-  line by the share `FADED`; over this length at its beginning the surplus of the end is faded out
-  and the beginning is faded in, by weights :math:`\cos` and :math:`\sin` of a quarter turn, which
-  keep the mean square of independent heights. The line is then scaled to the rms height of the
-  profile.
+- The profile is repeated, a whole number of times around the roller, as few as its length allows.
+  Its ends do not meet. It is longer than a repeat by the share `FADED`; over this length at its
+  beginning the surplus of the end is faded out and the beginning is faded in, by weights
+  :math:`\cos` and :math:`\sin` of a quarter turn, which keep the mean square of independent
+  heights. The line is then scaled to the rms height of the profile.
 """
+
+import math
 
 import numpy as np
 import scipy.fft
@@ -22,7 +24,7 @@ from lube.surfaces.topography import Topography, step_at_join
 from lube.types import Array
 
 FADED = 0.02
-"""Length over which the ends of a profile are joined, as a share of the repeat length."""
+"""Length over which the ends of a repeated profile are joined, as a share of the repeat."""
 
 CLOSED_TO = 0.01
 """Largest relative difference between the length of a closed profile and the circumference."""
@@ -83,15 +85,14 @@ def closed_line(
 def repeated_line(
     profile: Topography, points: int, point_spacing: float, shortest: float, height_step: float
 ) -> Array:
-    """Turn a profile of about the repeat length into a line that repeats without a step.
+    """Turn a profile into a line that repeats it around a roller without a step.
 
     Parameters
     ----------
     profile : Topography
-        As `lube.surfaces.topography.prepare` returns it, longer than the line by the share
-        `FADED`.
+        As `lube.surfaces.topography.prepare` returns it.
     points, point_spacing, shortest, height_step
-        As in `closed_line`; the repeat length is `points` times `point_spacing`.
+        As in `closed_line`.
 
     Returns
     -------
@@ -102,25 +103,20 @@ def repeated_line(
     Raises
     ------
     DataError
-        If the surface is a map, or is too short, or its points are too few for the shortest
-        wavelength.
+        If the surface is a map, or its points are too few for the shortest wavelength.
 
     Examples
     --------
     >>> profile = Topography("a", 1e-6 * np.sin(np.arange(2000) / 5), (1e-6,))
-    >>> line = repeated_line(profile, 950, 2e-6, 1e-5, 1e-9)
-    >>> f"{np.std(line) * 1e-9:.2e} {abs(np.diff(line, append=line[0])).max()}"
-    '7.07e-07 401'
+    >>> line = repeated_line(profile, 2850, 2e-6, 1e-5, 1e-9)  # three times around the roller
+    >>> f"{np.std(line) * 1e-9:.2e}", np.array_equal(line[:950], line[950:1900])
+    ('7.07e-07', True)
     """
     _check(profile, shortest)
-    spacing, needed = profile.spacing[0], points * point_spacing
-    count = round(needed / spacing)
-    faded = round(FADED * count)
-    if profile.heights.size < count + faded:
-        raise DataError(
-            f"{profile.name}: got a profile of {profile.lengths[0]:.4g} m, need "
-            f"{(count + faded) * spacing:.4g} m, the repeat length and {FADED:.0%} to join its ends"
-        )
+    turn = points * point_spacing / profile.spacing[0]
+    repeats = math.ceil(turn * (1.0 + FADED) / profile.heights.size)
+    count = round(turn / repeats)
+    faded = min(round(FADED * count), profile.heights.size - count)
     line = profile.heights[:count].copy()
     rms = np.std(line)
     angle = 0.5 * np.pi * (np.arange(faded) + 0.5) / faded
@@ -128,7 +124,7 @@ def repeated_line(
     line[:faded] += np.cos(angle) * profile.heights[count : count + faded]
     line -= line.mean()
     line *= rms / np.std(line)
-    return _resampled(line, points, point_spacing, shortest, height_step)
+    return _resampled(line, points, point_spacing, shortest, height_step, repeats)
 
 
 def _check(profile, shortest):
@@ -142,12 +138,12 @@ def _check(profile, shortest):
         )
 
 
-def _resampled(heights, points, point_spacing, shortest, height_step):
-    """Evaluate the Fourier series of one period at the points of a roller, in height steps."""
+def _resampled(heights, points, point_spacing, shortest, height_step, repeats=1):
+    """Evaluate the Fourier series of a profile, repeated, at the points of a roller."""
     spectrum = scipy.fft.rfft(heights, norm="forward")
-    last_wave = int(points * point_spacing / shortest * (1.0 + 1e-9))
-    kept = min(last_wave, (heights.size - 1) // 2, (points - 1) // 2) + 1
+    last_wave = min(int(points * point_spacing / shortest * (1.0 + 1e-9)), (points - 1) // 2)
+    kept = min(last_wave // repeats, (heights.size - 1) // 2) + 1
     waves = np.zeros(points // 2 + 1, complex)
-    waves[1:kept] = spectrum[1:kept]
+    waves[repeats : repeats * kept : repeats] = spectrum[1:kept]
     line = scipy.fft.irfft(waves, points, norm="forward") / height_step
     return whole_steps(line.astype(np.float32))

@@ -76,6 +76,9 @@ _BLUR = 1.0 + 2.0 * ((2.0 / 3.0) ** 2 + (1.0 / 6.0) ** 2)
 
 _REPLICATES = 100
 
+_LAST = 5
+"""Last densities whose slope continues a spectrum to its limit."""
+
 
 @dataclass(frozen=True, eq=False)
 class LineSpectrum:
@@ -96,6 +99,9 @@ class LineSpectrum:
         Shape (n,): share of the power that the Gaussian filters have left.
     isotropic : bool
         Whether the surface is isotropic.
+    limits : tuple of float, optional
+        Smallest and largest wave vector that the densities are means over, rad/m; by default
+        those of the first and the last density.
     """
 
     name: str
@@ -104,6 +110,7 @@ class LineSpectrum:
     estimates: Array
     transfer: Array
     isotropic: bool
+    limits: tuple[float, float] | None = None
 
     def rms_height(self, q_min: float | None = None, q_max: float | None = None) -> float:
         """Rms height of the waves between two wave vectors, m; by default of all.
@@ -113,7 +120,7 @@ class LineSpectrum:
         DataError
             If the spectrum does not reach so far.
         """
-        begin, end = self.wave_vector[[0, -1]]
+        begin, end = _limits(self)
         wave_vector, density = band_table(self, q_min or begin, q_max or end)
         return math.sqrt(power_law_integral(wave_vector, density))
 
@@ -160,7 +167,9 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
         # A profile's filter acts on the profile, a surface's on the surface.
         density, estimates = _inverted(wave_vector, density / transfer, estimates)
         density = density * transfer
-    return LineSpectrum(surface.name, wave_vector, density, estimates, transfer, isotropic)
+    length = min(used_directions(surface.lengths, settings))
+    limits = min(2.0 * np.pi * LEAST_WAVES / length, wave_vector[0]), 2.0 * np.pi / shortest
+    return LineSpectrum(surface.name, wave_vector, density, estimates, transfer, isotropic, limits)
 
 
 def profile_density(heights: Array, spacing: float) -> Pair:
@@ -304,24 +313,30 @@ def band_table(
     DataError
         If the spectrum does not reach so far, or is not positive in the band.
     """
-    known = spectrum.wave_vector
-    longest, shortest = 2.0 * np.pi / known[[0, -1]]
-    if q_min < known[0] * (1.0 - 1e-9):
+    begin, end = _limits(spectrum)
+    if q_min < begin * (1.0 - 1e-9):
         raise DataError(
-            f"{spectrum.name}: got waves up to {longest:.3g} m, half the measured length, need up "
-            f"to {2.0 * np.pi / q_min:.3g} m, the longest wavelength of the study"
+            f"{spectrum.name}: got waves up to {2.0 * np.pi / begin:.3g} m, half the measured "
+            f"length, need up to {2.0 * np.pi / q_min:.3g} m, the longest wavelength of the study"
         )
-    if q_max > known[-1] * (1.0 + 1e-9):
+    if q_max > end * (1.0 + 1e-9):
         raise DataError(
-            f"{spectrum.name}: got waves down to {shortest:.3g} m, need down to "
+            f"{spectrum.name}: got waves down to {2.0 * np.pi / end:.3g} m, need down to "
             f"{2.0 * np.pi / q_max:.3g} m, the shortest wavelength of the study"
         )
     if not np.all(spectrum.density > 0.0):
         raise DataError(f"{spectrum.name}: got a density of zero or less, need a positive spectrum")
+    places, levels = np.log(spectrum.wave_vector), np.log(spectrum.density)
+    # Half a bin beyond the last density: on with the slope before it.
+    slope = np.polyfit(places[-_LAST:], levels[-_LAST:], 1)[0]
+    places = np.append(places, max(np.log(q_max), places[-1]) + 1e-9)
+    levels = np.append(levels, levels[-1] + slope * (places[-1] - places[-2]))
     wave_vector = np.geomspace(q_min, q_max, values)
-    return wave_vector, np.exp(
-        np.interp(np.log(wave_vector), np.log(known), np.log(spectrum.density))
-    )
+    return wave_vector, np.exp(np.interp(np.log(wave_vector), places, levels))
+
+
+def _limits(spectrum):
+    return spectrum.limits or (spectrum.wave_vector[0], spectrum.wave_vector[-1])
 
 
 def power_law_integral(wave_vector: Array, density: Array) -> float:

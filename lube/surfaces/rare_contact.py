@@ -95,6 +95,11 @@ def check_gaussian(spec: LineSpecLike) -> None:
         With the skewness and the kurtosis that came.
     """
     for line in spec.lines:
+        if line.heights is not None:
+            raise StudyError(
+                "rollers: got a measured line, need lines drawn from a spectrum: importance "
+                "sampling is for Gaussian lines"
+            )
         if not line.is_gaussian:
             raise StudyError(
                 f"roughness: got a skewness of {line.skewness:g} and a kurtosis of "

@@ -18,7 +18,7 @@ line, see `lube.surfaces.translation`.
 """
 
 import functools
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import scipy.fft
@@ -53,18 +53,24 @@ class RoughLineLike(Protocol):
     skewness, kurtosis : float
         Of the heights.
     is_gaussian : bool
-        Whether the heights are Gaussian.
+        Whether the line is drawn, with Gaussian heights.
+    spectrum : tuple or None
+        Measured wave vectors, rad/m, and densities, m^3, in place of the Hurst exponent.
+    heights : object or None
+        Measured heights; its `steps` is an array of shape (N,), int32 height steps.
     """
 
     points: int
     rms_height: float
-    hurst_exponent: float
+    hurst_exponent: float | None
     q_min: float
     q_max: float
     q_roll_off: float
     skewness: float
     kurtosis: float
     is_gaussian: bool
+    spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None
+    heights: Any
 
 
 class LineSpecLike(Protocol):
@@ -102,7 +108,8 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
         a_k \propto q_k^{-H - 1/2}, \qquad \frac12 \sum_k a_k^2 = h_{rms}^2
 
     Below the roll-off wavenumber the isotropic surface's density :math:`C_{2D}` is constant, so
-    that :math:`C_{1D} = \pi q\, C_{2D}` and :math:`a_k \propto q_k^{1/2}`.
+    that :math:`C_{1D} = \pi q\, C_{2D}` and :math:`a_k \propto q_k^{1/2}`. With a measured spectrum
+    :math:`a_k \propto C(q_k)^{1/2}`; a measured line has amplitudes of its own.
 
     Parameters
     ----------
@@ -138,14 +145,32 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     last_wave = int(np.floor(line.q_max * turn * (1.0 + 1e-9)))
     # Leave out the wave of two points: its rms height on the grid would depend on its phase.
     last_wave = min(last_wave, (line.points - 1) // 2)
+    if line.heights is not None:
+        first_wave, last_wave = 1, (line.points - 1) // 2
+        waves = scipy.fft.rfft(line.heights.steps * spec.height_step, norm="forward")
+        return 1, 2.0 * np.abs(waves[1 : last_wave + 1])
     waves = np.arange(first_wave, last_wave + 1)
-    shape = (waves / first_wave) ** (-line.hurst_exponent - 0.5)
-    roll_off = line.q_roll_off * turn
-    below = waves < roll_off * (1.0 - 1e-9)
-    shape[below] = (roll_off / first_wave) ** (-line.hurst_exponent - 0.5)
-    shape[below] *= np.sqrt(waves[below] / roll_off)
+    shape = (
+        _self_affine(line, waves, turn) if line.spectrum is None else _measured(line, waves / turn)
+    )
     rms = np.sqrt(0.5 * np.sum(shape**2))
     return first_wave, line.rms_height / rms * shape
+
+
+def _self_affine(line, waves, turn):
+    """Amplitudes relative to the first wave's, without roll-off."""
+    shape = (waves / waves[0]) ** (-line.hurst_exponent - 0.5)
+    roll_off = line.q_roll_off * turn
+    below = waves < roll_off * (1.0 - 1e-9)
+    shape[below] = (roll_off / waves[0]) ** (-line.hurst_exponent - 0.5)
+    shape[below] *= np.sqrt(waves[below] / roll_off)
+    return shape
+
+
+def _measured(line, wave_vector):
+    """Square root of the measured density, a power law between its values."""
+    known, density = np.log(line.spectrum)
+    return np.exp(0.5 * np.interp(np.log(wave_vector), known, density))
 
 
 @functools.lru_cache(maxsize=4)
@@ -169,7 +194,7 @@ def _translation(spec, roller):
 
 
 def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> np.ndarray:
-    """Draw one roughness line.
+    """Draw one roughness line, or return the measured one.
 
     Parameters
     ----------
@@ -186,6 +211,8 @@ def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> 
         Shape (N,), int32: heights in height steps, positive towards the other roller.
     """
     generator, line = np.random.default_rng(seed), spec.lines[roller]
+    if line.heights is not None:
+        return line.heights.steps
     if line.is_gaussian:
         spectrum = _spectrum(spec, roller)
         return whole_steps(_superposition(spectrum, line.points, random_phasors, generator))
@@ -385,6 +412,36 @@ def spectrum_moments(spec: LineSpecLike, roller: int) -> dict[str, float]:
     }
 
 
+def spectrum_bands(spec: LineSpecLike, roller: int, bands: int) -> tuple[np.ndarray, np.ndarray]:
+    """Mean density of a line's spectrum over bands of equal logarithmic width.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines.
+    roller : int
+        0 for the first roller, 1 for the second.
+    bands : int
+        Number of bands, from the smallest to the largest wavenumber.
+
+    Returns
+    -------
+    wave_vector : numpy.ndarray
+        Shape (bands,), middle of each band, rad/m.
+    density : numpy.ndarray
+        Shape (bands,), m^3, one-sided; NaN where a band has no wave.
+    """
+    first_wave, amplitudes = wave_amplitudes(spec, roller)
+    step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    waves = step * np.arange(first_wave, first_wave + amplitudes.size)
+    edges = np.geomspace(waves[0] - 0.5 * step, waves[-1] + 0.5 * step, bands + 1)
+    inside = np.digitize(waves, edges) - 1
+    counts, power = (np.bincount(inside, each, bands) for each in (None, amplitudes**2))
+    with np.errstate(invalid="ignore"):
+        density = power / (2.0 * step * counts)
+    return np.sqrt(edges[1:] * edges[:-1]), density
+
+
 def line_attributes(spec: LineSpecLike) -> dict[str, float | np.ndarray]:
     """Global attributes of a roughness file: the spectrum and the height step.
 
@@ -397,11 +454,13 @@ def line_attributes(spec: LineSpecLike) -> dict[str, float | np.ndarray]:
     -------
     dict
         Attribute names and values; lengths in m, wavenumbers in rad/m. Those of the spectrum are
-        single values where both rollers have the same, else arrays of shape (2,).
+        single values where both rollers have the same, else arrays of shape (2,), NaN where a
+        measured line or spectrum has none.
     """
     of_rollers = {
         "hurst": [line.hurst_exponent for line in spec.lines],
-        "q_min": [line.q_min for line in spec.lines],
+        # A measured line is no band of waves.
+        "q_min": [line.q_min if line.heights is None else None for line in spec.lines],
         "q_max": [line.q_max for line in spec.lines],
         "q_roll_off": [line.q_roll_off for line in spec.lines],
     }
@@ -415,5 +474,6 @@ def line_attributes(spec: LineSpecLike) -> dict[str, float | np.ndarray]:
 
 
 def _one_or_both(values):
-    """Return the value that both rollers have, or an array of both values."""
+    """Return the value that both rollers have, or an array of both values; NaN for None."""
+    values = [np.nan if value is None else value for value in values]
     return values[0] if values[0] == values[1] else np.array(values)

@@ -72,8 +72,11 @@ class Figure:
         -------
         bool
             False if a tag such as ``several-force`` asks for several levels where the study
-            has one, or the tag ``gaussian-lines`` for Gaussian lines where it has others.
+            has one, the tag ``gaussian-lines`` for Gaussian lines where it has others, or a
+            dataset for what the study lacks.
         """
+        if not all(study.has(name) for name in self.datasets):
+            return False
         if GAUSSIAN in self.tags and not study.line_spec.is_gaussian:
             return False
         levels = study.operating_grid.model_dump()

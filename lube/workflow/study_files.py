@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from lube.errors import LubeError
-from lube.schema import DATASETS, STAGES, forerunners
+from lube.schema import STAGES, forerunners
 from lube.study.resolve import study_files
 from lube.study.study import Study
 from lube.types import File, Files
@@ -161,6 +161,11 @@ class StudyFiles:
         entries = read_manifest(manifest).entries
         return input_paths([manifest, *(entry.file for entry in entries if entry.file)])
 
+    @one_line_errors()
+    def topography_files(self) -> list[str]:
+        """List the files of the measured topographies."""
+        return input_paths(one.file for one in self.study.topographies.values())
+
     def products(self, figures: Iterable[str]) -> list[str]:
         """List the files that the jobs of some figures make: pictures, origin, notebook."""
         names = [(*products(figure), origin(figure)) for figure in figures]
@@ -180,7 +185,7 @@ class StudyFiles:
             From the step's name in the report to its files.
         """
         steps = {"batches of realisations": [f"batch_{first}" for first in self.study.batches]}
-        steps |= {stage: [stage] for stage in DATASETS}
+        steps |= {stage: [stage] for stage in self.study.datasets}
         steps |= {"figures": list(figures), "explorer": ["explorer"]}
         file = "benchmarks/{}.tsv".format
         return {step: [self.result(file(job)) for job in jobs] for step, jobs in steps.items()}

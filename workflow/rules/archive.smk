@@ -5,7 +5,7 @@ from lube.storage.git import changed_code, commit, commit_date
 rule archive:
     input:
         written=lambda wildcards: archived_texts(FILES),
-        datasets=[result(f"{kind}.nc") for kind in DATASETS],
+        datasets=[result(f"{kind}.nc") for kind in STUDY.datasets],
         products=products(ARCHIVED),
         explorer=result("explorer.html"),
     output:

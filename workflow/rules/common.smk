@@ -8,7 +8,6 @@ from pathlib import Path
 # the files that run. The Snakefile in use may be another one, of which this is a module.
 sys.path.insert(0, str(Path(workflow.snakefile).parents[2]))
 
-from lube.schema import DATASETS
 from lube.storage.files import check_writable
 from lube.storage.git import ROOT
 from lube.workflow.command_line import study_of_command, study_of_module
@@ -28,7 +27,7 @@ with one_line_errors():
         STUDY, SOURCE = study_of_command(workflow.configfiles, workflow.config_settings.config)
 
 # For the scripts and the report. The dictionary of another Snakefile stays as it is.
-config = {**config, "study": SOURCE}
+config = {**config, "study": SOURCE | STUDY.readings}
 FILES = StudyFiles(STUDY, **SOURCE)
 RESULTS = FILES.folder
 result = FILES.result

@@ -53,7 +53,7 @@ rule pages:
 rule times:
     input:
         # When all else is done.
-        [result(f"{kind}.nc") for kind in DATASETS],
+        [result(f"{kind}.nc") for kind in STUDY.datasets],
         products(ARCHIVED),
         result("explorer.html"),
         templates=TEMPLATES,
@@ -94,7 +94,7 @@ if not IS_MODULE:
             result("benchmarks/report.tsv")
         localrule: True
         params:
-            snakemake=[sys.executable, "-m", "snakemake", *same_study(**config["study"])],
+            snakemake=[sys.executable, "-m", "snakemake", *same_study(**SOURCE)],
         message:
             "Report: {output}"
         shell:

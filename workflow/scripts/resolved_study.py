@@ -7,8 +7,6 @@ from lube.study.resolve import resolved_text
 from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
-output = Path(snakemake.output[0])
+output, study = Path(snakemake.output[0]), snakemake.config["study"]
 with written_whole(output) as part:
-    part.write_text(
-        resolved_text(**snakemake.config["study"], folder=output.parent), encoding="utf-8"
-    )
+    part.write_text(resolved_text(study["path"], study["changes"], output.parent), encoding="utf-8")

@@ -9,7 +9,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.recordings.example_surface import example_heights, write_example
-from lube.recordings.topography_files import read_topography
+from lube.study.topography_files import read_topography
 from lube.surfaces.measured_spectrum import line_spectrum
 from lube.surfaces.surface_statistics import height_distribution, hurst_exponent, roll_off
 from lube.surfaces.topography import Preparation, prepare

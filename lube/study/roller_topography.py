@@ -1,0 +1,144 @@
+"""The measured topography of a roller, in place of an rms height and a Hurst exponent.
+
+It is read, without form and holes and filtered, when the study is checked. It then stands for the
+roller in one of three ways: new lines are drawn from its spectrum, or the profile itself is the
+line, which it closes around the roller or repeats along it.
+
+What reads and computes is imported on first use: most studies have no topography.
+"""
+
+import hashlib
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import PrivateAttr, ValidationInfo, model_validator
+
+from lube.errors import DataError
+from lube.study.field_types import Length, StrictModel, Text, collected
+from lube.types import Array
+
+
+class MeasuredHeights:
+    """Heights of a line that is a measured profile, told from others by their digest.
+
+    Parameters
+    ----------
+    steps : numpy.ndarray
+        Shape (N,), int32: heights in height steps.
+    """
+
+    def __init__(self, steps: Array):
+        self.steps = steps
+        self.steps.flags.writeable = False
+        self.sha256 = hashlib.sha256(steps.tobytes()).hexdigest()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, MeasuredHeights) and other.sha256 == self.sha256
+
+    def __hash__(self) -> int:
+        return hash(self.sha256)
+
+
+class RollerTopography(StrictModel):
+    """What was measured of a roller's surface, and how it is used."""
+
+    file: Text
+    """profile or map: a file of an instrument, CSV (`position [mm],height [um]`) or NetCDF"""
+    texture: Literal["isotropic", "along rolling"]
+    """alike in all directions; or only profiles along rolling are used, as of a ground surface"""
+    use: Literal["spectrum", "closed line", "repeated line"] = "spectrum"
+    """lines are drawn from its spectrum; or the profile is the line, as one turn or repeated"""
+    form: Literal["none", "tilt", "curvature"] = "tilt"
+    """what is removed by least squares: the mean alone, a straight line or plane, a parabola"""
+    long_cutoff: Length | None = None
+    """cutoff of the Gaussian filter against long waves (ISO 16610); by default none"""
+    short_cutoff: Length | None = None
+    """cutoff of the Gaussian filter against short waves; by default none"""
+    holes: Literal["refuse", "interpolate"] = "refuse"
+    """what is done where nothing was measured, up to 5 % of the points"""
+    rolling: Literal["x", "y"] = "x"
+    """direction of rolling on a map"""
+
+    _measured: Any = PrivateAttr()
+
+    @model_validator(mode="after")
+    def _read(self, info: ValidationInfo):
+        if self.is_line and self.texture == "isotropic":
+            raise ValueError(
+                "texture: got 'isotropic', need 'along rolling' for a profile that is the line: "
+                "the line of an isotropic surface is not its profile"
+            )
+        from lube.study import topography_lines
+
+        with collected():
+            known = (info.context or {}).get(self.key)
+            self._measured = topography_lines.measured(self, known)
+        return self
+
+    @property
+    def is_line(self) -> bool:
+        """Whether the profile itself is the line."""
+        return self.use != "spectrum"
+
+    @property
+    def key(self) -> str:
+        """Text that tells this topography from others, for `reading`."""
+        return self.model_dump_json()
+
+    @property
+    def reading(self) -> dict[str, Any]:
+        """What was read, as plain data, so that jobs need not read it again; empty for a line."""
+        from lube.study import topography_lines
+
+        return {} if self.is_line else {self.key: topography_lines.plain(self._measured)}
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """Settings, and the file by its SHA-256 sum instead of its path."""
+        digest = hashlib.sha256(Path(self.file).read_bytes()).hexdigest()
+        return self.model_dump(exclude={"file"}) | {"sha256": digest}
+
+    def line(
+        self, grid: tuple[int, float, tuple[float, float]], width: float, height_step: float
+    ) -> dict[str, Any]:
+        """Determine the roughness line of the roller.
+
+        Parameters
+        ----------
+        grid : tuple
+            Points N around the roller, their distance, m, and the longest and the shortest
+            wavelength of the line, m.
+        width : float
+            Largest contact width of the study, m.
+        height_step : float
+            Height of one step of the whole-number heights, m.
+
+        Returns
+        -------
+        dict
+            ``rms_height``, and ``spectrum`` or ``heights``, of `lube.study.rollers.RoughLine`.
+
+        Raises
+        ------
+        DataError
+            If the topography does not hold such a line.
+        """
+        from lube.study import topography_lines
+
+        points, spacing, band = grid
+        if not self.is_line:
+            rms, spectrum = topography_lines.table(self._measured, band)
+            return {"rms_height": rms, "spectrum": spectrum}
+        length = self._measured.lengths[0]
+        if length < width:
+            raise DataError(
+                f"{self.file}: got a profile of {length:.3g} m, need one longer than the contact "
+                f"is wide, {width:.3g} m"
+            )
+        line = points, spacing, band[1]
+        steps = topography_lines.steps(self, self._measured, line, height_step)
+        return {
+            "rms_height": float(np.std(steps)) * height_step,
+            "heights": MeasuredHeights(steps),
+        }

@@ -1,0 +1,160 @@
+"""From a roller's topography to its roughness line: reading, spectrum and heights."""
+
+import dataclasses
+import functools
+import os
+from typing import Any
+
+import numpy as np
+
+from lube.study.roller_topography import RollerTopography
+from lube.study.topography_files import read_topography
+from lube.surfaces.measured_line import closed_line, repeated_line
+from lube.surfaces.measured_spectrum import (
+    LineSpectrum,
+    band_table,
+    line_spectrum,
+    power_law_integral,
+)
+from lube.surfaces.topography import Preparation, Topography, prepare
+from lube.types import Array
+
+TABLE_VALUES = 100
+"""Values of the spectrum of a drawn line."""
+
+
+def preparation(settings: RollerTopography) -> Preparation:
+    """State what is done to a topography before it is used."""
+    names = {field.name for field in dataclasses.fields(Preparation)}
+    return Preparation(**settings.model_dump(include=names), closed=settings.use == "closed line")
+
+
+def prepared(settings: RollerTopography) -> Topography:
+    """Read a roller's topography, and remove form, holes and waves as the study says.
+
+    Parameters
+    ----------
+    settings : RollerTopography
+        From the study.
+
+    Returns
+    -------
+    Topography
+        Along rolling first.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read, or does not suit the settings.
+    """
+    return prepare(read_topography(settings.file), preparation(settings))
+
+
+def measured(settings: RollerTopography, known: dict | None) -> LineSpectrum | Topography:
+    """Read what a study needs of a topography: its spectrum, or the profile that is the line.
+
+    Parameters
+    ----------
+    settings : RollerTopography
+        From the study.
+    known : dict or None
+        From `plain`, if the spectrum was read before.
+
+    Returns
+    -------
+    LineSpectrum or Topography
+        The spectrum or the profile.
+
+    Raises
+    ------
+    DataError
+        As `prepared`, or if the surface has no such spectrum.
+    """
+    if known is not None:
+        arrays = ("wave_vector", "density", "estimates", "transfer")
+        return LineSpectrum(**(known | {name: np.array(known[name]) for name in arrays}))
+    time = os.stat(settings.file).st_mtime_ns if os.path.exists(settings.file) else None
+    return _read(settings, time)
+
+
+@functools.lru_cache(maxsize=2)
+def _read(settings, _time):
+    """Read a topography once for both rollers, and again when the file has changed."""
+    surface = prepared(settings)
+    return surface if settings.is_line else line_spectrum(surface, preparation(settings))
+
+
+def plain(spectrum: LineSpectrum) -> dict[str, Any]:
+    """Write a spectrum as plain data."""
+    fields = dataclasses.asdict(spectrum).items()
+    return {name: value.tolist() if hasattr(value, "tolist") else value for name, value in fields}
+
+
+def table(
+    spectrum: LineSpectrum, band: tuple[float, float]
+) -> tuple[float, tuple[tuple[float, ...], tuple[float, ...]]]:
+    """Tabulate a spectrum within a band, for drawing lines.
+
+    Parameters
+    ----------
+    spectrum : LineSpectrum
+        The spectrum.
+    band : tuple of float
+        Longest and shortest wavelength, m.
+
+    Returns
+    -------
+    rms_height : float
+        Of the band, m.
+    table : tuple
+        Wave vectors, rad/m, and densities, m^3.
+
+    Raises
+    ------
+    DataError
+        If the spectrum does not reach so far.
+    """
+    wave_vector, density = band_table(
+        spectrum, *(2.0 * np.pi / wave for wave in band), TABLE_VALUES
+    )
+    # Rounded: the last digits of least squares may depend on the machine.
+    density = tuple(_rounded(value) for value in density)
+    rms = power_law_integral(wave_vector, np.array(density)) ** 0.5
+    return _rounded(rms), (tuple(wave_vector.tolist()), density)
+
+
+def steps(
+    settings: RollerTopography,
+    profile: Topography,
+    grid: tuple[int, float, float],
+    height_step: float,
+) -> Array:
+    """Turn a profile into the line around a roller.
+
+    Parameters
+    ----------
+    settings : RollerTopography
+        From the study; its `use` is one of the lines.
+    profile : Topography
+        From `prepared`.
+    grid : tuple
+        Points around the roller, their distance, m, and the shortest wavelength, m.
+    height_step : float
+        Height of one step of the whole-number heights, m.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,), int32: heights in height steps.
+
+    Raises
+    ------
+    DataError
+        If the profile is no such line.
+    """
+    line = closed_line if settings.use == "closed line" else repeated_line
+    return line(profile, *grid, height_step)
+
+
+def _rounded(value):
+    return float(f"{value:.7g}")
