@@ -19,6 +19,9 @@ NO_FIGURE = "no-figure"
 GAUSSIAN = "gaussian-lines"
 """Tag of a notebook that needs Gaussian roughness lines."""
 
+ENSEMBLE = "ensemble"
+"""Tag of a notebook about the scatter between pairs of lines."""
+
 
 @dataclass(frozen=True)
 class Figure:
@@ -72,12 +75,15 @@ class Figure:
         -------
         bool
             False if a tag such as ``several-force`` asks for several levels where the study
-            has one, the tag ``gaussian-lines`` for Gaussian lines where it has others, or a
-            dataset for what the study lacks.
+            has one, the tag ``gaussian-lines`` for Gaussian lines where it has others, the tag
+            ``ensemble`` for several pairs where it has one measured pair, or a dataset for what
+            the study lacks.
         """
         if not all(study.has(name) for name in self.datasets):
             return False
         if GAUSSIAN in self.tags and not study.line_spec.is_gaussian:
+            return False
+        if ENSEMBLE in self.tags and study.line_spec.is_one_pair:
             return False
         levels = study.operating_grid.model_dump()
         return all(len(levels.get(name, ())) > 1 for name in self._tagged("several-"))
