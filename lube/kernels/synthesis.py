@@ -88,6 +88,36 @@ def whole_steps(heights: np.ndarray) -> np.ndarray:
 
 
 @kernel
+def power_series(values: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    r"""Sum a power series without a constant term, :math:`\sum_{n \ge 1} c_n x^n`.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        Shape (N,), x.
+    coefficients : numpy.ndarray
+        Shape (orders,), :math:`c_1, c_2, \ldots`
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,).
+
+    Examples
+    --------
+    >>> power_series(np.array([1.0, 2.0]), np.array([3.0, 5.0]))
+    array([ 8., 26.])
+    """
+    total = np.zeros(values.size)
+    for first in range(0, values.size, 1024):  # stays in the processor's cache
+        x, part = values[first : first + 1024], total[first : first + 1024]
+        for n in range(coefficients.size - 1, -1, -1):
+            for i in range(x.size):
+                part[i] = (part[i] + coefficients[n]) * x[i]
+    return total
+
+
+@kernel
 def translated_steps(
     heights: np.ndarray, curve: np.ndarray, reach: float, rms: float
 ) -> np.ndarray:
@@ -131,3 +161,32 @@ def translated_steps(
     for i in range(heights.size):
         steps[i] = np.int32(np.rint((translated[i] - mean) * scale))
     return steps
+
+
+@kernel
+def mean_powers(line: np.ndarray) -> tuple[float, float, float]:
+    """Mean square, cube and fourth power of a line's heights.
+
+    Parameters
+    ----------
+    line : numpy.ndarray
+        Shape (N,), height steps.
+
+    Returns
+    -------
+    tuple of float
+        The means.
+
+    Examples
+    --------
+    >>> mean_powers(np.array([-1, 0, 4], np.int32))
+    (5.666666666666667, 21.0, 85.66666666666667)
+    """
+    second = third = fourth = 0.0
+    for i in range(line.size):
+        height = float(line[i])
+        square = height * height
+        second += square
+        third += square * height
+        fourth += square * square
+    return second / line.size, third / line.size, fourth / line.size

@@ -10,6 +10,9 @@ from lube.kernels.compiler import inlined, kernel
 from lube.kernels.layer import layer_breaks
 from lube.types import Array, Pair
 
+BLOCK = 64
+"""Points that are passed over together."""
+
 
 @kernel
 def touching_windows(
@@ -64,8 +67,8 @@ def touching_windows(
     (1.0, 1.0)
     """
     width = film.size
-    overlap = np.empty(width, np.float32)
     contact = breakthrough = 0.0
+    overlap = np.empty(width, np.float32)
     for m in range(starts.size):
         origin = touching[0][m]
         window = line[starts[m] : starts[m] + width]
@@ -73,31 +76,38 @@ def touching_windows(
         rise = touching[1][m] - window[origin]
         for j in range(width):  # without a branch, so the compiler vectorises it
             overlap[j] = window[j] + shape[j] * rise - film[j]
-        points = 0
-        for j in range(width):
-            points += overlap[j] > 0.0
+        points, broken = _judged(overlap, factor)
         weight = 1.0 / max(points, 1)  # rounding may put the known point just below the film
         contact += weight
-        if _breaks(overlap, factor):
+        if broken:
             breakthrough += weight
     return contact / starts.size, breakthrough / starts.size
 
 
 @inlined
-def _breaks(overlap, factor):
-    """Decide whether the boundary layer breaks on a segment of a window."""
-    points, total = 0, 0.0
+def _judged(overlap, factor):
+    """Count touching points, and decide whether the boundary layer breaks on a segment of them."""
+    points, total, touching = 0, 0.0, 0
     broken = False
-    for j in range(overlap.size + 1):
-        if j < overlap.size and overlap[j] > 0.0:
-            points += 1
-            total += overlap[j]
-        elif points > 0:
-            if layer_breaks(points, total, factor):
-                broken = True
-                break
-            points, total = 0, 0.0
-    return broken
+    for first in range(0, overlap.size, BLOCK):
+        block = overlap[first : first + BLOCK]
+        here = np.int32(0)  # as wide as the heights, so the compiler vectorises the loop
+        for j in range(block.size):
+            here += np.int32(block[j] > np.float32(0.0))
+        touching += here
+        # In most blocks no point touches: no segment begins, goes on or ends there.
+        if broken or (here == 0 and points == 0):
+            continue
+        for j in range(block.size):
+            if block[j] > 0.0:
+                points += 1
+                total += block[j]
+            elif points > 0:
+                if layer_breaks(points, total, factor):
+                    broken = True
+                    break
+                points, total = 0, 0.0
+    return touching, broken or layer_breaks(points, total, factor)
 
 
 @kernel
@@ -141,6 +151,7 @@ def touching_runs(
     sums = np.zeros(6)
     reach = correlations[0].size // 2
     behind = np.empty(reach + 1, np.float32)
+    correlation = correlations[0] + correlations[1]
     for m in range(places.size):
         place = places[m]
         rise = heights[m] - (lines[0][place] + lines[1][place])
@@ -153,12 +164,11 @@ def touching_runs(
             sums[1] += weight
             sums[4] += 1.0
             rest = behind[: reach + 1 - stop]
+            first, second = lines[0][place + stop :], lines[1][place + stop :]
+            known = correlation[reach + stop :]
             for j in range(rest.size):  # without a branch, so the compiler vectorises it
-                lag = reach + stop + j
-                known = correlations[0][lag] + correlations[1][lag]
-                drawn = lines[0][place + stop + j] + lines[1][place + stop + j]
-                rest[j] = drawn + known * rise - film
-            if not _breaks(rest, factor):
+                rest[j] = first[j] + second[j] + known[j] * rise - film
+            if not _judged(rest, factor)[1]:
                 sums[2] += weight
             if not _broke_before(moved, start, stop, factor):
                 sums[3] += weight

@@ -1,6 +1,7 @@
 """The tail stage: probability and rate of contact at any rarity, labelled over the grid."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import scipy.special
@@ -19,7 +20,9 @@ from lube.surfaces.synthetic import ROLLERS, line_attributes, spectrum_moments
 PAIRS = 32
 """Pairs of lines for the first film formula; the errors follow from the scatter between them."""
 FEWER_PAIRS = 8
-"""Pairs of lines for the other film formulas."""
+"""Pairs of lines for the other film formulas, the first of these."""
+_PARTS = slice(0, 1), slice(1, None)
+"""The first film formula, and the others."""
 
 
 def tail_probabilities(
@@ -28,6 +31,7 @@ def tail_probabilities(
     boundary_layer: BoundaryLayer,
     seed: int,
     slide_to_roll_ratio: Sequence[float] = (0.0,),
+    threads: int = 1,
 ) -> xr.Dataset:
     r"""Compute probability and rate of contact at all operating points, at any rarity.
 
@@ -43,6 +47,8 @@ def tail_probabilities(
         Seed of the study.
     slide_to_roll_ratio : sequence of float, optional
         Levels of the slide-to-roll ratio S; the default is pure rolling.
+    threads : int, optional
+        Threads that share the work; they do not change the results.
 
     Returns
     -------
@@ -83,11 +89,11 @@ def tail_probabilities(
         check_gaussian(spec)
     except StudyError as error:
         return _unknown(film, levels, str(error))
-    formulas = film.sizes["film_formula"]
-    parts = [(slice(0, 1), PAIRS), (slice(1, formulas), FEWER_PAIRS)][: min(formulas, 2)]
+    outcomes = _sampled(spec, film, boundary_layer, seed, threads)
     tables = [
-        _table(spec, film.isel(film_formula=part), boundary_layer, (seed, pairs), levels)
-        for part, pairs in parts
+        _table(spec, film.isel(film_formula=part), boundary_layer, found, levels)
+        for part, found in zip(_PARTS, outcomes, strict=True)
+        if film["film_formula"][part].size
     ]
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
@@ -107,12 +113,12 @@ def _unknown(film, slide_to_roll_ratio, remark):
     return label(xr.Dataset(empty, coordinates, {"remarks": remark}), "tail")
 
 
-def _table(spec, film, boundary_layer, draws, slide_to_roll_ratio):
+def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
     """Variables of some film formulas, unlabelled."""
     slip = xr.DataArray(slide_to_roll_ratio, dims="slide_to_roll_ratio")
     slip = slip.assign_coords(slide_to_roll_ratio=slip)
-    points = 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
-    windows, runs = _sampled(spec, film, points, boundary_layer, draws)
+    points = _window_points(spec, film)
+    windows, runs = outcomes
     contact, breakthrough = windows.transpose("outcome", ...)
     _, broken, groups, new, broken_points, new_points = runs.transpose("outcome", ...)
     everywhere = xr.ones_like(slip)
@@ -137,23 +143,38 @@ def _table(spec, film, boundary_layer, draws, slide_to_roll_ratio):
     return xr.Dataset(table)
 
 
-def _sampled(spec, film, points, boundary_layer, draws):
-    """Probabilities of windows and numbers of runs, over (pair, outcome, operating dimensions)."""
-    thickness, points = xr.broadcast(film["film_thickness"], points)
+def _window_points(spec, film):
+    return 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
+
+
+def _sampled(spec, film, boundary_layer, seed, threads):
+    """Probabilities of windows and numbers of runs, for each of `_PARTS` of the film formulas.
+
+    Over (pair, outcome, film formula, other operating dimensions).
+    """
+    thickness, points = xr.broadcast(film["film_thickness"], _window_points(spec, film))
+    thickness, points = (each.transpose("film_formula", ...) for each in (thickness, points))
     factor = layer_factor_of(
         xr.Dataset(attrs=line_attributes(spec)), film["reduced_modulus"].item(), boundary_layer
     )
-    films, widths = thickness.values.ravel() / spec.height_step, points.values.ravel()
-    seed, pairs = draws
-    found = [
-        rare_contact(spec, seed, number, films, widths.astype(np.int64), factor)
-        for number in range(pairs)
-    ]
+    films, widths = thickness.values / spec.height_step, points.values.astype(np.int64)
+
+    def on_one_pair(number):
+        formulas = slice(None if number < FEWER_PAIRS else 1)
+        point = films[formulas].ravel(), widths[formulas].ravel()
+        found = rare_contact(spec, seed, number, *point, factor)
+        return [values.reshape(-1, *films[formulas].shape) for values in found]
+
+    # Drawing and counting release Python's lock, so threads share the work.
+    with ThreadPoolExecutor(threads) as pool:
+        found = list(zip(*pool.map(on_one_pair, range(PAIRS)), strict=True))
     dims = ("pair", "outcome", *thickness.dims)
-    for values in zip(*found, strict=True):
-        yield xr.DataArray(
-            np.reshape(values, (pairs, -1, *thickness.shape)), thickness.coords, dims
-        )
+    for part, pairs in zip(_PARTS, (PAIRS, FEWER_PAIRS), strict=True):
+        coordinates = thickness[part].coords
+        yield [
+            xr.DataArray(np.stack([one[:, part] for one in each[:pairs]]), coordinates, dims)
+            for each in found
+        ]
 
 
 def _limited(name, values, most=np.inf):

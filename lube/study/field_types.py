@@ -7,6 +7,7 @@ of fields that are written with a unit and kept in SI, and the one-line message 
 import ast
 import inspect
 import operator
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -358,7 +359,9 @@ def _in_one_line(mistake, model):
     if kind == "missing":
         return f"{key}: missing, and it has no default"
     if kind == "value_error":
-        return f"{key}: {mistake['ctx']['error']}".removeprefix(": ")
+        error = str(mistake["ctx"]["error"])
+        names_key = re.match(r"[\w.]+: ", error)  # of a key inside this one
+        return f"{key}{'.' if names_key and key else ': '}{error}".removeprefix(": ")
     needed = mistake["msg"].replace("Input should be", "need")
     needed = _NEEDED.get(kind, needed).format(**mistake.get("ctx", {}))
     return f"{key}: got {shown(mistake['input'])}, {needed}"

@@ -182,7 +182,7 @@ def _spectrum(spec, roller):
     return first_wave, scaled.astype(np.float32)
 
 
-@functools.lru_cache(maxsize=4)
+@functools.lru_cache(maxsize=32)
 def _translation(spec, roller):
     """Spectrum of rms one of the line to translate, as `_spectrum`, and the curve that does it."""
     first_wave, amplitudes = wave_amplitudes(spec, roller)

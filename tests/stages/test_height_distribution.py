@@ -38,11 +38,11 @@ def test_gaussian_heights_have_the_probabilities_of_the_ensemble(found, spec, fi
         np.testing.assert_allclose(gaussian[f"{name}_mean"], expected, rtol=1e-12)
 
 
-def test_the_lines_own_heights_do_not_matter(found, spec, film, weak):
+def test_neither_the_lines_own_heights_nor_threads_matter(found, spec, film, weak):
     worn = spec.model_copy(
         update={"lines": tuple(one.model_copy(update={"skewness": -1.0}) for one in spec.lines)}
     )
-    assert height_distributions(worn, film, weak, seed=11).equals(found)
+    assert height_distributions(worn, film, weak, seed=11, threads=3).equals(found)
 
 
 def test_intervals_enclose_the_mean_and_the_moments_are_attained(found):

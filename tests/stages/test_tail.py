@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from lube import contact_statistics, gather, roughness_lines
 from lube.errors import DataError
@@ -104,6 +105,14 @@ def test_an_unreasonable_film_is_refused(spec, few, study):
     none = few.assign(film_thickness=0.0 * few["film_thickness"])
     with pytest.raises(DataError, match="film thickness: got 0 m, need above 0"):
         tail_probabilities(spec, none, study.boundary_layer, SEED)
+
+
+def test_threads_and_further_formulas_do_not_change_the_results(tail, spec, few, study):
+    xr.testing.assert_identical(
+        tail_probabilities(spec, few, study.boundary_layer, SEED, RATIOS, threads=3), tail
+    )
+    alone = tail_probabilities(spec, few.isel(film_formula=[0]), study.boundary_layer, SEED, RATIOS)
+    xr.testing.assert_identical(alone, tail.isel(film_formula=[0]))
 
 
 # --- Counting ----------------------------------------------------------------------------

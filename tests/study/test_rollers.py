@@ -112,9 +112,17 @@ def test_a_rollers_texture_is_an_input_of_its_lines_but_not_of_the_film(study_wi
 BOTH = "rollers.composite_rms_roughness"
 OWN = "rollers.second.roughness"
 REFUSED = [
-    ("rollers.first.ra_roughness", "0.1 um", "rollers.first: ra_roughness: got 1e-07 m beside an"),
-    (BOTH, "0.3 um", "composite_rms_roughness: got 3e-07 m beside a roughness of the first roller"),
-    ("rollers.second.rms_roughness", REMOVED, "second.rms_roughness: missing, need it, or ra_"),
+    ("rollers.first.ra_roughness", "0.1 um", "rollers.first.ra_roughness: got 1e-07 m beside an"),
+    (
+        BOTH,
+        "0.3 um",
+        "rollers.composite_rms_roughness: got 3e-07 m beside a roughness of the first",
+    ),
+    (
+        "rollers.second.rms_roughness",
+        REMOVED,
+        "rollers.second.rms_roughness: missing, need it, or ra_",
+    ),
     ("rollers.composite_roughness", "1 um", "did you mean 'composite_rms_roughness'?"),
     ("roughness.roll_off_wavelength", "1 mm", "roughness.roll_off_wavelength: got 0.001 m, need"),
     ("roughness.roll_off_wavelength", "3 um", "from the shortest to the longest wavelength, 3.14"),

@@ -101,3 +101,17 @@ def test_spectrum_is_kept_within_the_band_and_little_lies_outside(
     prescribed = amplitudes**2 / np.sum(amplitudes**2)
     np.testing.assert_allclose(band / band.sum(), prescribed, rtol=2e-3)
     assert 1.0 - band.sum() == pytest.approx(outside, rel=0.2)
+
+
+def test_a_coarser_grid_and_fewer_corrections_leave_the_spectrum_as_it_is(make_spec):
+    """Against eight corrections on the line's own points."""
+    spec, curve = make_spec(100_000), johnson_curve(0.5, 4.0)
+    first, amplitudes = wave_amplitudes(spec, 0)
+    prescribed = amplitudes**2 / np.sum(amplitudes**2)
+    expected = prescribed
+    for _ in range(8):
+        power = translated_power(expected, first, spec.points[0], curve)
+        expected = expected * prescribed / power[first : first + amplitudes.size]
+        expected /= expected.sum()
+    found = gaussian_power(amplitudes**2, first, spec.points[0], curve)
+    np.testing.assert_allclose(found, expected, rtol=1e-6)

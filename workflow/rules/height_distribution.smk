@@ -8,7 +8,8 @@ rule height_distribution:
         result("logs/height_distribution.log"),
     benchmark:
         result("benchmarks/height_distribution.tsv")
-    # A long job: started early, it runs beside the others.
+    threads: workflow.cores
+    # A long job: started early, it does not keep the others waiting at the end.
     priority: 2
     params:
         study=stage_inputs("height_distribution"),

@@ -8,7 +8,8 @@ rule tail:
         result("logs/tail.log"),
     benchmark:
         result("benchmarks/tail.tsv")
-    # A long job: started early, it runs beside the others.
+    threads: workflow.cores
+    # A long job: started early, it does not keep the others waiting at the end.
     priority: 2
     params:
         study=stage_inputs("tail"),

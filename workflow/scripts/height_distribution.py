@@ -8,5 +8,7 @@ from lube.workflow.jobs import begin_job
 begin_job(snakemake.log[0])
 study = load_study(**snakemake.config["study"])
 film = load(snakemake.input.film, "film", study)
-found = height_distributions(study.line_spec, film, study.boundary_layer, study.seed)
+found = height_distributions(
+    study.line_spec, film, study.boundary_layer, study.seed, snakemake.threads
+)
 save(found, snakemake.output[0], "height_distribution", study, [snakemake.input.film])

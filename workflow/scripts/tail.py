@@ -13,5 +13,6 @@ tail = tail_probabilities(
     study.boundary_layer,
     study.seed,
     study.operating_grid.slide_to_roll_ratio,
+    snakemake.threads,
 )
 save(tail, snakemake.output[0], "tail", study, [snakemake.input.film])
