@@ -91,6 +91,7 @@ _ROWS = (
         inputs=("film",),
         values=_LINES | _LAYER,
         same_values=("roughness",),  # whose lines have other distributions here
+        only_with="line_spec.is_drawn",
     ),
     Stage("master", inputs=("film",), values=_LINES | _LAYER, same_values=("roughness",)),
     Stage(

@@ -143,7 +143,7 @@ def agreement(
     simulated : numpy.ndarray
         Mean probability over realisations, shape (n,).
     lower, upper : numpy.ndarray
-        Prediction interval of the share of one pair, shape (n,).
+        Prediction interval of the share of one pair, shape (n,); NaN if there is none.
     measured : numpy.ndarray
         Measured shares, shape (n,).
 
@@ -163,13 +163,14 @@ def agreement(
     -0.05, 0.5 within the prediction
     """
     inside = (simulated > 0.0) & (simulated < 1.0) & (measured > 0.0) & (measured < 1.0)
+    within = (measured >= lower) & (measured <= upper)
     logits = scipy.special.logit(simulated[inside]) - scipy.special.logit(measured[inside])
     return {
         "bias": _mean(simulated - measured),
         "rms_difference": np.sqrt(_mean((simulated - measured) ** 2)),
         "logit_rms_difference": np.sqrt(_mean(logits**2)),
         "rank_correlation": _rank_correlation(simulated, measured),
-        "overlap_share": _mean((measured >= lower) & (measured <= upper)),
+        "overlap_share": _mean(np.where(np.isnan(lower), np.nan, within)),
         "compared_records": simulated.size,
         "logit_records": int(np.count_nonzero(inside)),
     }

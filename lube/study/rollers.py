@@ -321,6 +321,11 @@ class LineSpec(StrictModel):
         return all(line.is_gaussian for line in self.lines)
 
     @property
+    def is_drawn(self) -> bool:
+        """Whether both lines are drawn."""
+        return all(line.heights is None for line in self.lines)
+
+    @property
     def is_one_pair(self) -> bool:
         """Whether both lines are measured profiles, so that there is no ensemble."""
         return all(line.heights is not None for line in self.lines)
