@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 from experiments import model_of_records
+from studies import CONFIG
 
 from lube.schema import COORDINATES, FILES, label
 from lube.stages.areal import strip_contacts
@@ -16,8 +17,14 @@ from lube.stages.height_distribution import height_distributions
 from lube.stages.lubricant import lubricant_table
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
+from lube.stages.surface import measured_surfaces
 from lube.stages.tail import tail_probabilities
 from lube.stages.trace import contact_trace
+from lube.study.roller_topography import RollerTopography
+
+EXAMPLE_SURFACE = RollerTopography(
+    file=str(CONFIG / "surfaces/example.x3p"), texture="isotropic", holes="interpolate"
+)
 
 
 def measured_values(kind):
@@ -59,6 +66,7 @@ def datasets_of_every_kind(study):
         "lubricant": oil,
         "film": film,
         "roughness": lines,
+        "surface": measured_surfaces({"first": EXAMPLE_SURFACE}, spec, 0.7),
         "contact_batch": run,
         "contact": contact,
         "areal": strip_contacts(spec, film, layer, own.rollers.length, study.seed, study.slips),

@@ -4,6 +4,7 @@ import copy
 from pathlib import Path
 
 from lube.study.resolve import resolved_content
+from lube.study.study import load_study
 
 ROOT = Path(__file__).parents[1]
 CONFIG = ROOT / "workflow" / "config"
@@ -11,6 +12,7 @@ PAPER = CONFIG / "paper.yaml"
 SMOKE = CONFIG / "smoke.yaml"
 PAPER_CONTENT = resolved_content(PAPER)
 SMOKE_CONTENT = resolved_content(SMOKE)
+SMOKE_DATASETS = load_study(SMOKE).datasets
 OIL = "mobilgear-shc-xmp-320"
 REMOVED = object()
 

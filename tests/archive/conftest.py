@@ -4,10 +4,9 @@ import json
 import shutil
 
 import pytest
-from studies import SMOKE
+from studies import SMOKE, SMOKE_DATASETS
 
 from lube.archive.build import make_archive
-from lube.schema import DATASETS
 from lube.storage.netcdf import save
 from lube.storage.provenance import fingerprint
 from lube.workflow.study_files import origin, products
@@ -18,7 +17,7 @@ FIGURE = "fig02_film"
 def write_results(study, datasets, folder):
     """Save datasets, each made from those before it, the files of one figure, and the explorer."""
     *records, film = [*study.lubricants[0].files, folder / "film.nc"]
-    for kind in DATASETS:
+    for kind in SMOKE_DATASETS:
         inputs = {"lubricant": records, "film": [folder / "lubricant.nc"], "roughness": []}
         save(datasets[kind], folder / f"{kind}.nc", kind, study, inputs.get(kind, [film]))
     for name in products(FIGURE):

@@ -5,9 +5,9 @@ from html import unescape
 
 import pytest
 from markdown_it import MarkdownIt
+from studies import SMOKE_DATASETS
 
 from lube.archive.page import archive_page
-from lube.schema import DATASETS
 from lube.study.metadata import About
 
 
@@ -40,7 +40,7 @@ def test_title_summary_and_creators_are_shown_as_written(page_of):
 
 def test_every_dataset_and_the_code_are_named(page_of):
     page = page_of("studies/mine.yaml")
-    assert all(f"`data/{kind}.nc`" in page for kind in DATASETS)
+    assert all(f"`data/{kind}.nc`" in page for kind in SMOKE_DATASETS)
     assert "| `study/studies/mine.yaml` | the study as it was written |" in page
     assert "lube explain data/contact.nc --force 1600 --speed 100 --temperature 80" in page
     assert "measured records" not in page

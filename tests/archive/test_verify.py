@@ -6,12 +6,11 @@ import zipfile
 import pytest
 import xarray as xr
 import yaml
-from studies import CONFIG
+from studies import CONFIG, SMOKE_DATASETS
 
 from lube.archive.build import SUMS, VALUES, files_of, make_archive, sums_of
 from lube.archive.verify import unpacked, verify_archive
 from lube.errors import DataError
-from lube.schema import DATASETS
 from lube.storage.netcdf import save
 from lube.storage.provenance import fingerprint
 from lube.study.study import load_study
@@ -141,7 +140,7 @@ def test_of_measured_records_the_manifest_is_checked(datasets, archive, tmp_path
     record.write_text("measured")
     study = load_study(mine)
     results = shutil.copytree(archive / "data", tmp_path / "results")
-    for kind in DATASETS:
+    for kind in SMOKE_DATASETS:
         inputs = [results / "film.nc", manifest, record] if kind == "experiment" else []
         save(datasets[kind], results / f"{kind}.nc", kind, study, inputs)
     (results / "explorer.html").write_text("page")

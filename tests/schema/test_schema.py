@@ -58,7 +58,7 @@ def test_label_writes_what_check_asks_for_in_place_of_other_attributes():
 
 CONTENTS = {
     *("coordinate", "modelResult", "qualityInformation"),
-    *("auxiliaryInformation", "referenceInformation", "record"),
+    *("auxiliaryInformation", "referenceInformation", "physicalMeasurement", "record"),
 }
 
 

@@ -111,6 +111,7 @@ def changed_stages(paper_with):
 MECHANICS = {"contact", "tail", "areal", "trace", "experiment"}
 LAYER = MECHANICS | {"master", "height_distribution"}  # which are for pure rolling
 LINES = LAYER | {"roughness"}
+SPECTRUM = LINES | {"surface"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 
 
@@ -121,10 +122,10 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS),
         ("revolutions", 3, {"contact"}),
         ("seed", 1, LINES),
-        ("roughness.points", 500_000, LINES),
-        ("roughness.longest_wavelength", "0.4 mm", LINES),
-        ("rollers.second.rms_roughness", "0.3 um", LINES | {"film"}),
-        ("rollers.first.radius", "60 mm", LINES | {"film"}),
+        ("roughness.points", 500_000, SPECTRUM),
+        ("roughness.longest_wavelength", "0.4 mm", SPECTRUM),
+        ("rollers.second.rms_roughness", "0.3 um", SPECTRUM | {"film"}),
+        ("rollers.first.radius", "60 mm", SPECTRUM | {"film"}),
         ("film_formulas", ["paper"], {"film"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
@@ -138,7 +139,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("name", "another", set()),
         # Of the forces, the largest sets the lines by its contact width.
         ("operating_grid.force", newtons(150, 400, 800, 1600), GRID | {"film"}),
-        ("operating_grid.force", newtons(800, 1600, 1700), LINES | {"film"}),
+        ("operating_grid.force", newtons(800, 1600, 1700), SPECTRUM | {"film"}),
     ]:
         assert changed_stages((key, value)) == stages
 

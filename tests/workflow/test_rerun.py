@@ -10,15 +10,16 @@ import re
 
 import pytest
 from repository import figures_of, products_of
+from studies import SMOKE_DATASETS
 
-from lube.schema import DATASETS, forerunners
+from lube.schema import forerunners
 
 BATCHES = {f"batches/{stage}_{first}.nc" for stage in ("contact", "master") for first in (0, 2)}
 
 
 def after(repository, *changed):
     """Datasets of the changed stages and of those that follow, with the figures that use them."""
-    made = {kind for kind in DATASETS if {kind, *forerunners(kind)} & set(changed)}
+    made = {kind for kind in SMOKE_DATASETS if {kind, *forerunners(kind)} & set(changed)}
     return {f"{kind}.nc" for kind in made} | figures_of(repository, *made)
 
 

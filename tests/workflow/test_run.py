@@ -5,16 +5,17 @@ import re
 
 import pytest
 from repository import products_of
+from studies import SMOKE_DATASETS
 
 from lube.rig.study_shares import over_grid
-from lube.schema import DATASETS, STAGES, check, forerunners
+from lube.schema import STAGES, check, forerunners
 from lube.storage.netcdf import load
 
 
 def test_all_datasets_figures_notebooks_and_the_explorer_are_made_and_nothing_unfinished_is_left(
     smoke,
 ):
-    expected = {f"{kind}.nc" for kind in DATASETS}
+    expected = {f"{kind}.nc" for kind in SMOKE_DATASETS}
     expected |= {name for figure in smoke.notebooks for name in products_of(figure)}
     expected.add("explorer.html")
     assert smoke.notebooks
@@ -23,7 +24,7 @@ def test_all_datasets_figures_notebooks_and_the_explorer_are_made_and_nothing_un
 
 
 def test_every_dataset_fits_the_schema_and_says_what_it_was_made_from(smoke):
-    for kind in DATASETS:
+    for kind in SMOKE_DATASETS:
         attributes = check(load(smoke.results / f"{kind}.nc", kind), kind).attrs
         assert attributes["study"] == "smoke"
         assert attributes["source"].startswith("simulation by lube ")
@@ -142,7 +143,7 @@ def test_each_job_says_in_words_what_is_made_and_nothing_alarms(smoke):
 def test_every_job_has_a_log_and_a_benchmark(smoke):
     logs = {path.stem for path in (smoke.results / "logs").iterdir()}
     benchmarks = {path.stem for path in (smoke.results / "benchmarks").iterdir()}
-    assert {*DATASETS, "batch_0", "batch_2", "pages", "times"} <= logs == benchmarks
+    assert {*SMOKE_DATASETS, "batch_0", "batch_2", "pages", "times"} <= logs == benchmarks
     for path in (smoke.results / "benchmarks").iterdir():
         header, values = path.read_text("utf-8").splitlines()
         assert header.startswith("s\th:m:s")
