@@ -169,7 +169,7 @@ def test_every_control_moves_and_every_number_is_the_datasets(visit, explored, p
             interval = "1.2 × 10⁻¹³\u00a0% to 1.3 × 10⁻¹³\u00a0%"
             assert words["interval"] == f"of the time; 95 % interval {interval}"
             often = "1 × 10⁻⁶ breakthroughs per hour (9 × 10⁻⁷ to 1.1 × 10⁻⁶)"
-        assert page.inner_text("#rate") == often
+        assert page.inner_text("#rate") == f"{often}, on average over pairs of rollers"
 
 
 def test_without_importance_sampling_the_realisations_are_counted(visit, counted_file):

@@ -146,7 +146,7 @@ function showAnswers(point) {
     if (content.sampled) {
         const rate = limits("tail.breakthrough_rate", ["", "_lower", "_upper"], point);
         const [often, least, most] = [rate.mean, rate.lower, rate.upper].map((one) => rounded(3600 * one));
-        element("rate").textContent = `${often} breakthroughs per hour (${least} to ${most})`;
+        element("rate").textContent = `${often} breakthroughs per hour (${least} to ${most}), on average over pairs of rollers`;
     }
     element("film").textContent = shown("film_thickness", point);
     const valid = at("in_validity_range", point);
