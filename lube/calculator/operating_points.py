@@ -200,8 +200,8 @@ def contact_probability(
 
     It comes in two ways. The realisations are counted, as in ``contact.nc`` of a study; where they
     see no contact, the upper limit says how rare it is at least. Importance sampling, as in
-    ``tail.nc``, knows it at any rarity to about 2 %: take that where contact is rare. Both agree
-    where both see it.
+    ``tail.nc``, knows it at any rarity, with a standard error of about 2 % (4 % for all film
+    formulas but the first): take that where contact is rare. Both agree where both see it.
 
     Parameters
     ----------
