@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import LubeError, StudyError, shown
-from lube.schema import COORDINATES, FILES, REGIMES, Variable
+from lube.schema import COORDINATES, FILES, LIMITS, REGIMES, Variable
 from lube.study.field_types import bounded
 from lube.units import convert, parse_quantity
 
@@ -28,6 +28,7 @@ _CUSTOMARY = dict.fromkeys(_MICROMETRES, ("um", 1e6)) | {
     "time": ("ms", 1e3),
     "radius": ("mm", 1e3),
     "second_radius": ("mm", 1e3),
+    **{f"tail_breakthrough_rate{limit}": ("h-1", 3600.0) for limit in LIMITS},
 }
 """Customary unit of a variable, and its number of them in one SI unit."""
 _OWN = {
@@ -42,6 +43,13 @@ _OWN = {
 _VARIABLES = COORDINATES | FILES["lubricant"] | FILES["trace"] | FILES["film"] | FILES["contact"]
 _VARIABLES |= {
     name: Variable((), units, long_name, "f", "") for name, (long_name, units) in _OWN.items()
+}
+# Those of `tail.nc` get a prefix: some of `contact.nc` have the same names.
+_VARIABLES |= {
+    f"tail_{name}": Variable(
+        (), row.units, f"{row.long_name}, by importance sampling", row.kind, ""
+    )
+    for name, row in FILES["tail"].items()
 }
 
 

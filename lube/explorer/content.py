@@ -7,6 +7,7 @@ are thinned out: of several neighbouring steps the extreme values stay.
 import numpy as np
 import xarray as xr
 
+from lube import schema
 from lube.physics.film_formulas import FORMULAS
 from lube.schema import COORDINATES, FILES
 from lube.units import with_unit
@@ -30,6 +31,14 @@ SHOWN = {
         for kind in ("breakthrough_probability", "geometric_contact_probability")
         for limit in LIMITS
     ),
+    "tail": tuple(
+        f"{kind}{limit}"
+        for kind in (
+            *("breakthrough_probability", "geometric_contact_probability"),
+            "breakthrough_rate",
+        )
+        for limit in schema.LIMITS
+    ),
 }
 """Variables that the page holds of each dataset, all of them over some of `CHOICES`."""
 TRACES = {"contact_length": np.maximum, "contact_resistance": np.minimum}
@@ -46,7 +55,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     Parameters
     ----------
     datasets : dict of str to xarray.Dataset
-        The study's ``lubricant``, ``film``, ``contact``, ``master``, ``trace`` and
+        The study's ``lubricant``, ``film``, ``contact``, ``tail``, ``master``, ``trace`` and
         ``comparison``.
 
     Returns
@@ -55,8 +64,9 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         Fit for JSON, with None for NaN and infinity:
 
         - ``levels``: for each of `CHOICES` its values, and their names for a reader;
-        - ``variables``: for each of `SHOWN` its dimensions, unit, meaning, and values in the
-          order of the dimensions, the last one fastest;
+        - ``variables``: for each of `SHOWN`, by `page_name`, its dimensions, unit, meaning, and
+          values in the order of the dimensions, the last one fastest;
+        - ``sampled``: whether there is contact at any rarity, by importance sampling;
         - ``regimes``: names of the regimes of lubrication;
         - ``validity``: limits of the Moes numbers within which each film formula was validated;
         - ``master``: the master map;
@@ -72,16 +82,25 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
             for name, values in levels.items()
         },
         "variables": {
-            name: _variable(datasets[kind][name], kind)
+            page_name(kind, name): _variable(datasets[kind][name], kind)
             for kind, names in SHOWN.items()
             for name in names
         },
+        "sampled": not datasets["tail"].attrs["remarks"],
         "regimes": datasets["film"]["regime"].attrs["flag_meanings"].split(),
         "validity": {name: _validity(FORMULAS[name]) for name in levels["film_formula"]},
         "master": _master(datasets["master"]),
         "records": _records(datasets["comparison"]),
         "traces": [_trace(point, levels) for point in _points(datasets["trace"])],
     }
+
+
+def page_name(kind: str, name: str) -> str:
+    """Name of a variable on the page: its own, but ``tail.`` before those of ``tail.nc``.
+
+    Some of ``contact.nc`` have the same names.
+    """
+    return f"tail.{name}" if kind == "tail" else name
 
 
 def level_names(name: str, values: list, lubricant: xr.Dataset) -> list[str]:

@@ -30,6 +30,11 @@ _SHARES = (1e-6, 1e-4, 1e-2, 1.0)  # labels of the master map's colours, from en
 _DIGITS = {0.5: (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), 1.2: (1, 1.5, 2, 3, 5, 7),
            2.5: (1, 2, 5), 3.5: (1, 3), math.inf: (1,)}  # fmt: skip
 """Which digits get a label on a logarithmic axis of up to so many decades."""
+_MOST_DECADES = 8
+"""Decades of a logarithmic axis above which not all get a label."""
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_RAREST = 1e-20
+"""Lowest probability of the axes: of very thick films it would be lower than any number."""
 _FONT = "system-ui, sans-serif"
 THEME = Theme(
     json={
@@ -121,18 +126,18 @@ def _ratio_range(datasets):
 
 
 def _share_range(datasets):
-    """Probabilities of the study: down to the smallest estimate, or limit where none was seen."""
+    """Probabilities of the study: down to the smallest, or limit where none was seen."""
+    sampled = datasets["tail"]["breakthrough_probability"].values.ravel()
+    counted = np.concatenate([_estimate_or_limit(datasets[kind]) for kind in ("contact", "master")])
+    low, _ = _spread(counted if datasets["tail"].attrs["remarks"] else sampled)
+    return max(low, _RAREST), 1.6
+
+
+def _estimate_or_limit(dataset):
     mean, upper = (
-        np.concatenate(
-            [
-                datasets[kind][f"breakthrough_probability_{limit}"].values.ravel()
-                for kind in ("contact", "master")
-            ]
-        )
-        for limit in ("mean", "upper")
+        dataset[f"breakthrough_probability_{limit}"].values.ravel() for limit in ("mean", "upper")
     )
-    low, _ = _spread(np.where(mean > 0.0, mean, upper))
-    return low, 1.6
+    return np.where(mean > 0.0, mean, upper)
 
 
 def _resistance_range(trace):
@@ -159,13 +164,21 @@ def _round_numbers(low, high):
     """Round numbers for a logarithmic axis, the fewer of each decade the more decades it has."""
     decades = math.log10(high / low)
     digits = next(digits for most, digits in _DIGITS.items() if decades <= most)
+    step = math.ceil(decades / _MOST_DECADES)
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
-    numbers = [float(f"{digit}e{power}") for power in powers for digit in digits]
+    numbers = [
+        float(f"{digit}e{power}") for power in powers if power % step == 0 for digit in digits
+    ]
     return [number for number in numbers if low <= number <= high]
 
 
 def _percent(share):
-    return f"{100.0 * share:.10f}".rstrip("0").rstrip(".") + " %"
+    percent = 100.0 * share
+    if percent > 0.99e-4:
+        return f"{percent:.10f}".rstrip("0").rstrip(".") + " %"
+    digits, power = f"{percent:.1e}".split("e")
+    factor = "" if digits == "1.0" else f"{digits.removesuffix('.0')} × "
+    return f"{factor}10{str(int(power)).translate(_SUPERSCRIPTS)} %"
 
 
 def _percent_axis(plot):

@@ -5,6 +5,7 @@ import pytest
 
 import lube
 from lube import LubeError
+from lube.stages.tail import tail_probabilities
 
 GRID = {
     "force": ([100.0, 400.0, 1600.0], "N"),
@@ -34,6 +35,49 @@ def test_probabilities_and_intervals_are_those_of_the_workflow(rollers, oil, bus
             of_stage = expected[f"{name}{ending}"].transpose(*variable.dims)
             np.testing.assert_array_equal(variable, of_stage)
     assert 0.0 < found["breakthrough_probability_mean"].min() < 0.5
+
+
+def test_rare_contact_is_that_of_the_tail_stage(rollers, oil, busy):
+    values = {"realisations": 1, "seed": busy.study.seed}
+    formulas = ["paper", "pan-hamrock"]
+    found = lube.contact_probability(rollers, oil, **GRID, **values, film_formula=formulas)
+    study = busy.study
+    tail = tail_probabilities(rollers.lines, busy.film, rollers.layer, study.seed)
+    expected = tail.isel(lubricant=0, slide_to_roll_ratio=0)
+    for name, factor in (
+        ("breakthrough_probability", 1.0),
+        ("geometric_contact_probability", 1.0),
+        ("breakthrough_rate", 3600.0),
+    ):
+        for ending in ("", "_lower", "_upper"):
+            variable = found[f"tail_{name}{ending}"]
+            of_stage = factor * expected[f"{name}{ending}"].transpose(*variable.dims)
+            np.testing.assert_array_equal(variable, of_stage)
+    point = {"force": 400.0, "speed": 100.0, "temperature": 60.0, "film_formula": "paper"}
+    one = lube.contact_probability(rollers, oil, **POINT, **values, film_formula="paper")
+    there = found["tail_breakthrough_rate"].sel(point)
+    assert one["tail_breakthrough_rate"] == there and one.attrs["remarks"] == ""
+    assert one["tail_breakthrough_rate"].attrs == {
+        "long_name": "breakthroughs per time, by importance sampling",
+        "units": "h-1",
+    }
+
+
+def test_contact_that_no_realisation_sees_has_a_probability(rollers, oil):
+    cold = POINT | {"force": "100 N", "speed": "300 rpm", "temperature": "40 degC"}
+    found = lube.contact_probability(rollers, oil, **cold, realisations=2)
+    assert found["breakthrough_probability_mean"] == 0.0
+    lower, upper = (found[f"tail_breakthrough_probability_{end}"] for end in ("lower", "upper"))
+    assert 0.0 < lower < upper < found["breakthrough_probability_upper"]
+
+
+def test_heights_that_are_not_gaussian_have_no_tail(oil):
+    worn = lube.Rollers(
+        "50 mm", "0.2 um", points=50_000, shortest_wavelength="60 um", skewness=-1.0, kurtosis=5.0
+    )
+    found = lube.contact_probability(worn, oil, **POINT, realisations=1)
+    assert np.isnan(found["tail_breakthrough_probability"])
+    assert found.attrs["remarks"].startswith("roughness: got a skewness of -1")
 
 
 def test_one_point_is_a_point_of_the_grid(rollers, oil, busy):

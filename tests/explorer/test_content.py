@@ -6,10 +6,18 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from lube.explorer.content import CHOICES, SHOWN, TRACE_PIECES, TRACES, level_names, page_content
+from lube.explorer.content import (
+    CHOICES,
+    SHOWN,
+    TRACE_PIECES,
+    TRACES,
+    level_names,
+    page_content,
+    page_name,
+)
 from lube.storage.netcdf import load
 
-EXPLORED = ("lubricant", "film", "contact", "master", "trace", "comparison")
+EXPLORED = ("lubricant", "film", "contact", "tail", "master", "trace", "comparison")
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +36,7 @@ def test_every_value_is_the_datasets_bit_by_bit(explored):
     levels = {name: content["levels"][name]["values"] for name in CHOICES}
     for kind, names in SHOWN.items():
         for name in names:
-            shown, array = content["variables"][name], explored[kind][name]
+            shown, array = content["variables"][page_name(kind, name)], explored[kind][name]
             assert array.dims == tuple(shown["dims"])
             for dim in array.dims:
                 assert levels[dim] == array[dim].values.tolist()
@@ -38,6 +46,14 @@ def test_every_value_is_the_datasets_bit_by_bit(explored):
     assert master["lambda_ratio"] == explored["master"]["lambda_ratio"].values.tolist()
     mean = explored["master"]["breakthrough_probability_mean"]
     assert master["mean"] == mean.transpose("contact_width", "lambda_ratio").values.tolist()
+
+
+def test_without_importance_sampling_its_values_are_none_and_the_page_knows(explored):
+    assert read_back(explored)["sampled"]
+    none = xr.full_like(explored["tail"], np.nan).assign_attrs(remarks="roughness: not Gaussian")
+    content = read_back(explored | {"tail": none})
+    assert not content["sampled"]
+    assert set(content["variables"]["tail.breakthrough_probability"]["values"]) == {None}
 
 
 def test_levels_have_names_with_units_all_different(explored):

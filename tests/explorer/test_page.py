@@ -4,17 +4,18 @@ import itertools
 import re
 import shutil
 
+import numpy as np
 import pytest
 import xarray as xr
 from bokeh.models import ColumnDataSource, LogAxis
 from studies import OIL
 
-from lube.explorer.content import CHOICES, SHOWN, page_content
+from lube.explorer.content import CHOICES, SHOWN, page_content, page_name
 from lube.explorer.figures import COLUMNS, draw
 from lube.explorer.page import explorer_page
 from lube.storage.netcdf import load
 
-EXPLORED = ("lubricant", "film", "contact", "master", "trace", "comparison")
+EXPLORED = ("lubricant", "film", "contact", "tail", "master", "trace", "comparison")
 FLAGS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run")
 FLAGS += ("--disable-background-networking", "--disable-component-update", "--disable-sync")
 
@@ -23,18 +24,41 @@ FLAGS += ("--disable-background-networking", "--disable-component-update", "--di
 def explored(files):
     """The datasets that the page is made of; at one point no contact, and at one a lot."""
     datasets = {kind: load(files / f"{kind}.nc", kind).load() for kind in EXPLORED}
-    contact = datasets["contact"]
-    for limit, none, much in (("mean", 0.0, 0.41234), ("lower", 0.0, 0.4), ("upper", 2e-7, 0.43)):
-        share = contact[f"breakthrough_probability_{limit}"]
-        share.loc[{"temperature": 40.0}] = none
-        share.loc[{"temperature": 80.0}] = much
+    for name, none, much in (
+        ("contact breakthrough_probability_mean", 0.0, 0.41234),
+        ("contact breakthrough_probability_lower", 0.0, 0.4),
+        ("contact breakthrough_probability_upper", 2e-7, 0.43),
+        ("tail breakthrough_probability", 1.234e-15, 0.42345),
+        ("tail breakthrough_probability_lower", 1.2e-15, 0.41),
+        ("tail breakthrough_probability_upper", 1.3e-15, 0.44),
+        ("tail breakthrough_rate", 1e-9 / 3.6, 1e3),
+        ("tail breakthrough_rate_lower", 0.9e-9 / 3.6, 0.9e3),
+        ("tail breakthrough_rate_upper", 1.1e-9 / 3.6, 1.1e3),
+    ):
+        kind, variable = name.split()
+        datasets[kind][variable].loc[{"temperature": 40.0}] = none
+        datasets[kind][variable].loc[{"temperature": 80.0}] = much
     return datasets
+
+
+@pytest.fixture(scope="module")
+def counted(explored):
+    """The same without importance sampling, as where heights are not Gaussian."""
+    tail = xr.full_like(explored["tail"], np.nan).assign_attrs(remarks="roughness: not Gaussian")
+    return explored | {"tail": tail}
 
 
 @pytest.fixture(scope="module")
 def page_file(explored, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "explorer.html"
     path.write_text(explorer_page(explored), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def counted_file(counted, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "counted.html"
+    path.write_text(explorer_page(counted), encoding="utf-8")
     return path
 
 
@@ -109,7 +133,11 @@ def said(page):
 def test_every_control_moves_and_every_number_is_the_datasets(visit, explored, page_file):
     page = visit(page_file)
     film, contact = explored["film"], explored["contact"]
-    variables = {name: explored[kind][name] for kind, names in SHOWN.items() for name in names}
+    variables = {
+        page_name(kind, name): explored[kind][name]
+        for kind, names in SHOWN.items()
+        for name in names
+    }
     several = [name for name in CHOICES if contact.sizes[name] > 1]
     assert several == ["film_formula", "force", "speed", "temperature", "slide_to_roll_ratio"]
     before = {}
@@ -133,11 +161,36 @@ def test_every_control_moves_and_every_number_is_the_datasets(visit, explored, p
         meaning = film["regime"].attrs["flag_meanings"].split()[here["regime"].item()]
         assert words["regime"] == meaning.replace("_", ", ")
         if place["temperature"]:
-            assert words["probability"] == "41.2\u00a0%"
-            assert words["interval"] == "of the time; 95 % interval 40\u00a0% to 43\u00a0%"
-        else:  # no contact was seen
-            assert words["probability"] == "<\u00a02 × 10⁻⁵\u00a0%"
-            assert words["interval"] == "of the time: none was seen; 95 % upper limit"
+            assert words["probability"] == "42.3\u00a0%"
+            assert words["interval"] == "of the time; 95 % interval 41\u00a0% to 44\u00a0%"
+            often = "3.6 × 10⁶ breakthroughs per hour (3.24 × 10⁶ to 3.96 × 10⁶)"
+        else:
+            assert words["probability"] == "1.23 × 10⁻¹³\u00a0%"
+            interval = "1.2 × 10⁻¹³\u00a0% to 1.3 × 10⁻¹³\u00a0%"
+            assert words["interval"] == f"of the time; 95 % interval {interval}"
+            often = "1 × 10⁻⁶ breakthroughs per hour (9 × 10⁻⁷ to 1.1 × 10⁻⁶)"
+        assert page.inner_text("#rate") == f"{often}, on average over pairs of rollers"
+
+
+def test_without_importance_sampling_the_realisations_are_counted(visit, counted_file):
+    page = visit(counted_file, "#temperature=80")
+    assert said(page)["probability"] == "41.2\u00a0%"
+    assert said(page)["interval"] == "of the time; 95 % interval 40\u00a0% to 43\u00a0%"
+    assert drawn(page, "along")["limit"] == [2e-7, None]
+    choose(page, "temperature", 0)
+    assert said(page)["probability"] == "<\u00a02 × 10⁻⁵\u00a0%"
+    assert said(page)["interval"] == "of the time: none was seen; 95 % upper limit"
+    assert page.locator("#rate").count() == 0
+    assert "no contact seen" in page.inner_text(".key")
+
+
+def test_beside_importance_sampling_the_count_is_among_the_values(visit, page_file):
+    page = visit(page_file, "#temperature=80")
+    table = page.inner_text("#values")
+    assert "counted in the realisations\t41.2\u00a0% (40\u00a0% to 43\u00a0%)" in table
+    assert "no contact seen" not in page.inner_text(".key")
+    page.locator("summary").click()
+    assert page.inner_text("#python").endswith("point.breakthrough_probability")
 
 
 def drawn(page, source):
@@ -163,13 +216,13 @@ def test_the_figures_draw_the_chosen_point_where_the_datasets_have_it(visit, exp
         "L": here["moes_material"].item(),
         "width": 2e6 * here["contact_half_width"].item(),
         "film": 1e6 * here["film_thickness"].item(),
-        "mean": 0.41234,
+        "mean": 0.42345,
         "x": 80.0,
     }.items():
         assert chosen[name] == [expected]
     along = drawn(page, "along")
     assert along["x"] == [40.0, 80.0]
-    assert along["limit"] == [2e-7, None] and along["mean"] == [None, 0.41234]
+    assert along["limit"] == [None, None] and along["mean"] == [1.234e-15, 0.42345]
     assert len(drawn(page, "grid")["x"]) == 8 and len(drawn(page, "force")["x"]) == 4
 
 
@@ -188,7 +241,7 @@ def test_a_touched_point_is_chosen_and_the_address_keeps_it(visit, page_file):
     )
     page.mouse.click(*pixel)
     page.wait_for_function("location.hash.includes('temperature=80')")
-    assert said(page)["probability"] == "41.2\u00a0%"
+    assert said(page)["probability"] == "42.3\u00a0%"
     again = visit(page_file, f"#{page.url.partition('#')[2]}")
     assert said(again) == said(page)
 
@@ -250,7 +303,7 @@ def one_point(explored):
     """A study with a single operating point, without a record, with marks in its title."""
     at = {name: explored["trace"][name].values[0] for name in CHOICES}
     picked = dict(explored)
-    for kind in ("lubricant", "film", "contact"):
+    for kind in ("lubricant", "film", "contact", "tail"):
         dims = explored[kind].dims
         picked[kind] = explored[kind].sel({name: [at[name]] for name in CHOICES if name in dims})
     picked["trace"] = explored["trace"].isel(operating_point=[0])
@@ -263,7 +316,7 @@ def one_point(explored):
 def two_oils(explored):
     """A study with a second oil, whose films are twice as thick."""
     picked = dict(explored)
-    for kind in ("lubricant", "film", "contact"):
+    for kind in ("lubricant", "film", "contact", "tail"):
         second = explored[kind].assign_coords(lubricant=["second"])
         if kind == "film":
             second["film_thickness"] = 2.0 * second["film_thickness"]
@@ -284,7 +337,7 @@ def test_a_study_of_one_point_has_no_control_and_no_map(visit, explored, tmp_pat
     ]
     assert page.locator("#figure-map").count() == 0
     assert "record" not in page.inner_text(".key")
-    assert said(page)["probability"] == "<\u00a02 × 10⁻⁵\u00a0%"
+    assert said(page)["probability"] == "1.23 × 10⁻¹³\u00a0%"
 
 
 def test_of_several_oils_one_is_chosen(visit, explored, tmp_path):
@@ -296,8 +349,8 @@ def test_of_several_oils_one_is_chosen(visit, explored, tmp_path):
     assert float(said(page)["digits"]["film_thickness"]) == 2.0 * before
 
 
-def test_every_logarithmic_axis_has_labels_and_no_share_above_one(explored):
-    for study in (explored, one_point(explored)):
+def test_every_logarithmic_axis_has_labels_and_no_share_above_one(explored, counted):
+    for study in (explored, counted, one_point(explored)):
         sources = {name: ColumnDataSource() for name in COLUMNS}
         for plot in draw(page_content(study), study, sources).values():
             for axis, span in ((plot.xaxis[0], plot.x_range), (plot.yaxis[0], plot.y_range)):
@@ -308,6 +361,8 @@ def test_every_logarithmic_axis_has_labels_and_no_share_above_one(explored):
                     if "probability" in axis.axis_label:
                         assert max(axis.ticker.ticks) == 1.0
                         assert axis.major_label_overrides[1.0] == "100 %"
+                        names = axis.major_label_overrides.values()
+                        assert len(set(names)) == len(names) <= 10
 
 
 def test_the_page_is_small_stamped_and_complete(explored, page_file):

@@ -1,4 +1,4 @@
-EXPLORED = ("lubricant", "film", "contact", "master", "trace", "comparison")
+EXPLORED = ("lubricant", "film", "contact", "tail", "master", "trace", "comparison")
 
 
 rule explorer:

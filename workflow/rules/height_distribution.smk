@@ -8,9 +8,9 @@ rule height_distribution:
         result("logs/height_distribution.log"),
     benchmark:
         result("benchmarks/height_distribution.tsv")
-    threads: workflow.cores
     # A long job: started early, it does not keep the others waiting at the end.
     priority: 2
+    threads: workflow.cores
     params:
         study=stage_inputs("height_distribution"),
     message:

@@ -8,9 +8,9 @@ rule tail:
         result("logs/tail.log"),
     benchmark:
         result("benchmarks/tail.tsv")
-    threads: workflow.cores
     # A long job: started early, it does not keep the others waiting at the end.
     priority: 2
+    threads: workflow.cores
     params:
         study=stage_inputs("tail"),
     message:

@@ -50,29 +50,42 @@ function shown(name, point) {
 
 const named = (point, names) => names.map((name) => levels[name].names[point[name]]).join(", ");
 
+// By importance sampling where the study has it, else counted in its realisations.
 function probability(point, kind = "breakthrough") {
-    const [mean, lower, upper] = ["mean", "lower", "upper"].map((limit) => at(`${kind}_probability_${limit}`, point));
-    const seen = mean > 0;
-    return { mean, lower, upper, seen, text: seen ? percent(mean) : `<\u00a0${percent(upper)}` };
+    const sampled = limits(`tail.${kind}_probability`, ["", "_lower", "_upper"], point);
+    return sampled.mean === null ? counted(point, kind) : { ...sampled, seen: true, text: percent(sampled.mean) };
 }
+
+function counted(point, kind = "breakthrough") {
+    const found = limits(`${kind}_probability`, ["_mean", "_lower", "_upper"], point);
+    const seen = found.mean > 0;
+    return { ...found, seen, text: seen ? percent(found.mean) : `<\u00a0${percent(found.upper)}` };
+}
+
+function limits(name, endings, point) {
+    const [mean, lower, upper] = endings.map((ending) => at(`${name}${ending}`, point));
+    return { mean, lower, upper };
+}
+
+const withInterval = ({ text, seen, lower, upper }) => (seen ? `${text} (${percent(lower)} to ${percent(upper)})` : text);
 
 // One row of a source of operating points
 function row(point, along) {
-    const { mean, lower, upper, seen, text } = probability(point);
-    const share = seen ? `${text} (${percent(lower)} to ${percent(upper)})` : text;
+    const found = probability(point);
+    const { mean, lower, upper, seen } = found;
     return {
         ...point,
         x: along ? levels[along].values[point[along]] : NaN,
         film: 1e6 * at("film_thickness", point),
-        mean: seen ? mean : NaN,
-        lower: seen ? Math.max(lower, 1e-12) : NaN, // the axis ends far above
+        mean: seen ? positive(mean) : NaN,
+        lower: seen ? Math.max(lower, 1e-30) : NaN, // the axis ends far above
         upper: seen ? upper : NaN,
         limit: seen ? NaN : upper,
         lambda: at("lambda_ratio", point),
         width: 2e6 * at("contact_half_width", point),
         M: at("moes_load", point),
         L: at("moes_material", point),
-        name: `${named(point, grid)}: ${share}`,
+        name: `${named(point, grid)}: ${withInterval(found)}`,
     };
 }
 
@@ -130,6 +143,11 @@ function showAnswers(point) {
     element("interval").textContent = seen
         ? `of the time; 95 % interval ${percent(lower)} to ${percent(upper)}`
         : "of the time: none was seen; 95 % upper limit";
+    if (content.sampled) {
+        const rate = limits("tail.breakthrough_rate", ["", "_lower", "_upper"], point);
+        const [often, least, most] = [rate.mean, rate.lower, rate.upper].map((one) => rounded(3600 * one));
+        element("rate").textContent = `${often} breakthroughs per hour (${least} to ${most}), on average over pairs of rollers`;
+    }
     element("film").textContent = shown("film_thickness", point);
     const valid = at("in_validity_range", point);
     element("valid").textContent = `${at("formula_place", point)} film, ${valid ? "within" : "outside"} the formula's validated range`;
@@ -196,7 +214,7 @@ function showMaster(point, source) {
             narrow: positive(mean[0][i]),
             wide: positive(mean[last][i]),
             near: positive(mean[near][i]),
-            lower: mean[near][i] > 0 ? Math.max(lower[near][i], 1e-12) : NaN,
+            lower: mean[near][i] > 0 ? Math.max(lower[near][i], 1e-30) : NaN,
             upper: mean[near][i] > 0 ? upper[near][i] : NaN,
         })),
     );
@@ -265,6 +283,7 @@ function showValues(point) {
     rows.splice(4, 0, ["contact width", `${rounded(2e6 * at("contact_half_width", point))} µm`]);
     const heating = at("inlet_shear_heating_factor", point);
     rows.push(["film reduction by inlet shear heating, not applied", percent(heating === null ? null : 1 - heating)]);
+    if (content.sampled) rows.push(["breakthroughs counted in the realisations", withInterval(counted(point))]);
     rows.push(["geometric contact probability", probability(point, "geometric_contact").text]);
     showTable("values", rows.map(([name, value]) => [name[0].toUpperCase() + name.slice(1), value]));
     showTable(
@@ -277,9 +296,10 @@ function showValues(point) {
         ]),
     );
     const words = choices.map((name) => `${name}=${JSON.stringify(levels[name].values[point[name]])}`);
+    const [file, variable] = content.sampled ? ["tail", "probability"] : ["contact", "probability_mean"];
     element("python").textContent =
-        `import xarray as xr\n\ncontact = xr.open_dataset("results/${content.study}/contact.nc")\n` +
-        `point = contact.sel(${words.join(", ")})\npoint.breakthrough_probability_mean`;
+        `import xarray as xr\n\n${file} = xr.open_dataset("results/${content.study}/${file}.nc")\n` +
+        `point = ${file}.sel(${words.join(", ")})\npoint.breakthrough_${variable}`;
 }
 
 function prepareTraceButtons(controls) {
