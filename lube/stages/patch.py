@@ -19,7 +19,7 @@ from lube.surfaces.synthetic import ROLLERS, draw_realisation, spectrum_moments
 
 log = logging.getLogger(__name__)
 
-REALISATIONS = 6
+REALISATIONS = 4
 """Surfaces drawn."""
 PRESSURES = (0.001, 0.003, 0.01, 0.03, 0.1)
 """Pressures on the nominal area, over E* times the rms gradient."""

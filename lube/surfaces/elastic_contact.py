@@ -113,7 +113,7 @@ def press_surface(
     I. A. Polonsky and L. M. Keer, A numerical method for solving rough contact problems based on
     the multi-level multi-summation and conjugate gradient techniques, Wear 231 (1999) 206-219.
     V. A. Yastrebov, G. Anciaux and J.-F. Molinari, On the accurate computation of the true
-    contact-area in mechanical contact of random rough surfaces, Tribol. Int. 114 (2017) 161-171.
+    contact-area in mechanical contact of random rough surfaces, arXiv 1701.02727.
     """
     tamaas = find_tamaas()
     points = heights.shape[0]
