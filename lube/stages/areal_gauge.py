@@ -13,7 +13,7 @@ import xarray as xr
 from lube.rig.map_curves import windows_in
 from lube.rig.study_shares import values_with_limits
 from lube.schema import AT_RECORDS, LIMITS, label
-from lube.statistics.curves import Curve, falling_curve, film_interval
+from lube.statistics.curves import falling_curve, film_interval
 
 RESOLUTION = 1e-6
 """Probabilities closer than this to 0 or to 1 are not read."""
@@ -63,27 +63,18 @@ def gauge_by_surface(
     return label(kept, "areal_gauge")
 
 
-def _curve(film, areal, comparison, width) -> tuple[Curve, np.ndarray, np.ndarray]:
+def _curve(film, areal, comparison, width):
     """Curve of the strip's probability at a contact width; probabilities, rising, and errors."""
     widths = 2.0 * film["contact_half_width"].values
     nearest = np.argmin(np.abs(np.log(widths / width)))
     at_force = {"film_formula": 0, "force": nearest}
     strip = areal.isel(at_force | {"slide_to_roll_ratio": 0})
     ratios = film["lambda_ratio"].isel(at_force).transpose(*strip["contacts"].dims).values.ravel()
-    by_film = np.argsort(ratios)
-    mean, lower, upper = (
-        _scaled(
-            strip[f"breakthrough_probability{limit}"].values.ravel()[by_film],
-            width / widths[nearest],
-        )
-        for limit in LIMITS
-    )
+    limits = [strip[f"breakthrough_probability{limit}"].values.ravel() for limit in LIMITS]
+    # Logarithm of the probability of no contact, in a strip of this width.
+    untouched = np.log1p(-np.minimum(limits, 1.0 - 1e-12)) * width / widths[nearest]
+    mean, lower, upper = -np.expm1(untouched[:, np.argsort(ratios)])
     windows = np.full(mean.size, windows_in(comparison, width))
-    curve = falling_curve(np.log(ratios[by_film]), mean, windows, RESOLUTION)
+    curve = falling_curve(np.log(np.sort(ratios)), mean, windows, RESOLUTION)
     rising = np.argsort(mean)
     return curve, mean[rising], ((upper - lower) / 4.0)[rising]
-
-
-def _scaled(probability, factor):
-    """Probability in a strip of another width."""
-    return -np.expm1(factor * np.log1p(-np.minimum(probability, 1.0 - 1e-12)))
