@@ -20,11 +20,13 @@ include: "workflow/rules/batch.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/tail.smk"
 include: "workflow/rules/areal.smk"
+include: "workflow/rules/patch.smk"
 include: "workflow/rules/height_distribution.smk"
 include: "workflow/rules/master.smk"
 include: "workflow/rules/experiment.smk"
 include: "workflow/rules/comparison.smk"
 include: "workflow/rules/gauge.smk"
+include: "workflow/rules/areal_gauge.smk"
 include: "workflow/rules/figure.smk"
 include: "workflow/rules/speed.smk"
 include: "workflow/rules/reading.smk"
@@ -49,7 +51,14 @@ rule areal_contact:
     input:
         products(made_by("areal_contact", FIGURES)),
     message:
-        f"Done: areal.nc and its figure are in {RESULTS}"
+        f"Done: areal.nc, areal_gauge.nc and their figures are in {RESULTS}"
+
+
+rule patch_contact:
+    input:
+        products(made_by("patch_contact", FIGURES)),
+    message:
+        f"Done: patch.nc and its figure are in {RESULTS}"
 
 
 rule benchmark:

@@ -7,6 +7,7 @@ from studies import CONFIG
 
 from lube.schema import COORDINATES, FILES, label
 from lube.stages.areal import strip_contacts
+from lube.stages.areal_gauge import gauge_by_surface
 from lube.stages.comparison import compare
 from lube.stages.contact import contact_map, contact_statistics
 from lube.stages.ensemble import gather, gather_map
@@ -28,7 +29,7 @@ EXAMPLE_SURFACE = RollerTopography(
 
 
 def measured_values(kind):
-    """Values as `snakemake benchmark` saves them, all different."""
+    """Values as the file of a stage that is not run here has them, all different."""
     rng = np.random.default_rng(1)
     variables = {
         name: (row.dims, rng.uniform(1.0, 1e6, (2,) * len(row.dims)).astype(row.kind + "8"))
@@ -62,6 +63,8 @@ def datasets_of_every_kind(study):
     contact, master = gather([run], film), gather_map([mapped])
     experiment = simulated_experiment(rig_lines, film, own)
     comparison = compare(model_of_records(experiment, film, contact, own), experiment, contact)
+    areal = strip_contacts(spec, film, layer, own.rollers.length, study.seed, study.slips)
+    gauge = gauge_records(master, contact, comparison)
     return {
         "lubricant": oil,
         "film": film,
@@ -69,7 +72,8 @@ def datasets_of_every_kind(study):
         "surface": measured_surfaces({"first": EXAMPLE_SURFACE}, spec, 0.7),
         "contact_batch": run,
         "contact": contact,
-        "areal": strip_contacts(spec, film, layer, own.rollers.length, study.seed, study.slips),
+        "areal": areal,
+        "areal_gauge": gauge_by_surface(film, areal, comparison, gauge),
         "tail": tail_probabilities(spec, film, layer, study.seed, study.slips),
         "height_distribution": height_distributions(spec, film, layer, study.seed),
         "master_batch": mapped,
@@ -78,7 +82,8 @@ def datasets_of_every_kind(study):
         "experiment": experiment,
         "rig": rig_records(rig_lines, film, own),
         "comparison": comparison,
-        "gauge": gauge_records(master, contact, comparison),
+        "gauge": gauge,
+        "patch": measured_values("patch"),  # by a package that need not be installed
         "speed": measured_values("speed"),
         "reading": measured_values("reading"),
         "coverage": measured_values("coverage"),

@@ -9,6 +9,7 @@ from lube.recordings.manifest import read_manifest
 from lube.rig.at_records import model_at_records
 from lube.rig.simulator import SimulatedRig
 from lube.stages.areal import strip_contacts
+from lube.stages.areal_gauge import gauge_by_surface
 from lube.stages.comparison import compare
 from lube.stages.contact import contact_map, contact_statistics
 from lube.stages.ensemble import gather, gather_map
@@ -17,6 +18,7 @@ from lube.stages.film import film_at_records, film_table
 from lube.stages.gauge import gauge_records
 from lube.stages.height_distribution import height_distributions
 from lube.stages.lubricant import lubricant_table
+from lube.stages.patch import patch_contact
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
 from lube.stages.tail import tail_probabilities
@@ -142,13 +144,17 @@ def _datasets(study):
     at_records = film_at_records(experiment, oils, study.rollers, study.film_formulas)
     model = model_at_records(at_records, experiment, film, contact, study)
     comparison = compare(model, experiment, contact)
-    areal = {}
+    gauge = gauge_records(master, contact, comparison)
+    of_surface = {}
     if study.line_spec.is_gaussian:
-        length = study.rollers.length
-        areal["areal"] = strip_contacts(
-            study.line_spec, film, layer, length, study.seed, study.slips
-        )
-    return areal | {
+        spec, rollers = study.line_spec, study.rollers
+        areal = strip_contacts(spec, film, layer, rollers.length, study.seed, study.slips)
+        of_surface = {
+            "areal": areal,
+            "areal_gauge": gauge_by_surface(film, areal, comparison, gauge),
+            "patch": patch_contact(spec, rollers.reduced_modulus, study.seed),
+        }
+    return of_surface | {
         "lubricant": oil,
         "film": film,
         "roughness": lines,
@@ -160,7 +166,7 @@ def _datasets(study):
         "rig": rig_records(rig_lines, film, study),
         "experiment": experiment,
         "comparison": comparison,
-        "gauge": gauge_records(master, contact, comparison),
+        "gauge": gauge,
     }
 
 

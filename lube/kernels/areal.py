@@ -10,10 +10,14 @@ import numpy as np
 from lube.kernels.compiler import inlined, kernel
 from lube.types import Array, Pair
 
+BLOCK = 32
+"""Number of points of a row that are looked at, or left out, together."""
+
 
 @kernel
 def touching_strips(
     fields: Pair,
+    tops: Array,
     covariances: Pair,
     places: Pair,
     touching: Pair,
@@ -37,6 +41,8 @@ def touching_strips(
     fields : tuple of numpy.ndarray
         Heights and curvatures of a Gaussian surface, shape (M, M) each, float32, height steps and
         height steps per square metre.
+    tops : numpy.ndarray
+        Shape (M, ceil(M / `BLOCK`)), float32: greatest height of every `BLOCK` points of a row.
     covariances : tuple of numpy.ndarray
         Shape (R + 1, 2 C - 1) each, float32: covariance of the height at a point with heights and
         with curvatures around it, over the variance of the heights; at distances of 0 .. R rows
@@ -73,6 +79,10 @@ def touching_strips(
     seen = np.zeros((reach + 1 + around, width), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
     heights = np.empty(width, np.float32)
+    known = np.empty((2, reach + 1), np.float32)
+    for row in range(reach + 1):
+        known[0, row], known[1, row] = covariances[0][row].min(), covariances[0][row].max()
+    nearly = film - 1e-5 * abs(film)
     for k in range(places[0].size):
         origin = touching[0][k]
         rise = touching[1][k] - fields[0][places[0][k], places[1][k] + origin]
@@ -93,10 +103,12 @@ def touching_strips(
         if not breaks or earliest < first:
             alone_broken = 0
         for before in range(1, rows + 1):
-            if _fill_row(moved, first - before, heights) > film:
+            row = first - before
+            may_touch = _ceiling(moved, tops, known, row, width) > nearly
+            if may_touch and _fill_row(moved, row, heights) > film:
                 alone = 0
                 if alone_broken > 0:
-                    _, _, broken, _ = _row(moved, search, heights, first - before)
+                    _, _, broken, _ = _row(moved, search, heights, row)
                     if broken > 0:
                         alone_broken = 0
             if alone > 0:
@@ -144,6 +156,16 @@ def _fill_row(moved, row, heights):
         heights[column] = drawn[column] + known[column] * rise
         highest = max(highest, heights[column])
     return highest
+
+
+@inlined
+def _ceiling(moved, tops, known, row, width):
+    """Height that no point of a row exceeds, but by rounding."""
+    _, _, first_row, first_column, _, rise = moved
+    highest = np.float32(-np.inf)
+    for block in range(first_column // BLOCK, (first_column + width - 1) // BLOCK + 1):
+        highest = max(highest, tops[first_row + row, block])
+    return highest + max(known[0, abs(row)] * rise, known[1, abs(row)] * rise)
 
 
 @inlined

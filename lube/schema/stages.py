@@ -127,6 +127,16 @@ _ROWS = (
         target="areal_contact",
     ),
     Stage(
+        "areal_gauge",
+        inputs=("film", "areal", "comparison", "gauge"),
+        target="areal_contact",
+    ),
+    Stage(
+        "patch",
+        values=_LINES | {"reduced_modulus": "rollers.reduced_modulus"},
+        target="patch_contact",
+    ),
+    Stage(
         "coverage",
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),

@@ -10,7 +10,7 @@ import scipy.special
 import xarray as xr
 
 from lube.errors import DataError
-from lube.kernels.areal import touching_strips
+from lube.kernels.areal import BLOCK, touching_strips
 from lube.physics.excursions import (
     breaking_curvature,
     expected_contacts,
@@ -164,6 +164,7 @@ def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
     """First rows that touch, shape (points, 2, R + 1), and contacts in a row, shape (points, 2)."""
     drawing, choosing = map(np.random.default_rng, seeds)
     fields, chosen = surface.draw(drawing), choosing.random((4, STRIPS))
+    tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points, BLOCK), axis=1)
     longest, around = reach
     first, numbers = [], []
     for film, width, count in zip(*points, strict=True):
@@ -172,7 +173,7 @@ def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
         places = longest + around + row, column
         *each, contacts = touching_strips(
-            fields, covariances, places, touching, film, sharp, width, around
+            fields, tops, covariances, places, touching, film, sharp, width, around
         )
         first.append(share * np.stack(each))
         numbers.append(share * contacts)

@@ -15,8 +15,8 @@ _CODE = (
     *("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/**/*", "lube/**/*"),
     *("notebooks/*.ipynb", "tests/benchmarks/*.py", "profiles/*/config.yaml"),
     *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
-    *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand", "run-in")),
-    *("workflow/config/measured.yaml", "workflow/config/surfaces/example.x3p"),
+    *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
+    *("workflow/config/run-in.yaml", "workflow/config/measured.yaml"),
     *("workflow/config/surfaces/example.x3p", "workflow/report/*"),
     *("config/README.md", "config/config.yaml"),
 )

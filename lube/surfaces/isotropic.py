@@ -98,7 +98,12 @@ class Surface:
 
 
 @functools.lru_cache(maxsize=1)
-def isotropic_surface(spec: LineSpecLike, width: float = 0.0, contact: float = math.inf) -> Surface:
+def isotropic_surface(
+    spec: LineSpecLike,
+    width: float = 0.0,
+    contact: float = math.inf,
+    waves: int = LONGEST_WAVES,
+) -> Surface:
     """Find the isotropic surface that a pair of lines stands for.
 
     Parameters
@@ -109,6 +114,8 @@ def isotropic_surface(spec: LineSpecLike, width: float = 0.0, contact: float = m
         Width that the surface must have, and a longest wavelength besides, m.
     contact : float, optional
         Length of the smallest contacts, m.
+    waves : int, optional
+        Longest wavelengths along a side.
 
     Returns
     -------
@@ -121,7 +128,7 @@ def isotropic_surface(spec: LineSpecLike, width: float = 0.0, contact: float = m
         If the band of wavelengths is too wide for a square grid.
     """
     longest = 2.0 * np.pi / spec.q_min
-    side = max(LONGEST_WAVES * longest, width + longest)
+    side = max(waves * longest, width + longest)
     spacing = 2.0 * np.pi / spec.q_max / POINTS_PER_WAVE
     spacing = min(spacing, max(contact / POINTS_PER_CONTACT, side / LARGE))
     least = side / spacing

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.ndimage
 
-from lube.kernels.areal import touching_strips
+from lube.kernels.areal import BLOCK, touching_strips
 
 REACH, AROUND, WIDTH, SHARP = 60, 20, 24, 0.9
 
@@ -66,8 +66,9 @@ def test_strips_are_weighed_as_by_a_naive_implementation(film):
     for each in zip(*places, *touching, strict=True):
         parts = naive(fields, covariances, *each, film)
         expected = [total + part for total, part in zip(expected, parts, strict=True)]
+    tops = np.maximum.reduceat(fields[0], np.arange(0, 200, BLOCK), axis=1)
     found = touching_strips(
-        fields, covariances, places, touching, np.float32(film), SHARP, WIDTH, AROUND
+        fields, tops, covariances, places, touching, np.float32(film), SHARP, WIDTH, AROUND
     )
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)

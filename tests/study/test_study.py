@@ -110,7 +110,7 @@ def changed_stages(paper_with):
 
 MECHANICS = {"contact", "tail", "areal", "trace", "experiment"}
 LAYER = MECHANICS | {"master", "height_distribution"}  # which are for pure rolling
-LINES = LAYER | {"roughness"}
+LINES = LAYER | {"roughness", "patch"}
 SPECTRUM = LINES | {"surface"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import yaml
 
+from lube.schema import ON_REQUEST
 from lube.study.resolve import resolved_content
 from lube.workflow.cells import datasets_of
 
@@ -20,6 +21,12 @@ COPIED += ("config", "workflow", "docs", "lube", "notebooks", "profiles", "tests
 SMOKE = "workflow/config/smoke.yaml"
 RESULTS = "results/smoke"
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+
+
+def made_on_request(notebook):
+    """Whether a figure shows a file that bare `snakemake` does not make."""
+    text = notebook.read_text("utf-8")
+    return any(f'study / \\"{kind}.nc' in text for kind in ON_REQUEST)
 
 
 @dataclass(frozen=True)
@@ -39,7 +46,7 @@ class Repository:
     def notebooks(self):
         """Those of the figures that bare `snakemake` makes; others are made on request only."""
         paths = sorted((self.folder / "notebooks").glob("fig*.ipynb"))
-        return [path.stem for path in paths if "areal.nc" not in path.read_text("utf-8")]
+        return [path.stem for path in paths if not made_on_request(path)]
 
     def command(self, *arguments, study=SMOKE):
         options = ["--configfile", study] if study else []

@@ -1,0 +1,80 @@
+r"""The gauge by the surface: records read as contact anywhere along the rollers.
+
+A resistance below the threshold says that the rollers touch somewhere in the strip 2a x L'. The
+line knows no place along the rollers, so the stage gauge takes each record for that of a line.
+Here the same share is read from the isotropic surface over the whole strip.
+"""
+
+from functools import cache
+
+import numpy as np
+import xarray as xr
+
+from lube.rig.map_curves import windows_in
+from lube.rig.study_shares import values_with_limits
+from lube.schema import AT_RECORDS, LIMITS, label
+from lube.statistics.curves import falling_curve, film_interval
+
+RESOLUTION = 1e-6
+"""Probabilities closer than this to 0 or to 1 are not read."""
+
+
+def gauge_by_surface(
+    film: xr.Dataset, areal: xr.Dataset, comparison: xr.Dataset, gauge: xr.Dataset
+) -> xr.Dataset:
+    """Infer the lambda ratio of each record from the surface, and compare it with the line's.
+
+    The probability of the strip at the operating points of one force is a curve over the lambda
+    ratio. A record's curve is that of the nearest contact width, for which -ln(1 - p) is taken as
+    proportional to the width: contacts of different places are nearly independent.
+
+    Parameters
+    ----------
+    film, areal, comparison, gauge : xarray.Dataset
+        Datasets of these kinds, of one study.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``areal_gauge`` file of `lube.schema`. Values and limits are NaN, zero and infinity as
+        in `lube.stages.gauge.gauge_film`. The 95 % intervals include the record's own noise, the
+        error of the curve, and the scatter of one pair of rollers, for which strips that share no
+        roughness count as independent trials.
+    """
+    curve = cache(lambda width: _curve(film, areal, comparison, width))
+    first, realisations = comparison.isel(film_formula=0), comparison.sizes["realisation"]
+    names = ("contact_half_width", "measured_share", "share_error", "scatter_ratio")
+    found = []
+    for half_width, share, noise, ratio in zip(
+        *(first[name].values for name in names), strict=True
+    ):
+        read, shares, errors = curve(2.0 * half_width)
+        noise = np.hypot(noise, np.interp(share, shares, errors))
+        found.append(np.exp(film_interval(read, share, ratio, realisations, noise)))
+    ratios = np.array(found).T
+    ratios[0] = np.where((ratios[0] > 0.0) & np.isfinite(ratios[0]), ratios[0], np.nan)
+    line = [gauge[f"gauged_lambda_ratio{limit}"].values for limit in LIMITS]
+    values = values_with_limits("line_lambda_ratio", line)
+    values |= values_with_limits("surface_lambda_ratio", ratios)
+    values["surface_over_line"] = ratios[0] / line[0]
+    kept = comparison[[*AT_RECORDS, "origin", "pairs", "drift", "measured_share"]].drop_attrs()
+    kept["lambda_ratio"] = "record", first["lambda_ratio"].values
+    kept = kept.assign({name: ("record", each) for name, each in values.items()})
+    return label(kept, "areal_gauge")
+
+
+def _curve(film, areal, comparison, width):
+    """Curve of the strip's probability at a contact width; probabilities, rising, and errors."""
+    widths = 2.0 * film["contact_half_width"].values
+    nearest = np.argmin(np.abs(np.log(widths / width)))
+    at_force = {"film_formula": 0, "force": nearest}
+    strip = areal.isel(at_force | {"slide_to_roll_ratio": 0})
+    ratios = film["lambda_ratio"].isel(at_force).transpose(*strip["contacts"].dims).values.ravel()
+    limits = [strip[f"breakthrough_probability{limit}"].values.ravel() for limit in LIMITS]
+    # Logarithm of the probability of no contact, in a strip of this width.
+    untouched = np.log1p(-np.minimum(limits, 1.0 - 1e-12)) * width / widths[nearest]
+    mean, lower, upper = -np.expm1(untouched[:, np.argsort(ratios)])
+    windows = np.full(mean.size, windows_in(comparison, width))
+    curve = falling_curve(np.log(np.sort(ratios)), mean, windows, RESOLUTION)
+    rising = np.argsort(mean)
+    return curve, mean[rising], ((upper - lower) / 4.0)[rising]

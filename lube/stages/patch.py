@@ -1,0 +1,98 @@
+"""The patch stage: contact mechanics of the isotropic surface, beside those of its line.
+
+A square as wide as the longest wavelength of the roughness, which is the largest contact width
+unless the study says otherwise, is pressed against a rigid flat, without oil. The line that stands
+for it is pressed until the gap is the same.
+"""
+
+import logging
+
+import numpy as np
+import xarray as xr
+
+from lube.schema import label
+from lube.study.rollers import LineSpec
+from lube.surfaces.elastic_contact import find_tamaas, press_line, press_surface
+from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.rare_contact import check_gaussian
+from lube.surfaces.synthetic import ROLLERS, draw_realisation, spectrum_moments
+
+log = logging.getLogger(__name__)
+
+REALISATIONS = 4
+"""Surfaces drawn."""
+PRESSURES = (0.001, 0.003, 0.01, 0.03, 0.1)
+"""Pressures on the nominal area, over E* times the rms gradient."""
+LEAST_POINTS = 256
+"""Points along a side, at least."""
+DIMS = ("realisation", "relative_pressure")
+_NAMES = ("pressure", "contact_area_share", "contacts")
+
+
+def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Dataset:
+    """Press surfaces and their lines against a rigid flat.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        Parameters of the lines; `Study.line_spec` of a study.
+    reduced_modulus : float
+        Reduced modulus, Pa.
+    seed : int
+        Seed of the study.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``patch`` file of `lube.schema`.
+
+    Raises
+    ------
+    LubeError
+        If tamaas is not installed.
+    StudyError
+        If the heights of a line are not Gaussian.
+    DataError
+        If the band of wavelengths is too wide for a surface.
+    """
+    find_tamaas()
+    check_gaussian(spec)
+    longest = 2.0 * np.pi / spec.q_min
+    surface = isotropic_surface(spec, contact=4.0 * longest / LEAST_POINTS, waves=1)
+    gradient = np.sqrt(sum(_moments(spec, "rms_slope") ** 2))
+    values = {
+        "pressure": reduced_modulus * gradient * np.array(PRESSURES),
+        "side": surface.points * surface.spacing,
+        "rms_height": np.sqrt(sum(_moments(spec, "rms_height") ** 2)),
+        "rms_gradient": gradient,
+        "reduced_modulus": reduced_modulus,
+    }
+    pressed = [_pressed(spec, surface, values, seed, number) for number in range(REALISATIONS)]
+    # To (which, quantity, realisation, pressure).
+    of_surface, of_line = np.moveaxis(np.array(pressed), (1, 3), (0, 1))
+    gap, _, *counted = of_surface
+    found = dict(zip(("gap", *_NAMES[1:]), (gap, *counted), strict=True))
+    found |= {f"line_{name}": one for name, one in zip(_NAMES, of_line[1:], strict=True)}
+    variables = {name: (DIMS, one) for name, one in found.items()}
+    levels = dict(zip(DIMS, (range(REALISATIONS), np.array(PRESSURES)), strict=True))
+    values["pressure"] = DIMS[1], values["pressure"]
+    return label(xr.Dataset(variables | values, levels), "patch")
+
+
+def _moments(spec, name):
+    return np.array([spectrum_moments(spec, roller)[name] for roller in range(len(ROLLERS))])
+
+
+def _pressed(spec, surface, values, seed, number):
+    """Contacts of a surface and of a line, shape (2, pressures, quantities)."""
+    log.info("surface %d of %d", number + 1, REALISATIONS)
+    side, modulus = values["side"], values["reduced_modulus"]
+    # The first seven children belong to the lines and to the stages tail and areal.
+    child = np.random.SeedSequence((seed, number)).spawn(8)[7]
+    heights = surface.draw(np.random.default_rng(child))[0].astype(float) * spec.height_step
+    of_surface = list(press_surface(heights, side, modulus, values["pressure"]))
+    size = min(spec.points)
+    line = sum(each[:size].astype(float) for each in draw_realisation(spec, seed, number))
+    line *= spec.height_step
+    of_line = [press_line(line, spec.spacing, side, modulus, one.gap) for one in of_surface]
+    return of_surface, of_line
