@@ -13,6 +13,7 @@ from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import CONTACT_DIMS, FILES, LIMITS, OPERATING_DIMS, label
 from lube.statistics.confidence import mean_interval
+from lube.statistics.sample_size import independent_windows
 from lube.study.rollers import BoundaryLayer, LineSpec
 from lube.surfaces.rare_contact import check_gaussian, rare_contact
 from lube.surfaces.synthetic import ROLLERS, line_attributes, spectrum_moments
@@ -118,8 +119,8 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
     slip = xr.DataArray(slide_to_roll_ratio, dims="slide_to_roll_ratio")
     slip = slip.assign_coords(slide_to_roll_ratio=slip)
     points = _window_points(spec, film)
-    windows, runs = outcomes
-    contact, breakthrough = windows.transpose("outcome", ...)
+    in_windows, runs = outcomes
+    contact, breakthrough = in_windows.transpose("outcome", ...)
     _, broken, groups, new, broken_points, new_points = runs.transpose("outcome", ...)
     everywhere = xr.ones_like(slip)
     speed = film["entrainment_speed"]
@@ -131,13 +132,15 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
     rate = speed / spec.spacing * (broken + abs(slip) * new_in_window)
     perimeter = spec.points[0] * spec.spacing
     turn = perimeter / surface_speeds(speed, slip)[0]
+    width, longest = 2.0 * film["contact_half_width"], 2.0 * np.pi / spec.q_min
+    windows = independent_windows(perimeter, width, longest)
     table = {
         **_limited("geometric_contact_probability", contact * everywhere, most=1.0),
         **_limited("breakthrough_probability", breakthrough * everywhere, most=1.0),
         **_limited("breakthrough_rate", rate),
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
-        **_touching_pairs(groups * spec.points[0], breakthrough, perimeter / speed),
+        **_touching_pairs(groups * spec.points[0], breakthrough, windows, perimeter / speed),
         **_asymptotes(spec, film, boundary_layer),
     }
     return xr.Dataset(table)
@@ -187,19 +190,30 @@ def _limited(name, values, most=np.inf):
     }
 
 
-def _touching_pairs(groups, breakthrough, revolution):
+def _touching_pairs(groups, breakthrough, windows, revolution):
     """Share of pairs with a breakthrough in a revolution, and when they have the first.
 
-    Groups of breakthroughs come independently of one another. The first of them, if there is any
-    within a revolution T, comes on average after T (1 / mu - 1 / (e^mu - 1)); unless there is
-    one at the beginning.
+    Groups of breakthroughs come independently of one another. Where contact is so frequent that
+    hardly any group ends, they are fewer than the independent windows with a breakthrough, which
+    are counted instead. The first one, if mu of them are expected within a revolution T, comes on
+    average after T (1 / mu - 1 / (e^mu - 1)); unless there is one at the beginning.
     """
-    limits = _limited("touching_pair_share", groups)
-    shares = {name: (dims, -np.expm1(-values)) for name, (dims, values) in limits.items()}
-    expected = groups.mean("pair")
+    limits = zip(
+        _limited("touching_pair_share", groups).items(),
+        _limited("", breakthrough, most=1.0).values(),
+        strict=True,
+    )
+    windows = windows.broadcast_like(groups.isel(pair=0)).transpose(*groups.isel(pair=0).dims)
+    with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
+        expected = {
+            name: (dims, np.maximum(values, -windows.values * np.log1p(-seen)))
+            for (name, (dims, values)), (_, seen) in limits
+        }
+    shares = {name: (dims, -np.expm1(-values)) for name, (dims, values) in expected.items()}
+    mean = xr.Variable(*expected["touching_pair_share"])
     # The difference of two large numbers where few groups are expected.
-    exact = 1.0 / expected - 1.0 / np.expm1(expected)
-    moment = xr.where(expected < 1e-4, 0.5 - expected / 12.0, exact)
+    exact = 1.0 / mean - 1.0 / np.expm1(mean)
+    moment = xr.where(mean < 1e-4, 0.5 - mean / 12.0, exact)
     without = 1.0 - breakthrough.mean("pair")
     return shares | {"first_breakthrough_time": moment * without * revolution}
 

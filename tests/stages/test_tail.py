@@ -56,8 +56,9 @@ def test_results_are_over_the_dimensions_of_the_contact_model(tail, few):
 def test_each_interval_encloses_its_estimate(tail):
     for name in (*PROBABILITIES, "breakthrough_rate", "touching_pair_share"):
         lower, upper = tail[f"{name}_lower"], tail[f"{name}_upper"]
-        assert np.all((lower >= 0.0) & (lower < upper))
-        assert np.all((lower < tail[name]) & (tail[name] <= upper))
+        certain = upper == 1.0
+        assert np.all((lower >= 0.0) & (certain | (lower < upper)))
+        assert np.all((certain | (lower < tail[name])) & (tail[name] <= upper))
     for name in PROBABILITIES:
         assert np.all(tail[f"{name}_upper"] <= 1.0)
 
@@ -92,6 +93,13 @@ def test_where_breakthroughs_are_many_every_pair_has_one_at_once(tail):
     often = tail.isel(film_formula=0, force=2, temperature=1, slide_to_roll_ratio=0).squeeze()
     assert often["touching_pair_share"] == pytest.approx(1.0, abs=1e-6)
     assert often["first_breakthrough_time"] < 0.1 * 60.0 / often["speed"]
+
+
+def test_pairs_touch_at_least_as_often_as_one_of_their_independent_windows(tail, few, spec):
+    length = 2.0 * few["contact_half_width"].max() + 2.0 * np.pi / spec.q_min
+    without = 1.0 - tail["breakthrough_probability"].isel(slide_to_roll_ratio=0)
+    one_of_many = 1.0 - without ** (2.0 * np.pi * 0.05 / length)
+    assert np.all(tail["touching_pair_share"] >= one_of_many - 1e-12)
 
 
 def test_for_high_films_the_probabilities_approach_theory(rare):

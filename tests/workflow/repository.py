@@ -11,7 +11,7 @@ from pathlib import Path
 
 import yaml
 
-from lube.schema import ON_REQUEST
+from lube.schema import STAGES
 from lube.study.resolve import resolved_content
 from lube.workflow.cells import datasets_of
 
@@ -24,9 +24,10 @@ SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 
 
 def made_on_request(notebook):
-    """Whether a figure shows a file that bare `snakemake` does not make."""
+    """Whether a figure shows a file that bare `snakemake` does not make of the smoke study."""
     text = notebook.read_text("utf-8")
-    return any(f'study / \\"{kind}.nc' in text for kind in ON_REQUEST)
+    others = set(STAGES).difference(SMOKE_DATASETS)
+    return any(f'study / \\"{kind}.nc' in text for kind in others)
 
 
 @dataclass(frozen=True)
