@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
+from studies import SMOKE_DATASETS
 
 from lube.schema import STAGES
 from lube.study.resolve import resolved_content
