@@ -328,7 +328,8 @@ def band_table(
         raise DataError(f"{spectrum.name}: got a density of zero or less, need a positive spectrum")
     places, levels = np.log(spectrum.wave_vector), np.log(spectrum.density)
     # Half a bin beyond the last density: on with the slope before it.
-    slope = np.polyfit(places[-_LAST:], levels[-_LAST:], 1)[0]
+    away = places[-_LAST:] - np.mean(places[-_LAST:])
+    slope = np.sum(away * levels[-_LAST:]) / np.sum(away**2)
     places = np.append(places, max(np.log(q_max), places[-1]) + 1e-9)
     levels = np.append(levels, levels[-1] + slope * (places[-1] - places[-2]))
     wave_vector = np.geomspace(q_min, q_max, values)

@@ -2,6 +2,7 @@
 
 import json
 
+import pytest
 from crates import issues_of
 
 from lube.archive.crate import crate_metadata
@@ -10,6 +11,7 @@ from lube.study.metadata import About
 ORCID = "0000-0002-1825-0097"
 
 
+@pytest.mark.slow
 def test_the_catalogue_passes_the_validator(attributed_study, tmp_path):
     texts = {"README.md": "read", "data/film.nc": "film", "code/lube/stages/film.py": "pass"}
     for name, text in texts.items():

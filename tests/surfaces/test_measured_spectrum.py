@@ -147,7 +147,9 @@ def test_profiles_cut_from_it_are_1_75_times_lower():
     )
 
 
-@pytest.mark.parametrize("hurst", [0.5, 0.7, 0.9])
+@pytest.mark.parametrize(
+    "hurst", [0.7, *(pytest.param(hurst, marks=pytest.mark.slow) for hurst in (0.5, 0.9))]
+)
 def test_profiles_go_back_to_the_line_of_their_surface(hurst):
     """Means over profiles drawn from the exact spectrum; the bench has the whole table."""
     points, spacing = 8000, 0.5e-6

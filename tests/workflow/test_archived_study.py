@@ -4,6 +4,7 @@ import subprocess
 import sys
 import zipfile
 
+import pytest
 from crates import issues_of
 from repository import environment, products_of
 
@@ -67,6 +68,7 @@ def test_figures_and_numbers_are_made_again_from_the_zip_alone(archive, tmp_path
     assert (checked.stdout, checked.returncode) == ("smoke: nothing wrong\n", 0)
 
 
+@pytest.mark.slow
 def test_snakemake_makes_the_same_archive_again_and_verifies_it_each_time(archived, archive):
     first = fingerprint(archive.with_suffix(".zip"))
     archived.run("archive", "--forcerun", "archive")

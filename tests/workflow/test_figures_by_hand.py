@@ -32,6 +32,7 @@ def test_a_notebook_run_by_hand_shows_its_figure_once_and_writes_nothing(
     assert {path.name for path in (spare / "results").iterdir()} == {"smoke"}
 
 
+@pytest.mark.slow
 def test_a_failing_cell_is_named_and_leaves_the_old_figure(spare):
     """What else a failing cell leaves is tested in test_notebooks.py."""
     notebook = spare / "notebooks/fig99_mine.ipynb"
