@@ -1,8 +1,8 @@
-"""Five studies as unlike as users' are, small enough for a test, and their datasets."""
+"""Six studies as unlike as users' are, small enough for a test, and their datasets."""
 
 import numpy as np
 import yaml
-from studies import PAPER_CONTENT
+from studies import CONFIG, PAPER_CONTENT
 
 from lube.grid.operating_points import operating_points
 from lube.recordings.manifest import read_manifest
@@ -21,6 +21,7 @@ from lube.stages.lubricant import lubricant_table
 from lube.stages.patch import patch_contact
 from lube.stages.rig import rig_records
 from lube.stages.roughness import roughness_batch, roughness_lines
+from lube.stages.surface import measured_surfaces
 from lube.stages.tail import tail_probabilities
 from lube.stages.trace import contact_trace
 from lube.storage.netcdf import save
@@ -65,6 +66,12 @@ _SILICON_NITRIDE = {
     },
 }
 
+_STEEL = {"young_modulus": "210 GPa", "poisson_ratio": 0.3}
+_EXAMPLE = str(CONFIG / "surfaces/example.x3p")
+_MAP = {"file": _EXAMPLE, "texture": "isotropic", "holes": "interpolate"}
+_BAND = {"longest_wavelength": "200 um"}
+_SCAN = {"file": "scan.csv", "texture": "along rolling", "use": "repeated line"}
+
 STUDIES = {
     "paper": _small("paper"),
     "ceramic": _small(
@@ -101,6 +108,19 @@ STUDIES = {
         traces=[_trace(800, 100, 65), _trace(1600, 100, 80)],
         experiment=PAPER_CONTENT["experiment"] | {"manifest": "records.csv"},
     ),
+    # Lines drawn from the spectrum of a map, against a profile that is the line.
+    "topographies": _small(
+        "topographies",
+        film_formulas=["paper"],
+        rollers={
+            "length": "5 mm",
+            "first": _STEEL | {"radius": "8 mm", "topography": _MAP, "roughness": _BAND},
+            "second": _STEEL | {"radius": "6 mm", "topography": _SCAN},
+        },
+        roughness=PAPER_CONTENT["roughness"] | {"points": 40_000, "shortest_wavelength": "7 um"},
+        operating_grid=_grid([60, 120], [600, 2000], [50, 80]),
+        traces=[_trace(120, 600, 80)],
+    ),
 }
 
 
@@ -115,6 +135,7 @@ def write_datasets(content, folder):
     folder.mkdir()
     path = folder / "study.yaml"
     path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    _write_scan(folder / _SCAN["file"])
     manifest = content["experiment"].get("manifest")
     if manifest:
         (folder / manifest).touch()  # a study must name a file that exists
@@ -130,7 +151,7 @@ def write_datasets(content, folder):
 def _datasets(study):
     grid, layer = study.operating_grid, study.boundary_layer
     oil = lubricant_table(study.lubricants, grid.temperature)
-    film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+    film = film_table(oil, study.rough_rollers, grid.force, grid.speed, study.film_formulas)
     lines = roughness_lines(study.line_spec, study.seed, study.kept_realisations)
     batch = roughness_batch(study.line_spec, study.seed, range(study.realisations))
     run = contact_statistics(batch, film, layer, study.slips, study.revolutions)
@@ -141,7 +162,7 @@ def _datasets(study):
     else:
         experiment = simulated_experiment(rig_lines, film, study)
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    at_records = film_at_records(experiment, oils, study.rollers, study.film_formulas)
+    at_records = film_at_records(experiment, oils, study.rough_rollers, study.film_formulas)
     model = model_at_records(at_records, experiment, film, contact, study)
     comparison = compare(model, experiment, contact)
     gauge = gauge_records(master, contact, comparison)
@@ -154,20 +175,39 @@ def _datasets(study):
             "areal_gauge": gauge_by_surface(film, areal, comparison, gauge),
             "patch": patch_contact(spec, rollers.reduced_modulus, study.seed),
         }
-    return of_surface | {
-        "lubricant": oil,
-        "film": film,
-        "roughness": lines,
-        "contact": contact,
-        "tail": tail_probabilities(study.line_spec, film, layer, study.seed, study.slips),
-        "height_distribution": height_distributions(study.line_spec, film, layer, study.seed),
-        "master": master,
-        "trace": contact_trace(lines, film, study.trace_points, layer, study.resistivity),
-        "rig": rig_records(rig_lines, film, study),
-        "experiment": experiment,
-        "comparison": comparison,
-        "gauge": gauge,
-    }
+    spec, some = study.line_spec, {}
+    if spec.is_drawn:
+        some["height_distribution"] = height_distributions(spec, film, layer, study.seed)
+    if study.topographies:
+        some["surface"] = measured_surfaces(study.topographies, spec, 0.7)
+    return (
+        of_surface
+        | some
+        | {
+            "lubricant": oil,
+            "film": film,
+            "roughness": lines,
+            "contact": contact,
+            "tail": tail_probabilities(study.line_spec, film, layer, study.seed, study.slips),
+            "master": master,
+            "trace": contact_trace(lines, film, study.trace_points, layer, study.resistivity),
+            "rig": rig_records(rig_lines, film, study),
+            "experiment": experiment,
+            "comparison": comparison,
+            "gauge": gauge,
+        }
+    )
+
+
+def _write_scan(path):
+    """Write a profile of 3 mm as if it were measured."""
+    position = np.arange(0.0, 3.0, 2e-3)  # mm
+    waves = np.random.default_rng(1).standard_normal((60, 2))
+    phases = 2.0 * np.pi * np.outer(position / 3.0, np.arange(5, 65) * 1.3)
+    heights = 0.03 * (np.cos(phases) @ waves[:, 0] + np.sin(phases) @ waves[:, 1])
+    columns = np.column_stack([position, heights + position])
+    header = "position [mm],height [um]"
+    np.savetxt(path, columns, "%.8g", ",", header=header, comments="")
 
 
 def _write_records(study, manifest):

@@ -20,7 +20,7 @@ from lube.schema import CONTACT_DIMS, LIMITS, OPERATING_DIMS, label
 from lube.statistics.confidence import jackknife_interval, mean_interval
 from lube.study.rollers import BoundaryLayer, LineSpec
 from lube.surfaces.isotropic import isotropic_surface
-from lube.surfaces.rare_contact import check_gaussian
+from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.synthetic import ROLLERS, spectrum_moments
 
 SURFACES = 24
@@ -92,7 +92,7 @@ def strip_contacts(
     :math:`\pi \tau_0/(2 E^* h_c)`. The line's criterion is twice that, because the mapping doubles
     the curvature of a summit.
     """
-    check_gaussian(spec)
+    check_isotropic(spec)
     film = film.isel(film_formula=[0]).transpose(*OPERATING_DIMS)
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     widest, lowest = 2.0 * half_width.max().item(), thickness.min().item()

@@ -14,7 +14,7 @@ from lube.schema import label
 from lube.study.rollers import LineSpec
 from lube.surfaces.elastic_contact import find_tamaas, press_line, press_surface
 from lube.surfaces.isotropic import isotropic_surface
-from lube.surfaces.rare_contact import check_gaussian
+from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.synthetic import ROLLERS, draw_realisation, spectrum_moments
 
 log = logging.getLogger(__name__)
@@ -56,7 +56,7 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
         If the band of wavelengths is too wide for a surface.
     """
     find_tamaas()
-    check_gaussian(spec)
+    check_isotropic(spec)
     longest = 2.0 * np.pi / spec.q_min
     surface = isotropic_surface(spec, contact=4.0 * longest / LEAST_POINTS, waves=1)
     gradient = np.sqrt(sum(_moments(spec, "rms_slope") ** 2))

@@ -269,6 +269,8 @@ class RoughLine(StrictModel, arbitrary_types_allowed=True):
         Measured spectrum: wave vectors, rad/m, and densities, m^3, between which it is a power law.
     heights : MeasuredHeights, optional
         Measured heights of the line itself.
+    isotropic : bool
+        Whether the line stands for an isotropic surface; by default it does.
     """
 
     points: int
@@ -281,6 +283,7 @@ class RoughLine(StrictModel, arbitrary_types_allowed=True):
     kurtosis: float = 3.0
     spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None = None
     heights: _Heights | None = None
+    isotropic: bool = True
 
     @property
     def is_gaussian(self) -> bool:
@@ -394,6 +397,7 @@ def _rough_line(rollers, roughness, name, rms, lengths):
         try:
             grid = points, spacing, (longest, shortest)
             shape = roller.topography.line(grid, width, roughness.height_step)
+            shape["isotropic"] = roller.topography.texture == "isotropic"
         except LubeError as error:
             raise StudyError(f"rollers.{name}.topography: {error}") from None
     else:

@@ -107,6 +107,27 @@ def check_gaussian(spec: LineSpecLike) -> None:
             )
 
 
+def check_isotropic(spec: LineSpecLike) -> None:
+    """Refuse lines that stand for no isotropic Gaussian surface.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines.
+
+    Raises
+    ------
+    StudyError
+        As from `check_gaussian`, or if a line was measured along rolling.
+    """
+    check_gaussian(spec)
+    if not all(line.isotropic for line in spec.lines):
+        raise StudyError(
+            "rollers: got a topography taken along rolling, need isotropic ones: the surface that "
+            "a line stands for is isotropic"
+        )
+
+
 def draw_pair(spec: LineSpecLike, seed: int, number: int) -> tuple[Pair, np.random.Generator]:
     """Draw a pair of Gaussian lines.
 

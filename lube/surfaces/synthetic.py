@@ -58,6 +58,8 @@ class RoughLineLike(Protocol):
         Measured wave vectors, rad/m, and densities, m^3, in place of the Hurst exponent.
     heights : object or None
         Measured heights; its `steps` is an array of shape (N,), int32 height steps.
+    isotropic : bool
+        Whether the line stands for an isotropic surface.
     """
 
     points: int
@@ -71,6 +73,7 @@ class RoughLineLike(Protocol):
     is_gaussian: bool
     spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None
     heights: Any
+    isotropic: bool
 
 
 class LineSpecLike(Protocol):

@@ -14,6 +14,7 @@ from studies import CONFIG, PAPER
 from lube.errors import LubeError
 from lube.recordings.example_surface import isotropic_surface
 from lube.study.study import load_study
+from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.synthetic import draw_realisation, spectrum_moments
 
 refusal = partial(one_line, LubeError, load_study)
@@ -141,6 +142,14 @@ def test_two_measured_lines_are_one_pair(study_file):
     assert "realisations: got 64, need 1: both lines are measured" in refusal(
         study_file(SCAN | {"use": "repeated line"})
     )
+
+
+def test_no_isotropic_surface_belongs_to_profiles_along_rolling(study_file):
+    check_isotropic(load_study(study_file(MAP)).line_spec)
+    with pytest.raises(LubeError, match="need isotropic ones"):
+        check_isotropic(load_study(study_file(SCAN)).line_spec)
+    with pytest.raises(LubeError, match="got a measured line, need lines drawn"):
+        check_isotropic(load_study(study_file(SCAN | {"use": "repeated line"}, MAP)).line_spec)
 
 
 def test_what_was_read_of_a_map_is_plain_data_and_spares_the_jobs_reading_it(study_file):
