@@ -46,8 +46,8 @@ class Rollers:
     radius : str
         Radius of the first roller, such as ``"50 mm"``.
     rms_roughness : str, optional
-        Rms roughness of the first roller by itself, such as ``"0.2 um"``. In place of it either
-        `ra_roughness` or `composite_rms_roughness` is needed.
+        Rms roughness of the first roller by itself, such as ``"0.2 um"``. In place of it
+        `ra_roughness`, `composite_rms_roughness` or a `topography` is needed.
     length : str, optional
         Length of the line contact.
     young_modulus, poisson_ratio : str, float, optional
@@ -64,6 +64,10 @@ class Rollers:
         Mean absolute height Ra of the first roller; the rms is taken as Ra (pi / 2)^0.5.
     composite_rms_roughness : str, optional
         Rms roughness of both rollers together; each then has this / 2^0.5.
+    topography : dict, optional
+        Measured surface of the first roller, from whose spectrum its lines are drawn, such as
+        ``{"file": "scan.x3p", "texture": "isotropic"}``; the keys are those of a study. The
+        longest and the shortest wavelength must lie within the measured ones.
     roll_off_wavelength : str, optional
         Beyond it the spectral density of the surface is constant; by default nowhere.
     skewness, kurtosis : float, optional
@@ -117,6 +121,7 @@ class Rollers:
         hurst_exponent: float = 0.7,
         ra_roughness: str | None = None,
         composite_rms_roughness: str | None = None,
+        topography: Mapping[str, object] | None = None,
         roll_off_wavelength: str | None = None,
         skewness: float = 0.0,
         kurtosis: float = 3.0,
@@ -130,7 +135,11 @@ class Rollers:
             "young_modulus": young_modulus,
             "poisson_ratio": poisson_ratio,
         }
-        heights = {"rms_roughness": rms_roughness, "ra_roughness": ra_roughness}
+        heights = {
+            "rms_roughness": rms_roughness,
+            "ra_roughness": ra_roughness,
+            "topography": topography,
+        }
         if not isinstance(second, Mapping | None):
             raise StudyError(
                 f"Rollers: second: got {shown(second)}, need what differs, such as "
@@ -171,6 +180,11 @@ class Rollers:
         texture = validate(Roughness, roughness, "Rollers", StudyError)
         self.lines = line_spec(self.pair, texture, largest_force=math.nan)
         self.pair = self.pair.with_lines(self.lines)
+        if not self.lines.is_drawn:
+            raise StudyError(
+                "Rollers: topography.use: got a measured line, need 'spectrum': answers here are "
+                "means over drawn lines; a study can do it"
+            )
 
     def __repr__(self) -> str:
         pair = self.pair

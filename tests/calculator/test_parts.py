@@ -4,7 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
-from studies import OIL
+from studies import CONFIG, OIL
 
 from lube import LubeError, Oil, Rollers, load_record
 
@@ -31,6 +31,19 @@ def test_the_second_roller_differs_in_what_is_said():
     pair = Rollers("50 mm", "0.2 um", second={"radius": "30 mm", "young_modulus": "310 GPa"}).pair
     assert (pair.second.radius, pair.second.young_modulus) == (0.03, 310e9)
     assert pair.second.rms_roughness == pair.first.rms_roughness
+
+
+def test_rollers_take_a_measured_surface_and_have_the_rms_height_of_its_lines():
+    example = {"file": str(CONFIG / "surfaces/example.x3p"), "texture": "isotropic"}
+    band = {"longest_wavelength": "0.2 mm", "shortest_wavelength": "6.25 um"}
+    surface = {"topography": example | {"holes": "interpolate"}}
+    both = Rollers("50 mm", **surface, **band)
+    assert both.pair.rms_heights == both.lines.rms_height
+    assert both.pair.first.rms_roughness == pytest.approx(0.19e-6, rel=0.01)
+    one = Rollers("50 mm", "0.1 um", second=surface, **band)
+    assert one.pair.rms_heights == (0.1e-6, both.lines.rms_height[1])
+    with pytest.raises(LubeError, match=r"Rollers: topography: got .* beside a roughness of 1e-07"):
+        Rollers("50 mm", "0.1 um", **surface, **band)
 
 
 def test_rollers_take_ra_a_composite_or_a_texture_of_each():
