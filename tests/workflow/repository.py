@@ -133,7 +133,7 @@ class Repository:
 
 def environment():
     """The environment of a user who has not prepared anything for the copy."""
-    names = {"PYTHONPATH", "SNAKEMAKE_PROFILE"}
+    names = {"PYTHONPATH", "SNAKEMAKE_PROFILE", "PYTHONDONTWRITEBYTECODE"}
     return {name: value for name, value in os.environ.items() if name not in names}
 
 

@@ -10,7 +10,6 @@ rule tail:
         result("benchmarks/tail.tsv")
     # A long job: started early, it does not keep the others waiting at the end.
     priority: 2
-    threads: workflow.cores
     params:
         study=stage_inputs("tail"),
     message:
