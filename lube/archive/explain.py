@@ -135,6 +135,11 @@ def _level(coordinate, path, wanted):
 
 def _computed_again(stored, film, run):
     """Draw the roughness again and run the contact model on it; use only the levels of `stored`."""
+    if any(line.get("heights") for line in run["lines"]["lines"]):
+        raise DataError(
+            "contact.nc: got a line that is a measured profile, need lines drawn from a spectrum: "
+            "its heights are in roughness.nc alone"
+        )
     spec = LineSpec(**run["lines"])
     layer = BoundaryLayer.model_construct(**run["boundary_layer"])
     ratios, parts = stored["slide_to_roll_ratio"].values.tolist(), []
