@@ -19,7 +19,7 @@ from lube.surfaces.rare_contact import check_gaussian, rare_contact
 from lube.surfaces.synthetic import ROLLERS, line_attributes, spectrum_moments
 
 PAIRS = 40
-"""Pairs of lines for the first film formula, enough for a relative standard error of 2 %; the errors
+"""Pairs of lines for the first film formula, enough for a relative standard error of 2 %; errors
 follow from the scatter between them."""
 FEWER_PAIRS = 8
 """Pairs of lines for the other film formulas, the first of these."""
