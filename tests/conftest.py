@@ -16,7 +16,7 @@ from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch
 from lube.storage.netcdf import save
 from lube.study.metadata import About
-from lube.study.rollers import Texture
+from lube.study.rollers import OwnRoughness
 
 # The first example of a test may have to wait for its kernel to be compiled.
 settings.register_profile("lube", deadline=None)
@@ -63,13 +63,13 @@ def attributed_study(study):
 def make_spec(study):
     """Maker of a line specification: the study's, with other points, radius or roughness."""
 
-    def make(points, second_radius=None, second_roughness=None, second_texture=None, **roughness):
+    def make(points, second_radius=None, second_roughness=None, second_own=None, **roughness):
         second = study.rollers.second
         second = second.model_copy(
             update={
                 "radius": second_radius or second.radius,
                 "rms_roughness": second_roughness or second.rms_roughness,
-                "roughness": second_texture and Texture(**second_texture),
+                "roughness": second_own and OwnRoughness(**second_own),
             }
         )
         return line_spec(

@@ -177,8 +177,8 @@ class Rollers:
             "kurtosis": kurtosis,
             "height_step": _HEIGHT_STEP,
         }
-        texture = validate(Roughness, roughness, "Rollers", StudyError)
-        self.lines = line_spec(self.pair, texture, largest_force=math.nan)
+        shared = validate(Roughness, roughness, "Rollers", StudyError)
+        self.lines = line_spec(self.pair, shared, largest_force=math.nan)
         self.pair = self.pair.with_lines(self.lines)
         if not self.lines.is_drawn:
             raise StudyError(

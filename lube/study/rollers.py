@@ -52,7 +52,7 @@ _Skewness = pure_number(least=-3.0, most=3.0)
 _Kurtosis = pure_number(above=1.0, most=20.0)
 
 
-class Texture(StrictModel):
+class OwnRoughness(StrictModel):
     """What one roller has in place of the values of the study's section `roughness`."""
 
     hurst_exponent: _Hurst | None = None
@@ -86,7 +86,7 @@ class Roller(StrictModel):
     """rms height Rq of the roughness"""
     ra_roughness: Length | None = None
     """mean absolute height Ra, in place of the rms height, which is taken as Ra (pi / 2)^0.5"""
-    roughness: Texture | None = None
+    roughness: OwnRoughness | None = None
     topography: RollerTopography | None = None
 
     @property
@@ -219,10 +219,10 @@ class Roughness(StrictModel):
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
 
-    def of(self, texture: Texture | None) -> "Roughness":
+    def of(self, own: OwnRoughness | None) -> "Roughness":
         """Return the roughness of one roller, which may have values of its own."""
-        own = {name: value for name, value in texture or () if value is not None}
-        return self.model_copy(update=own)
+        given = {name: value for name, value in own or () if value is not None}
+        return self.model_copy(update=given)
 
     def wavelengths(self, contact_width: float, spacing: float) -> tuple[float, float]:
         """Longest and shortest wavelength, m, at the largest contact width and a grid spacing."""
@@ -442,8 +442,8 @@ def check_width(spec: LineSpec, width: float, what: str) -> None:
 class _Keys:
     """Key of a value of a roller's roughness: its own, or else that of the study."""
 
-    def __init__(self, roller, texture):
-        self._roller, self._own = roller, dict(texture or ())
+    def __init__(self, roller, own):
+        self._roller, self._own = roller, dict(own or ())
 
     def __call__(self, name):
         own = self._own.get(name) is not None

@@ -136,8 +136,10 @@ def measure_grids(study):
     """Measure the cost of a realisation against the number of points around the roller."""
     times = []
     for finer in FINER_GRIDS:
-        texture = study.roughness.model_copy(update={"points": study.roughness.points * finer})
-        spec = line_spec(study.rollers, texture, max(study.operating_grid.force))
+        finer_roughness = study.roughness.model_copy(
+            update={"points": study.roughness.points * finer}
+        )
+        spec = line_spec(study.rollers, finer_roughness, max(study.operating_grid.force))
         run = partial(measure_realisation, study, spec, *points_of(study, spec))
         times.append(best_times(run, runs=3)[0])
         print(f"realisation of {spec.points[0]:8d} points: {1e3 * times[-1]:.1f} ms", flush=True)

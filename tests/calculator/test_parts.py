@@ -46,7 +46,7 @@ def test_rollers_take_a_measured_surface_and_have_the_rms_height_of_its_lines():
         Rollers("50 mm", "0.1 um", **surface, **band)
 
 
-def test_rollers_take_ra_a_composite_or_a_texture_of_each():
+def test_rollers_take_ra_a_composite_or_a_roughness_of_each():
     ra = Rollers("50 mm", ra_roughness="0.16 um", second={"rms_roughness": "0.1 um"}).pair
     assert ra.rms_heights == pytest.approx((0.16e-6 * np.sqrt(np.pi / 2.0), 0.1e-6))
     both = Rollers("50 mm", composite_rms_roughness="0.3 um").pair

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lube.report.summary import facts, findings, made
-from lube.study.rollers import Texture
+from lube.study.rollers import OwnRoughness
 
 
 def test_the_numbers_of_the_study_are_stated(study, datasets):
@@ -47,7 +47,7 @@ def test_unequal_rollers_many_levels_and_measured_records_are_stated(study, data
 
 def test_rollers_with_a_roughness_of_their_own_are_stated(study, datasets):
     own = {"rms_roughness": None, "ra_roughness": 1.6e-7}
-    own["roughness"] = Texture(hurst_exponent=0.9, roll_off_wavelength="0.2 mm", kurtosis=4)
+    own["roughness"] = OwnRoughness(hurst_exponent=0.9, roll_off_wavelength="0.2 mm", kurtosis=4)
     second = study.rollers.second.model_copy(update=own)
     rollers = study.rollers.model_copy(update={"second": second})
     text = facts(study.model_copy(update={"rollers": rollers}), datasets["lubricant"])

@@ -198,7 +198,7 @@ def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study
 
 
 def test_lines_that_are_not_gaussian_have_no_value_and_a_remark(make_spec, few, study, tail):
-    worn = make_spec(100_000, second_texture={"skewness": -1.0, "kurtosis": 5.0})
+    worn = make_spec(100_000, second_own={"skewness": -1.0, "kurtosis": 5.0})
     found = tail_probabilities(worn, few, study.boundary_layer, SEED, RATIOS)
     assert found.attrs["remarks"] == (
         "roughness: got a skewness of -1 and a kurtosis of 5, need 0 and 3: importance sampling is "

@@ -101,7 +101,7 @@ def test_the_longest_wavelength_of_both_is_that_of_the_pair(study_with):
     assert not study_with(("roughness.skewness", -0.1)).line_spec.is_gaussian
 
 
-def test_a_rollers_texture_is_an_input_of_its_lines_but_not_of_the_film(study_with):
+def test_a_rollers_own_roughness_is_an_input_of_its_lines_but_not_of_the_film(study_with):
     before, after = load_study(PAPER), study_with(("rollers.first.roughness", {"kurtosis": 4}))
     assert before.stage_inputs("film") == after.stage_inputs("film")
     assert before.stage_inputs("roughness") != after.stage_inputs("roughness")
@@ -153,7 +153,7 @@ def test_a_mistake_is_refused_in_one_line(paper_with, key, value, needed):
 
 def test_a_drift_of_lines_that_are_not_gaussian_is_refused(paper_with):
     message = refusal(paper_with(("rig.drift", 0.1), ("roughness.kurtosis", 4)))
-    assert "rig.drift: got 0.1, need 0 for a simulated rig with roughness that is not" in message
+    assert "rig.drift: got 0.1, need 0 for a simulated rig with roughness that is" in message
 
 
 def test_with_value_does_not_change_the_papers_content():

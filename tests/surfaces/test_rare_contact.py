@@ -143,7 +143,7 @@ def test_lines_that_are_not_gaussian_are_refused(make_spec):
 
 def test_a_window_of_two_lines_of_their_own_has_the_longer_reach(make_spec):
     own = {"hurst_exponent": 0.5, "longest_wavelength": "0.2 mm", "roll_off_wavelength": "0.1 mm"}
-    spec = make_spec(50_000, second_texture=own, shortest_wavelength=2e-5)
+    spec = make_spec(50_000, second_own=own, shortest_wavelength=2e-5)
     (windows, error), (runs, runs_error) = estimates(spec, [2.0], [41])
     expected, scatter = counted(spec, 2.0, 41, 24)
     found = np.concatenate([windows[:, 0], runs[[0, 1, 4], 0]])

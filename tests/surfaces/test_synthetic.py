@@ -170,7 +170,7 @@ def test_density_of_the_surface_is_constant_below_the_roll_off(make_spec):
 
 def test_each_roller_has_a_spectrum_of_its_own(make_spec):
     own = {"hurst_exponent": 0.4, "longest_wavelength": "0.2 mm", "shortest_wavelength": "20 um"}
-    both, same = make_spec(50_000, second_texture=own), make_spec(50_000)
+    both, same = make_spec(50_000, second_own=own), make_spec(50_000)
     first, amplitudes = wave_amplitudes(both, 1)
     assert (first, first + amplitudes.size - 1) == (1571, 15707)
     slope, _ = np.polyfit(np.log(first + np.arange(amplitudes.size)), np.log(amplitudes), 1)
@@ -280,7 +280,7 @@ def test_worn_lines_are_the_same_in_any_order_and_for_equal_rollers(run_in, make
     for number in (3, 0, 3):
         np.testing.assert_array_equal(draw_realisation(spec, SEED, number), pairs[number])
     own = {"skewness": -1.0, "kurtosis": 5.0}
-    mixed = make_spec(100_000, second_texture=own)
+    mixed = make_spec(100_000, second_own=own)
     first, second = draw_realisation(mixed, SEED, 3)
     np.testing.assert_array_equal(first, draw_realisation(make_spec(100_000), SEED, 3)[0])
     np.testing.assert_array_equal(second, pairs[3, 1])
