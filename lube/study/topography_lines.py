@@ -114,13 +114,13 @@ def table(
     DataError
         If the spectrum does not reach so far.
     """
-    wave_vector, density = band_table(
-        spectrum, *(2.0 * np.pi / wave for wave in band), TABLE_VALUES
+    limits = (2.0 * np.pi / wave for wave in band)
+    # Rounded: the last digits may depend on the machine.
+    wave_vector, density = (
+        tuple(map(_rounded, values)) for values in band_table(spectrum, *limits, TABLE_VALUES)
     )
-    # Rounded: the last digits of least squares may depend on the machine.
-    density = tuple(_rounded(value) for value in density)
-    rms = power_law_integral(wave_vector, np.array(density)) ** 0.5
-    return _rounded(rms), (tuple(wave_vector.tolist()), density)
+    rms = power_law_integral(np.array(wave_vector), np.array(density)) ** 0.5
+    return _rounded(rms), (wave_vector, density)
 
 
 def steps(
@@ -157,4 +157,4 @@ def steps(
 
 
 def _rounded(value):
-    return float(f"{value:.7g}")
+    return float(f"{value:.6g}")
