@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
-from studies import SMOKE_DATASETS
 
 from lube.schema import STAGES
 from lube.study.resolve import resolved_content
+from lube.study.study import load_study
 from lube.workflow.cells import datasets_of
 
 ROOT = Path(__file__).parents[2]
@@ -27,7 +27,7 @@ SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 def made_on_request(notebook):
     """Whether a figure shows a file that bare `snakemake` does not make of the smoke study."""
     text = notebook.read_text("utf-8")
-    others = set(STAGES).difference(SMOKE_DATASETS)
+    others = set(STAGES).difference(load_study(ROOT / SMOKE).datasets)
     return any(f'study / \\"{kind}.nc' in text for kind in others)
 
 
