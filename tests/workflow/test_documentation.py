@@ -24,9 +24,14 @@ def code_blocks(page):
     return [(token.info, token.content) for token in tokens if token.type == "fence"]
 
 
-def pages_with(language):
-    pages = [page for page in PAGES if language in dict(code_blocks(page))]
-    return pytest.mark.parametrize("page", pages, ids=lambda page: page.stem)
+def pages_with(language, slow=()):
+    """Parametrise a test by the pages with code in a language; some of them take long."""
+    pages = [
+        pytest.param(page, id=page.stem, marks=[pytest.mark.slow] if page.stem in slow else [])
+        for page in PAGES
+        if language in dict(code_blocks(page))
+    ]
+    return pytest.mark.parametrize("page", pages)
 
 
 @pytest.fixture
@@ -47,7 +52,7 @@ def folder(smoke, tmp_path, monkeypatch):
     return tmp_path
 
 
-@pages_with("python")
+@pages_with("python", slow=("python",))
 def test_examples_run_and_print_what_follows_them(page, folder):
     names, printed = {}, ""
     for language, content in code_blocks(page):

@@ -82,6 +82,7 @@ def test_a_study_unlike_the_papers_goes_through_all_notebooks(spare):
         assert warnings_in(notebook) == []
 
 
+@pytest.mark.slow
 def test_measured_records_replace_the_simulated_rig(spare):
     rows = [f"{1e-4 * number:.4f},{5 if number % 500 < 50 else 5e4}" for number in range(5000)]
     record = "\n".join(["time [s],resistance [ohm]", *rows])
