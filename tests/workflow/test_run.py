@@ -83,6 +83,27 @@ def test_a_study_unlike_the_papers_goes_through_all_notebooks(spare):
 
 
 @pytest.mark.slow
+def test_a_measured_surface_goes_through_the_workflow_and_its_archive(spare):
+    surface = "workflow/config/surfaces/example.x3p"
+    topography = {"file": surface, "texture": "isotropic", "holes": "interpolate"}
+    band = {"longest_wavelength": "200 um", "shortest_wavelength": "40 um"}
+    study = spare.with_values(
+        name="scanned",
+        rollers__first__rms_roughness=None,
+        rollers__first__topography=topography,
+        rollers__first__roughness=band,
+        film_formulas=["paper"],
+    )
+    spare.run("archive", study=study)
+    results = spare / "results/scanned"
+    found = load(results / "surface.nc", "surface")
+    assert found.hurst_exponent_lower < 0.8 < found.hurst_exponent_upper
+    assert (results / "figures/fig23_surface.png").exists()
+    assert (results / f"archive/scanned/study/{surface}").exists()
+    assert "results/scanned/archive/scanned: nothing wrong" in spare.run("verify", study=study)
+
+
+@pytest.mark.slow
 def test_measured_records_replace_the_simulated_rig(spare):
     rows = [f"{1e-4 * number:.4f},{5 if number % 500 < 50 else 5e4}" for number in range(5000)]
     record = "\n".join(["time [s],resistance [ohm]", *rows])
