@@ -1,0 +1,127 @@
+"""Nodes of the computed film: a first mesh, and one fitted to a solution."""
+
+import numpy as np
+
+from lube.types import Array
+
+_FIRST_SIZE, _FIRST_GROWTH = 0.05, 1.12
+_LARGEST = 0.1
+"""Largest cell, over the contact's width by `_breadth`, and over the distance from it."""
+_GROWTH = 0.1
+"""Largest growth of the cell size per length."""
+_PRESSURE_STEP, _FILM_STEP, _VISCOSITY_STEP = 0.03, 0.08, 0.35
+"""Largest steps of P, ln H and ln viscosity from node to node."""
+_MARGIN = 0.3
+"""Length of the mesh beyond the end of the film, over the contact's width by `_breadth`."""
+_SAMPLES = 8
+"""Samples of the cell size per cell of the former mesh."""
+
+
+def _breadth(film):
+    """Half-width of the pressure: Hertz' 1 if the film is thin, by the film if it is thick."""
+    return np.sqrt(1.0 + 2.0 * film)
+
+
+def inlet_end(offset: float, gap: float) -> float:
+    """Position in the inlet at which the gap has a certain height.
+
+    Parameters
+    ----------
+    offset : float
+        Offset of the rollers: the gap less its parabola and the deflection.
+    gap : float
+        Height of the gap; large.
+
+    Returns
+    -------
+    float
+        Position X < 0. Far away the rollers bulge as under a point load: the gap is
+        X^2/2 - ln|X|/2 + offset.
+
+    Examples
+    --------
+    >>> position = inlet_end(0.0, 1000.0)
+    >>> f"{position**2 / 2 - np.log(-position) / 2:.4f}"
+    '1000.0000'
+    """
+    distance = np.sqrt(2.0 * gap)
+    for _ in range(8):
+        distance = np.sqrt(2.0 * (gap - offset) + np.log(distance))
+    return -float(distance)
+
+
+def first_mesh(film: float, end: float) -> Array:
+    """Nodes for a film of which only the thickness is guessed.
+
+    Parameters
+    ----------
+    film : float
+        Guess of the central film H.
+    end : float
+        Position X < 0 at which the oil begins.
+
+    Returns
+    -------
+    numpy.ndarray
+        Positions X of the nodes, rising: even in the contact, growing towards the inlet.
+
+    Examples
+    --------
+    >>> nodes = first_mesh(0.1, -50.0)
+    >>> nodes.size, float(nodes[0])
+    (88, -50.0)
+    """
+    core = np.arange(-1.6, 1.3, _FIRST_SIZE) * _breadth(film)
+    steps = (core[1] - core[0]) * _FIRST_GROWTH ** np.arange(1, 200)
+    inlet = core[0] - np.cumsum(steps)
+    inlet = inlet[inlet > end + 0.5 * steps]
+    return np.concatenate([[end], inlet[::-1], core[core > end + 0.5 * _FIRST_SIZE]])
+
+
+def fitted_mesh(
+    nodes: Array,
+    profiles: tuple[Array, Array, Array, Array],
+    film: float,
+    ends: tuple[float, float],
+    fineness: float,
+) -> Array:
+    """Nodes on which pressure, film and viscosity change little from one to the next.
+
+    Parameters
+    ----------
+    nodes : numpy.ndarray, shape (n,)
+        Positions X of the nodes of the solution.
+    profiles : tuple of numpy.ndarray
+        The solution: P and ln viscosity at the nodes, shape (n,); H, and the share of the
+        pressure flow in the mass flux, between them, shape (n - 1,).
+    film : float
+        Central film H.
+    ends : tuple of float
+        Positions of the inlet's end and of the end of the film in the outlet.
+    fineness : float
+        The number of nodes grows in proportion.
+
+    Returns
+    -------
+    numpy.ndarray
+        Positions X of the new nodes, rising.
+    """
+    pressure, logarithm, gap, pressure_flow = profiles
+    breadth, step = _breadth(film), np.diff(nodes)
+    middle = 0.5 * (nodes[1:] + nodes[:-1])
+    density = np.max(
+        [
+            np.abs(np.diff(pressure)) / step * breadth / _PRESSURE_STEP,
+            np.abs(np.gradient(np.log(gap), middle)) / _FILM_STEP,
+            # Where no oil is driven by pressure, its viscosity does not matter.
+            (pressure_flow > 1e-3) * np.abs(np.diff(logarithm)) / step / _VISCOSITY_STEP,
+            1.0 / (_LARGEST * np.hypot(breadth, middle)),
+        ],
+        axis=0,
+    )
+    low, high = ends[0], ends[1] + _MARGIN * breadth
+    samples = np.interp(np.arange(0, nodes.size, 1 / _SAMPLES), np.arange(nodes.size), nodes)
+    samples = np.concatenate([[low], samples[(samples > low) & (samples < high)], [high]])
+    size = (1.0 / density + _GROWTH * np.abs(samples[:, None] - middle)).min(axis=1) / fineness
+    count = np.concatenate([[0.0], np.cumsum(np.diff(samples) * 0.5 * (1 / size[1:] + 1 / size[:-1]))])
+    return np.interp(np.linspace(0.0, count[-1], int(np.ceil(count[-1])) + 1), count, samples)

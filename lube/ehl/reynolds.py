@@ -1,0 +1,148 @@
+r"""Discrete Reynolds equation of a line contact, and one step towards its solution.
+
+The scaled mass flux between two nodes is what the surfaces drag less what the pressure drives,
+
+.. math::
+
+    Q = \bar\rho H - \frac{\bar\rho H^3}{\bar\eta \lambda} \frac{dP}{dX}, \qquad
+    \lambda = \frac{12 \eta_0 v R^{*2}}{a^3 p_H}
+
+with density and viscosity over those at ambient pressure. The gap is evaluated midway between the
+nodes, where the flux is, so that neither upwinding nor smoothing is needed. The viscosity between
+two nodes is taken as exponential in the pressure, for which the flux is exact (Scharfetter and
+Gummel's scheme); this keeps the steep pressure spike at the outlet free of oscillations.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lube.ehl.deflection import deflection_matrix
+from lube.types import Array
+
+HERTZ_LOAD = np.pi / 2.0
+"""Integral of P over X of Hertz' pressure: the load."""
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Mass flux between the nodes, and what it depends on.
+
+    Attributes
+    ----------
+    gap : numpy.ndarray, shape (n - 1,)
+        H midway between the nodes.
+    flux, pressure_flow : numpy.ndarray, shape (n - 1,)
+        Mass flux Q, and its part that the pressure drives, as a loss.
+    by_gap : numpy.ndarray, shape (n - 1,)
+        Derivative of Q by H.
+    by_left, by_right : numpy.ndarray, shape (n - 1,)
+        Derivatives of Q by P at the nodes on the left and the right, the gap held.
+    drag_by_gap, drag_by_node : numpy.ndarray, shape (n - 1,)
+        Derivatives of the dragged part, by H and by P at either node.
+    """
+
+    gap: Array
+    flux: Array
+    pressure_flow: Array
+    by_gap: Array
+    by_left: Array
+    by_right: Array
+    drag_by_gap: Array
+    drag_by_node: Array
+
+
+class DiscreteContact:
+    """Reynolds' equation on a mesh.
+
+    Parameters
+    ----------
+    contact : lube.ehl.line_contact.LineContact
+        The contact.
+    nodes : numpy.ndarray, shape (n,)
+        Positions X of the nodes, rising.
+    """
+
+    def __init__(self, contact, nodes):
+        self.contact, self.nodes = contact, nodes
+        self.step = np.diff(nodes)
+        self.middle = 0.5 * (nodes[1:] + nodes[:-1])
+        self.deflection = deflection_matrix(self.middle, nodes)
+        self.weight = np.zeros(nodes.size)  # of the trapezoidal rule
+        self.weight[:-1] += 0.5 * self.step
+        self.weight[1:] += 0.5 * self.step
+
+    def gap(self, pressure: Array, offset: float) -> Array:
+        """Scaled gap H midway between the nodes."""
+        return offset + 0.5 * self.middle**2 + self.deflection @ pressure
+
+    def flow(self, pressure: Array, offset: float) -> Flow:
+        """Mass flux between the nodes at some pressures P, shape (n,), and offset."""
+        gap = self.gap(pressure, offset)
+        density, density_slope = self.contact.density(0.5 * (pressure[1:] + pressure[:-1]))
+        logarithm, log_slope = self.contact.log_viscosity(pressure)
+        factor, factor_slope = _exponential_fit(0.5 * np.diff(logarithm))
+        fluidity = np.exp(-0.5 * (logarithm[1:] + logarithm[:-1])) * factor
+        conductance = density * gap**3 * fluidity / (self.contact.flow_number * self.step)
+        driven = conductance * np.diff(pressure)
+        by_density = 0.5 * density_slope * (gap - driven / density)
+        return Flow(
+            gap=gap,
+            flux=density * gap - driven,
+            pressure_flow=driven,
+            by_gap=density - 3.0 * driven / gap,
+            by_left=by_density + conductance + 0.5 * driven * (1 + factor_slope) * log_slope[:-1],
+            by_right=by_density - conductance + 0.5 * driven * (1 - factor_slope) * log_slope[1:],
+            drag_by_gap=density,
+            drag_by_node=0.5 * density_slope * gap,
+        )
+
+    def newton_step(self, pressure, offset, flow, settling_time):
+        """One step of Newton's method towards the film after a settling time.
+
+        The equation at a node is that as much oil leaves as enters, less what widens the gap in
+        that time (the squeeze film); after a long time nothing does. A node is either in the film,
+        where this holds, or beyond it, where the pressure is zero: the complementarity condition
+        of cavitation, solved by Newton's method too.
+
+        Returns
+        -------
+        tuple
+            Changes of the pressures and of the offset.
+        """
+        inner = np.arange(pressure.size - 2)
+        jacobian = np.diff(self._dense(flow.by_gap, flow.by_left, flow.by_right), axis=0)
+        by_offset, residual = np.diff(flow.by_gap), np.diff(flow.flux)
+        if np.isfinite(settling_time):
+            squeeze = 0.5 * self.weight[1:-1] / settling_time
+            drag = self._dense(flow.drag_by_gap, flow.drag_by_node, flow.drag_by_node)
+            jacobian += squeeze[:, None] * (drag[1:] + drag[:-1])
+            by_offset += squeeze * (flow.drag_by_gap[1:] + flow.drag_by_gap[:-1])
+        scale = np.abs(jacobian[inner, inner + 1])
+        film = np.flatnonzero(pressure[1:-1] > residual / scale)
+        change = -pressure
+        change[film + 1] = 0.0
+        matrix = np.zeros((film.size + 1, film.size + 1))
+        matrix[:-1, :-1] = jacobian[np.ix_(film, film + 1)]
+        matrix[:-1, -1], matrix[-1, :-1] = by_offset[film], self.weight[film + 1]
+        missing_load = HERTZ_LOAD - self.weight @ (pressure + change)
+        right = np.append(-residual[film] - jacobian[film] @ change, missing_load)
+        solution = np.linalg.solve(matrix, right)
+        change[film + 1] = solution[:-1]
+        return change, solution[-1]
+
+    def _dense(self, by_gap, by_left, by_right):
+        """Derivatives of a flux between the nodes by the pressures, shape (n - 1, n)."""
+        matrix = by_gap[:, None] * self.deflection
+        edge = np.arange(by_gap.size)
+        matrix[edge, edge] += by_left
+        matrix[edge, edge + 1] += by_right
+        return matrix
+
+
+def _exponential_fit(half):
+    """sinh(u)/u of half the step of ln viscosity, and the slope of its logarithm."""
+    small = np.abs(half) < 1e-2
+    u = np.where(small, 1.0, half)
+    factor = np.where(small, 1.0 + half**2 / 6.0 + half**4 / 120.0, np.sinh(u) / u)
+    return factor, np.where(small, half / 3.0 - half**3 / 45.0, 1.0 / np.tanh(u) - 1.0 / u)
