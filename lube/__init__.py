@@ -22,7 +22,7 @@ _HOMES = {
     ),
     "lube.errors": ("DataError", "LubeError", "RangeError", "RecordError", "StudyError"),
     "lube.physics.electrical": ("contact_resistance",),
-    "lube.physics.film_formulas": ("FORMULAS",),
+    "lube.ehl.film_formulas": ("FORMULAS",),
     "lube.recordings.manifest": ("read_manifest",),
     "lube.recordings.reader": ("Recording", "open_recording"),
     "lube.rig.contact_share": ("ContactShare", "share_interval"),

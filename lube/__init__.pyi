@@ -12,13 +12,13 @@ from lube.calculator.required import required_roughness as required_roughness
 from lube.calculator.required import required_speed as required_speed
 from lube.calculator.required import required_temperature as required_temperature
 from lube.calculator.required import required_viscosity as required_viscosity
+from lube.ehl.film_formulas import FORMULAS as FORMULAS
 from lube.errors import DataError as DataError
 from lube.errors import LubeError as LubeError
 from lube.errors import RangeError as RangeError
 from lube.errors import RecordError as RecordError
 from lube.errors import StudyError as StudyError
 from lube.physics.electrical import contact_resistance as contact_resistance
-from lube.physics.film_formulas import FORMULAS as FORMULAS
 from lube.recordings.manifest import read_manifest as read_manifest
 from lube.recordings.reader import Recording as Recording
 from lube.recordings.reader import open_recording as open_recording

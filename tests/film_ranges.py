@@ -2,7 +2,7 @@
 
 ``python tests/film_ranges.py`` computes 888 films in some minutes, and prints for every formula the
 largest box in which it stays within the tolerance, and its errors there: these are the ranges and
-remarks of `lube.physics.film_formulas`.
+remarks of `lube.ehl.film_formulas`.
 """
 
 import functools
@@ -12,7 +12,7 @@ import numpy as np
 from numerical_film import solve_at
 from paper_grid import ALPHA, RADIUS, VISCOSITY
 
-from lube.physics.film_formulas import FORMULAS, TOLERANCE
+from lube.ehl.film_formulas import FORMULAS, TOLERANCE
 
 LOADS = np.array([
     0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.8, 2.0,

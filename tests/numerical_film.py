@@ -3,7 +3,8 @@
 import numpy as np
 from paper_grid import LENGTH, MODULUS, RADIUS
 
-from lube.physics import dimensionless, film_formulas
+from lube.ehl import film_formulas
+from lube.physics import dimensionless
 
 FLOODED = 1000.0
 """Height of the gap at the inlet's end, over the film thickness. An inlet of 40 half-widths is

@@ -3,7 +3,8 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from lube.physics import dimensionless, film_formulas, hertz
+from lube.ehl import film_formulas
+from lube.physics import dimensionless, hertz
 
 RADIUS, LENGTH = 0.025, 0.01
 MODULUS = hertz.reduced_modulus(210e9, 0.3, 210e9, 0.3)

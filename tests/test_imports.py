@@ -22,7 +22,7 @@ FLOORS = [
     {"errors", "types"},
     {"kernels"},
     {"units", "schema", "physics", "statistics", "surfaces"},
-    {"grid"},
+    {"grid", "ehl"},
     {"study"},
     {"rig", "storage"},
     {"recordings"},
@@ -34,7 +34,7 @@ FLOORS = [
     {"cli"},
 ]
 FLOOR_OF = {room: number for number, floor in enumerate(FLOORS) for room in floor}
-MATHEMATICS = ("physics", "statistics", "surfaces")
+MATHEMATICS = ("physics", "ehl", "statistics", "surfaces")
 
 
 def imported(path):

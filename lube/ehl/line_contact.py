@@ -1,17 +1,18 @@
 """The film of a lubricated line contact from Reynolds' equation: steady, isothermal, Newtonian."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
+from threadpoolctl import ThreadpoolController
 
 from lube.ehl.deflection import deflection_matrix
 from lube.ehl.mesh import first_mesh, fitted_mesh, inlet_end
 from lube.ehl.reynolds import HERTZ_LOAD, DiscreteContact
 from lube.errors import LubeError, RangeError
-from lube.physics import film_formulas
 from lube.physics.dimensionless import moes_numbers
-from lube.physics.pressure_laws import PRESSURE_LAWS, dowson_higginson_density
+from lube.physics.pressure_laws import PRESSURE_LAWS, ROELANDS_VISCOSITY, dowson_higginson_density
+from lube.physics.regimes import moes_asymptotes
 from lube.types import Array, Values
 
 FLOODED = 1e4
@@ -82,9 +83,11 @@ class LineContact:
 
     @property
     def film_guess(self) -> float:
-        """Central film H, roughly: Moes' formula lies above the computed film."""
-        film = 0.85 * film_formulas.moes(self.load, self.speed, self.material)
-        return float(film / self.half_width**2)
+        """Central film H, roughly: the asymptote of its regime (`lube.physics.regimes`)."""
+        numbers = moes_numbers(self.load, self.speed, self.material)
+        rigid_iso, rigid_piezo, elastic_iso, elastic_piezo = moes_asymptotes(*numbers)
+        film = max(rigid_iso, elastic_iso, min(rigid_piezo, elastic_piezo))
+        return float(film * np.sqrt(2.0 * self.speed) / self.half_width**2)
 
 
 @dataclass(frozen=True)
@@ -208,6 +211,17 @@ def solve(
     '1.02 um, least 0.85 um'
     """
     _check(contact, meniscus)
+    with _libraries().limit(limits=1, user_api="blas"):
+        return _solve(contact, meniscus, flooded, fineness)
+
+
+@cache
+def _libraries():
+    """Libraries of linear algebra: on these small matrices, further threads only slow them down."""
+    return ThreadpoolController()
+
+
+def _solve(contact, meniscus, flooded, fineness):
     film = contact.film_guess
     end = inlet_end(0.0, flooded * film) if meniscus is None else -meniscus
     nodes = first_mesh(film, end)
@@ -222,6 +236,11 @@ def solve(
 
 
 def _check(contact, meniscus):
+    if contact.law == "roelands" and not contact.viscosity > ROELANDS_VISCOSITY:
+        raise RangeError(
+            f"viscosity: got {contact.viscosity:.3g} Pa s, need more than "
+            f"{ROELANDS_VISCOSITY:.3g} Pa s for Roelands' law"
+        )
     if meniscus is not None and not meniscus > 1.0:
         raise RangeError(
             f"meniscus: got one {meniscus:g} half-widths before the line of centres, inside the "

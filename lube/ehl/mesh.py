@@ -69,7 +69,7 @@ def first_mesh(film: float, end: float) -> Array:
     --------
     >>> nodes = first_mesh(0.1, -50.0)
     >>> nodes.size, float(nodes[0])
-    (88, -50.0)
+    (99, -50.0)
     """
     core = np.arange(-1.6, 1.3, _FIRST_SIZE) * _breadth(film)
     steps = (core[1] - core[0]) * _FIRST_GROWTH ** np.arange(1, 200)
@@ -123,5 +123,6 @@ def fitted_mesh(
     samples = np.interp(np.arange(0, nodes.size, 1 / _SAMPLES), np.arange(nodes.size), nodes)
     samples = np.concatenate([[low], samples[(samples > low) & (samples < high)], [high]])
     size = (1.0 / density + _GROWTH * np.abs(samples[:, None] - middle)).min(axis=1) / fineness
-    count = np.concatenate([[0.0], np.cumsum(np.diff(samples) * 0.5 * (1 / size[1:] + 1 / size[:-1]))])
+    cells = 2.0 * np.diff(samples) / (size[1:] + size[:-1])
+    count = np.append(0.0, np.cumsum(cells))
     return np.interp(np.linspace(0.0, count[-1], int(np.ceil(count[-1])) + 1), count, samples)

@@ -73,11 +73,11 @@ class DiscreteContact:
         self.weight[1:] += 0.5 * self.step
 
     def gap(self, pressure: Array, offset: float) -> Array:
-        """Scaled gap H midway between the nodes."""
+        """Evaluate the scaled gap H midway between the nodes."""
         return offset + 0.5 * self.middle**2 + self.deflection @ pressure
 
     def flow(self, pressure: Array, offset: float) -> Flow:
-        """Mass flux between the nodes at some pressures P, shape (n,), and offset."""
+        """Evaluate the mass flux between the nodes at some pressures P, shape (n,), and offset."""
         gap = self.gap(pressure, offset)
         density, density_slope = self.contact.density(0.5 * (pressure[1:] + pressure[:-1]))
         logarithm, log_slope = self.contact.log_viscosity(pressure)
@@ -98,7 +98,7 @@ class DiscreteContact:
         )
 
     def newton_step(self, pressure, offset, flow, settling_time):
-        """One step of Newton's method towards the film after a settling time.
+        """Take one step of Newton's method towards the film after a settling time.
 
         The equation at a node is that as much oil leaves as enters, less what widens the gap in
         that time (the squeeze film); after a long time nothing does. A node is either in the film,
@@ -132,7 +132,7 @@ class DiscreteContact:
         return change, solution[-1]
 
     def _dense(self, by_gap, by_left, by_right):
-        """Derivatives of a flux between the nodes by the pressures, shape (n - 1, n)."""
+        """Put together the derivatives of a flux by all pressures, shape (n - 1, n)."""
         matrix = by_gap[:, None] * self.deflection
         edge = np.arange(by_gap.size)
         matrix[edge, edge] += by_left

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from lube import schema
-from lube.physics.film_formulas import FORMULAS
+from lube.ehl.film_formulas import FORMULAS
 from lube.schema import COORDINATES, FILES
 from lube.units import with_unit
 

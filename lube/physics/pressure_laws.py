@@ -42,8 +42,10 @@ def barus(
     >>> barus(1e8, 2e-8, 0.1)
     (2.0, 2e-08)
     """
-    slope = np.full_like(pressure, pressure_viscosity_coefficient, dtype=float)[()]
-    return pressure_viscosity_coefficient * pressure, slope
+    return (
+        pressure_viscosity_coefficient * pressure,
+        pressure_viscosity_coefficient + 0.0 * pressure,
+    )
 
 
 def roelands(

@@ -8,7 +8,7 @@ import re
 import sys
 from pathlib import Path
 
-from lube.physics.film_formulas import FORMULAS, TOLERANCE
+from lube.ehl.film_formulas import FORMULAS, TOLERANCE
 from lube.recordings.manifest import manifest_schema
 from lube.schema import COORDINATES, DATASETS, FILES, ON_REQUEST, SUMMARIES
 from lube.study.lubricant_record import LubricantRecord

@@ -9,7 +9,7 @@ import scipy.interpolate
 import scipy.special
 import xarray as xr
 
-from lube.physics.film_formulas import formula
+from lube.ehl.film_formulas import formula
 from lube.rig.map_curves import curve_at, layer_curve_at, logits_on, windows_in
 from lube.rig.study_shares import values_with_limits
 from lube.schema import LIMITS
@@ -22,6 +22,9 @@ Data = xr.Dataset
 
 ALPHA_FACTORS = np.geomspace(1.0 / 8.0, 8.0, 193)
 """Factors of the pressure-viscosity coefficient that are tried."""
+COMPUTED_FACTORS = np.array([0.125, 0.25, 0.5, 1.0, 2.0])
+"""Factors at which a computed film is solved for. Beyond, it grows as a power of the factor: so
+viscous an oil has a pressure spike too steep to be resolved."""
 STRENGTH_LEVELS = 193
 """Number of layer strengths that are tried, between the map's weakest and strongest."""
 
@@ -144,11 +147,34 @@ def _lambda_ratios(comparison, factor):
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         load = np.pi / 8.0 * (comparison["contact_half_width"] / comparison["reduced_radius"]) ** 2
         speed = 0.5 * (load / comparison["moes_load"]) ** 2
-        material = factor * comparison["moes_material"] / (2.0 * speed) ** 0.25
+        material = comparison["moes_material"] / (2.0 * speed) ** 0.25
+        film_modulus = 2.0 * comparison["reduced_modulus"]
+        groups = load, speed, material, comparison["dynamic_viscosity"], film_modulus
         names = comparison["film_formula"]
-        films = [formula(name).evaluate(load, speed, material) for name in names.values]
+        films = [_films(formula(name), groups, factor) for name in names.values]
         scale = comparison["reduced_radius"] / comparison["composite_rms_roughness"]
         return xr.concat(films, names, join="exact") * scale
+
+
+def _films(row, groups, factor):
+    """Films over R* with G multiplied by factors."""
+    load, speed, material, *oil = groups
+    if not row.depends_on_oil:
+        return row.evaluate(load, speed, factor * material)
+    nodes = xr.DataArray(COMPUTED_FACTORS, dims="factor")
+    films = xr.apply_ufunc(row.evaluate, load, speed, nodes * material, *oil, join="exact")
+    return np.exp(_between(np.log(films.assign_coords(factor=np.log(nodes))), np.log(factor)))
+
+
+def _between(nodes, factor):
+    """Interpolate between nodes; beyond the last, continue as a power of the factor."""
+    interpolate = scipy.interpolate.CubicSpline(nodes["factor"], nodes.transpose("factor", ...))
+    values = interpolate(np.minimum(factor, nodes["factor"][-1]))
+    slope = interpolate(nodes["factor"][-1].item(), 1)
+    beyond = np.maximum(factor - nodes["factor"][-1], 0.0).values
+    dims = nodes.transpose("factor", ...).dims
+    values = values + beyond.reshape(-1, *[1] * (values.ndim - 1)) * slope
+    return xr.DataArray(values, dims=dims)
 
 
 def _mean_logits(master, comparison, ratios):

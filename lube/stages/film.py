@@ -7,8 +7,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from lube import schema
+from lube.ehl.film_formulas import formula
 from lube.physics import dimensionless, hertz
-from lube.physics.film_formulas import formula
 from lube.physics.inlet_heating import inlet_shear_heating_factor
 from lube.physics.regimes import regime
 from lube.study.rollers import RollerPair
@@ -37,7 +37,7 @@ def film_table(
         Rotation speeds n of the first roller in pure rolling, rpm. Slip leaves the entrainment
         speed as it is, so the film does not depend on it.
     formulas : sequence of str
-        Names of film formulas, keys of `lube.physics.film_formulas.FORMULAS`.
+        Names of film formulas, keys of `lube.ehl.film_formulas.FORMULAS`.
 
     Returns
     -------
@@ -85,9 +85,9 @@ def film_at_records(
     Returns
     -------
     xarray.Dataset
-        ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material`` and
-        ``contact_half_width`` over film_formula and record; ``reduced_radius`` and
-        ``composite_rms_roughness``.
+        ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material``,
+        ``contact_half_width`` and ``dynamic_viscosity`` over film_formula and record;
+        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``.
     """
     force, speed, temperature, oil = (
         xr.DataArray(experiment[name].values, dims="record")
@@ -95,8 +95,9 @@ def film_at_records(
     )
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
     table = film_at(properties, rollers, force, speed, formulas)
+    table["dynamic_viscosity"] = properties["dynamic_viscosity"]
     names = ["film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width"]
-    names += ["reduced_radius", "composite_rms_roughness"]
+    names += ["reduced_radius", "reduced_modulus", "composite_rms_roughness", "dynamic_viscosity"]
     return table[names].transpose("film_formula", "record")
 
 
@@ -136,7 +137,8 @@ def film_at(
         contact = _hertz_contact(rollers, force, speed)
         numbers = _dimensionless_groups(lubricant, rollers, force, contact)
         table = contact.merge(_regime(*numbers), join="exact")
-        table = table.merge(_film(chosen, rollers, numbers, table), join="exact")
+        groups = *numbers, lubricant["dynamic_viscosity"], 2.0 * rollers.reduced_modulus
+        table = table.merge(_film(chosen, rollers, groups, table), join="exact")
         table["inlet_shear_heating_factor"] = inlet_shear_heating_factor(
             lubricant["dynamic_viscosity"],
             lubricant["temperature_viscosity_coefficient"],
@@ -179,10 +181,10 @@ def _regime(load, speed, material):
     return xr.Dataset({"moes_load": moes_load, "moes_material": moes_material, "regime": flag})
 
 
-def _film(formulas, rollers, numbers, table):
+def _film(formulas, rollers, groups, table):
     names = xr.DataArray([row.name for row in formulas], dims="film_formula", name="film_formula")
-    film = xr.concat([row.evaluate(*numbers) for row in formulas], dim=names, join="exact")
-    film = film * rollers.reduced_radius
+    films = [xr.apply_ufunc(row.film, *groups, join="exact") for row in formulas]
+    film = xr.concat(films, dim=names, join="exact") * rollers.reduced_radius
     valid = [row.holds(table["moes_load"], table["moes_material"]) for row in formulas]
     return xr.Dataset(
         {

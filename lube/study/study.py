@@ -14,10 +14,10 @@ from typing import Annotated
 from pydantic import AfterValidator, Field, StrictInt, field_validator, model_validator
 from pydantic_core import to_jsonable_python
 
+from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, shown
 from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
-from lube.physics.film_formulas import FORMULAS, formula
 from lube.schema.stages import DATASETS, STAGES, forerunners
 from lube.study.field_types import (
     Slug,

@@ -10,7 +10,8 @@ from scipy.optimize import brentq
 from studies import PAPER
 
 from lube import load_study
-from lube.physics import dimensionless, film_formulas
+from lube.ehl import film_formulas
+from lube.physics import dimensionless
 from lube.physics.regimes import moes_asymptotes, regime
 from lube.schema import REGIMES
 from lube.stages.film import film_table

@@ -9,8 +9,8 @@ from paper_grid import FORCE, SPEED, TEMPERATURE
 from studies import PAPER
 
 from lube import schema
+from lube.ehl import film_formulas
 from lube.errors import DataError, LubeError
-from lube.physics import film_formulas
 from lube.stages.film import film_at, film_table
 from lube.stages.lubricant import lubricant_table
 from lube.study.study import load_study
@@ -71,7 +71,8 @@ def test_every_point_agrees_with_the_plain_formula(table):
             )
             load = force / 0.01 / (modulus * radius)
             speed_number = viscosity * (2.0 * np.pi * 0.05 * speed / 60.0) / (modulus * radius)
-            expected = radius * row.evaluate(load, speed_number, alpha * modulus)
+            groups = load, speed_number, alpha * modulus, viscosity, modulus
+            expected = radius * row.film(*groups)
             found = table["film_thickness"].isel(lubricant=0).sel(film_formula=name, **at)
             assert float(found) == pytest.approx(expected, rel=1e-12)
 
