@@ -21,6 +21,7 @@ include: "workflow/rules/contact.smk"
 include: "workflow/rules/tail.smk"
 include: "workflow/rules/areal.smk"
 include: "workflow/rules/patch.smk"
+include: "workflow/rules/film_profile.smk"
 include: "workflow/rules/height_distribution.smk"
 include: "workflow/rules/master.smk"
 include: "workflow/rules/experiment.smk"
@@ -59,6 +60,13 @@ rule patch_contact:
         products(made_by("patch_contact", FIGURES)),
     message:
         f"Done: patch.nc and its figure are in {RESULTS}"
+
+
+rule computed:
+    input:
+        products(made_by("computed", FIGURES)),
+    message:
+        f"Done: film_profile.nc, film_shape.nc and their figures are in {RESULTS}"
 
 
 rule benchmark:

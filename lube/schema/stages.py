@@ -69,6 +69,7 @@ _ROWS = (
             "reduced_modulus": "rollers.reduced_modulus",
             "composite_rms_roughness": "rough_rollers.composite_rms_roughness",
             "film_formulas": "film_formulas",
+            "film_shape": "film_shape",
             "force": "operating_grid.force",
             "speed": "operating_grid.speed",
         },
@@ -136,6 +137,7 @@ _ROWS = (
         values=_LINES | {"reduced_modulus": "rollers.reduced_modulus"},
         target="patch_contact",
     ),
+    Stage("film_profile", inputs=("lubricant",), same_values=("film",), target="computed"),
     Stage(
         "coverage",
         values={"realisations": "realisations"},

@@ -82,7 +82,7 @@ def tail_probabilities(
     apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the
     share of pairs with any is :math:`1 - e^{-\mu}`.
     """
-    film = film.transpose(*OPERATING_DIMS)
+    film = film.transpose(*OPERATING_DIMS, ...)
     lowest = film["film_thickness"].min().item()
     if not lowest > 0.0:
         raise DataError(f"film thickness: got {lowest:g} m, need above 0")
