@@ -74,14 +74,14 @@ def measured(settings: RollerTopography, known: dict | None) -> LineSpectrum | T
         arrays = ("wave_vector", "density", "estimates", "transfer")
         return LineSpectrum(**(known | {name: np.array(known[name]) for name in arrays}))
     time = os.stat(settings.file).st_mtime_ns if os.path.exists(settings.file) else None
-    return _read(settings, time)
+    return _read(settings.file, preparation(settings), settings.is_line, time)
 
 
 @functools.lru_cache(maxsize=2)
-def _read(settings, _time):
+def _read(file, preparation, is_line, _time):
     """Read a topography once for both rollers, and again when the file has changed."""
-    surface = prepared(settings)
-    return surface if settings.is_line else line_spectrum(surface, preparation(settings))
+    surface = prepare(read_topography(file), preparation)
+    return surface if is_line else line_spectrum(surface, preparation)
 
 
 def plain(spectrum: LineSpectrum) -> dict[str, Any]:
@@ -123,6 +123,7 @@ def table(
     return _rounded(rms), (wave_vector, density)
 
 
+@functools.lru_cache(maxsize=4)
 def steps(
     settings: RollerTopography,
     profile: Topography,
