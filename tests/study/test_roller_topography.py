@@ -144,6 +144,14 @@ def test_two_measured_lines_are_one_pair(study_file):
     )
 
 
+def test_a_topography_of_both_rollers_is_read_and_resampled_once(study_file):
+    line, one = SCAN | {"use": "repeated line"}, {"realisations": 1, "kept_realisations": [0]}
+    study = load_study(study_file(line, **one))
+    first, second = study.topographies.values()
+    assert first._measured is second._measured
+    assert len({id(each.heights.steps) for each in study.line_spec.lines}) == 1
+
+
 def test_no_isotropic_surface_belongs_to_profiles_along_rolling(study_file):
     check_isotropic(load_study(study_file(MAP)).line_spec)
     with pytest.raises(LubeError, match="need isotropic ones"):
@@ -212,6 +220,17 @@ REFUSED = {
         SCAN | {"texture": "isotropic", "use": "repeated line"},
         BAND,
         "texture: got 'isotropic', need 'along rolling' for a profile that is the line",
+    ),
+    "no unit": (MAP | {"long_cutoff": 0.08}, BAND, "topography.long_cutoff: got 0.08, need a numb"),
+    "no length": (
+        MAP | {"long_cutoff": "80 kg"},
+        BAND,
+        "topography.long_cutoff: wrong dimension or unit 'kg', need a unit of the kind",
+    ),
+    "negative": (
+        MAP | {"long_cutoff": "-80 um"},
+        BAND,
+        "topography.long_cutoff: got -8e-05, need a value above 0",
     ),
     "two roughnesses": (MAP, BAND | {"hurst_exponent": 0.8}, "roughness.hurst_exponent: got 0.8"),
 }
