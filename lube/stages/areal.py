@@ -18,7 +18,8 @@ from lube.physics.excursions import (
 )
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, values_with_limits
 from lube.statistics.confidence import jackknife_interval, mean_interval
-from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.synthetic import ROLLERS, spectrum_moments

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from lube.schema import label
-from lube.study.rollers import LineSpec
+from lube.study.line_spec import LineSpec
 from lube.surfaces.elastic_contact import find_tamaas, press_line, press_surface
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic

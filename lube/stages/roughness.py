@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from lube.schema import label
-from lube.study.rollers import LineSpec
+from lube.study.line_spec import LineSpec
 from lube.surfaces.synthetic import (
     ROLLERS,
     draw_realisation,

@@ -7,9 +7,9 @@ import scipy.special
 import xarray as xr
 
 from lube.schema import label, values_with_limits
+from lube.study.line_spec import LineSpec
 from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import ROLLERS as NAMES
-from lube.study.rollers import LineSpec
 from lube.study.topography_lines import preparation, prepared
 from lube.surfaces.measured_spectrum import LineSpectrum, line_spectrum
 from lube.surfaces.surface_statistics import height_distribution, hurst_exponent, roll_off

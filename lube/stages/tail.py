@@ -14,7 +14,8 @@ from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_sum
 from lube.schema import CONTACT_DIMS, FILES, OPERATING_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval
 from lube.statistics.sample_size import independent_windows
-from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
 from lube.surfaces.rare_contact import check_gaussian, rare_contact
 from lube.surfaces.synthetic import ROLLERS, line_attributes, spectrum_moments
 

@@ -117,7 +117,7 @@ class RollerTopography(StrictModel):
         Returns
         -------
         dict
-            ``rms_height``, and ``spectrum`` or ``heights``, of `lube.study.rollers.RoughLine`.
+            ``rms_height``, and ``spectrum`` or ``heights``, of `lube.study.line_spec.RoughLine`.
 
         Raises
         ------

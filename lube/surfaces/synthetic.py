@@ -36,7 +36,7 @@ ROLLERS = (1, 2)
 
 
 class RoughLineLike(Protocol):
-    """Parameters of one roughness line, such as `lube.study.rollers.RoughLine`.
+    """Parameters of one roughness line, such as `lube.study.line_spec.RoughLine`.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class RoughLineLike(Protocol):
 
 
 class LineSpecLike(Protocol):
-    """Parameters of a pair of roughness lines, such as `lube.study.rollers.LineSpec`; hashable.
+    """Parameters of a pair of roughness lines, such as `lube.study.line_spec.LineSpec`; hashable.
 
     Attributes
     ----------

@@ -112,7 +112,7 @@ def test_the_film_uses_the_rms_height_of_the_lines(study_file):
     first, second = study.line_spec.rms_height
     assert second == 0.1e-6
     assert study.rough_rollers.composite_rms_roughness == pytest.approx(np.hypot(first, second))
-    assert study.rollers.with_lines(study.line_spec).first.topography is None
+    assert study.rough_rollers.first.topography is None
 
 
 def test_a_profile_that_is_the_line_is_the_same_in_every_realisation(study_file):
