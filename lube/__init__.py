@@ -41,7 +41,7 @@ _HOMES = {
     "lube.study.lubricant_record": ("load_record", "shipped_records"),
     "lube.study.rollers": ("BoundaryLayer", "Roller", "RollerPair", "Roughness"),
     "lube.study.study": ("Study", "load_study"),
-    "lube.surfaces.synthetic": ("power_spectrum",),
+    "lube.surfaces.spectra": ("power_spectrum",),
     "lube.workflow.results": ("results_folder",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}

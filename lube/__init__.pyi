@@ -53,7 +53,7 @@ from lube.study.rollers import RollerPair as RollerPair
 from lube.study.rollers import Roughness as Roughness
 from lube.study.study import Study as Study
 from lube.study.study import load_study as load_study
-from lube.surfaces.synthetic import power_spectrum as power_spectrum
+from lube.surfaces.spectra import power_spectrum as power_spectrum
 from lube.workflow.results import results_folder as results_folder
 
 __version__: str

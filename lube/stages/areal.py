@@ -22,7 +22,8 @@ from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
-from lube.surfaces.synthetic import ROLLERS, spectrum_moments
+from lube.surfaces.spectra import spectrum_moments
+from lube.surfaces.synthetic import ROLLERS
 
 SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""

@@ -17,7 +17,8 @@ from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.rare_contact import check_gaussian, rare_contact
-from lube.surfaces.synthetic import ROLLERS, line_attributes, spectrum_moments
+from lube.surfaces.spectra import line_attributes, spectrum_moments
+from lube.surfaces.synthetic import ROLLERS
 
 PAIRS = 40
 """Pairs of lines for the first film formula, enough for a relative standard error of 2 %; errors

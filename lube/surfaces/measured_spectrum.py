@@ -35,7 +35,7 @@ import scipy.optimize
 
 from lube.errors import DataError
 from lube.surfaces.abel import line_of_profile, monotone
-from lube.surfaces.synthetic import power_spectrum
+from lube.surfaces.spectra import power_spectrum
 from lube.surfaces.topography import Preparation, Topography, power_transfer, used_directions
 from lube.types import Array, Pair
 

@@ -15,7 +15,8 @@ from lube.errors import LubeError
 from lube.recordings.example_surface import isotropic_surface
 from lube.study.study import load_study
 from lube.surfaces.rare_contact import check_isotropic
-from lube.surfaces.synthetic import draw_realisation, spectrum_moments
+from lube.surfaces.spectra import spectrum_moments
+from lube.surfaces.synthetic import draw_realisation
 
 refusal = partial(one_line, LubeError, load_study)
 RADIUS = 5e-3

@@ -21,7 +21,7 @@ from lube.surfaces.measured_spectrum import (
     profile_density,
     with_power,
 )
-from lube.surfaces.synthetic import power_spectrum
+from lube.surfaces.spectra import power_spectrum
 from lube.surfaces.topography import Preparation, Topography, prepare
 
 ISOTROPIC, ALONG = Preparation("isotropic"), Preparation("along rolling")
