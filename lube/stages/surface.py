@@ -11,7 +11,8 @@ from lube.study.line_spec import LineSpec
 from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import ROLLERS as NAMES
 from lube.study.topography_lines import preparation, prepared
-from lube.surfaces.measured_spectrum import LineSpectrum, line_spectrum
+from lube.surfaces.measured_spectrum import line_spectrum
+from lube.surfaces.spectrum_table import LineSpectrum
 from lube.surfaces.surface_statistics import height_distribution, hurst_exponent, roll_off
 from lube.surfaces.synthetic import ROLLERS
 

@@ -10,12 +10,8 @@ import numpy as np
 from lube.study.roller_topography import RollerTopography
 from lube.study.topography_files import read_topography
 from lube.surfaces.measured_line import closed_line, repeated_line
-from lube.surfaces.measured_spectrum import (
-    LineSpectrum,
-    band_table,
-    line_spectrum,
-    power_law_integral,
-)
+from lube.surfaces.measured_spectrum import line_spectrum
+from lube.surfaces.spectrum_table import LineSpectrum, band_table, power_law_integral
 from lube.surfaces.topography import Preparation, Topography, prepare
 from lube.types import Array
 
