@@ -16,13 +16,14 @@ from lube.errors import LubeError, RecordError, StudyError, shown
 from lube.physics.pressure_viscosity import GOLD_BASES
 from lube.stages.lubricant import lubricant_table
 from lube.study.field_types import bounded, validate
+from lube.study.line_spec import LineSpec, line_spec
 from lube.study.lubricant_record import (
     LubricantRecord,
     check_points,
     load_record,
     read_viscosity_csv,
 )
-from lube.study.rollers import BoundaryLayer, LineSpec, Roller, RollerPair, Roughness, line_spec
+from lube.study.rollers import BoundaryLayer, Roller, RollerPair, Roughness
 from lube.types import File
 from lube.units import parse_quantity
 
@@ -179,7 +180,7 @@ class Rollers:
         }
         shared = validate(Roughness, roughness, "Rollers", StudyError)
         self.lines = line_spec(self.pair, shared, largest_force=math.nan)
-        self.pair = self.pair.with_lines(self.lines)
+        self.pair = self.pair.with_rms_heights(self.lines.rms_height)
         if not self.lines.is_drawn:
             raise StudyError(
                 "Rollers: topography.use: got a measured line, need 'spectrum': answers here are "

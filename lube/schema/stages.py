@@ -78,7 +78,7 @@ _ROWS = (
     Stage(
         "surface",
         values={"surfaces": "measured_surfaces", "lines": "line_spec"},
-        only_with="measured_surfaces",
+        only_with="topographies",
     ),
     Stage(
         "contact",

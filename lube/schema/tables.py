@@ -23,7 +23,7 @@ and a summary of its content. A file without a summary is an intermediate result
 """
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -156,3 +156,26 @@ ORIGINS = ("measured", "simulated")
 
 REGIMES = tuple(FILES["film"]["regime"].attributes["flag_meanings"].split())
 """Regimes of lubrication, in the order of their flags."""
+
+
+def values_with_limits(name: str, values: Iterable[Any]) -> dict[str, Any]:
+    """Name a value and the limits of its interval.
+
+    Parameters
+    ----------
+    name : str
+        Name of the value.
+    values : iterable
+        Value, lower limit and upper limit.
+
+    Returns
+    -------
+    dict
+        The three by their names.
+
+    Examples
+    --------
+    >>> values_with_limits("share", [0.5, 0.4, 0.6])
+    {'share': 0.5, 'share_lower': 0.4, 'share_upper': 0.6}
+    """
+    return {f"{name}{limit}": value for limit, value in zip(LIMITS, values, strict=True)}

@@ -11,12 +11,14 @@ from lube.errors import DataError, StudyError
 from lube.grid.discretise import layer_factor_of
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
-from lube.schema import CONTACT_DIMS, FILES, LIMITS, OPERATING_DIMS, label
+from lube.schema import CONTACT_DIMS, FILES, OPERATING_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval
 from lube.statistics.sample_size import independent_windows
-from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
 from lube.surfaces.rare_contact import check_gaussian, rare_contact
-from lube.surfaces.synthetic import ROLLERS, line_attributes, spectrum_moments
+from lube.surfaces.spectra import line_attributes, spectrum_moments
+from lube.surfaces.synthetic import ROLLERS
 
 PAIRS = 40
 """Pairs of lines for the first film formula, enough for a relative standard error of 2 %; errors
@@ -185,10 +187,9 @@ def _limited(name, values, most=np.inf):
     """Mean and interval of a variable, from its values over pairs of lines."""
     values = values.transpose("pair", ...)
     limits = mean_interval(values.values)
-    return {
-        name + suffix: (values.dims[1:], np.minimum(limit, most))
-        for suffix, limit in zip(LIMITS, limits, strict=True)
-    }
+    return values_with_limits(
+        name, [(values.dims[1:], np.minimum(limit, most)) for limit in limits]
+    )
 
 
 def _touching_pairs(groups, breakthrough, windows, revolution):
@@ -199,16 +200,13 @@ def _touching_pairs(groups, breakthrough, windows, revolution):
     are counted instead. The first one, if mu of them are expected within a revolution T, comes on
     average after T (1 / mu - 1 / (e^mu - 1)); unless there is one at the beginning.
     """
-    limits = zip(
-        _limited("touching_pair_share", groups).items(),
-        _limited("", breakthrough, most=1.0).values(),
-        strict=True,
-    )
+    expected = _limited("touching_pair_share", groups)
+    seen = _limited("touching_pair_share", breakthrough, most=1.0)
     windows = windows.broadcast_like(groups.isel(pair=0)).transpose(*groups.isel(pair=0).dims)
     with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
         expected = {
-            name: (dims, np.maximum(values, -windows.values * np.log1p(-seen)))
-            for (name, (dims, values)), (_, seen) in limits
+            name: (dims, np.maximum(values, -windows.values * np.log1p(-seen[name][1])))
+            for name, (dims, values) in expected.items()
         }
     shares = {name: (dims, -np.expm1(-values)) for name, (dims, values) in expected.items()}
     mean = xr.Variable(*expected["touching_pair_share"])

@@ -30,7 +30,8 @@ import scipy.special
 
 from lube.errors import StudyError
 from lube.kernels.tail import touching_runs, touching_windows
-from lube.surfaces.synthetic import ROLLERS, LineSpecLike, autocovariance, draw_gaussian_line
+from lube.surfaces.spectra import autocovariance
+from lube.surfaces.synthetic import ROLLERS, LineSpecLike, draw_gaussian_line
 from lube.types import Array, Pair
 
 WINDOWS = 800

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from lube.errors import DataError
-from lube.schema import ATTRIBUTES, COORDINATES, FILES, check, label
+from lube.schema import ATTRIBUTES, COORDINATES, FILES, check, label, values_with_limits
 from lube.schema.tables import read_table
 
 VARIABLES = [(kind, name) for kind in FILES for name in FILES[kind]]
@@ -116,6 +116,10 @@ def test_a_coordinate_that_is_missing_or_repeats_a_value_is_refused(labelled):
         assert f"coordinate {name!r} is missing" in refusal(dataset.drop_vars(name), kind)
         twice = dataset.isel({name: [0, 0]})
         assert f"coordinate {name!r} repeats a value" in refusal(twice, kind)
+
+
+def test_limits_have_the_names_of_the_tables():
+    assert set(values_with_limits("contact_share", [0.5, 0.4, 0.6])) <= set(FILES["experiment"])
 
 
 def test_a_missing_attribute_is_refused(labelled):

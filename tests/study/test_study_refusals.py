@@ -102,9 +102,9 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
         match = re.match(r"quantity in ([^ ,(]+)(, above 0)?", value)
         if match is None:
             continue
-        tested += 1
         if ".topography." in key:
             continue  # with a file that is missing here
+        tested += 1
         units, positive = match.groups()
         bare = refusal(paper_with((key, 50)))
         assert f"mine.yaml: {key}: got 50, need a number with its unit, such as '1 {units}'" in bare
