@@ -139,6 +139,12 @@ _ROWS = (
     ),
     Stage("film_profile", inputs=("lubricant",), same_values=("film",), target="computed"),
     Stage(
+        "film_shape",
+        inputs=("film", "film_profile"),
+        values=_LINES | _LAYER,
+        target="computed",
+    ),
+    Stage(
         "coverage",
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),

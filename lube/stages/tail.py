@@ -10,13 +10,14 @@ import xarray as xr
 from lube.errors import DataError, StudyError
 from lube.grid.discretise import layer_factor_of
 from lube.grid.operating_points import surface_speeds
+from lube.grid.window_films import shaped_films, window_films
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
-from lube.schema import CONTACT_DIMS, FILES, OPERATING_DIMS, label, values_with_limits
+from lube.schema import CONTACT_DIMS, FILES, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval
 from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
-from lube.surfaces.rare_contact import check_gaussian, rare_contact
+from lube.surfaces.rare_contact import check_gaussian, rare_contact, rare_contact_under
 from lube.surfaces.spectra import line_attributes, spectrum_moments
 from lube.surfaces.synthetic import ROLLERS
 
@@ -58,7 +59,8 @@ def tail_probabilities(
     -------
     xarray.Dataset
         The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty, but where the lines
-        are not Gaussian: then it says so, and all values are NaN.
+        are not Gaussian: then it says so, and all values are NaN. Under films that are not flat,
+        rates and durations are NaN.
 
     Raises
     ------
@@ -84,7 +86,7 @@ def tail_probabilities(
     apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the
     share of pairs with any is :math:`1 - e^{-\mu}`.
     """
-    film = film.transpose(*OPERATING_DIMS, ...)
+    film = film.transpose("film_formula", *POINT_DIMS, ...)
     lowest = film["film_thickness"].min().item()
     if not lowest > 0.0:
         raise DataError(f"film thickness: got {lowest:g} m, need above 0")
@@ -164,12 +166,17 @@ def _sampled(spec, film, boundary_layer, seed, threads):
         xr.Dataset(attrs=line_attributes(spec)), film["reduced_modulus"].item(), boundary_layer
     )
     films, widths = thickness.values / spec.height_step, points.values.astype(np.int64)
+    shaped = _shaped_films(spec, film) if "film_profile" in film else None
 
     def on_one_pair(number):
         formulas = slice(None if number < FEWER_PAIRS else 1)
-        point = films[formulas].ravel(), widths[formulas].ravel()
-        found = rare_contact(spec, seed, number, *point, factor)
-        return [values.reshape(-1, *films[formulas].shape) for values in found]
+        shape = films[formulas].shape
+        if shaped:
+            found = _under_shaped_films(spec, (seed, number), shaped[: np.prod(shape)], factor)
+        else:
+            point = films[formulas].ravel(), widths[formulas].ravel()
+            found = rare_contact(spec, seed, number, *point, factor)
+        return [values.reshape(-1, *shape) for values in found]
 
     # Drawing and counting release Python's lock, so threads share the work.
     with ThreadPoolExecutor(threads) as pool:
@@ -181,6 +188,21 @@ def _sampled(spec, film, boundary_layer, seed, threads):
             xr.DataArray(np.stack([one[:, part] for one in each[:pairs]]), coordinates, dims)
             for each in found
         ]
+
+
+def _shaped_films(spec, film):
+    """Film at the points of each window, height steps, in the order of `_sampled`."""
+    lines = xr.Dataset(attrs=line_attributes(spec))
+    films, _ = window_films(film, lines)
+    return [one.film.astype(float) if one else None for one in films]
+
+
+def _under_shaped_films(spec, pair, films, factor):
+    """Probabilities and runs as of `rare_contact`; the runs are not known."""
+    known = [number for number, one in enumerate(films) if one is not None]
+    windows, runs = np.full((2, len(films)), np.nan), np.full((6, len(films)), np.nan)
+    windows[:, known] = rare_contact_under(spec, *pair, [films[i] for i in known], factor)
+    return windows, runs
 
 
 def _limited(name, values, most=np.inf):
@@ -231,6 +253,8 @@ def _asymptotes(spec, film, boundary_layer):
         boundary_layer.critical_thickness,
         boundary_layer.shear_strength,
     )
+    if "film_profile" in film:
+        return _shaped_asymptotes(film, moments, curvature)
     thickness = film["film_thickness"]
     first = scipy.special.ndtr(-thickness / moments[0] ** 0.5)
     contact = first + 2.0 * film["contact_half_width"] * crossing_rate(thickness, moments)
@@ -238,4 +262,15 @@ def _asymptotes(spec, film, boundary_layer):
     return {
         "geometric_contact_asymptote": contact,
         "breakthrough_asymptote": contact * thickness.copy(data=share),
+    }
+
+
+def _shaped_asymptotes(film, moments, curvature):
+    """Crossings of a film that changes along the contact, the slope of the film neglected."""
+    films = shaped_films(film)
+    crossings = crossing_rate(films, moments) * film["contact_half_width"]
+    share = films.copy(data=sharp_summit_share(films.values, moments, curvature))
+    return {
+        "geometric_contact_asymptote": crossings.integrate("film_position"),
+        "breakthrough_asymptote": (crossings * share).integrate("film_position"),
     }
