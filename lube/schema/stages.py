@@ -69,7 +69,6 @@ _ROWS = (
             "reduced_modulus": "rollers.reduced_modulus",
             "composite_rms_roughness": "rough_rollers.composite_rms_roughness",
             "film_formulas": "film_formulas",
-            "film_shape": "film_shape",
             "force": "operating_grid.force",
             "speed": "operating_grid.speed",
         },

@@ -9,7 +9,7 @@ and those after it only.
 import math
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import AfterValidator, Field, StrictInt, field_validator, model_validator
 from pydantic_core import to_jsonable_python
@@ -124,10 +124,6 @@ class Study(StrictModel):
     """names of shipped records, or paths of your own YAML records"""
     film_formulas: tuple[_Formula, ...] = Field(min_length=1)
     """names from the registry of film formulas"""
-    film_shape: Literal["flat", "computed"] = "flat"
-    """film across the contact; a computed one has the shape of the solution of Reynolds' equation,
-    scaled to the thickness of each film formula
-    """
     operating_grid: OperatingGrid
     roughness: Roughness
     boundary_layer: BoundaryLayer

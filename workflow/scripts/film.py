@@ -9,7 +9,5 @@ begin_job(snakemake.log[0])
 study = load_study(**snakemake.config["study"])
 grid = study.operating_grid
 lubricant = load(snakemake.input.lubricant, "lubricant", study)
-with_shape = study.film_shape == "computed"
-operating = grid.force, grid.speed, study.film_formulas
-table = film_table(lubricant, study.rough_rollers, *operating, with_shape)
+table = film_table(lubricant, study.rough_rollers, grid.force, grid.speed, study.film_formulas)
 save(table, snakemake.output[0], "film", study, [snakemake.input.lubricant])
