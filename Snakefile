@@ -23,6 +23,7 @@ include: "workflow/rules/areal.smk"
 include: "workflow/rules/patch.smk"
 include: "workflow/rules/film_profile.smk"
 include: "workflow/rules/film_shape.smk"
+include: "workflow/rules/flattening.smk"
 include: "workflow/rules/height_distribution.smk"
 include: "workflow/rules/master.smk"
 include: "workflow/rules/experiment.smk"
@@ -67,7 +68,7 @@ rule computed:
     input:
         products(made_by("computed", FIGURES)),
     message:
-        f"Done: film_profile.nc, film_shape.nc and their figures are in {RESULTS}"
+        f"Done: film_profile.nc, film_shape.nc, flattening.nc and their figures are in {RESULTS}"
 
 
 rule benchmark:

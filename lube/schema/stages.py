@@ -144,6 +144,12 @@ _ROWS = (
         target="computed",
     ),
     Stage(
+        "flattening",
+        inputs=("film",),
+        values=_LINES | _LAYER | {"realisations": "realisations"},
+        target="computed",
+    ),
+    Stage(
         "coverage",
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),
