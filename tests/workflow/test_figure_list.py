@@ -46,7 +46,7 @@ def test_a_figure_that_compares_levels_asks_for_several(write, study):
 def test_a_figure_that_compares_oils_asks_for_several(write, study):
     folder = write("fig01_oils", tags=["several-lubricant"])
     assert not study_figures(study, folder)
-    oils = study.lubricants + (load_record("pao-iso-vg-68"),)
+    oils = (*study.lubricants, load_record("pao-iso-vg-68"))
     assert list(study_figures(study.model_copy(update={"lubricants": oils}), folder)) == [
         "fig01_oils"
     ]
