@@ -272,7 +272,7 @@ class LubricantRecord(StrictModel):
             return self.temperature_range.lowest, self.temperature_range.highest
         if self.viscosity.points is not None:
             known = [[point.temperature for point in self._ambient]]
-            known += [sorted(temperatures)] if (temperatures := self._coefficients_at) else []
+            known += [temperatures] if (temperatures := self._coefficients_at) else []
             return max(map(min, known)), min(map(max, known))
         lowest, highest = liquid_range(self.viscosity.coolprop_fluid)
         return lowest - ZERO_CELSIUS, highest - ZERO_CELSIUS
