@@ -13,7 +13,7 @@ import xarray as xr
 
 from lube.calculator.amounts import Amount, amount, described
 from lube.errors import LubeError, RecordError, StudyError, shown
-from lube.physics.pressure_viscosity import GOLD_BASES
+from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.stages.lubricant import lubricant_table
 from lube.study.field_types import bounded, validate
 from lube.study.line_spec import LineSpec, line_spec
@@ -218,8 +218,8 @@ class Oil:
         Without a record: base oil, for the pressure-viscosity coefficient by Gold's form:
         ``mineral`` (by default), ``polyalphaolefin``, ``ester`` or ``polyglycol``.
     pressure_viscosity : str, optional
-        Without a record: pressure-viscosity coefficient such as ``"18 1/GPa"``, in place of that
-        of the base oil.
+        Without a record: pressure-viscosity coefficient such as ``"18 1/GPa"``, the slope at
+        atmospheric pressure, in place of that of the base oil.
 
     Attributes
     ----------
@@ -329,8 +329,7 @@ def _record(viscosity, density, base, pressure_viscosity):
     source = "assumed: given in Python"
     alpha = {"source": source, "gold_base": base}
     if pressure_viscosity is not None:
-        definition = "reciprocal-asymptotic"
-        alpha = {"source": source, "value": pressure_viscosity, "definition": definition}
+        alpha = {"source": source, "value": pressure_viscosity, "definition": FORMULA_DEFINITION}
     points = _points(viscosity)
     content = {
         "name": "oil",
@@ -344,7 +343,7 @@ def _record(viscosity, density, base, pressure_viscosity):
         "pressure_viscosity": alpha,
     }
     record = validate(LubricantRecord, content, "Oil", RecordError)
-    check_points(record.viscosity.points, "Oil")
+    check_points(record, "Oil")
     return record
 
 

@@ -61,7 +61,7 @@ GRIDS = [
 ]
 
 NAMES = [
-    ("lubricants", ["nope"], f"got 'nope', need one of {OIL}"),
+    ("lubricants", ["nope"], "got 'nope', need one of base-oil-m100"),
     ("lubricants", ["nope.yaml"], "nope.yaml: cannot be read"),
     ("lubricants", [], "got (), need at least 1"),
     ("lubricants", OIL, f"got '{OIL}', need a list"),
