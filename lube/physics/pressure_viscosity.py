@@ -17,6 +17,7 @@ to the Hertzian pressure). For an oil of Barus, :math:`\eta = \eta_0 e^{\alpha p
 import numpy as np
 
 from lube.errors import RangeError
+from lube.physics.pressure_laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY
 from lube.types import Array, Values
 
 GOLD_BASES = {
@@ -69,15 +70,9 @@ DEFINITIONS = {
 FORMULA_DEFINITION = "slope-at-atmospheric"
 """Definition that the film formulas take: the slope of an oil of Roelands.
 
-It is a convention of this study. The errors and ranges of validity in `lube.physics.film_formulas`
+It is a convention of this study. The errors and ranges of validity in `lube.ehl.film_formulas`
 were determined with such oils, whose slope stood in the formulas.
 """
-
-ROELANDS_PRESSURE = 1.962e8
-"""Constant of Roelands' law, Pa."""
-
-ROELANDS_VISCOSITY = 9.67
-"""Constant of Roelands' law: minus the logarithm of its limiting viscosity in Pa s."""
 
 _SLOPES = 1e-11, 1e-6  # 1/Pa: limits within which the slope of an oil is sought
 
@@ -130,12 +125,12 @@ def roelands_coefficient(
     """
     from scipy.special import gammaincc, gammaln  # on first use: Snakemake imports this module
 
-    c = np.log(dynamic_viscosity) + ROELANDS_VISCOSITY
+    c = np.log(dynamic_viscosity / ROELANDS_VISCOSITY)
     if not c > 0.0:
         raise RangeError(
             f"got a viscosity of {dynamic_viscosity:g} Pa s, Roelands' law, which converts between "
             "definitions of the pressure-viscosity coefficient, needs more than "
-            f"{np.exp(-ROELANDS_VISCOSITY):.2g} Pa s"
+            f"{ROELANDS_VISCOSITY:.2g} Pa s"
         )
     z = slope * ROELANDS_PRESSURE / c
     match definition:
