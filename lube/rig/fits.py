@@ -162,18 +162,25 @@ def _films(row, groups, factor):
         return row.evaluate(load, speed, factor * material)
     nodes = xr.DataArray(COMPUTED_FACTORS, dims="factor")
     films = xr.apply_ufunc(row.evaluate, load, speed, nodes * material, *oil, join="exact")
-    return np.exp(_between(np.log(films.assign_coords(factor=np.log(nodes))), np.log(factor)))
+    return xr.apply_ufunc(
+        _between_nodes,
+        films.rename(factor="node"),
+        factor,
+        input_core_dims=[["node"], ["factor"]],
+        output_core_dims=[["factor"]],
+        vectorize=True,
+    )
 
 
-def _between(nodes, factor):
-    """Interpolate between nodes; beyond the last, continue as a power of the factor."""
-    interpolate = scipy.interpolate.CubicSpline(nodes["factor"], nodes.transpose("factor", ...))
-    values = interpolate(np.minimum(factor, nodes["factor"][-1]))
-    slope = interpolate(nodes["factor"][-1].item(), 1)
-    beyond = np.maximum(factor - nodes["factor"][-1], 0.0).values
-    dims = nodes.transpose("factor", ...).dims
-    values = values + beyond.reshape(-1, *[1] * (values.ndim - 1)) * slope
-    return xr.DataArray(values, dims=dims)
+def _between_nodes(films, factor):
+    """Film at each factor, from those at `COMPUTED_FACTORS` that converged."""
+    known = np.isfinite(films)
+    if known.sum() < 2:
+        return np.full(factor.size, np.nan)
+    nodes, last = np.log(COMPUTED_FACTORS[known]), np.log(COMPUTED_FACTORS[known][-1])
+    curve = scipy.interpolate.CubicSpline(nodes, np.log(films[known]))
+    beyond = np.maximum(np.log(factor) - last, 0.0)
+    return np.exp(curve(np.minimum(np.log(factor), last)) + beyond * curve(last, 1))
 
 
 def _mean_logits(master, comparison, ratios):
