@@ -12,7 +12,9 @@ from lube.stages.comparison import compare
 from lube.stages.contact import contact_map, contact_statistics
 from lube.stages.ensemble import gather, gather_map
 from lube.stages.experiment import simulated_experiment
-from lube.stages.film import film_table
+from lube.stages.film import film_profile_table, film_table
+from lube.stages.film_shape import film_shape_probabilities
+from lube.stages.flattening import flattened_contact
 from lube.stages.gauge import gauge_records
 from lube.stages.height_distribution import height_distributions
 from lube.stages.lubricant import lubricant_table
@@ -54,6 +56,7 @@ def datasets_of_every_kind(study):
     spec = own.line_spec
     oil = lubricant_table(study.lubricants, grid.temperature)
     film = film_table(oil, own.rollers, grid.force, grid.speed, study.film_formulas)
+    profile = film_profile_table(oil, own.rollers, grid.force, grid.speed)
     lines = roughness_lines(spec, study.seed, [0, 1])
     batch = roughness_batch(spec, study.seed, [0, 1])
     run = contact_statistics(batch, film, layer, study.slips)
@@ -83,6 +86,9 @@ def datasets_of_every_kind(study):
         "rig": rig_records(rig_lines, film, own),
         "comparison": comparison,
         "gauge": gauge,
+        "film_profile": profile,
+        "film_shape": film_shape_probabilities(spec, film, profile, layer, study.seed),
+        "flattening": flattened_contact(spec, film, layer, study.seed, [0, 1]),
         "patch": measured_values("patch"),  # by a package that need not be installed
         "speed": measured_values("speed"),
         "reading": measured_values("reading"),

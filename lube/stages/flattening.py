@@ -142,7 +142,7 @@ class _Waves:
         spectrum = np.zeros(self.size // 2 + 1, complex)
         spectrum[1 : kept.size + 1] = self.waves * kept
         line = np.rint(scipy.fft.irfft(spectrum, self.size, overwrite_x=True)).astype(np.int32)
-        return line, kept**2 @ self.power
+        return line, np.sum(kept**2 * self.power)
 
 
 def _limited(probability, dims, windows):
