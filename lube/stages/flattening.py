@@ -70,7 +70,8 @@ def flattened_contact(
             "lambda_ratio": film["lambda_ratio"].drop_attrs(),
         },
         {name: film[name] for name in POINT_DIMS}
-        | {"realisation": np.asarray(realisations), "roughness_model": list(ROUGHNESS_MODELS)},
+        | {"realisation": np.asarray(realisations), "roughness_model": list(ROUGHNESS_MODELS)}
+        | {"revolutions": 1},
     )
     formula = film["film_formula"].item()
     table = table.drop_vars("film_formula", errors="ignore").assign(film_formula=formula)

@@ -109,7 +109,8 @@ def changed_stages(paper_with):
 
 
 MECHANICS = {"contact", "tail", "areal", "trace", "experiment"}
-LAYER = MECHANICS | {"master", "height_distribution"}  # which are for pure rolling
+# Those that are for pure rolling too.
+LAYER = MECHANICS | {"master", "height_distribution", "film_shape", "flattening"}
 LINES = LAYER | {"roughness", "patch"}
 SPECTRUM = LINES | {"surface"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
@@ -133,7 +134,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("rig.bandwidth", "10 kHz", {"experiment"}),
         ("rig.drift", 0.1, {"experiment"}),
         ("experiment.threshold", "10 ohm", {"experiment"}),
-        ("realisations", 128, {"coverage"}),
+        ("realisations", 128, {"coverage", "flattening"}),
         ("batch_size", 8, set()),
         ("kept_realisations", [0, 1], set()),
         ("name", "another", set()),
