@@ -14,7 +14,9 @@ from lube.stages.comparison import compare
 from lube.stages.contact import contact_map, contact_statistics
 from lube.stages.ensemble import gather, gather_map
 from lube.stages.experiment import measured_experiment, simulated_experiment
-from lube.stages.film import film_at_records, film_table
+from lube.stages.film import film_at_records, film_profile_table, film_table
+from lube.stages.film_shape import film_shape_probabilities
+from lube.stages.flattening import flattened_contact
 from lube.stages.gauge import gauge_records
 from lube.stages.height_distribution import height_distributions
 from lube.stages.lubricant import lubricant_table
@@ -166,6 +168,7 @@ def _datasets(study):
     model = model_at_records(at_records, experiment, film, contact, study)
     comparison = compare(model, experiment, contact)
     gauge = gauge_records(master, contact, comparison)
+    profile = film_profile_table(oil, study.rough_rollers, grid.force, grid.speed)
     of_surface = {}
     if study.line_spec.is_gaussian:
         spec, rollers = study.line_spec, study.rollers
@@ -174,10 +177,14 @@ def _datasets(study):
             "areal": areal,
             "areal_gauge": gauge_by_surface(film, areal, comparison, gauge),
             "patch": patch_contact(spec, rollers.reduced_modulus, study.seed),
+            "film_shape": film_shape_probabilities(spec, film, profile, layer, study.seed, 2),
         }
     spec, some = study.line_spec, {}
     if spec.is_drawn:
         some["height_distribution"] = height_distributions(spec, film, layer, study.seed)
+    if not spec.is_one_pair:
+        realisations = range(study.realisations)
+        some["flattening"] = flattened_contact(spec, film, layer, study.seed, realisations, 2)
     if study.topographies:
         some["surface"] = measured_surfaces(study.topographies, spec, 0.7)
     return (
@@ -186,6 +193,7 @@ def _datasets(study):
         | {
             "lubricant": oil,
             "film": film,
+            "film_profile": profile,
             "roughness": lines,
             "contact": contact,
             "tail": tail_probabilities(study.line_spec, film, layer, study.seed, study.slips),
