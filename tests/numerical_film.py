@@ -109,16 +109,3 @@ class NumericalFilm:
             raise ArithmeticError("the numerical film did not converge")
         h = (offset + self.x**2 / 2 + self.deflection @ p) * self.a**2 / RADIUS
         return h[middle], h.min()
-
-
-def solve_at(moes_load, moes_material, viscosity, alpha):
-    """W, U and G of a contact at M and L with some oil, and its central and minimum film, m.
-
-    The oil is given, because Roelands' law needs more than M and L; speed and force follow.
-    """
-    material = dimensionless.dimensionless_material(alpha, 2 * MODULUS)
-    speed = (moes_material / material) ** 4 / 2
-    load = moes_load * np.sqrt(2 * speed)
-    scale = 2 * MODULUS * RADIUS
-    solver = NumericalFilm(load * scale * LENGTH, viscosity, alpha, speed * scale / viscosity)
-    return (load, speed, material), solver.solve()

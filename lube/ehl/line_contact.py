@@ -21,6 +21,8 @@ FLOODED = 1e4
 Ten times less thins the film by up to 0.2 %."""
 TOLERANCE = 1e-9
 """Largest defect of the mass flux, over that at the centre, and of the load, over the load."""
+_HERTZ_DEFLECTION = 0.25 + 0.5 * np.log(2.0)
+"""Of the dry contact at the line of centres, scaled."""
 _FITTINGS = 2
 _MOST_STEPS = 400
 _MOST_NODES = 1000
@@ -155,6 +157,12 @@ class FilmProfile:
         return float(self.film(np.linspace(low, high, 201)).min())
 
     @cached_property
+    def mean_film(self) -> float:
+        """Mean film over R* in the Hertzian zone, one half-width on either side."""
+        points, weights = np.polynomial.legendre.leggauss(64)
+        return float(self.film(points) @ weights / 2.0)
+
+    @cached_property
     def mass_flux_defect(self) -> float:
         """Largest difference of the mass flux from that at the centre, over it."""
         central = np.interp(0.0, 0.5 * (self.nodes[1:] + self.nodes[:-1]), self.flux)
@@ -219,7 +227,9 @@ def solve(
     '1.02 um, least 0.85 um'
     """
     _check(contact, meniscus)
-    with _libraries().limit(limits=1, user_api="blas"):
+    # A step that overflows is too large, and repeated.
+    quiet = np.errstate(over="ignore", invalid="ignore", divide="ignore")
+    with quiet, _libraries().limit(limits=1, user_api="blas"):
         return _solve(contact, meniscus, flooded, fineness)
 
 
@@ -231,7 +241,7 @@ def _libraries():
 
 def _solve(contact, meniscus, flooded, fineness):
     film = contact.film_guess
-    end = inlet_end(0.0, flooded * film) if meniscus is None else -meniscus
+    end = inlet_end(film - _HERTZ_DEFLECTION, flooded * film) if meniscus is None else -meniscus
     nodes = first_mesh(film, end)
     breadth = np.sqrt(1.0 + 2.0 * film)
     pressure = np.sqrt(np.maximum(1.0 - (nodes / breadth) ** 2, 0.0))
