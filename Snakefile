@@ -21,6 +21,8 @@ include: "workflow/rules/contact.smk"
 include: "workflow/rules/tail.smk"
 include: "workflow/rules/areal.smk"
 include: "workflow/rules/patch.smk"
+include: "workflow/rules/film_plane.smk"
+include: "workflow/rules/constant.smk"
 include: "workflow/rules/height_distribution.smk"
 include: "workflow/rules/master.smk"
 include: "workflow/rules/experiment.smk"
@@ -59,6 +61,13 @@ rule patch_contact:
         products(made_by("patch_contact", FIGURES)),
     message:
         f"Done: patch.nc and its figure are in {RESULTS}"
+
+
+rule computed:
+    input:
+        products(made_by("computed", FIGURES)),
+    message:
+        f"Done: film_plane.nc, constant.nc and their figures are in {RESULTS}"
 
 
 rule benchmark:
