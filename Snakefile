@@ -23,6 +23,9 @@ include: "workflow/rules/areal.smk"
 include: "workflow/rules/patch.smk"
 include: "workflow/rules/film_plane.smk"
 include: "workflow/rules/constant.smk"
+include: "workflow/rules/film_profile.smk"
+include: "workflow/rules/film_shape.smk"
+include: "workflow/rules/flattening.smk"
 include: "workflow/rules/height_distribution.smk"
 include: "workflow/rules/master.smk"
 include: "workflow/rules/experiment.smk"
@@ -67,7 +70,7 @@ rule computed:
     input:
         products(made_by("computed", FIGURES)),
     message:
-        f"Done: film_plane.nc, constant.nc and their figures are in {RESULTS}"
+        f"Done: the computed films, what they do to contact, and their figures are in {RESULTS}"
 
 
 rule benchmark:

@@ -37,18 +37,11 @@ _HOMES = {
     "lube.stages.roughness": ("roughness_lines",),
     "lube.stages.trace": ("contact_trace", "contact_window"),
     "lube.storage.netcdf": ("load", "save"),
+    "lube.study.line_spec": ("LineSpec", "RoughLine", "line_spec"),
     "lube.study.lubricant_record": ("load_record", "shipped_records"),
-    "lube.study.rollers": (
-        "BoundaryLayer",
-        "LineSpec",
-        "RoughLine",
-        "Roller",
-        "RollerPair",
-        "Roughness",
-        "line_spec",
-    ),
+    "lube.study.rollers": ("BoundaryLayer", "Roller", "RollerPair", "Roughness"),
     "lube.study.study": ("Study", "load_study"),
-    "lube.surfaces.synthetic": ("power_spectrum",),
+    "lube.surfaces.spectra": ("power_spectrum",),
     "lube.workflow.results": ("results_folder",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}

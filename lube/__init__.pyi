@@ -42,18 +42,18 @@ from lube.stages.trace import contact_trace as contact_trace
 from lube.stages.trace import contact_window as contact_window
 from lube.storage.netcdf import load as load
 from lube.storage.netcdf import save as save
+from lube.study.line_spec import LineSpec as LineSpec
+from lube.study.line_spec import RoughLine as RoughLine
+from lube.study.line_spec import line_spec as line_spec
 from lube.study.lubricant_record import load_record as load_record
 from lube.study.lubricant_record import shipped_records as shipped_records
 from lube.study.rollers import BoundaryLayer as BoundaryLayer
-from lube.study.rollers import LineSpec as LineSpec
 from lube.study.rollers import Roller as Roller
 from lube.study.rollers import RollerPair as RollerPair
-from lube.study.rollers import RoughLine as RoughLine
 from lube.study.rollers import Roughness as Roughness
-from lube.study.rollers import line_spec as line_spec
 from lube.study.study import Study as Study
 from lube.study.study import load_study as load_study
-from lube.surfaces.synthetic import power_spectrum as power_spectrum
+from lube.surfaces.spectra import power_spectrum as power_spectrum
 from lube.workflow.results import results_folder as results_folder
 
 __version__: str

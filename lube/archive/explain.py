@@ -19,7 +19,8 @@ from lube.stages.ensemble import with_intervals
 from lube.stages.roughness import roughness_batch
 from lube.storage.netcdf import load
 from lube.storage.provenance import fingerprint, input_sums, json_attribute
-from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
 from lube.types import File
 
 

@@ -22,8 +22,9 @@ from lube.stages.tail import tail_probabilities
 from lube.stages.trace import contact_trace
 from lube.statistics.confidence import probability_interval
 from lube.study.field_types import bounded
+from lube.study.line_spec import check_width
 from lube.study.rig_settings import RIG_REALISATIONS
-from lube.study.rollers import BoundaryLayer, check_width
+from lube.study.rollers import BoundaryLayer
 from lube.units import parse_number
 
 FORMULA = "pan-hamrock"

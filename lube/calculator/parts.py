@@ -13,16 +13,17 @@ import xarray as xr
 
 from lube.calculator.amounts import Amount, amount, described
 from lube.errors import LubeError, RecordError, StudyError, shown
-from lube.physics.pressure_viscosity import GOLD_BASES
+from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.stages.lubricant import lubricant_table
 from lube.study.field_types import bounded, validate
+from lube.study.line_spec import LineSpec, line_spec
 from lube.study.lubricant_record import (
     LubricantRecord,
     check_points,
     load_record,
     read_viscosity_csv,
 )
-from lube.study.rollers import BoundaryLayer, LineSpec, Roller, RollerPair, Roughness, line_spec
+from lube.study.rollers import BoundaryLayer, Roller, RollerPair, Roughness
 from lube.types import File
 from lube.units import parse_quantity
 
@@ -179,7 +180,7 @@ class Rollers:
         }
         shared = validate(Roughness, roughness, "Rollers", StudyError)
         self.lines = line_spec(self.pair, shared, largest_force=math.nan)
-        self.pair = self.pair.with_lines(self.lines)
+        self.pair = self.pair.with_rms_heights(self.lines.rms_height)
         if not self.lines.is_drawn:
             raise StudyError(
                 "Rollers: topography.use: got a measured line, need 'spectrum': answers here are "
@@ -217,8 +218,8 @@ class Oil:
         Without a record: base oil, for the pressure-viscosity coefficient by Gold's form:
         ``mineral`` (by default), ``polyalphaolefin``, ``ester`` or ``polyglycol``.
     pressure_viscosity : str, optional
-        Without a record: pressure-viscosity coefficient such as ``"18 1/GPa"``, in place of that
-        of the base oil.
+        Without a record: pressure-viscosity coefficient such as ``"18 1/GPa"``, the slope at
+        atmospheric pressure, in place of that of the base oil.
 
     Attributes
     ----------
@@ -328,8 +329,7 @@ def _record(viscosity, density, base, pressure_viscosity):
     source = "assumed: given in Python"
     alpha = {"source": source, "gold_base": base}
     if pressure_viscosity is not None:
-        definition = "reciprocal-asymptotic"
-        alpha = {"source": source, "value": pressure_viscosity, "definition": definition}
+        alpha = {"source": source, "value": pressure_viscosity, "definition": FORMULA_DEFINITION}
     points = _points(viscosity)
     content = {
         "name": "oil",
@@ -343,7 +343,7 @@ def _record(viscosity, density, base, pressure_viscosity):
         "pressure_viscosity": alpha,
     }
     record = validate(LubricantRecord, content, "Oil", RecordError)
-    check_points(record.viscosity.points, "Oil")
+    check_points(record, "Oil")
     return record
 
 

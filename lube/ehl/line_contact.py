@@ -133,9 +133,13 @@ class FilmProfile:
         deflection = deflection_matrix(position, self.nodes) @ self.pressure
         return self.offset + 0.5 * position**2 + deflection
 
-    def film(self, position: Array) -> Array:
+    def film_at(self, position: Array) -> Array:
         """Film, and gap outside the contact, over R*, at positions over the half-width."""
         return self.scaled_gap(np.asarray(position, float)) * self.contact.half_width**2
+
+    def pressure_at(self, position: Array) -> Array:
+        """Pressure over Hertz' maximum pressure, at positions over the half-width."""
+        return np.interp(position, self.nodes, self.pressure, left=0.0, right=0.0)
 
     @cached_property
     def end(self) -> int:
@@ -145,7 +149,7 @@ class FilmProfile:
     @cached_property
     def central_film(self) -> float:
         """Film over R* at the line of centres."""
-        return float(self.film(np.zeros(1))[0])
+        return float(self.film_at(np.zeros(1))[0])
 
     @cached_property
     def minimum_film(self) -> float:
@@ -154,13 +158,13 @@ class FilmProfile:
         thinnest = middle[np.argmin(self.scaled_gap(middle))]
         near = np.searchsorted(self.nodes, thinnest) + np.array([-3, 2])
         low, high = self.nodes[np.clip(near, 0, self.nodes.size - 1)]
-        return float(self.film(np.linspace(low, high, 201)).min())
+        return float(self.film_at(np.linspace(low, high, 201)).min())
 
     @cached_property
     def mean_film(self) -> float:
         """Mean film over R* in the Hertzian zone, one half-width on either side."""
         points, weights = np.polynomial.legendre.leggauss(64)
-        return float(self.film(points) @ weights / 2.0)
+        return float(self.film_at(points) @ weights / 2.0)
 
     @cached_property
     def mass_flux_defect(self) -> float:

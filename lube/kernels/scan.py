@@ -14,13 +14,13 @@ from lube.types import Array, Pair, Ratios
 
 @kernel
 def scan_window(
-    lines: Pair, first_1: int, first_2: int, width: int, film: int, factor: float
+    lines: Pair, first_1: int, first_2: int, film: Array, factor: float
 ) -> tuple[int, int, int]:
     r"""Find the segments in one contact window, and those whose boundary layer breaks.
 
     A segment is the longest possible run of neighbouring points with positive overlap
 
-    .. math:: \Delta z = z_1 + z_2 - h_0 > 0 ,
+    .. math:: \Delta z = z_1 + z_2 - h > 0 ,
 
     cut at the window's edges.
 
@@ -30,10 +30,8 @@ def scan_window(
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
     first_1, first_2 : int
         Indices of the window's first point on the two lines.
-    width : int
-        Number of points in the window.
-    film : int
-        Film thickness h0, height steps.
+    film : numpy.ndarray
+        Film thickness h at each point of the window, shape (W,), int64 height steps.
     factor : float
         From `lube.kernels.layer.layer_factor`.
 
@@ -51,17 +49,17 @@ def scan_window(
     Two segments, of one and of two points; the layer breaks on the first only:
 
     >>> line = np.array([5, 0, 2, 2, 0], np.int32)
-    >>> scan_window((line, np.zeros_like(line)), 0, 0, 5, 1, 1.0)
+    >>> scan_window((line, np.zeros_like(line)), 0, 0, np.full(5, 1), 1.0)
     (3, 1, 6)
     """
     contact_points = broken_points = total_overlap = 0
     segment_points = segment_overlap = 0
     line_1, line_2 = lines
     i, k = first_1, first_2
-    for point in range(width + 1):
-        overlap = np.int64(line_1[i]) + line_2[k] - film
-        if point == width:
-            overlap = 0  # beyond the right edge, which cuts the last segment
+    for point in range(film.size + 1):
+        overlap = 0  # beyond the right edge, which cuts the last segment
+        if point < film.size:
+            overlap = np.int64(line_1[i]) + line_2[k] - film[point]
         if overlap > 0:
             segment_points += 1
             segment_overlap += overlap
@@ -82,7 +80,7 @@ def scan_window(
 
 @kernel
 def scan_trace(
-    lines: Pair, speed_ratios: Ratios, steps: int, film: int, half_window: int, factor: float
+    lines: Pair, speed_ratios: Ratios, steps: int, film: Array, before: int, factor: float
 ) -> Array:
     """Compute the contact at every time step of one operating point.
 
@@ -94,10 +92,10 @@ def scan_trace(
         Surface speeds over that of the faster surface.
     steps : int
         Number T of time steps.
-    film : int
-        Film thickness h0, height steps.
-    half_window : int
-        Points on either side of the window's centre, floor(a / dx).
+    film : numpy.ndarray
+        Film thickness at each point of the window, shape (W,), int64 height steps.
+    before : int
+        Points of the window before its centre; floor(a / dx) of a flat film.
     factor : float
         From `lube.kernels.layer.layer_factor`.
 
@@ -112,15 +110,15 @@ def scan_trace(
     One high point passes a window of three points in pure rolling:
 
     >>> line = np.array([5, 0, 0, 0, 0], np.int32)
-    >>> scan_trace((line, np.zeros_like(line)), (1.0, 1.0), 5, 3, 1, 1.0)[:, 0].tolist()
+    >>> lines, film = (line, np.zeros_like(line)), np.full(3, 3)
+    >>> scan_trace(lines, (1.0, 1.0), 5, film, 1, 1.0)[:, 0].tolist()
     [1, 1, 0, 0, 1]
     """
     trace = np.empty((steps, 3), np.int64)
-    width = 2 * half_window + 1
     for step in range(steps):
-        first_1 = (surface_position(step, speed_ratios[0]) - half_window) % lines[0].size
-        first_2 = (surface_position(step, speed_ratios[1]) - half_window) % lines[1].size
-        trace[step] = scan_window(lines, first_1, first_2, width, film, factor)
+        first_1 = (surface_position(step, speed_ratios[0]) - before) % lines[0].size
+        first_2 = (surface_position(step, speed_ratios[1]) - before) % lines[1].size
+        trace[step] = scan_window(lines, first_1, first_2, film, factor)
     return trace
 
 
@@ -128,7 +126,7 @@ def scan_trace(
 def scan_statistics(
     lines: Pair, speed_ratios: Ratios, steps: int, films: Array, half_windows: Array, factor: float
 ) -> Array:
-    """Compute the contact statistics of many operating points by the literal scan.
+    """Compute the contact statistics of many operating points with flat films by the literal scan.
 
     Parameters
     ----------
@@ -153,7 +151,8 @@ def scan_statistics(
     """
     statistics = np.empty((films.size, 4), np.int64)
     for point in range(films.size):
-        trace = scan_trace(lines, speed_ratios, steps, films[point], half_windows[point], factor)
+        film = np.full(2 * half_windows[point] + 1, films[point])
+        trace = scan_trace(lines, speed_ratios, steps, film, half_windows[point], factor)
         statistics[point, 0] = np.sum(trace[:, 0] > 0)
         statistics[point, 1] = np.sum(trace[:, 1] > 0)
         statistics[point, 2:] = np.sum(trace[:, 1:], axis=0)

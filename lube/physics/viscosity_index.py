@@ -102,3 +102,43 @@ def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:
         return 100.0 * (low - viscosity_40) / (low - high)
     exponent = float(np.log(high / viscosity_40) / np.log(viscosity_100))
     return (10.0**exponent - 1.0) / 0.00715 + 100.0
+
+
+def viscosity_at_100(viscosity_40: float, index: float) -> float:
+    """Kinematic viscosity at 100 degC of an oil with a viscosity index, by ASTM D2270.
+
+    Parameters
+    ----------
+    viscosity_40 : float
+        Kinematic viscosity at 40 degC, mm2/s.
+    index : float
+        Viscosity index.
+
+    Returns
+    -------
+    float
+        Kinematic viscosity at 100 degC, mm2/s: of those that have this index, found by bisection.
+
+    Raises
+    ------
+    RangeError
+        If no viscosity from 2 mm2/s to that at 40 degC has this index.
+
+    Examples
+    --------
+    >>> f"{viscosity_at_100(335.0, 164.4):.1f}"
+    '38.3'
+    """
+    low, high = 2.0, viscosity_40
+    if not low < high or not viscosity_index(viscosity_40, low) <= index:
+        raise RangeError(
+            f"got a viscosity index of {index:g} at {viscosity_40:g} mm2/s at 40 degC, the index "
+            "needs 2 mm2/s or more at 100 degC"
+        )
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if viscosity_index(viscosity_40, middle) < index:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)

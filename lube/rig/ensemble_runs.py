@@ -8,7 +8,8 @@ from lube.grid.discretise import layer_factor_of, revolution, speed_ratios, whol
 from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_statistics
 from lube.study.study import Study
-from lube.surfaces.synthetic import draw_realisation, line_attributes
+from lube.surfaces.spectra import line_attributes
+from lube.surfaces.synthetic import draw_realisation
 from lube.types import Array, Pair
 
 

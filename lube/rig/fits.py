@@ -11,8 +11,7 @@ import xarray as xr
 
 from lube.ehl.film_formulas import formula
 from lube.rig.map_curves import curve_at, layer_curve_at, logits_on, windows_in
-from lube.rig.study_shares import values_with_limits
-from lube.schema import LIMITS
+from lube.schema import LIMITS, values_with_limits
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
 from lube.statistics.sample_size import effective_sample_size

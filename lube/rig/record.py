@@ -15,7 +15,7 @@ from lube.grid.operating_points import surface_speeds
 from lube.physics.electrical import resistance_from_voltage
 from lube.rig.contact_share import folded_counts, record_counter, share_interval
 from lube.rig.simulator import Revolution
-from lube.rig.study_shares import values_with_limits
+from lube.schema import values_with_limits
 from lube.statistics.folding import CLEAR, SPAN, fold
 from lube.statistics.one_pair import distinct_alignments
 from lube.study.study import Study

@@ -1,8 +1,7 @@
 """Contact shares of a study's records: selected, arranged over the grid, and described in words."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from logging import Logger
-from typing import Any
 
 import pandas as pd
 import xarray as xr
@@ -13,29 +12,6 @@ from lube.schema import COORDINATES, LIMITS
 
 MOST_LINES = 10
 """Lines of a long list that are logged."""
-
-
-def values_with_limits(name: str, values: Iterable[Any]) -> dict[str, Any]:
-    """Name a value and the limits of its interval.
-
-    Parameters
-    ----------
-    name : str
-        Name of the value.
-    values : iterable
-        Value, lower limit and upper limit.
-
-    Returns
-    -------
-    dict
-        The three by their names.
-
-    Examples
-    --------
-    >>> values_with_limits("share", [0.5, 0.4, 0.6])
-    {'share': 0.5, 'share_lower': 0.4, 'share_upper': 0.6}
-    """
-    return {f"{name}{limit}": value for limit, value in zip(LIMITS, values, strict=True)}
 
 
 def at_comparison_threshold(experiment: xr.Dataset) -> xr.Dataset:

@@ -26,6 +26,7 @@ from lube.schema.tables import (
     REGIMES,
     SUMMARIES,
     Variable,
+    values_with_limits,
 )
 
 __all__ = [
@@ -51,4 +52,5 @@ __all__ = [
     "check",
     "forerunners",
     "label",
+    "values_with_limits",
 ]

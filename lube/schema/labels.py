@@ -84,9 +84,10 @@ def check(dataset: xr.Dataset, kind: str, where: File = "dataset") -> xr.Dataset
         if _expected(kind, name) is None:
             raise DataError(f"{refusal}: variable {name!r} does not belong there")
     for name, expected in FILES[kind].items():
-        if name not in dataset.variables:
+        if name in dataset.variables:
+            _check_variable(dataset[name], name, expected, where)
+        elif not expected.optional:
             raise DataError(f"{refusal}: variable {name!r} is missing")
-        _check_variable(dataset[name], name, expected, where)
     for name in dataset.dims:
         if name in COORDINATES:
             _check_coordinate(dataset, name, where)

@@ -77,7 +77,7 @@ _ROWS = (
     Stage(
         "surface",
         values={"surfaces": "measured_surfaces", "lines": "line_spec"},
-        only_with="measured_surfaces",
+        only_with="topographies",
     ),
     Stage(
         "contact",
@@ -135,6 +135,19 @@ _ROWS = (
         "patch",
         values=_LINES | {"reduced_modulus": "rollers.reduced_modulus"},
         target="patch_contact",
+    ),
+    Stage("film_profile", inputs=("lubricant",), same_values=("film",), target="computed"),
+    Stage(
+        "film_shape",
+        inputs=("film", "film_profile"),
+        values=_LINES | _LAYER,
+        target="computed",
+    ),
+    Stage(
+        "flattening",
+        inputs=("film",),
+        values=_LINES | _LAYER | {"realisations": "realisations"},
+        target="computed",
     ),
     Stage(
         "film_plane",

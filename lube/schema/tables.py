@@ -8,7 +8,8 @@ files          files that hold the variable, separated by spaces; ``any`` for a 
 name           name of the variable
 dims           its dimensions, in order; none for a scalar
 units          unit in UDUNITS notation, ``1`` for a pure number or a flag, none for text
-type           ``float``, ``integer``, ``boolean`` (stored as int8) or ``text``
+type           ``float``, ``integer``, ``boolean`` (stored as int8) or ``text``; with a question
+               mark if only files of some studies have the variable
 content        ACDD's ``coverage_content_type``; ``record`` stands for ``physicalMeasurement`` if
                the records are measured and ``modelResult`` if they are simulated
 cell_methods   CF attribute: what a mean is over
@@ -22,7 +23,7 @@ and a summary of its content. A file without a summary is an intermediate result
 """
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -51,6 +52,8 @@ class Variable:
         As in the column ``content``.
     attributes : dict
         Further CF attributes.
+    optional : bool
+        Whether a file may lack it.
     """
 
     dims: tuple[str, ...]
@@ -59,6 +62,7 @@ class Variable:
     kind: str
     content: str
     attributes: Mapping[str, Any] = field(default_factory=dict)
+    optional: bool = False
 
 
 def read_table(name: str) -> list[dict[str, str]]:
@@ -90,9 +94,10 @@ def _variable(row):
         tuple(row["dims"].split()),
         row["units"] or None,
         row["long_name"],
-        _KINDS[row["type"]],
+        _KINDS[row["type"].removesuffix("?")],
         row["content"],
         attributes,
+        row["type"].endswith("?"),
     )
 
 
@@ -111,7 +116,7 @@ COORDINATES = _VARIABLES["any"]
 """Coordinates that mean the same in every file that has them, by name."""
 
 FILES = {row["file"]: _VARIABLES[row["file"]] for row in _FILES}
-"""Required variables of each kind of file, by the kind's name."""
+"""Variables of each kind of file, by the kind's name."""
 
 SUMMARIES = {row["file"]: row["summary"] for row in _FILES if row["summary"]}
 """What each kind of file contains, in a sentence or two; intermediate results have no entry."""
@@ -151,3 +156,26 @@ ORIGINS = ("measured", "simulated")
 
 REGIMES = tuple(FILES["film"]["regime"].attributes["flag_meanings"].split())
 """Regimes of lubrication, in the order of their flags."""
+
+
+def values_with_limits(name: str, values: Iterable[Any]) -> dict[str, Any]:
+    """Name a value and the limits of its interval.
+
+    Parameters
+    ----------
+    name : str
+        Name of the value.
+    values : iterable
+        Value, lower limit and upper limit.
+
+    Returns
+    -------
+    dict
+        The three by their names.
+
+    Examples
+    --------
+    >>> values_with_limits("share", [0.5, 0.4, 0.6])
+    {'share': 0.5, 'share_lower': 0.4, 'share_upper': 0.6}
+    """
+    return {f"{name}{limit}": value for limit, value in zip(LIMITS, values, strict=True)}

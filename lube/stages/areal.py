@@ -16,12 +16,14 @@ from lube.physics.excursions import (
     expected_contacts,
     sharp_surface_summit_share,
 )
-from lube.schema import CONTACT_DIMS, LIMITS, OPERATING_DIMS, label
+from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, values_with_limits
 from lube.statistics.confidence import jackknife_interval, mean_interval
-from lube.study.rollers import BoundaryLayer, LineSpec
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
-from lube.surfaces.synthetic import ROLLERS, spectrum_moments
+from lube.surfaces.spectra import spectrum_moments
+from lube.surfaces.synthetic import ROLLERS
 
 SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""
@@ -156,7 +158,8 @@ def _sampled(spec, surface, points, sharp, length, seed, threads=1):
         limits = jackknife_interval(
             first[:, :, which], functools.partial(strip_probability, rows=rows), upper=1.0
         )
-        results |= _named(name, limits) | _named(counts, mean_interval(rows * numbers[:, :, which]))
+        results |= values_with_limits(name, limits)
+        results |= values_with_limits(counts, mean_interval(rows * numbers[:, :, which]))
     return results
 
 
@@ -189,10 +192,6 @@ def _touching(rms, chosen, film, width):
     heights = -rms * scipy.special.ndtri_exp(np.log(chosen[0]) + log_tail)
     known = (chosen[1] * width).astype(np.int64), heights.astype(np.float32)
     return known, width * np.exp(log_tail) / chosen.shape[1]
-
-
-def _named(name, limits):
-    return {name + suffix: limit for suffix, limit in zip(LIMITS, limits, strict=True)}
 
 
 def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:

@@ -1,8 +1,8 @@
 r"""The gauge by the surface: records read as contact anywhere along the rollers.
 
-A resistance below the threshold says that the rollers touch somewhere in the strip 2a x L'. The
-line knows no place along the rollers, so the stage gauge takes each record for that of a line.
-Here the same share is read from the isotropic surface over the whole strip.
+A resistance below the threshold says that the rollers touch somewhere in the strip 2a x L'. A line
+has no length along the rollers' axis; the stage gauge reads each record as if the rollers were such
+a line. Here the same share is read from the isotropic surface over the whole strip.
 """
 
 from functools import cache
@@ -11,8 +11,7 @@ import numpy as np
 import xarray as xr
 
 from lube.rig.map_curves import windows_in
-from lube.rig.study_shares import values_with_limits
-from lube.schema import AT_RECORDS, LIMITS, label
+from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
 from lube.statistics.curves import falling_curve, film_interval
 
 RESOLUTION = 1e-6

@@ -18,13 +18,8 @@ import scipy.special
 import xarray as xr
 
 from lube.rig.map_curves import windows_in
-from lube.rig.study_shares import (
-    at_comparison_threshold,
-    levels_named,
-    log_lines,
-    values_with_limits,
-)
-from lube.schema import AT_RECORDS, LIMITS, label
+from lube.rig.study_shares import at_comparison_threshold, levels_named, log_lines
+from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size

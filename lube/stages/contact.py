@@ -13,6 +13,8 @@ import numpy as np
 import xarray as xr
 
 from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
+from lube.grid.window_films import window_films
+from lube.kernels.shaped import shaped_statistics
 from lube.kernels.strips import strip_statistics
 from lube.schema import LAYER_DIMS, MASTER_DIMS, OPERATING_DIMS, label
 from lube.study.rollers import BoundaryLayer
@@ -23,6 +25,9 @@ LAYER_FACTORS = 2.0 ** np.arange(-3, 4)
 """Strengths of the boundary layer in the coarse map, relative to the study's."""
 LAYER_LEVELS = (12, 3)
 """Numbers of levels of the lambda ratio and of the contact width in the coarse map."""
+WINDOWS_PER_WIDTH = 10
+"""Windows per width of the contact, under a film that is not flat. More hardly reduce the scatter
+between realisations, since neighbouring windows see nearly the same."""
 THINNER_FILMS = np.geomspace(0.3, 1.0, 5)[:-1]
 """Lambda ratios of the map below the lowest of the film table, relative to it."""
 
@@ -68,7 +73,7 @@ def contact_statistics(
     The film formulas ignore the asperities and let the film carry all of :math:`F_N`. Where the
     share is not small, film and asperities together carry more than the applied load.
     """
-    film = film.transpose(*OPERATING_DIMS)
+    film = film.transpose(*OPERATING_DIMS, ...)
     results = contact_at(lines, film, boundary_layer, slide_to_roll_ratio, revolutions)
     # F_N 2a/L' by Hertz: the maximum pressure is 4/pi times the mean one, F_N / (2a L').
     width = 2.0 * film["contact_half_width"]
@@ -166,7 +171,8 @@ def contact_at(
         As in `contact_statistics`.
     film : xarray.Dataset
         With ``film_thickness`` and ``contact_half_width``, m, over any dimensions, and
-        ``reduced_modulus``, Pa.
+        ``reduced_modulus``, Pa. With ``film_profile`` the film has the computed shape, else it is
+        flat and ends at the edges of the contact.
 
     Returns
     -------
@@ -176,20 +182,20 @@ def contact_at(
         Its own are ``travel`` and ``longest_wavelength``, both m, of a realisation.
     """
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    points = whole_numbers(thickness.values.ravel(), half_width.values.ravel(), lines)
-    (films, half_windows), inverse = np.unique(np.stack(points), axis=1, return_inverse=True)
     reduced_modulus = film["reduced_modulus"].item()
     factor = layer_factor_of(lines, reduced_modulus, boundary_layer)
-    counts = np.empty((lines.sizes["realisation"], len(slide_to_roll_ratio), films.size, 4))
+    if "film_profile" in film:
+        run = _under_shaped_films(lines, film, factor)
+    else:
+        run = _under_flat_films(lines, thickness, half_width, factor)
+    counts = np.empty((lines.sizes["realisation"], len(slide_to_roll_ratio), thickness.size, 4))
     for r, realisation in enumerate(lines["realisation"].values):
         pair = line_pair(lines, realisation)
         for s, ratio in enumerate(slide_to_roll_ratio):
             ratios = speed_ratios(ratio)
-            steps = revolutions * revolution(pair, ratios)
-            counts[r, s] = strip_statistics(pair, ratios, steps, films, half_windows, factor)
-            counts[r, s] /= steps
+            counts[r, s] = run(pair, ratios, revolutions * revolution(pair, ratios))
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
-    touching, breaking, points, overlap = np.moveaxis(counts[:, :, inverse.ravel()], -1, 0)
+    touching, breaking, points, overlap = np.moveaxis(counts, -1, 0)
     spacing = lines.attrs["spacing"]
     stiffness = reduced_modulus * spacing  # of one spring, Eq. 5
     results = {
@@ -208,3 +214,37 @@ def contact_at(
     longest = 2.0 * np.pi / np.fmin.reduce(np.atleast_1d(lines.attrs["q_min"]))
     travel = spacing * min(lines.attrs["points"])
     return xr.Dataset(variables, coords, {"travel": travel, "longest_wavelength": longest})
+
+
+def _under_flat_films(lines, thickness, half_width, factor):
+    """Contact statistics of a pair of lines at all operating points, as means over time."""
+    points = whole_numbers(thickness.values.ravel(), half_width.values.ravel(), lines)
+    (films, half_windows), inverse = np.unique(np.stack(points), axis=1, return_inverse=True)
+
+    def run(pair, ratios, steps):
+        counts = strip_statistics(pair, ratios, steps, films, half_windows, factor) / steps
+        return counts[inverse.ravel()]
+
+    return run
+
+
+def _under_shaped_films(lines, film, factor):
+    """Contact statistics as of `_under_flat_films`, with the shape of the computed film."""
+    films, half_windows = window_films(film, lines)
+    known = [number for number, one in enumerate(films) if one is not None]
+    strides = np.maximum(1, (2 * half_windows[known] + 1) // WINDOWS_PER_WIDTH)
+
+    def run(pair, ratios, steps):
+        if ratios[0] == ratios[1] and pair[0].size == pair[1].size:
+            pair = pair[0] + pair[1], np.zeros(1, np.int32)  # one line passes the contact
+        reached = [films[number].below(pair[0].max() + pair[1].max()) for number in known]
+        begin = np.cumsum([0, *(one.film.size for one in reached)])
+        joined = np.concatenate([one.film for one in reached])
+        centres = np.array([one.before for one in reached])
+        counts = np.full((len(films), 4), np.nan)
+        counts[known] = shaped_statistics(
+            pair, ratios, steps, -(-steps // strides), (joined, begin, centres), factor
+        )
+        return counts
+
+    return run

@@ -17,8 +17,8 @@ from lube.recordings.manifest import Entry, Manifest
 from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 from lube.rig.record import LEVELS, TRACE_SAMPLES, Conditions, Record
 from lube.rig.simulator import SimulatedRig
-from lube.rig.study_shares import levels_named, values_with_limits
-from lube.schema import LIMITS, label
+from lube.rig.study_shares import levels_named
+from lube.schema import LIMITS, label, values_with_limits
 from lube.statistics.folding import PHASES
 from lube.study.study import Study
 

@@ -8,6 +8,8 @@ import xarray as xr
 
 from lube import schema
 from lube.ehl.film_formulas import formula
+from lube.ehl.line_contact import FilmProfile
+from lube.grid.film_profiles import film_positions, profiles_of, sampled
 from lube.physics import dimensionless, hertz
 from lube.physics.inlet_heating import inlet_shear_heating_factor
 from lube.physics.regimes import regime
@@ -20,6 +22,7 @@ def film_table(
     force: npt.ArrayLike,
     speed: npt.ArrayLike,
     formulas: Sequence[str],
+    with_shape: bool = False,
 ) -> xr.Dataset:
     """Tabulate the film thickness of a pair of rollers over the operating grid.
 
@@ -38,6 +41,8 @@ def film_table(
         speed as it is, so the film does not depend on it.
     formulas : sequence of str
         Names of film formulas, keys of `lube.ehl.film_formulas.FORMULAS`.
+    with_shape : bool, optional
+        Whether the film has the shape of the computed one; by default it is flat.
 
     Returns
     -------
@@ -65,7 +70,65 @@ def film_table(
     """
     axes = xr.Dataset(coords={"force": np.asarray(force, float), "speed": np.asarray(speed, float)})
     table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas)
-    return schema.label(table.transpose(*schema.OPERATING_DIMS), "film")
+    if with_shape:
+        profiles = film_profile_table(lubricant, rollers, force, speed)
+        table["film_profile"] = profiles["film"]
+    return schema.label(table.transpose(*schema.OPERATING_DIMS, ...), "film")
+
+
+def film_profile_table(
+    lubricant: xr.Dataset, rollers: RollerPair, force: npt.ArrayLike, speed: npt.ArrayLike
+) -> xr.Dataset:
+    """Compute pressure and film across the contact at every operating point.
+
+    Parameters
+    ----------
+    lubricant, rollers, force, speed
+        As in `film_table`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``film_profile`` file of `lube.schema`. Where the film did not converge, the values are
+        NaN and the log says so.
+    """
+    axes = xr.Dataset(coords={"force": np.asarray(force, float), "speed": np.asarray(speed, float)})
+    with xr.set_options(arithmetic_join="exact", keep_attrs=False):
+        contact = _hertz_contact(rollers, axes["force"], axes["speed"])
+        groups = _groups(lubricant, rollers, axes["force"], contact)
+        solved = xr.apply_ufunc(profiles_of, *groups, join="exact").transpose(*schema.POINT_DIMS)
+    table = contact[["contact_half_width", "hertz_pressure"]]
+    positions = film_positions(
+        float(contact["contact_half_width"].min()),
+        rollers.reduced_radius,
+        rollers.composite_rms_roughness,
+    )
+    films, pressures = (
+        (
+            (*schema.POINT_DIMS, "film_position"),
+            sampled(solved.values, sample, positions),
+        )
+        for sample in (FilmProfile.film_at, FilmProfile.pressure_at)
+    )
+    table = table.assign_coords(solved.coords).assign_coords(film_position=positions)
+    table = table.assign(film=films, pressure=pressures)
+    table["film"] = table["film"] * rollers.reduced_radius
+    table["pressure"] = table["pressure"] * table["hertz_pressure"]
+    for name, value in _NUMBERS.items():
+        found = [float(f"{value(one):.6g}") if one else np.nan for one in solved.values.ravel()]
+        table[name] = solved.copy(data=np.array(found).reshape(solved.shape))
+    for name in ("central_film", "minimum_film"):
+        table[name] = table[name] * rollers.reduced_radius
+    return schema.label(table.transpose(*schema.POINT_DIMS, "film_position"), "film_profile")
+
+
+_NUMBERS = {
+    "central_film": lambda one: one.central_film,
+    "minimum_film": lambda one: one.minimum_film,
+    "film_end": lambda one: one.nodes[one.end],
+    "mass_flux_defect": lambda one: float(f"{one.mass_flux_defect:.0e}"),
+}
+"""Numbers of a film profile by the names of their variables."""
 
 
 def film_at_records(
@@ -135,9 +198,8 @@ def film_at(
     # "exact": coordinates that differ in one value would otherwise be cut to their intersection.
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = _hertz_contact(rollers, force, speed)
-        numbers = _dimensionless_groups(lubricant, rollers, force, contact)
-        table = contact.merge(_regime(*numbers), join="exact")
-        groups = *numbers, lubricant["dynamic_viscosity"], 2.0 * rollers.reduced_modulus
+        groups = _groups(lubricant, rollers, force, contact)
+        table = contact.merge(_regime(*groups[:3]), join="exact")
         table = table.merge(_film(chosen, rollers, groups, table), join="exact")
         table["inlet_shear_heating_factor"] = inlet_shear_heating_factor(
             lubricant["dynamic_viscosity"],
@@ -162,8 +224,8 @@ def _hertz_contact(rollers, force, speed):
     )
 
 
-def _dimensionless_groups(lubricant, rollers, force, contact):
-    """Load W, speed U and material parameter G of each operating point."""
+def _groups(lubricant, rollers, force, contact):
+    """W, U and G of each operating point, with the oil's viscosity and E'."""
     film_modulus = 2.0 * rollers.reduced_modulus
     scale = film_modulus, rollers.reduced_radius
     viscosity, alpha = lubricant["dynamic_viscosity"], lubricant["pressure_viscosity_coefficient"]
@@ -171,6 +233,8 @@ def _dimensionless_groups(lubricant, rollers, force, contact):
         dimensionless.dimensionless_load(force / rollers.length, *scale),
         dimensionless.dimensionless_speed(viscosity, contact["entrainment_speed"], *scale),
         dimensionless.dimensionless_material(alpha, film_modulus),
+        viscosity,
+        film_modulus,
     )
 
 

@@ -11,8 +11,10 @@ from lube.kernels.synthesis import mean_powers
 from lube.schema import label
 from lube.statistics.confidence import probability_interval
 from lube.statistics.sample_size import independent_windows
-from lube.study.rollers import BoundaryLayer, LineSpec
-from lube.surfaces.synthetic import draw_realisation, line_attributes
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
+from lube.surfaces.spectra import line_attributes
+from lube.surfaces.synthetic import draw_realisation
 
 SKEWNESS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 """Levels of the skewness of both lines; those of run-in rollers are negative."""

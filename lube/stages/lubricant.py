@@ -20,7 +20,13 @@ from lube.physics.coolprop_fluids import (
     secant_pressure_viscosity,
 )
 from lube.physics.density import linear_density
-from lube.physics.pressure_viscosity import gold_pressure_viscosity
+from lube.physics.pressure_viscosity import (
+    fit_mcewen,
+    gold_pressure_viscosity,
+    mcewen_coefficient,
+    mcewen_log_ratio,
+    roelands_slope,
+)
 from lube.physics.viscosity_index import viscosity_index
 from lube.physics.viscosity_laws import PARAMETER_UNITS, VISCOSITY_LAWS
 from lube.schema import label
@@ -28,6 +34,9 @@ from lube.study.lubricant_record import LubricantRecord, check_temperatures
 
 MM2_PER_S = 1e-6
 """One mm2/s in m2/s."""
+
+PER_GPA = 1e-9
+"""One 1/GPa in 1/Pa."""
 
 # Number of temperatures at which a CoolProp fluid is sampled, as data for the fits of all laws.
 _SAMPLES = 25
@@ -42,18 +51,14 @@ class _MeasuredOil:
 
     def __init__(self, record):
         self._record = record
-        points = record.viscosity.points
-        self.data_temperature = np.array([point.temperature for point in points]) + ZERO_CELSIUS
-        self.data_viscosity = np.array([self._kinematic(point) for point in points])
+        temperature, viscosity = (np.array(column) for column in zip(*record.data, strict=True))
+        self.data_temperature = temperature + ZERO_CELSIUS
+        self.data_viscosity = viscosity
         self._law = VISCOSITY_LAWS[record.law_used]
         self._parameters = self._law.fit(self.data_temperature, self.data_viscosity / MM2_PER_S)
         # The law also holds a little outside the range of the data.
         self.temperature_limits = -np.inf, np.inf
-
-    def _kinematic(self, point):
-        if point.kinematic_viscosity is not None:
-            return point.kinematic_viscosity
-        return point.dynamic_viscosity / self.density(point.temperature + ZERO_CELSIUS)
+        self._coefficients, self.pressure_fit_residual = _measured_coefficients(record)
 
     def density(self, temperature):
         density = self._record.density
@@ -62,20 +67,51 @@ class _MeasuredOil:
     def kinematic_viscosity(self, temperature):
         return self._law.evaluate(temperature, *self._parameters) * MM2_PER_S
 
-    def pressure_viscosity_coefficient(self, temperature):
-        section = self._record.pressure_viscosity
-        if section.gold_base is None:
-            return np.full(np.shape(temperature), section.value)
-        viscosity = self.kinematic_viscosity(temperature) / MM2_PER_S
-        return gold_pressure_viscosity(viscosity, section.gold_base)
+    def stated_coefficient(self, temperature):
+        base = self._record.pressure_viscosity.gold_base
+        if base is None:
+            return _interpolated(temperature - ZERO_CELSIUS, self._coefficients)
+        return gold_pressure_viscosity(self.kinematic_viscosity(temperature) / MM2_PER_S, base)
 
     def thermal_conductivity(self, temperature):
         section = self._record.thermal_conductivity
         return np.full(np.shape(temperature), np.nan if section is None else section.value)
 
 
+def _measured_coefficients(record):
+    """Coefficients by temperature in degC, and the residual of the fits under pressure if any."""
+    section, residuals = record.pressure_viscosity, []
+    if section.value is not None:
+        return {0.0: section.value * PER_GPA}, math.nan
+    if section.points is not None:
+        return {point.temperature: point.value * PER_GPA for point in section.points}, math.nan
+    found = {}
+    for temperature, pairs in record.isotherms.items():
+        pressure, ratio = np.array(pairs).T
+        fit = fit_mcewen(pressure, ratio)
+        residuals += list(abs(np.exp(mcewen_log_ratio(pressure, *fit)) / ratio - 1.0))
+        found[temperature] = mcewen_coefficient(*fit, section.definition, section.span)
+    return found, max(residuals, default=math.nan)
+
+
+def _interpolated(temperature, coefficients):
+    """Coefficient whose logarithm is linear between the temperatures, and goes on so beyond them.
+
+    With one temperature it is the same everywhere.
+    """
+    known = np.array(sorted(coefficients))
+    logarithms = np.log([coefficients[each] for each in known])
+    if known.size == 1:
+        return np.full(np.shape(temperature), coefficients[known[0]])
+    after = np.clip(np.searchsorted(known, temperature), 1, known.size - 1)
+    slopes = np.diff(logarithms) / np.diff(known)
+    return np.exp(logarithms[after] + slopes[after - 1] * (temperature - known[after]))
+
+
 class _CoolPropFluid:
     """Properties of a lubricant record that names a CoolProp fluid, at atmospheric pressure."""
+
+    pressure_fit_residual = math.nan
 
     def __init__(self, record):
         self._fluid = record.viscosity.coolprop_fluid
@@ -92,7 +128,7 @@ class _CoolPropFluid:
         dynamic = liquid_property(self._fluid, "viscosity", temperature)
         return dynamic / self.density(temperature)
 
-    def pressure_viscosity_coefficient(self, temperature):
+    def stated_coefficient(self, temperature):
         if self._pressure_viscosity.definition == "secant":
             pressure = self._pressure_viscosity.pressure
             return secant_pressure_viscosity(self._fluid, temperature, pressure)
@@ -119,9 +155,13 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
         lubricant record names. For comparison all viscosity laws are fitted to the data as
         well: parameters, relative residuals, and curves at whole degrees within the record's
         temperature range. The data of a CoolProp fluid are samples of it, and its properties
-        come from CoolProp itself. Values that do not exist are NaN: parameters that a law does
+        come from CoolProp itself. Pressure-viscosity coefficients by another definition than the
+        film formulas take are converted to theirs by Roelands' law; from viscosities under
+        pressure they follow by McEwen's law, fitted at each temperature. Values that do not exist
+        are NaN: parameters that a law does
         not have, data points beyond a lubricant's own, fits that a law does not allow, the
-        viscosity index of a thin liquid, and a thermal conductivity that is not given.
+        viscosity index of a thin liquid, the residual of a fit under pressure where there is
+        none, and a thermal conductivity that is not given.
 
     Raises
     ------
@@ -161,7 +201,7 @@ def _row(record, temperature, fit_temperature):
     check_temperatures(record, temperature)
     try:
         substance = (_CoolPropFluid if record.law_used == "coolprop" else _MeasuredOil)(record)
-        properties = _properties(substance, temperature + ZERO_CELSIUS)
+        properties = _properties(record, substance, temperature + ZERO_CELSIUS)
         index = _viscosity_index(record, substance)
     except (RangeError, RecordError) as error:
         raise type(error)(f"{record.name}: {error}") from None
@@ -169,12 +209,13 @@ def _row(record, temperature, fit_temperature):
     return row.merge(_fits(record, substance, fit_temperature)).assign(
         viscosity_index=index,
         viscosity_law_used=record.law_used,
+        pressure_fit_residual=substance.pressure_fit_residual,
         pressure_viscosity_definition=record.pressure_viscosity.definition_text,
         lubricant_title=record.title,
     )
 
 
-def _properties(substance, temperature):
+def _properties(record, substance, temperature):
     """Properties at the temperatures of the study, in K."""
     viscosity, density = substance.kinematic_viscosity(temperature), substance.density(temperature)
     wrong = ~(np.isfinite(viscosity) & (viscosity > 0.0))
@@ -184,14 +225,28 @@ def _properties(substance, temperature):
             f"{temperature[wrong][0] - ZERO_CELSIUS:g} degC, need a positive viscosity; "
             "narrow temperature_range"
         )
+    dynamic, stated = viscosity * density, substance.stated_coefficient(temperature)
     return {
         "kinematic_viscosity": viscosity,
         "density": density,
-        "dynamic_viscosity": viscosity * density,
-        "pressure_viscosity_coefficient": substance.pressure_viscosity_coefficient(temperature),
+        "dynamic_viscosity": dynamic,
+        "pressure_viscosity_coefficient": _for_formulas(record.pressure_viscosity, stated, dynamic),
+        "stated_pressure_viscosity_coefficient": stated,
         "thermal_conductivity": substance.thermal_conductivity(temperature),
         "temperature_viscosity_coefficient": _temperature_viscosity(substance, temperature),
     }
+
+
+def _for_formulas(section, stated, dynamic_viscosity):
+    """Coefficients by the definition that film formulas take; those of Gold's form as they are."""
+    if section.definition is None:
+        return stated
+    return np.array(
+        [
+            roelands_slope(coefficient, viscosity, section.definition, section.span)
+            for coefficient, viscosity in zip(stated, dynamic_viscosity, strict=True)
+        ]
+    )
 
 
 def _temperature_viscosity(substance, temperature):

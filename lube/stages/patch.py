@@ -11,11 +11,12 @@ import numpy as np
 import xarray as xr
 
 from lube.schema import label
-from lube.study.rollers import LineSpec
+from lube.study.line_spec import LineSpec
 from lube.surfaces.elastic_contact import find_tamaas, press_line, press_surface
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
-from lube.surfaces.synthetic import ROLLERS, draw_realisation, spectrum_moments
+from lube.surfaces.spectra import spectrum_moments
+from lube.surfaces.synthetic import ROLLERS, draw_realisation
 
 log = logging.getLogger(__name__)
 

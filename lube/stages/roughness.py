@@ -6,15 +6,9 @@ import numpy as np
 import xarray as xr
 
 from lube.schema import label
-from lube.study.rollers import LineSpec
-from lube.surfaces.synthetic import (
-    ROLLERS,
-    draw_realisation,
-    line_attributes,
-    line_moments,
-    spectrum_bands,
-    spectrum_moments,
-)
+from lube.study.line_spec import LineSpec
+from lube.surfaces.spectra import line_attributes, line_moments, spectrum_bands, spectrum_moments
+from lube.surfaces.synthetic import ROLLERS, draw_realisation
 
 PADDING = np.iinfo(np.int32).min
 """Fill value beyond the end of the shorter of two lines."""

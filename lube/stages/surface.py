@@ -6,12 +6,13 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.schema import LIMITS, label
+from lube.schema import label, values_with_limits
+from lube.study.line_spec import LineSpec
 from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import ROLLERS as NAMES
-from lube.study.rollers import LineSpec
 from lube.study.topography_lines import preparation, prepared
-from lube.surfaces.measured_spectrum import LineSpectrum, line_spectrum
+from lube.surfaces.measured_spectrum import line_spectrum
+from lube.surfaces.spectrum_table import LineSpectrum
 from lube.surfaces.surface_statistics import height_distribution, hurst_exponent, roll_off
 from lube.surfaces.synthetic import ROLLERS
 
@@ -45,8 +46,11 @@ def measured_surfaces(
     DataError
         If a file cannot be read.
     """
+    # Both rollers may have the same one.
+    distinct = {topography.key: topography for topography in topographies.values()}
+    described = {key: _described(topography) for key, topography in distinct.items()}
     parts = [
-        _surface(topography, spec.lines[NAMES.index(name)], hurst)
+        _surface(topography, described[topography.key], spec.lines[NAMES.index(name)], hurst)
         for name, topography in topographies.items()
     ]
     rollers = [ROLLERS[NAMES.index(name)] for name in topographies]
@@ -61,30 +65,32 @@ def measured_surfaces(
     return label(table.assign_coords(coordinates), "surface")
 
 
-def _surface(topography, line, hurst):
+def _described(topography):
+    """Spectrum of a topography, density of its heights, and its numbers with their limits."""
     surface = prepared(topography)
     spectrum = line_spectrum(surface, preparation(topography))
+    bend = roll_off(spectrum)
+    longest = 2.0 * np.pi / spectrum.wave_vector[0] if bend is None else bend.value
+    shortest = 2.0 * np.pi / spectrum.wave_vector[-1]
+    numbers = values_with_limits("roll_off_wavelength", bend or _UNKNOWN)
+    numbers |= values_with_limits("hurst_exponent", hurst_exponent(spectrum, longest, shortest))
+    for name, estimate in height_distribution(surface.heights).items():
+        numbers |= values_with_limits(name, estimate)
+    return spectrum, _histogram(surface.heights), numbers
+
+
+def _surface(topography, described, line, hurst):
+    spectrum, height_density, numbers = described
     table = {
         "wave_vector": ("wave", spectrum.wave_vector),
         "filter_transfer": ("wave", spectrum.transfer),
         "self_affine_density": ("wave", _self_affine(spectrum.wave_vector, line, hurst)),
-        "height_density": ("standard_height", _histogram(surface.heights)),
+        "height_density": ("standard_height", height_density),
         "line_rms_height": line.rms_height,
-        **_limited("density", _density(spectrum)),
+        **values_with_limits("density", _density(spectrum)),
     }
-    bend = roll_off(spectrum)
-    longest = 2.0 * np.pi / spectrum.wave_vector[0] if bend is None else bend.value
-    shortest = 2.0 * np.pi / spectrum.wave_vector[-1]
-    table |= _limited("roll_off_wavelength", bend or _UNKNOWN)
-    table |= _limited("hurst_exponent", hurst_exponent(spectrum, longest, shortest))
-    for name, estimate in height_distribution(surface.heights).items():
-        table |= _limited(name, estimate)
-    return xr.Dataset(table | {"texture": topography.texture, "use": topography.use})
-
-
-def _limited(name, estimate):
-    """Name an estimate and its limits; the values may be labelled by their dimension."""
-    return {name + suffix: value for suffix, value in zip(LIMITS, estimate, strict=True)}
+    words = {"texture": topography.texture, "use": topography.use}
+    return xr.Dataset(table | numbers | words)
 
 
 def _density(spectrum: LineSpectrum):

@@ -10,13 +10,16 @@ import xarray as xr
 from lube.errors import DataError, StudyError
 from lube.grid.discretise import layer_factor_of
 from lube.grid.operating_points import surface_speeds
+from lube.grid.window_films import shaped_films, window_films
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
-from lube.schema import CONTACT_DIMS, FILES, LIMITS, OPERATING_DIMS, label
+from lube.schema import CONTACT_DIMS, FILES, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval
 from lube.statistics.sample_size import independent_windows
-from lube.study.rollers import BoundaryLayer, LineSpec
-from lube.surfaces.rare_contact import check_gaussian, rare_contact
-from lube.surfaces.synthetic import ROLLERS, line_attributes, spectrum_moments
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
+from lube.surfaces.rare_contact import check_gaussian, rare_contact, rare_contact_under
+from lube.surfaces.spectra import line_attributes, spectrum_moments
+from lube.surfaces.synthetic import ROLLERS
 
 PAIRS = 40
 """Pairs of lines for the first film formula, enough for a relative standard error of 2 %; errors
@@ -56,7 +59,8 @@ def tail_probabilities(
     -------
     xarray.Dataset
         The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty, but where the lines
-        are not Gaussian: then it says so, and all values are NaN.
+        are not Gaussian: then it says so, and all values are NaN. Under films that are not flat,
+        rates and durations are NaN.
 
     Raises
     ------
@@ -82,7 +86,7 @@ def tail_probabilities(
     apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the
     share of pairs with any is :math:`1 - e^{-\mu}`.
     """
-    film = film.transpose(*OPERATING_DIMS)
+    film = film.transpose("film_formula", *POINT_DIMS, ...)
     lowest = film["film_thickness"].min().item()
     if not lowest > 0.0:
         raise DataError(f"film thickness: got {lowest:g} m, need above 0")
@@ -162,12 +166,17 @@ def _sampled(spec, film, boundary_layer, seed, threads):
         xr.Dataset(attrs=line_attributes(spec)), film["reduced_modulus"].item(), boundary_layer
     )
     films, widths = thickness.values / spec.height_step, points.values.astype(np.int64)
+    shaped = _shaped_films(spec, film) if "film_profile" in film else None
 
     def on_one_pair(number):
         formulas = slice(None if number < FEWER_PAIRS else 1)
-        point = films[formulas].ravel(), widths[formulas].ravel()
-        found = rare_contact(spec, seed, number, *point, factor)
-        return [values.reshape(-1, *films[formulas].shape) for values in found]
+        shape = films[formulas].shape
+        if shaped:
+            found = _under_shaped_films(spec, (seed, number), shaped[: np.prod(shape)], factor)
+        else:
+            point = films[formulas].ravel(), widths[formulas].ravel()
+            found = rare_contact(spec, seed, number, *point, factor)
+        return [values.reshape(-1, *shape) for values in found]
 
     # Drawing and counting release Python's lock, so threads share the work.
     with ThreadPoolExecutor(threads) as pool:
@@ -181,14 +190,28 @@ def _sampled(spec, film, boundary_layer, seed, threads):
         ]
 
 
+def _shaped_films(spec, film):
+    """Film at the points of each window, height steps, in the order of `_sampled`."""
+    lines = xr.Dataset(attrs=line_attributes(spec))
+    films, _ = window_films(film, lines)
+    return [one.film.astype(float) if one else None for one in films]
+
+
+def _under_shaped_films(spec, pair, films, factor):
+    """Probabilities and runs as of `rare_contact`; the runs are not known."""
+    known = [number for number, one in enumerate(films) if one is not None]
+    windows, runs = np.full((2, len(films)), np.nan), np.full((6, len(films)), np.nan)
+    windows[:, known] = rare_contact_under(spec, *pair, [films[i] for i in known], factor)
+    return windows, runs
+
+
 def _limited(name, values, most=np.inf):
     """Mean and interval of a variable, from its values over pairs of lines."""
     values = values.transpose("pair", ...)
     limits = mean_interval(values.values)
-    return {
-        name + suffix: (values.dims[1:], np.minimum(limit, most))
-        for suffix, limit in zip(LIMITS, limits, strict=True)
-    }
+    return values_with_limits(
+        name, [(values.dims[1:], np.minimum(limit, most)) for limit in limits]
+    )
 
 
 def _touching_pairs(groups, breakthrough, windows, revolution):
@@ -199,16 +222,13 @@ def _touching_pairs(groups, breakthrough, windows, revolution):
     are counted instead. The first one, if mu of them are expected within a revolution T, comes on
     average after T (1 / mu - 1 / (e^mu - 1)); unless there is one at the beginning.
     """
-    limits = zip(
-        _limited("touching_pair_share", groups).items(),
-        _limited("", breakthrough, most=1.0).values(),
-        strict=True,
-    )
+    expected = _limited("touching_pair_share", groups)
+    seen = _limited("touching_pair_share", breakthrough, most=1.0)
     windows = windows.broadcast_like(groups.isel(pair=0)).transpose(*groups.isel(pair=0).dims)
     with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
         expected = {
-            name: (dims, np.maximum(values, -windows.values * np.log1p(-seen)))
-            for (name, (dims, values)), (_, seen) in limits
+            name: (dims, np.maximum(values, -windows.values * np.log1p(-seen[name][1])))
+            for name, (dims, values) in expected.items()
         }
     shares = {name: (dims, -np.expm1(-values)) for name, (dims, values) in expected.items()}
     mean = xr.Variable(*expected["touching_pair_share"])
@@ -233,6 +253,8 @@ def _asymptotes(spec, film, boundary_layer):
         boundary_layer.critical_thickness,
         boundary_layer.shear_strength,
     )
+    if "film_profile" in film:
+        return _shaped_asymptotes(film, moments, curvature)
     thickness = film["film_thickness"]
     first = scipy.special.ndtr(-thickness / moments[0] ** 0.5)
     contact = first + 2.0 * film["contact_half_width"] * crossing_rate(thickness, moments)
@@ -240,4 +262,15 @@ def _asymptotes(spec, film, boundary_layer):
     return {
         "geometric_contact_asymptote": contact,
         "breakthrough_asymptote": contact * thickness.copy(data=share),
+    }
+
+
+def _shaped_asymptotes(film, moments, curvature):
+    """Crossings of a film that changes along the contact, the slope of the film neglected."""
+    films = shaped_films(film)
+    crossings = crossing_rate(films, moments) * film["contact_half_width"]
+    share = films.copy(data=sharp_summit_share(films.values, moments, curvature))
+    return {
+        "geometric_contact_asymptote": crossings.integrate("film_position"),
+        "breakthrough_asymptote": (crossings * share).integrate("film_position"),
     }

@@ -7,8 +7,10 @@ import xarray as xr
 
 from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
 from lube.grid.operating_points import surface_speeds
+from lube.grid.window_films import film_on_points, shaped_films, window_films
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
+from lube.kernels.shaped import shaped_trace
 from lube.kernels.strips import strip_trace
 from lube.physics.electrical import contact_resistance
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
@@ -49,13 +51,13 @@ def contact_trace(
     """
     table = _rows(film, points)
     factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
-    films, half_windows = whole_numbers(table["film_thickness"], table["contact_half_width"], lines)
     pair = line_pair(lines, REALISATION)
     ratio = points[0]["slide_to_roll_ratio"]
     ratios = speed_ratios(ratio)
     steps = revolution(pair, ratios)
     spacing = lines.attrs["spacing"]
-    length = strip_trace(pair, ratios, steps, films, half_windows, factor) * spacing
+    broken = _broken_points(table, lines, (pair, ratios, steps), factor)
+    length = broken * spacing
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
     trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
@@ -66,7 +68,29 @@ def contact_trace(
         shear_strength=boundary_layer.shear_strength,
         resistivity=resistivity,
     )
+    if "film_profile" in table:
+        trace["film_profile"] = shaped_films(table)
     return label(trace.assign_coords(time=spacing / faster_surface * np.arange(steps)), "trace")
+
+
+def _broken_points(table, lines, motion, factor):
+    """Broken points in the window over (operating point, time step)."""
+    pair, ratios, steps = motion
+    if "film_profile" not in table:
+        points = whole_numbers(table["film_thickness"], table["contact_half_width"], lines)
+        return strip_trace(pair, ratios, steps, *points, factor)
+    films = [
+        one.below(pair[0].max() + pair[1].max()) if one else None
+        for one in window_films(table, lines)[0]
+    ]
+    return np.array(
+        [
+            shaped_trace(pair, ratios, steps, steps, one.film, one.before, factor)[:, 1]
+            if one
+            else np.full(steps, np.nan)
+            for one in films
+        ]
+    )
 
 
 def _rows(film, points):
@@ -105,7 +129,7 @@ def contact_window(
     -------
     xarray.Dataset
         Over ``x`` (m, from the middle of the window): ``height`` of both rollers and
-        ``overlap`` z1 + z2 - h0, m. Over ``segment``: ``first`` and ``last`` index in the
+        ``overlap`` z1 + z2 - h, m. Over ``segment``: ``first`` and ``last`` index in the
         window, ``contact_length`` D (m), ``force`` F (N, Eq. 5), ``layer_thickness`` h_l
         (m, Eq. 6), and ``broken``.
 
@@ -123,6 +147,9 @@ def contact_window(
     reach = point["contact_half_width"].item() if reach is None else reach
     film, half_window = whole_numbers(point["film_thickness"], reach, lines)
     window = np.arange(-half_window, half_window + 1)
+    if "film_profile" in point:
+        half_width = point["contact_half_width"].item()
+        film = film_on_points(point["film_profile"], half_width, window, lines)
     ratios = speed_ratios(point["slide_to_roll_ratio"].item())
     moving = zip(line_pair(lines, REALISATION), ratios, strict=True)
     rows = [line[(surface_position(step, ratio) + window) % line.size] for line, ratio in moving]

@@ -16,7 +16,7 @@ _CODE = (
     *("notebooks/*.ipynb", "tests/benchmarks/*.py", "profiles/*/config.yaml"),
     *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
     *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
-    *("workflow/config/run-in.yaml", "workflow/config/measured.yaml"),
+    *(f"workflow/config/{name}.yaml" for name in ("run-in", "measured", "oils")),
     *("workflow/config/surfaces/example.x3p", "workflow/report/*"),
     *("config/README.md", "config/config.yaml"),
 )

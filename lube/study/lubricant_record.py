@@ -1,32 +1,61 @@
 """Lubricant records: one YAML file per lubricant, checked as a whole and frozen.
 
-A lubricant record gives the viscosity in one of three ways: as points, as a CSV file of
-measurements beside the record, or by naming a CoolProp fluid. Every section names its source, or
-says ``assumed: ...`` and why. This module only reads and checks; the properties at a temperature
-are computed in `lube.stages.lubricant`.
+A lubricant record gives the viscosity in one of four ways: as points, as a CSV file of
+measurements beside the record, by ISO grade and viscosity index, or by naming a CoolProp fluid.
+Every section names its source, or says ``assumed: ...`` and why. This module only reads and checks;
+the properties at a temperature are computed in `lube.stages.lubricant`.
 """
 
-from collections.abc import Sequence
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import PrivateAttr, model_validator
+import numpy as np
+from pydantic import Field, PrivateAttr, model_validator
 
-from lube.errors import RangeError, RecordError, right_one, shown
+from lube.errors import LubeError, RangeError, RecordError, right_one, shown
 from lube.physics import ZERO_CELSIUS
-from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_range
-from lube.physics.pressure_viscosity import GOLD_BASES
+from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_property, liquid_range
+from lube.physics.density import linear_density
+from lube.physics.pressure_viscosity import DEFINITIONS, FORMULA_DEFINITION, GOLD_BASES
+from lube.physics.viscosity_index import viscosity_at_100
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
-from lube.study.field_types import Slug, StrictModel, Text, quantity, validate
+from lube.study.field_types import Slug, StrictModel, Text, pure_number, quantity, validate
 from lube.study.small_csv import HEADER_CELL, read_cells
 from lube.study.text_files import read_yaml
 from lube.types import File
 
 SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
 
+ISO_GRADES = (10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500)
+"""Grades of ISO 3448 by their kinematic viscosity at 40 degC, mm2/s."""
+
+GEAR_OIL_GRADES = tuple(grade for grade in ISO_GRADES if 32 <= grade <= 680)
+"""Grades in which each shipped record with a grade in its name can be had."""
+
+_GRADED = re.compile(r"(.+-iso-vg-)\d+")
+
 # Temperatures converted from K or degF to degC may miss a limit by rounding.
 _ROUNDING = 1e-6
+
+AGREEMENT = 0.02
+"""Relative difference up to which two viscosities in the same state count as one, repeated."""
+
+LEAST_PRESSURES = 3
+"""Pressures above atmospheric that a fit needs at each temperature; the law has two parameters."""
+
+LEAST_RISE = 5.0
+"""Factor by which the viscosity must rise for a reciprocal asymptotic isoviscous pressure.
+
+Its integral runs on beyond the measured pressures; with this factor about a fifth lies there.
+"""
+
+# Pressure up to which a viscosity counts as that at atmospheric pressure, Pa. It changes a
+# viscosity by less than 1 %, so it does not matter whether pressures are absolute.
+_AMBIENT = 2.0 * ATMOSPHERIC_PRESSURE
 
 OilTemperature = quantity("degC", above=-ZERO_CELSIUS, most=1000.0)
 
@@ -39,38 +68,55 @@ class Sourced(StrictModel):
 
 
 class ViscosityPoint(StrictModel):
-    """Viscosity at one temperature, kinematic or dynamic."""
+    """Viscosity at one temperature, kinematic or dynamic or both."""
 
     temperature: OilTemperature
     """temperature of the value"""
     kinematic_viscosity: quantity("m^2/s", above=0.0) | None = None
-    """kinematic viscosity; this or `dynamic_viscosity`"""
+    """kinematic viscosity; this or `dynamic_viscosity`, or both if they agree"""
     dynamic_viscosity: quantity("Pa*s", above=0.0) | None = None
     """dynamic viscosity"""
+    pressure: quantity("Pa", least=0.0, most=1e10) | None = None
+    """pressure of a dynamic viscosity, by default atmospheric"""
 
     @model_validator(mode="after")
-    def _check_one_viscosity(self):
-        if (self.kinematic_viscosity is None) == (self.dynamic_viscosity is None):
-            raise ValueError("need either kinematic_viscosity or dynamic_viscosity")
+    def _check_viscosity(self):
+        if self.kinematic_viscosity is None and self.dynamic_viscosity is None:
+            raise ValueError("need kinematic_viscosity or dynamic_viscosity")
+        if self.is_under_pressure and self.kinematic_viscosity is not None:
+            raise ValueError(
+                f"got kinematic_viscosity at {self.pressure / 1e6:g} MPa, need dynamic_viscosity"
+            )
         return self
+
+    @property
+    def is_under_pressure(self) -> bool:
+        """Whether the pressure is above that of the atmosphere."""
+        return self.pressure is not None and self.pressure > _AMBIENT
 
 
 class Viscosity(Sourced):
-    """Where the viscosity comes from: points, a CSV file or a CoolProp fluid."""
+    """Where the viscosity comes from: points, a CSV file, an ISO grade or a CoolProp fluid."""
 
     points: tuple[ViscosityPoint, ...] | None = None
     """viscosities at two temperatures or more"""
     csv: Text | None = None
     """CSV file in the record's folder"""
+    iso_vg: Literal[ISO_GRADES] | None = None
+    """ISO viscosity grade, with `viscosity_index`"""
+    viscosity_index: pure_number(least=0.0, most=400.0) | None = None
+    """viscosity index (ASTM D2270) of an oil of that grade"""
     coolprop_fluid: Text | None = None
     """CoolProp's name of a pure fluid"""
 
     @model_validator(mode="after")
     def _check_one_way(self):
-        ways = ("points", "csv", "coolprop_fluid")
+        ways = ("points", "csv", "iso_vg", "coolprop_fluid")
         given = [way for way in ways if getattr(self, way) is not None]
         if len(given) != 1:
             raise ValueError(f"got {' and '.join(given) or 'none'}, need one of {', '.join(ways)}")
+        if (self.iso_vg is None) != (self.viscosity_index is None):
+            raise ValueError("viscosity_index: need it with iso_vg, and only there")
         return self
 
 
@@ -83,41 +129,66 @@ class Density(Sourced):
     """relative fall of the density per kelvin"""
 
 
-_DEFINITIONS = {
-    "slope-at-atmospheric": "slope of ln viscosity at atmospheric pressure",
-    "secant": "secant of ln viscosity from atmospheric pressure to {pressure:g} MPa",
-    "reciprocal-asymptotic": "reciprocal asymptotic isoviscous pressure",
-}
+_COEFFICIENT = quantity("1/GPa", least=1.0, most=100.0)  # of all liquids that lubricate
+
+
+class CoefficientPoint(StrictModel):
+    """Pressure-viscosity coefficient at one temperature."""
+
+    temperature: OilTemperature
+    """temperature of the value"""
+    value: _COEFFICIENT
+    """measured coefficient"""
 
 
 class PressureViscosity(Sourced):
-    """Pressure-viscosity coefficient: Gold's form, a measured value, or CoolProp's."""
+    """Pressure-viscosity coefficient: Gold's form, measured, or from viscosities under pressure."""
 
     gold_base: Literal[tuple(GOLD_BASES)] | None = None
     """base oil, for Gold's form alpha = s nu^t"""
-    value: quantity("1/Pa", above=0.0) | None = None
+    value: _COEFFICIENT | None = None
     """measured coefficient, the same at all temperatures"""
-    definition: Literal[tuple(_DEFINITIONS)] | None = None
-    """definition of the measured, or CoolProp's, coefficient"""
+    points: Annotated[tuple[CoefficientPoint, ...], Field(min_length=1)] | None = None
+    """measured coefficients; between them its logarithm is linear in temperature"""
+    definition: Literal[tuple(DEFINITIONS)] | None = None
+    """definition of the measured coefficient, or of that from viscosities under pressure"""
     pressure: quantity("Pa", above=ATMOSPHERIC_PRESSURE) | None = None
     """pressure to which the secant runs"""
 
     @model_validator(mode="after")
     def _check_definition(self):
-        gold = self.gold_base is not None
-        if gold == (self.definition is not None) or (gold and self.value is not None):
+        gold, given = self.gold_base is not None, self.given
+        if gold == (self.definition is not None) or (gold and len(given) > 1):
             raise ValueError("need either gold_base alone, or definition")
+        if len(given) > 1:
+            raise ValueError(f"got {' and '.join(given)}, need one of them")
+        for cold, hot in pairwise(sorted(point.temperature for point in self.points or ())):
+            if hot - cold <= _ROUNDING:
+                raise ValueError(f"points: got two values at {hot:g} degC, need one")
         if (self.pressure is None) == (self.definition == "secant"):
             raise ValueError("pressure: need it with definition 'secant', and only there")
         return self
 
     @property
+    def given(self) -> list[str]:
+        """Which of its keys give the coefficient; none where viscosities under pressure do."""
+        return [way for way in ("gold_base", "value", "points") if getattr(self, way) is not None]
+
+    @property
+    def span(self) -> float | None:
+        """Pressure above atmospheric to which the secant runs, Pa."""
+        return None if self.pressure is None else self.pressure - ATMOSPHERIC_PRESSURE
+
+    @property
     def definition_text(self) -> str:
-        """Definition of the coefficient in words, stored with its values."""
+        """Definition of the coefficient that the film formulas take, in words for its file."""
         if self.gold_base is not None:
             s, t = GOLD_BASES[self.gold_base]
             return f"Gold's form {s:g} nu^{t:g} 1/GPa, nu in mm2/s ({self.gold_base})"
-        return _DEFINITIONS[self.definition].format(pressure=(self.pressure or 0.0) / 1e6)
+        words = DEFINITIONS[self.definition].format(pressure=(self.pressure or 0.0) / 1e6)
+        if self.definition == FORMULA_DEFINITION:
+            return words
+        return f"{DEFINITIONS[FORMULA_DEFINITION]}, by Roelands' law from the {words}"
 
 
 class ThermalConductivity(Sourced):
@@ -143,7 +214,7 @@ class TemperatureRange(Sourced):
 
 
 class LubricantRecord(StrictModel):
-    """A lubricant, in SI units (but temperatures in degC). Read it with `load_record`."""
+    """A lubricant, in SI units (but degC, and 1/GPa). Read it with `load_record`."""
 
     name: Slug
     """label of the lubricant in all files"""
@@ -164,18 +235,15 @@ class LubricantRecord(StrictModel):
     @model_validator(mode="after")
     def _check_sections(self):
         fluid, alpha = self.viscosity.coolprop_fluid, self.pressure_viscosity
-        measured = {
-            "density": self.density,
-            "pressure_viscosity.gold_base or value": alpha.gold_base or alpha.value,
-        }
-        for key, value in measured.items():
-            if fluid is None and value is None:
-                raise ValueError(f"{key}: missing, need it unless CoolProp gives it")
-        optional = {name: getattr(self, name) for name in ("thermal_conductivity", "viscosity_law")}
-        for key, value in (measured | optional).items():
-            if fluid is not None and value is not None:
-                raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
-        if fluid is not None and alpha.definition == "reciprocal-asymptotic":
+        if fluid is None:
+            if self.density is None:
+                raise ValueError("density: missing, need it unless CoolProp gives it")
+            return self
+        given = [f"pressure_viscosity.{key}" for key in alpha.given]
+        optional = ("density", "thermal_conductivity", "viscosity_law")
+        for key in given + [key for key in optional if getattr(self, key) is not None]:
+            raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
+        if alpha.definition == "reciprocal-asymptotic":
             raise ValueError(
                 "pressure_viscosity.definition: 'reciprocal-asymptotic' not allowed with CoolProp"
             )
@@ -196,16 +264,79 @@ class LubricantRecord(StrictModel):
     def valid_temperatures(self) -> tuple[float, float]:
         """Lowest and highest temperature at which the lubricant record is valid, degC.
 
-        From `temperature_range` if it is given, else from the data, else the liquid range of
-        CoolProp, which is imported for it.
+        From `temperature_range` if it is given, else those at which the data give both viscosity
+        and pressure-viscosity coefficient, else the liquid range of CoolProp, which is imported
+        for it.
         """
         if self.temperature_range is not None:
             return self.temperature_range.lowest, self.temperature_range.highest
         if self.viscosity.points is not None:
-            temperatures = [point.temperature for point in self.viscosity.points]
-            return min(temperatures), max(temperatures)
+            known = [[point.temperature for point in self._ambient]]
+            known += [temperatures] if (temperatures := self._coefficients_at) else []
+            return max(map(min, known)), min(map(max, known))
         lowest, highest = liquid_range(self.viscosity.coolprop_fluid)
         return lowest - ZERO_CELSIUS, highest - ZERO_CELSIUS
+
+    @property
+    def _ambient(self):
+        return [point for point in self.viscosity.points if not point.is_under_pressure]
+
+    @property
+    def _coefficients_at(self):
+        """Temperatures at which the pressure-viscosity coefficient was measured, if it was."""
+        points = self.pressure_viscosity.points
+        return [point.temperature for point in points] if points else list(self.isotherms)
+
+    def density_at(self, temperature: float) -> float:
+        """Density, kg/m3, at a temperature in degC."""
+        density, kelvin = self.density, temperature + ZERO_CELSIUS
+        return linear_density(kelvin, density.at_15_degC, density.thermal_coefficient)
+
+    def kinematic_viscosity(self, point: ViscosityPoint) -> float:
+        """Kinematic viscosity of a point, m2/s: as given, or dynamic viscosity over density."""
+        if point.kinematic_viscosity is not None:
+            return point.kinematic_viscosity
+        return point.dynamic_viscosity / self.density_at(point.temperature)
+
+    @property
+    def data(self) -> list[tuple[float, float]]:
+        """Viscosities at atmospheric pressure: temperature in degC, kinematic viscosity in m2/s."""
+        return [(point.temperature, self.kinematic_viscosity(point)) for point in self._ambient]
+
+    @property
+    def isotherms(self) -> dict[float, list[tuple[float, float]]]:
+        """Viscosities under pressure, by temperature in degC.
+
+        Pressures above atmospheric, in Pa, rising, each with the dynamic viscosity over the one at
+        atmospheric pressure.
+        """
+        found = defaultdict(list)
+        for point in self.viscosity.points:
+            if point.is_under_pressure:
+                found[point.temperature].append(point)
+        return {temperature: self._ratios(points) for temperature, points in found.items()}
+
+    def _ratios(self, points):
+        temperature = points[0].temperature
+        same = [nu for at, nu in self.data if abs(at - temperature) <= _ROUNDING]
+        if not same:
+            raise RecordError(
+                f"viscosity: got pressures at {temperature:g} degC without atmospheric pressure, "
+                "need a value there as well"
+            )
+        ambient = sum(same) / len(same) * self.density_at(temperature)
+        pairs = [(p.pressure - ATMOSPHERIC_PRESSURE, p.dynamic_viscosity / ambient) for p in points]
+        return sorted(pairs)
+
+
+def _shipped():
+    """Shipped records: from name to YAML file, and the grade to put in its place if it has one."""
+    found = {}
+    for path in sorted(SHIPPED_FOLDER.glob("*.yaml")):
+        graded = _GRADED.fullmatch(path.stem)
+        grades = GEAR_OIL_GRADES if graded else (None,)
+        found |= {f"{graded[1]}{one}" if graded else path.stem: (path, one) for one in grades}
+    return found
 
 
 def shipped_records() -> tuple[str, ...]:
@@ -214,14 +345,16 @@ def shipped_records() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        The names, sorted.
+        The names, sorted; of the gear oils one for each ISO grade from 32 to 680.
 
     Examples
     --------
-    >>> shipped_records()
-    ('mobilgear-shc-xmp-320', 'n-dodecane')
+    >>> [name for name in shipped_records() if "iso-vg" not in name][:3]
+    ['base-oil-m100', 'base-oil-n100', 'base-oil-pao100']
+    >>> [name for name in shipped_records() if name.startswith("mineral")][:3]
+    ['mineral-iso-vg-100', 'mineral-iso-vg-150', 'mineral-iso-vg-220']
     """
-    return tuple(sorted(path.stem for path in SHIPPED_FOLDER.glob("*.yaml")))
+    return tuple(sorted(_shipped()))
 
 
 def is_record_path(name: object) -> bool:
@@ -254,30 +387,59 @@ def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
     >>> load_record("n-dodecane").viscosity.coolprop_fluid
     'n-Dodecane'
     """
-    path = _record_path(name_or_path, folder)
-    record = validate(LubricantRecord, read_yaml(path, RecordError), path, RecordError)
+    path, grade = _record_path(name_or_path, folder)
+    content = read_yaml(path, RecordError)
+    if grade is not None:
+        content = _regraded(content, name_or_path, grade)
+    record = validate(LubricantRecord, content, path, RecordError)
     viscosity, files = record.viscosity, (path,)
     if viscosity.csv is not None:
         files += (_beside(path, viscosity.csv),)
-        viscosity = viscosity.model_copy(update={"points": read_viscosity_csv(files[1])})
-        record = record.model_copy(update={"viscosity": viscosity})
-    if viscosity.points is not None:
-        check_points(viscosity.points, files[-1])
+        record = _with_points(record, read_viscosity_csv(files[1]))
+    if viscosity.iso_vg is not None:
+        record = _with_points(record, _points_of_grade(viscosity))
+    if record.viscosity.points is not None:
+        check_points(record, files[-1])
     record._files = files
     return record
 
 
+def _with_points(record, points):
+    viscosity = record.viscosity.model_copy(update={"points": points})
+    return record.model_copy(update={"viscosity": viscosity})
+
+
+def _points_of_grade(viscosity):
+    """Viscosities at 40 degC, which names the grade, and at 100 degC, by the viscosity index."""
+    at_100 = viscosity_at_100(viscosity.iso_vg, viscosity.viscosity_index)
+    return tuple(
+        ViscosityPoint(temperature=f"{degrees} degC", kinematic_viscosity=f"{value!r} mm^2/s")
+        for degrees, value in ((40, viscosity.iso_vg), (100, at_100))
+    )
+
+
+def _regraded(content, name, grade):
+    """Content of a shipped record with another ISO grade."""
+    viscosity = content["viscosity"]
+    title = content["title"].replace(str(viscosity["iso_vg"]), str(grade))
+    return content | {"name": name, "title": title, "viscosity": viscosity | {"iso_vg": grade}}
+
+
 def _record_path(name_or_path, folder):
+    """Path of a record's file, and the grade to put in its place."""
     if is_record_path(name_or_path):
-        return Path(folder) / name_or_path
-    names = shipped_records()
-    if name_or_path not in names:
-        near = right_one(name_or_path, names) if isinstance(name_or_path, str) else ""
-        needed = f"need one of {', '.join(names)}, or a path of a .yaml file"
-        raise RecordError(
-            f"got {shown(name_or_path)}, {needed}{f'; {near}' if near.startswith('did') else ''}"
-        )
-    return SHIPPED_FOLDER / f"{name_or_path}.yaml"
+        return Path(folder) / name_or_path, None
+    shipped = _shipped()
+    if name_or_path in shipped:
+        return shipped[name_or_path]
+    near = right_one(name_or_path, shipped) if isinstance(name_or_path, str) else ""
+    lowest, *_, highest = GEAR_OIL_GRADES
+    grades = f"-iso-vg-<{lowest} to {highest}>"
+    names = {re.sub(r"-iso-vg-\d+", grades, name): None for name in sorted(shipped)}
+    raise RecordError(
+        f"got {shown(name_or_path)}, need one of {', '.join(names)}, or a path of a .yaml file"
+        f"{f'; {near}' if near.startswith('did') else ''}"
+    )
 
 
 def _beside(record_path, name):
@@ -291,41 +453,125 @@ def _beside(record_path, name):
     return folder / name
 
 
-def check_points(points: Sequence[ViscosityPoint], where: File) -> None:
-    """Refuse data that no viscosity law can fit.
+def check_points(record: LubricantRecord, where: File) -> None:
+    """Refuse viscosities that contradict one another, or that no law can fit.
 
     Parameters
     ----------
-    points : sequence of ViscosityPoint
-        Viscosities at some temperatures.
+    record : LubricantRecord
+        The lubricant, with its points.
     where : str or Path
         Where they come from, for the message.
 
     Raises
     ------
     RecordError
-        If they are all at one temperature, or rise with the temperature.
+        If two viscosities in the same state differ by more than `AGREEMENT`, be they dynamic or
+        kinematic; if they are all at one temperature, rise with the temperature or fall with
+        pressure; if they leave the pressure-viscosity coefficient open, or give a second one.
     """
-    if len({point.temperature for point in points}) < 2:
-        raise RecordError(f"{where}: viscosity: need values at two temperatures or more")
-    for kind in ("kinematic_viscosity", "dynamic_viscosity"):
-        known = [point for point in points if getattr(point, kind) is not None]
-        for cold, hot in pairwise(sorted(known, key=lambda point: point.temperature)):
-            if cold.temperature < hot.temperature and getattr(cold, kind) <= getattr(hot, kind):
+    try:
+        _check_ambient(record)
+        _check_isotherms(record)
+    except RecordError as error:
+        raise RecordError(f"{where}: {error}") from None
+    lowest, highest = record.valid_temperatures
+    if lowest > highest:
+        raise RecordError(
+            f"{where}: got no temperature with both viscosity and pressure-viscosity coefficient, "
+            "need some, or temperature_range"
+        )
+
+
+def _check_ambient(record):
+    states = sorted(
+        (state for point in record._ambient for state in _states(record, point)),
+        key=lambda state: state[:2],
+    )
+    if len({temperature for temperature, *_ in states}) < 2:
+        raise RecordError("viscosity: need values at two temperatures or more")
+    for (cold, thick, words), (hot, thin, others) in pairwise(states):
+        if hot - cold <= _ROUNDING:
+            _check_agreement(thick, thin, f"{words} and {others} at {hot:g} degC")
+        elif thick <= thin:
+            raise RecordError(
+                f"viscosity: need less at {hot:g} degC than at {cold:g} degC, got {others} and "
+                f"{words}"
+            )
+
+
+def _states(record, point) -> Iterable[tuple[float, float, str]]:
+    """Temperature, kinematic viscosity and words for each viscosity of a point."""
+    if point.kinematic_viscosity is not None:
+        value = point.kinematic_viscosity
+        yield point.temperature, value, f"{1e6 * value:.4g} mm2/s"
+    if point.dynamic_viscosity is not None:
+        density = record.density_at(point.temperature)
+        value = point.dynamic_viscosity / density
+        words = f"{1e3 * point.dynamic_viscosity:.4g} mPa s over {density:.4g} kg/m3"
+        yield point.temperature, value, f"{1e6 * value:.4g} mm2/s ({words})"
+
+
+def _check_agreement(one, other, words):
+    if max(one, other) > (1.0 + AGREEMENT) * min(one, other):
+        raise RecordError(
+            f"viscosity: got {words}, need one value, or several within {100 * AGREEMENT:g} %"
+        )
+
+
+def _check_isotherms(record):
+    given, alpha = record.pressure_viscosity.given, record.pressure_viscosity
+    if bool(given) == bool(record.isotherms):
+        came = f"{given[0]} beside viscosities under pressure" if given else "none"
+        raise RecordError(
+            f"pressure_viscosity: got {came}, need one of gold_base, value, points and viscosities "
+            "under pressure"
+        )
+    for temperature, pairs in record.isotherms.items():
+        at = f"at {temperature:g} degC"
+        for (low, thin), (high, thick) in pairwise([(0.0, 1.0), *pairs]):
+            if low == high:
+                words = f"{thin:.4g} and {thick:.4g} times that at atmospheric pressure {at}"
+                _check_agreement(thin, thick, f"{words} and {_absolute(high)}")
+            elif thick <= thin:
                 raise RecordError(
-                    f"{where}: viscosity: need less at {hot.temperature:g} degC than at "
-                    f"{cold.temperature:g} degC"
+                    f"viscosity: need more {at} and {_absolute(high)} than at {_absolute(low)}"
                 )
+        count, (most, rise) = len({pressure for pressure, _ in pairs}), pairs[-1]
+        if count < LEAST_PRESSURES:
+            raise RecordError(
+                f"viscosity: got {count} pressures above atmospheric {at}, need {LEAST_PRESSURES} "
+                "or more"
+            )
+        if alpha.definition == "reciprocal-asymptotic" and rise < LEAST_RISE:
+            raise RecordError(
+                f"viscosity: got a rise to {rise:.3g} times that at atmospheric pressure {at}, "
+                f"definition 'reciprocal-asymptotic' needs {LEAST_RISE:g} times or more"
+            )
+        if alpha.span is not None and alpha.span > (1.0 + _ROUNDING) * most:
+            raise RecordError(
+                f"pressure_viscosity.pressure: got {alpha.pressure / 1e6:g} MPa, the viscosities "
+                f"{at} end at {_absolute(most)}"
+            )
 
 
-_COLUMNS = "temperature [degC] and kinematic_viscosity [mm^2/s] or dynamic_viscosity [mPa*s]"
+def _absolute(pressure):
+    """Pressure above atmospheric as it was written."""
+    return f"{(pressure + ATMOSPHERIC_PRESSURE) / 1e6:g} MPa"
+
+
+_COLUMNS = (
+    "temperature [degC] and kinematic_viscosity [mm^2/s] or dynamic_viscosity [mPa*s] or both; "
+    "under pressure also pressure [MPa]"
+)
 
 
 def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
-    """Read measured viscosities against temperature.
+    """Read measured viscosities against temperature, and against pressure if it was changed.
 
-    The first line names the columns with their units: ``temperature [degC]`` and either
-    ``kinematic_viscosity [mm^2/s]`` or ``dynamic_viscosity [mPa*s]``. Columns are separated by
+    The first line names the columns with their units: ``temperature [degC]``, then
+    ``kinematic_viscosity [mm^2/s]`` or ``dynamic_viscosity [mPa*s]`` or both, and ``pressure
+    [MPa]`` if there are viscosities under pressure, which are dynamic. Columns are separated by
     tabs, semicolons or commas; with tabs or semicolons, numbers may have decimal commas. Empty
     lines and lines that begin with ``#`` are ignored.
 
@@ -366,8 +612,9 @@ def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
 def _csv_columns(cells, where):
     """Units of the columns by name, in the order of the columns."""
     columns = dict(cell.groups() for cell in map(HEADER_CELL.fullmatch, cells) if cell)
-    ways = [{"temperature", "kinematic_viscosity"}, {"temperature", "dynamic_viscosity"}]
-    if len(cells) != 2 or set(columns) not in ways:
+    viscosities = set(columns) - {"temperature", "pressure"}
+    known = viscosities <= {"kinematic_viscosity", "dynamic_viscosity"}
+    if len(columns) != len(cells) or "temperature" not in columns or not viscosities or not known:
         raise RecordError(f"{where}: got the columns {shown(', '.join(cells))}, need {_COLUMNS}")
     return columns
 
@@ -395,3 +642,35 @@ def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -
             raise RangeError(
                 f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC"
             )
+
+
+def check_fluid(record: LubricantRecord, temperatures: Sequence[float]) -> None:
+    """Refuse a CoolProp fluid without viscosity or density at the temperatures of a study.
+
+    CoolProp, which takes seconds to import, is imported for a fluid of one's own; the shipped
+    ones are known to be fit.
+
+    Parameters
+    ----------
+    record : LubricantRecord
+        The lubricant.
+    temperatures : sequence of float
+        Temperatures, degC.
+
+    Raises
+    ------
+    LubeError
+        If CoolProp lacks a property of the fluid, or a temperature or the secant's pressure lies
+        outside its range.
+    """
+    fluid = record.viscosity.coolprop_fluid
+    if fluid is None or (record.files and record.files[0].parent == SHIPPED_FOLDER):
+        return
+    kelvin = np.array(temperatures, dtype=float) + ZERO_CELSIUS
+    try:
+        for name in ("viscosity", "density"):
+            liquid_property(fluid, name, kelvin)
+        if record.pressure_viscosity.pressure is not None:
+            liquid_property(fluid, "viscosity", kelvin, record.pressure_viscosity.pressure)
+    except LubeError as error:
+        raise type(error)(f"{record.name}: {error}") from None

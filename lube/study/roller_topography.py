@@ -20,7 +20,7 @@ from lube.types import Array
 
 
 class MeasuredHeights:
-    """Heights of a line that is a measured profile, told from others by their digest.
+    """Heights of a measured line. Two are equal if their SHA-256 sums are.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class RollerTopography(StrictModel):
 
     @property
     def key(self) -> str:
-        """Text that tells this topography from others, for `reading`."""
+        """Text that tells this topography from others."""
         return self.model_dump_json()
 
     @property
@@ -117,7 +117,7 @@ class RollerTopography(StrictModel):
         Returns
         -------
         dict
-            ``rms_height``, and ``spectrum`` or ``heights``, of `lube.study.rollers.RoughLine`.
+            ``rms_height``, and ``spectrum`` or ``heights``, of `lube.study.line_spec.RoughLine`.
 
         Raises
         ------

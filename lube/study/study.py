@@ -29,6 +29,7 @@ from lube.study.field_types import (
     quantity,
     validate,
 )
+from lube.study.line_spec import LineSpec, check_width, line_spec
 from lube.study.lubricant_record import (
     LubricantRecord,
     check_temperatures,
@@ -39,15 +40,7 @@ from lube.study.metadata import About
 from lube.study.resolve import resolved_content, with_topographies
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.roller_topography import RollerTopography
-from lube.study.rollers import (
-    ROLLERS,
-    BoundaryLayer,
-    LineSpec,
-    RollerPair,
-    Roughness,
-    check_width,
-    line_spec,
-)
+from lube.study.rollers import ROLLERS, BoundaryLayer, RollerPair, Roughness
 from lube.study.size_limits import check_sizes
 from lube.study.written_forms import Written
 from lube.types import File
@@ -158,7 +151,7 @@ class Study(StrictModel):
     @property
     def rough_rollers(self) -> RollerPair:
         """The rollers, each measured one with the rms height of its line."""
-        return self.rollers.with_lines(self.line_spec)
+        return self.rollers.with_rms_heights(self.line_spec.rms_height)
 
     @property
     def topographies(self) -> dict[str, RollerTopography]:

@@ -10,12 +10,8 @@ import numpy as np
 from lube.study.roller_topography import RollerTopography
 from lube.study.topography_files import read_topography
 from lube.surfaces.measured_line import closed_line, repeated_line
-from lube.surfaces.measured_spectrum import (
-    LineSpectrum,
-    band_table,
-    line_spectrum,
-    power_law_integral,
-)
+from lube.surfaces.measured_spectrum import line_spectrum
+from lube.surfaces.spectrum_table import LineSpectrum, band_table, power_law_integral
 from lube.surfaces.topography import Preparation, Topography, prepare
 from lube.types import Array
 
@@ -74,14 +70,14 @@ def measured(settings: RollerTopography, known: dict | None) -> LineSpectrum | T
         arrays = ("wave_vector", "density", "estimates", "transfer")
         return LineSpectrum(**(known | {name: np.array(known[name]) for name in arrays}))
     time = os.stat(settings.file).st_mtime_ns if os.path.exists(settings.file) else None
-    return _read(settings, time)
+    return _read(settings.file, preparation(settings), settings.is_line, time)
 
 
 @functools.lru_cache(maxsize=2)
-def _read(settings, _time):
+def _read(file, preparation, is_line, _time):
     """Read a topography once for both rollers, and again when the file has changed."""
-    surface = prepared(settings)
-    return surface if settings.is_line else line_spectrum(surface, preparation(settings))
+    surface = prepare(read_topography(file), preparation)
+    return surface if is_line else line_spectrum(surface, preparation)
 
 
 def plain(spectrum: LineSpectrum) -> dict[str, Any]:
@@ -123,6 +119,7 @@ def table(
     return _rounded(rms), (wave_vector, density)
 
 
+@functools.lru_cache(maxsize=4)
 def steps(
     settings: RollerTopography,
     profile: Topography,

@@ -17,7 +17,7 @@ _EXAMPLES = {
     **{"m": "50 mm", "N": "800 N", "Pa": "210 GPa", "rpm": "100 rpm", "degC": "40 degC"},
     **{"K": "1 K", "s": "10 us", "Hz": "50 kHz", "V": "50 mV", "ohm": "100 ohm"},
     **{"ohm*m": "0.2 uohm*m", "m^2/s": "335 mm^2/s", "Pa*s": "0.3 Pa*s", "kg/m^3": "860 kg/m^3"},
-    **{"1/K": "6.4e-4 1/K", "1/Pa": "16 1/GPa", "W/m/K": "0.16 W/m/K"},
+    **{"1/K": "6.4e-4 1/K", "1/GPa": "16 1/GPa", "W/m/K": "0.16 W/m/K"},
 }
 _UNITS = (
     *("m", "cm", "mm", "um", "µm", "nm", "pm", "N", "kN", "Pa", "kPa", "MPa", "GPa", "bar", "rpm"),

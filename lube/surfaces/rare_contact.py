@@ -22,6 +22,7 @@ random fields, Ann. Appl. Probab. 22 (2012) 1167-1214.
 """
 
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,13 +30,16 @@ import scipy.special
 
 from lube.errors import StudyError
 from lube.kernels.tail import touching_runs, touching_windows
-from lube.surfaces.synthetic import ROLLERS, LineSpecLike, autocovariance, draw_gaussian_line
+from lube.surfaces.spectra import autocovariance
+from lube.surfaces.synthetic import ROLLERS, LineSpecLike, draw_gaussian_line
 from lube.types import Array, Pair
 
 WINDOWS = 800
 """Windows along each pair of lines."""
 RUNS = 400
 """Runs along each pair of lines."""
+NEGLIGIBLE = 1e-9
+"""Likelihood of contact at a point, over that at the thinnest film, that is passed over."""
 
 
 @dataclass(frozen=True)
@@ -183,28 +187,89 @@ def rare_contact(
     StudyError
         If the lines are not Gaussian.
     """
-    check_gaussian(spec)
-    lines, generator = draw_pair(spec, seed, number)
-    size = min(spec.points)
-    line = lines[0][:size] + lines[1][:size]
-    log_chosen, place = np.log(generator.random(WINDOWS)), generator.random(WINDOWS)
-    reach = int(np.ceil(2.0 * np.pi / (spec.q_min * spec.spacing)))
-    both = sum_of_lines(spec, max(reach + 1, int(widths.max())))
-    covariances = tuple(_both_sides(each, reach + 1) for each in both.covariances)
-    places = _spread(size, 2 * reach + 1, RUNS) + reach
+    drawn = _Drawn(spec, seed, number, int(widths.max()))
     windows, runs = np.empty((2, films.size)), np.empty((6, films.size))
     for i, (film, width) in enumerate(zip(films, widths, strict=True)):
-        log_tail = scipy.special.log_ndtr(-film / both.rms)
-        # Heights above the film as they are by themselves: the inverse of the Gaussian tail.
-        heights = -both.rms * scipy.special.ndtri_exp(log_chosen + log_tail)
-        touching = (place * width).astype(np.int64), heights.astype(np.float32)
+        log_tail = scipy.special.log_ndtr(-film / drawn.both.rms)
+        touching = (drawn.place * width).astype(np.int64), drawn.heights(log_tail)
         shape = np.full(width, film, np.float32)
-        starts, correlation = _spread(size, width, WINDOWS), _both_sides(both.correlation, width)
-        found = touching_windows(line, starts, correlation, touching, shape, factor)
-        windows[:, i] = np.array(found) * (width * np.exp(log_tail))
-        found = touching_runs(lines, places, covariances, touching[1][:RUNS], film, factor)
+        windows[:, i] = drawn.windows(shape, touching, factor) * (width * np.exp(log_tail))
+        found = touching_runs(
+            drawn.lines, drawn.places, drawn.covariances, touching[1][:RUNS], film, factor
+        )
         runs[:, i] = found * (np.exp(log_tail) / RUNS)
     return windows, runs
+
+
+def rare_contact_under(
+    spec: LineSpecLike, seed: int, number: int, films: Sequence[Array], factor: float
+) -> Array:
+    """Estimate probabilities of contact under films that are not flat, from one pair of lines.
+
+    Parameters
+    ----------
+    spec, seed, number, factor
+        As in `rare_contact`. The lines are the same, and so are the random choices.
+    films : sequence of numpy.ndarray
+        Film thickness at each point of a window, height steps, above zero: one array for each
+        operating point.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (2, P): probabilities of geometric contact and of breakthrough in a window.
+
+    Raises
+    ------
+    StudyError
+        If the lines are not Gaussian.
+
+    Notes
+    -----
+    Points of the window at which contact is less likely by a factor `NEGLIGIBLE` than at the
+    thinnest film are left out.
+    """
+    drawn = _Drawn(spec, seed, number, max(film.size for film in films))
+    probabilities = np.empty((2, len(films)))
+    for i, film in enumerate(films):
+        log_tails = scipy.special.log_ndtr(-film / drawn.both.rms)
+        likely = np.flatnonzero(log_tails > log_tails.max() + np.log(NEGLIGIBLE))
+        part = slice(likely[0], likely[-1] + 1)
+        log_tails = log_tails[part]
+        # The known point of a window lies where contact is likely.
+        share = np.cumsum(np.exp(log_tails - log_tails.max()))
+        known = np.searchsorted(share, drawn.place * share[-1])
+        touching = known, drawn.heights(log_tails[known])
+        expected = share[-1] * np.exp(log_tails.max())
+        shape = film[part].astype(np.float32)
+        probabilities[:, i] = drawn.windows(shape, touching, factor) * expected
+    return probabilities
+
+
+class _Drawn:
+    """A pair of lines, and what is chosen at random on it."""
+
+    def __init__(self, spec, seed, number, widest):
+        check_gaussian(spec)
+        self.lines, generator = draw_pair(spec, seed, number)
+        self.size = min(spec.points)
+        self.line = self.lines[0][: self.size] + self.lines[1][: self.size]
+        self.log_chosen, self.place = np.log(generator.random(WINDOWS)), generator.random(WINDOWS)
+        reach = int(np.ceil(2.0 * np.pi / (spec.q_min * spec.spacing)))
+        self.both = sum_of_lines(spec, max(reach + 1, widest))
+        self.covariances = tuple(_both_sides(each, reach + 1) for each in self.both.covariances)
+        self.places = _spread(self.size, 2 * reach + 1, RUNS) + reach
+
+    def heights(self, log_tail):
+        """Heights above a film as they are by themselves: the inverse of the Gaussian tail."""
+        heights = -self.both.rms * scipy.special.ndtri_exp(self.log_chosen + log_tail)
+        return heights.astype(np.float32)
+
+    def windows(self, film, touching, factor):
+        """Mean weights of windows with contact and with a breakthrough."""
+        starts = _spread(self.size, film.size, WINDOWS)
+        correlation = _both_sides(self.both.correlation, film.size)
+        return np.array(touching_windows(self.line, starts, correlation, touching, film, factor))
 
 
 def _both_sides(covariance, lags):

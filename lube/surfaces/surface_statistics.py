@@ -15,7 +15,7 @@ import numpy as np
 import scipy.special
 
 from lube.errors import DataError
-from lube.surfaces.measured_spectrum import LineSpectrum
+from lube.surfaces.spectrum_table import LineSpectrum
 from lube.types import Array
 
 BLOCKS = 16

@@ -9,7 +9,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from lube.errors import StudyError, shown
+from lube.errors import LubeError, StudyError, shown
+from lube.study.lubricant_record import check_fluid
 from lube.study.resolve import study_files
 from lube.study.study import Study, load_study
 from lube.types import File
@@ -132,7 +133,7 @@ def study_of_command(files: Sequence[File], config: dict) -> tuple[Study, dict[s
     _check_number([str(file) for file in files])
     path = os.path.relpath(files[0]) if files else from_here(PAPER)
     changes = {key: _typed(value) for key, value in config.items()}
-    return load_study(path, changes), {"path": path, "changes": changes}
+    return _checked(path, changes), {"path": path, "changes": changes}
 
 
 def same_study(path: str, changes: dict) -> list[str]:
@@ -185,7 +186,18 @@ def study_of_module(config: dict) -> tuple[Study, dict[str, Any]]:
             "study's file"
         )
     path = os.path.relpath(config["study"])
-    return load_study(path, changes), {"path": path, "changes": changes}
+    return _checked(path, changes), {"path": path, "changes": changes}
+
+
+def _checked(path, changes):
+    """Load a study; check also what takes longer and is left out at the start of each job."""
+    study = load_study(path, changes)
+    for record in study.lubricants:
+        try:
+            check_fluid(record, study.operating_grid.temperature)
+        except LubeError as error:
+            raise type(error)(f"{path}: lubricants: {error}") from None
+    return study
 
 
 def _typed(value):

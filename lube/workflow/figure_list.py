@@ -74,10 +74,10 @@ class Figure:
         Returns
         -------
         bool
-            False if a tag such as ``several-force`` asks for several levels where the study
-            has one, the tag ``gaussian-lines`` for Gaussian lines where it has others, the tag
-            ``ensemble`` for several pairs where it has one measured pair, or a dataset for what
-            the study lacks.
+            False if a tag such as ``several-force`` or ``several-lubricant`` asks for several
+            where the study has one, the tag ``gaussian-lines`` for Gaussian lines where it has
+            others, the tag ``ensemble`` for several pairs where it has one measured pair, or a
+            dataset for what the study lacks.
         """
         if not all(study.has(name) for name in self.datasets):
             return False
@@ -85,7 +85,7 @@ class Figure:
             return False
         if ENSEMBLE in self.tags and study.line_spec.is_one_pair:
             return False
-        levels = study.operating_grid.model_dump()
+        levels = study.operating_grid.model_dump() | {"lubricant": study.lubricants}
         return all(len(levels.get(name, ())) > 1 for name in self._tagged("several-"))
 
     def _tagged(self, prefix):

@@ -28,7 +28,7 @@ from lube.schema import label
 from lube.stages.film import film_table
 from lube.stages.lubricant import lubricant_table
 from lube.storage.netcdf import save
-from lube.study.rollers import line_spec
+from lube.study.line_spec import line_spec
 from lube.study.study import load_study
 from lube.surfaces.synthetic import draw_line, draw_realisation
 

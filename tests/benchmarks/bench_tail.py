@@ -34,7 +34,7 @@ from lube.stages.roughness import roughness_batch
 from lube.stages.tail import FEWER_PAIRS, PAIRS, tail_probabilities
 from lube.study.study import load_study
 from lube.surfaces.rare_contact import draw_pair, rare_contact
-from lube.surfaces.synthetic import line_attributes
+from lube.surfaces.spectra import line_attributes
 
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 SEEDS = 20

@@ -86,7 +86,7 @@ def test_nothing_is_overwritten_and_nothing_left_of_what_is_refused(new, tmp_pat
         (["a.yaml", "--force", "200 100 N"], "need rising levels"),
         (["a.yaml", "--temperature", "-10 0 degC"], "got -10 degC, need 40 to 100 degC"),
         (["a.yaml", "--realisations", "0"], "realisations: got 0, need at least 1"),
-        (["a.yaml", "--oil", "water"], "got 'water', need one of mobilgear"),
+        (["a.yaml", "--oil", "water"], "got 'water', need one of base-oil"),
         (["a.yaml", "--oil", "my oil.yaml"], "my oil.yaml: cannot be read"),
     ):
         code, said = new(*arguments)

@@ -78,7 +78,7 @@ def test_rigid_rollers_have_martins_film_in_the_reduced_pressure(at, incompressi
     greatest = film_at_greatest_pressure(profile)
     assert greatest / profile.central_film == pytest.approx(1.2257, rel=1e-3)
     ends = profile.nodes[profile.end : profile.end + 2]
-    low, high = profile.film(ends) / greatest
+    low, high = profile.film_at(ends) / greatest
     assert low - 0.02 < 1.0 < high + 0.02
 
 
@@ -288,7 +288,7 @@ def starved(contact, height):
     for _ in range(22):
         middle = np.sqrt(low * high)
         profile = solve(contact, meniscus=middle)
-        found = profile.film(profile.nodes[:1])[0] / profile.minimum_film
+        found = profile.film_at(profile.nodes[:1])[0] / profile.minimum_film
         low, high = (middle, high) if found < height else (low, middle)
     return profile
 

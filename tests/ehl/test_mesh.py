@@ -23,7 +23,7 @@ def test_first_mesh_rises_smoothly_from_the_inlet_through_the_contact(film):
 def test_the_oil_begins_where_the_gap_has_the_height_asked_for(flooded):
     """To 10 %: the pressure about the inlet's end moves a low gap a little."""
     profile = solve(contact_at(400, 100, 60), flooded=flooded)
-    gap = profile.film(profile.nodes[:1])[0] / profile.central_film
+    gap = profile.film_at(profile.nodes[:1])[0] / profile.central_film
     assert gap == pytest.approx(flooded, rel=0.1)
 
 

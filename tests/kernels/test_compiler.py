@@ -16,7 +16,7 @@ SCAN = """
 import numpy as np
 from lube.kernels.scan import scan_window
 line = np.array([3, 3, 0], np.int32)
-print(*scan_window((line, line), 0, 0, 3, 0, 1.0))
+print(*scan_window((line, line), 0, 0, np.zeros(3, np.int64), 1.0))
 """
 
 

@@ -33,6 +33,10 @@ def naive_trace(z1, z2, v1, v2, steps, h0, half_window, factor):
     return trace
 
 
+def flat(film, half_window):
+    return np.full(2 * half_window + 1, film)
+
+
 def int32(line):
     return np.array(line, np.int32)
 
@@ -52,7 +56,9 @@ def test_scan_equals_the_naive_model_at_any_two_speeds(
 ):
     speeds = (slower, Fraction(1)) if first_is_slower else (Fraction(1), slower)
     ratios = (float(speeds[0]), float(speeds[1]))
-    trace = scan_trace((int32(z1), int32(z2)), ratios, steps, film, half_window, float(factor))
+    films = flat(film, half_window)
+    lines = int32(z1), int32(z2)
+    trace = scan_trace(lines, ratios, steps, films, half_window, float(factor))
     expected = naive_trace(z1, z2, *speeds, steps, film, half_window, factor)
     assert trace.tolist() == expected
 
@@ -93,11 +99,11 @@ def test_surface_position_is_the_nearest_point(step, slower, excess):
 def test_a_surface_at_rest_shows_the_window_the_same_points():
     rough, smooth = int32([0, 0, 5, 0, 0, 0, 0]), int32([0] * 7)
     for pair, ratios in (((smooth, rough), (1.0, 0.0)), ((rough, smooth), (0.0, 1.0))):
-        assert scan_trace(pair, ratios, 7, 3, 2, 1.0).tolist() == [[1, 1, 2]] * 7
+        assert scan_trace(pair, ratios, 7, flat(3, 2), 2, 1.0).tolist() == [[1, 1, 2]] * 7
 
 
 def test_window_cuts_segments_at_its_edges():
     line = int32([2, 2, 2, 0, 0, 0, 0, 0])
-    flat = np.zeros_like(line)
-    trace = scan_trace((line, flat), (1.0, 1.0), 8, 0, 1, 0.0)
+    lines = line, np.zeros_like(line)
+    trace = scan_trace(lines, (1.0, 1.0), 8, flat(0, 1), 1, 0.0)
     assert trace[:, 0].tolist() == [2, 3, 2, 1, 0, 0, 0, 1]

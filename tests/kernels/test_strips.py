@@ -52,7 +52,9 @@ def test_statistics_equal_the_scan(line_1, line_2, points, factor, steps, ratios
 @given(rough_lines, rough_lines, operating_points, factors, st.integers(1, 150), speed_ratios)
 def test_trace_equals_the_scan_at_every_step(line_1, line_2, points, factor, steps, ratios):
     expected = [
-        scan_trace((line_1, line_2), ratios, steps, film, half_window, factor)[:, 1]
+        scan_trace(
+            (line_1, line_2), ratios, steps, np.full(2 * half_window + 1, film), half_window, factor
+        )[:, 1]
         for film, half_window in points
     ]
     found = by_strips(line_1, line_2, points, factor, steps, ratios, strip_trace)

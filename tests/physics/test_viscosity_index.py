@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lube.errors import RangeError
-from lube.physics.viscosity_index import reference_oils, viscosity_index
+from lube.physics.viscosity_index import reference_oils, viscosity_at_100, viscosity_index
 
 
 def test_reference_oils_meet_the_table_of_astm_d2270_and_join_smoothly():
@@ -48,3 +48,16 @@ def test_viscosity_index_of_thin_liquids_is_refused():
     for viscosity_100 in (1.99, 0.0, float("nan")):
         with pytest.raises(RangeError, match="needs 2 mm2/s or more"):
             viscosity_index(5.0, viscosity_100)
+
+
+@given(st.floats(15.0, 1500.0), st.floats(20.0, 300.0))
+def test_viscosity_at_100_has_the_index_that_was_asked_for(viscosity_40, index):
+    found = viscosity_at_100(viscosity_40, index)
+    # At the joints of the standard's fits the index jumps a little.
+    assert viscosity_index(viscosity_40, found) == pytest.approx(index, abs=1.0)
+
+
+def test_no_viscosity_at_100_for_an_index_that_the_oil_cannot_have():
+    with pytest.raises(RangeError, match="got a viscosity index of 10 at 5 mm2/s at 40 degC"):
+        viscosity_at_100(5.0, 10.0)
+    assert viscosity_at_100(335.0, 164.4) == pytest.approx(38.3, abs=0.01)

@@ -13,9 +13,8 @@ from lube.rig.study_shares import (
     log_lines,
     over_grid,
     refused_in_one_line,
-    values_with_limits,
 )
-from lube.schema import EXPERIMENT_DIMS, FILES
+from lube.schema import EXPERIMENT_DIMS
 
 SHARES = np.linspace(0.0, 0.5, 12)
 
@@ -76,7 +75,6 @@ def test_slips_and_lubricants_are_kept_apart():
 
 
 def test_names(experiment):
-    assert set(values_with_limits("contact_share", [0.5, 0.4, 0.6])) <= set(FILES["experiment"])
     point = {"force": 800.0, "speed": 600.0 / 7.0, "temperature": 40.0}
     assert levels_named(point) == "800 N, 85.7143 rpm, 40 degC"
     assert refused_in_one_line(experiment) == ""

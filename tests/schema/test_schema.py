@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from lube.errors import DataError
-from lube.schema import ATTRIBUTES, COORDINATES, FILES, check, label
+from lube.schema import ATTRIBUTES, COORDINATES, FILES, check, label, values_with_limits
 from lube.schema.tables import read_table
 
 VARIABLES = [(kind, name) for kind in FILES for name in FILES[kind]]
@@ -88,7 +88,10 @@ def test_the_cell_methods_of_a_mean_name_what_it_is_over():
 def test_a_missing_variable_wrong_units_and_a_wrong_type_are_refused_by_name(labelled):
     for kind, name in VARIABLES:
         expected, dataset = FILES[kind][name], labelled[kind]
-        assert f"variable {name!r} is missing" in refusal(dataset.drop_vars(name), kind)
+        if expected.optional:
+            check(dataset.drop_vars(name), kind)
+        else:
+            assert f"variable {name!r} is missing" in refusal(dataset.drop_vars(name), kind)
         wrong = dataset[name].astype(complex if expected.kind != "U" else float)
         changed = dataset.assign({name: wrong.assign_attrs(dataset[name].attrs)})
         assert f"{name!r} holds" in refusal(changed, kind)
@@ -116,6 +119,10 @@ def test_a_coordinate_that_is_missing_or_repeats_a_value_is_refused(labelled):
         assert f"coordinate {name!r} is missing" in refusal(dataset.drop_vars(name), kind)
         twice = dataset.isel({name: [0, 0]})
         assert f"coordinate {name!r} repeats a value" in refusal(twice, kind)
+
+
+def test_limits_have_the_names_of_the_tables():
+    assert set(values_with_limits("contact_share", [0.5, 0.4, 0.6])) <= set(FILES["experiment"])
 
 
 def test_a_missing_attribute_is_refused(labelled):

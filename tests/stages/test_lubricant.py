@@ -12,6 +12,7 @@ from lube.physics.coolprop_fluids import (
     liquid_range,
     secant_pressure_viscosity,
 )
+from lube.physics.pressure_viscosity import roelands_coefficient
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
 from lube.schema import check
 from lube.stages.lubricant import lubricant_table
@@ -19,6 +20,7 @@ from lube.study.lubricant_record import load_record
 
 STUDY = [40.0, 50.0, 60.0, 70.0, 80.0]
 AT_40 = np.array([313.15])
+ENDS = ["slope-at-atmospheric", "reciprocal-asymptotic"]
 
 RANGE = "temperature_range: {source: x, lowest: 0 degC, highest: 100 degC}"
 
@@ -160,12 +162,112 @@ def test_dynamic_viscosities_are_divided_by_the_density(measured):
     np.testing.assert_allclose(dynamic.kinematic_viscosity, kinematic.kinematic_viscosity)
 
 
-def test_measured_coefficient_is_kept_with_its_definition(measured):
+def test_measured_coefficient_is_kept_and_converted_for_the_film_formulas(measured):
     table = lubricant_table([measured()], STUDY).isel(lubricant=0)
-    np.testing.assert_allclose(table.pressure_viscosity_coefficient, 21e-9, rtol=1e-12)
-    assert "reciprocal asymptotic" in str(table.pressure_viscosity_definition.values)
+    np.testing.assert_allclose(table.stated_pressure_viscosity_coefficient, 21e-9, rtol=1e-12)
+    slopes = table.pressure_viscosity_coefficient.values
+    for slope, viscosity in zip(slopes, table.dynamic_viscosity.values, strict=True):
+        assert roelands_coefficient(slope, viscosity, "reciprocal-asymptotic") == pytest.approx(
+            21e-9, rel=1e-9
+        )
+    assert "Roelands' law from the reciprocal" in str(table.pressure_viscosity_definition.values)
     # The data end at 90 degC: no viscosity at 100 degC, no viscosity index.
     assert np.isnan(table.viscosity_index)
+
+
+def test_golds_coefficient_and_a_measured_slope_are_taken_as_they_are(xmp):
+    for record in (xmp, load_record("base-oil-n100")):
+        table = lubricant_table([record], STUDY)
+        stated = table.stated_pressure_viscosity_coefficient
+        assert (table.pressure_viscosity_coefficient.values == stated.values).all()
+        assert np.isnan(table.pressure_fit_residual).all()
+
+
+def test_measured_coefficients_are_interpolated_in_their_logarithm():
+    oil = load_record("stachowiak-heavy-machine-oil-1")
+    alpha = lubricant_table([oil], [30, 45, 60, 80, 100]).pressure_viscosity_coefficient.values[0]
+    between = [math.sqrt(23.7 * 20.5), math.sqrt(20.5 * 15.8)]
+    expected = np.array([23.7, between[0], 20.5, between[1], 15.8])
+    np.testing.assert_allclose(1e9 * alpha, expected, rtol=1e-12)
+    with pytest.raises(RangeError, match="light-machine-oil: got 50 degC, need 60 to 100 degC"):
+        lubricant_table([load_record("stachowiak-light-machine-oil")], [50.0])
+
+
+PRESSURES = np.array([0.1, 25.0, 50.0, 100.0, 200.0, 400.0])
+
+
+@pytest.fixture
+def pressed(tmp_path):
+    """Record of an oil with viscosities under pressure, by a law of pressure and temperature."""
+
+    def load(law, definition):
+        lines = ["temperature [degC];pressure [MPa];dynamic_viscosity [mPa*s]"]
+        for celsius in (40.0, 60.0, 80.0):
+            for pressure in PRESSURES:
+                value = 0.07 * math.exp(2200.0 / (celsius + 273.15))
+                value *= math.exp(law(1e6 * pressure - 101325.0, celsius))
+                lines.append(f"{celsius};{pressure};{value!r}")
+        (tmp_path / "data.csv").write_text("\n".join(lines))
+        path = tmp_path / "pressed.yaml"
+        text = CSV_OIL.format(law="andrade").replace("  value: 21 1/GPa\n", "")
+        path.write_text(text.replace("definition: reciprocal-asymptotic", definition))
+        return lubricant_table([load_record(path)], [40.0, 60.0, 80.0]).isel(lubricant=0)
+
+    return load
+
+
+@pytest.mark.parametrize(
+    "definition", ["definition: secant\n  pressure: 200 MPa", *(f"definition: {d}" for d in ENDS)]
+)
+def test_viscosities_of_barus_under_pressure_give_his_coefficient(pressed, definition):
+    def law(p, celsius):
+        return (20e-9 - 0.1e-9 * (celsius - 40.0)) * p
+
+    table = pressed(law, definition)
+    stated = table.stated_pressure_viscosity_coefficient
+    np.testing.assert_allclose(1e9 * stated, [20.0, 18.0, 16.0], rtol=1e-4)
+    assert table.pressure_fit_residual < 1e-4
+
+
+def test_viscosities_of_mcewen_under_pressure_give_each_definition(pressed):
+    def law(p, celsius):
+        return 12.0 * math.log1p(18e-9 * p / 12.0)
+
+    for definition, expected in zip(ENDS, (18e-9, 18e-9 * 11.0 / 12.0), strict=True):
+        table = pressed(law, f"definition: {definition}")
+        np.testing.assert_allclose(table.stated_pressure_viscosity_coefficient, expected, rtol=1e-4)
+
+
+def test_the_residual_of_a_fit_under_pressure_is_stated(pressed):
+    def law(p, celsius):  # 3 % too high at 100 MPa alone
+        return 20e-9 * p + 0.03 * (90e6 < p < 110e6)
+
+    residual = pressed(law, "definition: slope-at-atmospheric").pressure_fit_residual
+    assert 0.015 < residual < 0.03
+
+
+def test_n_dodecane_under_pressure_as_measured_and_by_coolprop(pressed, fluid):
+    """The fit of viscosities to 200 MPa has the secant to 200 MPa within its residual."""
+    kelvin = np.array([313.15])
+
+    def law(p, celsius):
+        at = min(max(p, 0.0) + 101325.0, 200e6)
+        return (
+            math.log(
+                (
+                    liquid_property("n-Dodecane", "viscosity", kelvin, at)
+                    / liquid_property("n-Dodecane", "viscosity", kelvin)
+                ).item()
+            )
+            + max(p + 101325.0 - 200e6, 0.0) * 7e-9
+        )
+
+    table = pressed(law, "definition: secant\n  pressure: 200 MPa")
+    direct = secant_pressure_viscosity("n-Dodecane", kelvin, 200e6).item()
+    residual = table.pressure_fit_residual.item()
+    assert table.stated_pressure_viscosity_coefficient.values == pytest.approx(
+        direct, abs=residual / 200e6
+    )
 
 
 def test_n_dodecane_at_40_degc_has_the_figures_of_physics_section_2():
@@ -212,7 +314,11 @@ def test_temperature_viscosity_coefficient_of_n_dodecane(dodecane, fluid):
 
 def test_secant_definition_is_computed_and_stated(fluid):
     table = lubricant_table([fluid("n-Dodecane", definition="secant, pressure: 200 MPa")], [40.0])
-    assert table.pressure_viscosity_coefficient.item() == pytest.approx(8.7e-9, abs=0.05e-9)
+    stated = table.stated_pressure_viscosity_coefficient.item()
+    assert stated == pytest.approx(8.7e-9, abs=0.05e-9)
+    slope, viscosity = table.pressure_viscosity_coefficient.item(), table.dynamic_viscosity.item()
+    assert stated < slope
+    assert roelands_coefficient(slope, viscosity, "secant", 199898675.0) == pytest.approx(stated)
     assert "to 200 MPa" in table.pressure_viscosity_definition.item()
 
 

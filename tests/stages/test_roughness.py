@@ -6,7 +6,8 @@ import pytest
 from lube import roughness_lines
 from lube.grid.discretise import line_pair
 from lube.stages.roughness import PADDING, roughness_batch
-from lube.surfaces.synthetic import draw_realisation, line_moments, spectrum_moments
+from lube.surfaces.spectra import line_moments, spectrum_moments
+from lube.surfaces.synthetic import draw_realisation
 
 SEED = 20181109
 

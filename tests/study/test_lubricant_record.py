@@ -7,8 +7,10 @@ import sys
 import pytest
 from refusals import one_line
 
-from lube.errors import RangeError, RecordError
+from lube.errors import LubeError, RangeError, RecordError
+from lube.physics.viscosity_index import viscosity_index
 from lube.study.lubricant_record import (
+    check_fluid,
     check_temperatures,
     load_record,
     read_viscosity_csv,
@@ -70,7 +72,7 @@ def refusal(path):
 
 
 def test_the_shipped_records_are_plain_json_and_every_section_has_a_source():
-    assert shipped_records() == ("mobilgear-shc-xmp-320", "n-dodecane")
+    assert {"mobilgear-shc-xmp-320", "n-dodecane"} <= set(shipped_records())
     for name in shipped_records():
         record = load_record(name)
         assert record.name == name
@@ -91,12 +93,52 @@ def test_xmp_320_has_the_values_of_physics_section_2_in_si():
     assert record.valid_temperatures == (40.0, 100.0)
 
 
+def test_gear_oils_of_four_bases_are_shipped_in_all_grades():
+    grades = [32, 46, 68, 100, 150, 220, 320, 460, 680]
+    for base in ("mineral", "pao", "ester", "polyglycol"):
+        for grade in grades:
+            record = load_record(f"{base}-iso-vg-{grade}")
+            at_40, at_100 = record.viscosity.points
+            # ISO 3448 names a grade by its mid-point at 40 degC.
+            assert at_40.kinematic_viscosity == pytest.approx(grade * 1e-6)
+            index = viscosity_index(grade, at_100.kinematic_viscosity * 1e6)
+            assert index == pytest.approx(record.viscosity.viscosity_index, abs=0.1)
+            assert str(grade) in record.title and record.valid_temperatures == (40.0, 100.0)
+            assert all("assumed" in one.source for one in (record.viscosity, record.density))
+    assert sum("-iso-vg-" in name for name in shipped_records()) == 4 * len(grades)
+
+
+def test_stachowiaks_oils_hold_the_figures_of_the_table():
+    # G. W. Stachowiak and A. W. Batchelor, Engineering Tribology, Table 2.3, at 30, 60, 100 degC.
+    for name, viscosities, coefficients in [
+        ("light-machine-oil", (38, 12.1, 5.3), (18.4, 13.4)),
+        ("heavy-machine-oil-1", (153, 34, 9.1), (23.7, 20.5, 15.8)),
+        ("heavy-machine-oil-2", (250, 50.5, 12.6), (25.0, 21.3, 17.6)),
+        ("cylinder-oil", (810, 135, 26.8), (34, 28, 22)),
+    ]:
+        record = load_record(f"stachowiak-{name}")
+        points, alphas = record.viscosity.points, record.pressure_viscosity.points
+        assert [point.temperature for point in points] == [30.0, 60.0, 100.0]
+        assert [1e3 * point.dynamic_viscosity for point in points] == pytest.approx(viscosities)
+        assert [point.value for point in alphas] == pytest.approx(coefficients)
+        # Without a coefficient at 30 degC the light oil is known from 60 degC only.
+        assert record.valid_temperatures == (alphas[0].temperature, 100.0)
+
+
 def test_an_unknown_name_and_a_missing_file_are_refused(tmp_path):
-    with pytest.raises(RecordError, match=r"got 'mobil-1', need one of mobilgear.*n-dodecane"):
+    with pytest.raises(RecordError, match=r"got 'mobil-1', need one of base-oil.*mobilgear"):
         load_record("mobil-1")
     with pytest.raises(RecordError, match=r"none\.yaml: cannot be read: No such file"):
         load_record("none.yaml", folder=tmp_path)
 
+
+SLOPE = "slope-at-atmospheric"
+ALPHA = f"""\
+  points:
+    - {{temperature: 40 degC, value: 18 1/GPa}}
+    - {{temperature: 60 degC, value: 16 1/GPa}}
+  definition: {SLOPE}
+"""
 
 MISTAKES = [
     ("name: my-oil", "name: My Oil", "name: got 'My Oil'"),
@@ -106,17 +148,57 @@ MISTAKES = [
     ('source: "assumed: Gold"', "source: '  '", "pressure_viscosity.source: got '  '"),
     ("100 mm^2/s}", "100}", "points.0.kinematic_viscosity: got 100, need a number with its"),
     (OIL[OIL.index("density:") : OIL.index("pressure_v")], "", "density: missing"),
-    (POINTS, "", "viscosity: got none, need one of points, csv, coolprop_fluid"),
+    (POINTS, "", "viscosity: got none, need one of points, csv, iso_vg, coolprop_fl"),
     (POINTS, POINTS + "  csv: a.csv\n", "viscosity: got points and csv, need one of"),
     (POINTS, "  points: []\n", "viscosity: need values at two temperatures or more"),
     ("11 mm^2/s", "110 mm^2/s", "viscosity: need less at 100 degC than at 40 degC"),
-    ("100 mm^2/s}", "100 mm^2/s, dynamic_viscosity: 9 mPa*s}", "viscosity.points.0: need either k"),
+    (
+        "100 mm^2/s}",
+        "100 mm^2/s, dynamic_viscosity: 80 mPa*s}",
+        "viscosity: got 92.41 mm2/s (80 mPa s over 865.7 kg/m3) and 100 mm2/s at 40 degC, need one "
+        "value, or several within 2 %",
+    ),
+    (", kinematic_viscosity: 100 mm^2/s", "", "points.0: need kinematic_viscosity or dynamic_visc"),
+    (
+        "    - {temperature: 100",
+        "    - {temperature: 313.15 K, kinematic_viscosity: 97 mm^2/s}\n    - {temperature: 100",
+        "viscosity: got 97 mm2/s and 100 mm2/s at 40 degC, need one value, or several within 2 %",
+    ),
+    ("100 mm^2/s}", "100 mm^2/s, pressure: 9 MPa}", "got kinematic_viscosity at 9 MPa, need dynam"),
+    (POINTS, "  iso_vg: 220\n", "viscosity.viscosity_index: need it with iso_vg, and only there"),
+    (POINTS, POINTS + "  viscosity_index: 95\n", "viscosity_index: need it with iso_vg, and only"),
+    (
+        POINTS,
+        "  iso_vg: 200\n  viscosity_index: 95\n",
+        "viscosity.iso_vg: got 200, need 10, 15, 22",
+    ),
     ("title: My oil", "title: My oil\nviscosity_law: walther", "viscosity_law: got 'walther'"),
     (GOLD, "", "pressure_viscosity: need either gold_base alone, or definition"),
     (GOLD, GOLD + "  value: 20 1/GPa\n", "need either gold_base alone, or definition"),
     (GOLD, "  definition: secant\n", "pressure: need it with definition 'secant'"),
     (GOLD, GOLD + "  pressure: 200 MPa\n", "pressure: need it with definition 'secant', and"),
-    (GOLD, "  definition: reciprocal-asymptotic\n", "gold_base or value: missing"),
+    (
+        GOLD,
+        f"  definition: {SLOPE}\n",
+        "pressure_viscosity: got none, need one of gold_base, value",
+    ),
+    (
+        GOLD,
+        ALPHA.replace("18 1/GPa", "18 1/Pa"),
+        ".value: got 1.8e+10, need a value at least 1 and at",
+    ),
+    (
+        GOLD,
+        ALPHA.replace("18 1/GPa", "1.8e-8 1/GPa"),
+        "value: got 1.8e-08, need a value at least 1 a",
+    ),
+    (GOLD, ALPHA + "  value: 18 1/GPa\n", "pressure_viscosity: got value and points, need one of"),
+    (GOLD, ALPHA.replace("60 degC", "40 degC"), "points: got two values at 40 degC, need one"),
+    (
+        GOLD,
+        ALPHA.replace("40", "120").replace("60", "130"),
+        "got no temperature with both viscosity",
+    ),
     (
         "title: My oil",
         "title: x\ntemperature_range: {source: x, lowest: 40 degC, highest: 30 degC}",
@@ -125,14 +207,14 @@ MISTAKES = [
 ]
 
 # What CoolProp gives may not be written too.
-SLOPE, RANGE = "slope-at-atmospheric", "temperature_range:"
+RANGE = "temperature_range:"
 DENSITY = OIL[OIL.index("density:") : OIL.index("pressure_v")]
 COOLPROP_MISTAKES = [
     (RANGE, f"viscosity_law: vogel\n{RANGE}", "viscosity_law: not allowed"),
     (RANGE, DENSITY + RANGE, "density: not allowed, CoolProp gives it for n-Decane"),
     (SLOPE, "reciprocal-asymptotic", "'reciprocal-asymptotic' not allowed"),
-    (SLOPE, f"{SLOPE}\n  value: 12 1/GPa", "gold_base or value: not allowed, CoolProp gives it"),
-    (f"  definition: {SLOPE}", "  gold_base: ester", "or value: not allowed"),
+    (SLOPE, f"{SLOPE}\n  value: 12 1/GPa", "viscosity.value: not allowed, CoolProp gives it for"),
+    (f"  definition: {SLOPE}", "  gold_base: ester", "pressure_viscosity.gold_base: not allowed"),
     (SLOPE, "secant\n  pressure: 0.1 MPa", "pressure: got 100000, need a value above 101325"),
 ]
 
@@ -182,7 +264,7 @@ def test_each_mistake_in_a_csv_file_is_refused_by_line_and_column(write):
         ("", "data.csv: empty, need a line of column names"),
         ("temperature,viscosity\n", "line 1: got the columns 'temperature, viscosity', need"),
         ("temperature [degC],nu [mm^2/s]\n", "line 1: got the columns 'temperature [degC], nu"),
-        (HEADER.strip() + ",dynamic_viscosity [mPa*s]\n", "line 1: got the columns 'temperature"),
+        ("temperature [degC],pressure [MPa]\n", "line 1: got the columns 'temperature [degC], pr"),
         ("temperature [s],kinematic_viscosity [mm^2/s]\n40,100\n", "line 2: temperature: wrong"),
         (HEADER + "40,100\n# pause\n100,eleven\n", "line 4: kinematic_viscosity: got 'eleven mm"),
         (HEADER + "40,100\n100,0\n", "line 3: kinematic_viscosity: got 0, need a value above 0"),
@@ -200,6 +282,86 @@ def test_a_csv_file_must_exist_in_the_records_folder(write):
     for name in ("../data.csv", "/etc/passwd", "a/../../data.csv"):
         message = refusal(write(CSV_OIL.replace("data.csv", name)))
         assert f"viscosity.csv: got {name!r}, need a file in the record's folder" in message
+
+
+def test_csv_may_contain_both_viscosities_if_they_agree(write):
+    text = HEADER.strip() + ",dynamic_viscosity [mPa*s]\n40,100,86.57\n100,11,{}\n"
+    write(text.format(9.1), "data.csv")
+    record = load_record(write(CSV_OIL))
+    assert record.data[0] == pytest.approx((40.0, 100e-6))
+    assert record.viscosity.points[0].dynamic_viscosity == pytest.approx(0.08657)
+    write(text.format(11), "data.csv")
+    assert "got 11 mm2/s and 13.23 mm2/s (11 mPa s over 831.4 kg/m3)" in refusal(write(CSV_OIL))
+
+
+# Viscosities under pressure
+
+PRESSURES = """\
+temperature [degC]; pressure [MPa]; dynamic_viscosity [mPa*s]
+40; 0.1; 80
+40; 50; 200
+40; 100; 420
+40; 200; 1600
+80; 0.1; 20
+80; 50; 40
+80; 100; 70
+80; 200; 200
+"""
+PRESSED = CSV_OIL.replace(GOLD, "  definition: reciprocal-asymptotic\n")
+
+
+def test_viscosities_under_pressure_are_read_by_temperature(write):
+    write(PRESSURES.replace(".", ","), "data.csv")
+    record = load_record(write(PRESSED))
+    assert [temperature for temperature, _ in record.data] == [40.0, 80.0]
+    assert list(record.isotherms) == [40.0, 80.0]
+    pressures, ratios = zip(*record.isotherms[40.0], strict=True)
+    assert pressures == pytest.approx((49.9e6, 99.9e6, 199.9e6), rel=1e-3)
+    assert ratios == pytest.approx((2.5, 5.25, 20.0))
+    assert record.valid_temperatures == (40.0, 80.0)
+
+
+def test_each_mistake_in_viscosities_under_pressure_is_refused(write):
+    secant = PRESSED.replace("reciprocal-asymptotic", "secant\n  pressure: 250 MPa")
+    for record, old, new, message in [
+        (
+            PRESSED,
+            "80; 200; 200\n",
+            "",
+            "got 2 pressures above atmospheric at 80 degC, need 3 or mo",
+        ),
+        (PRESSED, "80; 200; 200", "80; 200; 90", "got a rise to 4.5 times that at atmospheric"),
+        (
+            PRESSED,
+            "80; 200; 200",
+            "80; 100; 90",
+            "and 4.5 times that at atmospheric pressure at 80",
+        ),
+        (
+            PRESSED,
+            "40; 100; 420",
+            "40; 100; 190",
+            "need more at 40 degC and 100 MPa than at 50 MPa",
+        ),
+        (PRESSED, "40; 0.1; 80", "20; 0.1; 280", "got pressures at 40 degC without atmospheric"),
+        (
+            PRESSED,
+            "40; 0.1; 80",
+            "40; -1; 80",
+            "line 2: pressure: got -1e+06, need a value at least",
+        ),
+        (
+            secant,
+            "",
+            "",
+            "pressure_viscosity.pressure: got 250 MPa, the viscosities at 40 degC end at",
+        ),
+        (CSV_OIL, "", "", "pressure_viscosity: got gold_base beside viscosities under pressure"),
+    ]:
+        write(PRESSURES.replace(old, new) if old else PRESSURES, "data.csv")
+        assert message in refusal(write(record))
+    write(HEADER + "40,100\n100,11\n", "data.csv")
+    assert "pressure_viscosity: got none, need one of gold_base, value" in refusal(write(PRESSED))
 
 
 # Temperatures
@@ -226,11 +388,25 @@ def test_a_coolprop_record_without_a_range_has_that_of_the_liquid(write):
         check_temperatures(record, [180.0])
 
 
+def test_a_coolprop_fluid_that_cannot_serve_is_refused_without_computing_its_table(write):
+    secant = FLUID.replace(SLOPE, "secant\n  pressure: {} MPa")
+    for text, message in [
+        (FLUID.replace("n-Decane", "n-Undecane"), "need a fluid whose viscosity CoolProp knows"),
+        (FLUID.replace("n-Decane", "INCOMP::S800"), "need a pure fluid by CoolProp's spelling"),
+        (secant.format(900), "n-Decane: got a pressure of 900 MPa, CoolProp's range is"),
+    ]:
+        record = load_record(write(text))
+        line = one_line(LubeError, check_fluid, record, [40.0])
+        assert line.startswith("my-fluid: ") and message in line
+    check_fluid(load_record(write(secant.format(100))), [40.0, 80.0])
+    check_fluid(load_record(write(OIL)), [40.0])
+
+
 def test_reading_and_checking_records_does_not_import_heavy_libraries():
     # Snakemake does this at every start.
     code = (
         "import sys; from lube.study.lubricant_record import *; "
-        "[check_temperatures(load_record(name), [40.0, 80.0]) for name in shipped_records()]; "
+        "[check_temperatures(load_record(name), [60.0, 80.0]) for name in shipped_records()]; "
         "print([m for m in ('xarray', 'scipy.optimize', 'CoolProp', 'pandas') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -74,7 +74,7 @@ def test_paths_start_from_the_folder_of_the_file_that_holds_them(write, tmp_path
     assert (tmp_path / "list.csv").samefile(again.experiment.manifest)
 
 
-@pytest.mark.parametrize("name", ["paper", "smoke", "slip", "thousand", "run-in"])
+@pytest.mark.parametrize("name", ["paper", "smoke", "slip", "thousand", "run-in", "oils"])
 def test_the_resolved_text_is_the_same_study_in_one_file(tmp_path, name):
     path = CONFIG / f"{name}.yaml"
     (tmp_path / "resolved.yaml").write_text(resolved_text(path), encoding="utf-8")

@@ -15,7 +15,8 @@ from lube.errors import LubeError
 from lube.recordings.example_surface import isotropic_surface
 from lube.study.study import load_study
 from lube.surfaces.rare_contact import check_isotropic
-from lube.surfaces.synthetic import draw_realisation, spectrum_moments
+from lube.surfaces.spectra import spectrum_moments
+from lube.surfaces.synthetic import draw_realisation
 
 refusal = partial(one_line, LubeError, load_study)
 RADIUS = 5e-3
@@ -112,7 +113,7 @@ def test_the_film_uses_the_rms_height_of_the_lines(study_file):
     first, second = study.line_spec.rms_height
     assert second == 0.1e-6
     assert study.rough_rollers.composite_rms_roughness == pytest.approx(np.hypot(first, second))
-    assert study.rollers.with_lines(study.line_spec).first.topography is None
+    assert study.rough_rollers.first.topography is None
 
 
 def test_a_profile_that_is_the_line_is_the_same_in_every_realisation(study_file):
@@ -142,6 +143,14 @@ def test_two_measured_lines_are_one_pair(study_file):
     assert "realisations: got 64, need 1: both lines are measured" in refusal(
         study_file(SCAN | {"use": "repeated line"})
     )
+
+
+def test_a_topography_of_both_rollers_is_read_and_resampled_once(study_file):
+    line, one = SCAN | {"use": "repeated line"}, {"realisations": 1, "kept_realisations": [0]}
+    study = load_study(study_file(line, **one))
+    first, second = study.topographies.values()
+    assert first._measured is second._measured
+    assert len({id(each.heights.steps) for each in study.line_spec.lines}) == 1
 
 
 def test_no_isotropic_surface_belongs_to_profiles_along_rolling(study_file):
@@ -212,6 +221,17 @@ REFUSED = {
         SCAN | {"texture": "isotropic", "use": "repeated line"},
         BAND,
         "texture: got 'isotropic', need 'along rolling' for a profile that is the line",
+    ),
+    "no unit": (MAP | {"long_cutoff": 0.08}, BAND, "topography.long_cutoff: got 0.08, need a numb"),
+    "no length": (
+        MAP | {"long_cutoff": "80 kg"},
+        BAND,
+        "topography.long_cutoff: wrong dimension or unit 'kg', need a unit of the kind",
+    ),
+    "negative": (
+        MAP | {"long_cutoff": "-80 um"},
+        BAND,
+        "topography.long_cutoff: got -8e-05, need a value above 0",
     ),
     "two roughnesses": (MAP, BAND | {"hurst_exponent": 0.8}, "roughness.hurst_exponent: got 0.8"),
 }

@@ -61,7 +61,7 @@ GRIDS = [
 ]
 
 NAMES = [
-    ("lubricants", ["nope"], f"got 'nope', need one of {OIL}"),
+    ("lubricants", ["nope"], "got 'nope', need one of base-oil-m100"),
     ("lubricants", ["nope.yaml"], "nope.yaml: cannot be read"),
     ("lubricants", [], "got (), need at least 1"),
     ("lubricants", OIL, f"got '{OIL}', need a list"),
@@ -102,9 +102,9 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
         match = re.match(r"quantity in ([^ ,(]+)(, above 0)?", value)
         if match is None:
             continue
-        tested += 1
         if ".topography." in key:
             continue  # with a file that is missing here
+        tested += 1
         units, positive = match.groups()
         bare = refusal(paper_with((key, 50)))
         assert f"mine.yaml: {key}: got 50, need a number with its unit, such as '1 {units}'" in bare

@@ -11,17 +11,14 @@ from lube.recordings.example_surface import isotropic_surface
 from lube.surfaces.abel import line_over_profile, profile_of_line
 from lube.surfaces.measured_spectrum import (
     MOST_ANISOTROPY,
-    LineSpectrum,
     anisotropy,
-    band_table,
     hann,
     line_spectrum,
     map_power,
-    power_law_integral,
     profile_density,
-    with_power,
 )
-from lube.surfaces.synthetic import power_spectrum
+from lube.surfaces.spectra import power_spectrum
+from lube.surfaces.spectrum_table import band_table, power_law_integral
 from lube.surfaces.topography import Preparation, Topography, prepare
 
 ISOTROPIC, ALONG = Preparation("isotropic"), Preparation("along rolling")
@@ -98,21 +95,6 @@ def test_the_power_of_a_map_is_its_windowed_mean_square(shape):
     windowed = heights * np.outer(hann(shape[0]), hann(shape[1]))
     expected = np.mean(windowed**2) - np.mean(windowed) ** 2
     assert map_power(heights).sum() == pytest.approx(expected, rel=1e-12)
-
-
-def test_power_law_integral_is_exact():
-    q = np.array([1.0, 1.5, 4.0, 10.0])
-    for exponent in (-2.4, -1.0, 0.0, 1.0):
-        exact = np.log(10) if exponent == -1 else (10 ** (exponent + 1) - 1) / (exponent + 1)
-        assert power_law_integral(q, q**exponent) == pytest.approx(exact, rel=1e-9)
-
-
-def test_missing_power_goes_to_the_least_certain_densities():
-    q = np.geomspace(1.0, 1e3, 60)
-    changed = with_power(q, q**-2.0, q**2, 1.05)
-    assert power_law_integral(q, changed) == pytest.approx(1.05, rel=1e-9)
-    assert np.all(np.diff(changed / q**-2.0) <= 0.0)
-    assert changed[-20:] == pytest.approx(q[-20:] ** -2.0, rel=1e-3)
 
 
 # --- Known surfaces ----------------------------------------------------------------------
@@ -260,18 +242,6 @@ def test_a_flat_surface_has_no_spectrum():
         flat = Topography("flat.nc", np.full(shape, 1e-3), spacing)
         with pytest.raises(DataError, match=r"flat.nc: its spectrum is empty"):
             spectrum_of(flat, ALONG)
-
-
-def test_bands_beyond_the_measurement_are_refused():
-    q = np.geomspace(1e4, 1e6, 30)
-    known = LineSpectrum("a.csv", q, q**-2.4, np.ones(30), np.ones(30), True)
-    with pytest.raises(DataError, match=r"a.csv: got waves up to 0.000628 m.* to 0.00126 m"):
-        band_table(known, 5e3, 1e6)
-    with pytest.raises(DataError, match=r"a.csv: got waves down to 6.28e-06 m.* to 3.14e-06 m"):
-        band_table(known, 1e4, 2e6)
-    negative = replace(known, density=-known.density)
-    with pytest.raises(DataError, match="got a density of zero or less"):
-        band_table(negative, 1e4, 1e6)
 
 
 def test_resolution_and_short_cutoff_end_the_spectrum():

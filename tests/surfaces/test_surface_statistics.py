@@ -6,7 +6,8 @@ import scipy.stats
 
 from lube.errors import DataError
 from lube.recordings.example_surface import isotropic_surface
-from lube.surfaces.measured_spectrum import LineSpectrum, line_spectrum
+from lube.surfaces.measured_spectrum import line_spectrum
+from lube.surfaces.spectrum_table import LineSpectrum
 from lube.surfaces.surface_statistics import height_distribution, hurst_exponent, roll_off
 from lube.surfaces.topography import Preparation, Topography, power_transfer, prepare
 

@@ -6,15 +6,8 @@ import scipy.special
 import scipy.stats
 
 from lube.kernels.runs import find_runs
-from lube.surfaces.synthetic import (
-    draw_line,
-    draw_realisation,
-    line_attributes,
-    line_moments,
-    power_spectrum,
-    spectrum_moments,
-    wave_amplitudes,
-)
+from lube.surfaces.spectra import line_moments, spectrum_moments
+from lube.surfaces.synthetic import draw_line, draw_realisation, wave_amplitudes
 from lube.surfaces.translation import NODES, REACH, gaussian_power, johnson_curve
 
 SEED = 20181109
@@ -95,20 +88,6 @@ def test_spectrum_falls_with_the_power_2h_plus_1(make_spec):
         assert slope == pytest.approx(-2.0 * hurst_exponent - 1.0, abs=1e-3)
 
 
-def test_power_spectrum_is_the_papers_and_holds_the_mean_square_height(unequal):
-    for roller, line in enumerate(draw_realisation(unequal, SEED, 0)):
-        heights = line * unequal.height_step
-        wave_vector, density = power_spectrum(heights, unequal.spacing)
-        np.testing.assert_allclose(np.diff(wave_vector), wave_vector[0], rtol=1e-9)
-        power = np.sum(density) * wave_vector[0]  # Parseval
-        assert power == pytest.approx(np.mean(heights**2), rel=1e-9)
-        inside, radius = band(unequal, roller)
-        found, q = density[inside - 1], inside / radius
-        np.testing.assert_allclose(wave_vector[inside - 1], q, rtol=1e-9)
-        scale = found[0] * q[0] ** 2.4  # H = 0.7
-        np.testing.assert_allclose(found, scale * q**-2.4, rtol=1e-3)
-
-
 def test_band_is_the_papers_and_includes_its_limits(make_spec, spec, study):
     first, amplitudes = wave_amplitudes(spec, 0)
     perimeter = 2.0 * np.pi * study.rollers.first.radius
@@ -128,28 +107,6 @@ def test_finest_wave_has_more_than_two_points(make_spec):
     assert first + amplitudes.size - 1 == 2047
     rms = [np.sqrt(np.mean(draw_realisation(spec, SEED, r)[0] ** 2.0)) for r in range(5)]
     np.testing.assert_allclose(np.array(rms) * spec.height_step, spec.rms_height[0], rtol=1e-6)
-
-
-def test_moments_are_those_of_the_heights_and_of_the_spectrum(unequal):
-    dx = unequal.spacing
-    for roller, line in enumerate(draw_realisation(unequal, SEED, 3)):
-        z = line * unequal.height_step
-        slope = (np.append(z[1:], z[0]) - z) / dx
-        curvature = (np.append(z[1:], z[0]) - 2.0 * z + np.append(z[-1], z[:-1])) / dx**2
-        found = line_moments(z, dx)
-        assert found == pytest.approx(
-            {
-                "rms_height": np.std(z),
-                "rms_slope": np.std(slope),
-                "rms_curvature": np.std(curvature),
-                "skewness": scipy.stats.skew(z),
-                "kurtosis": scipy.stats.kurtosis(z, fisher=False),
-            },
-            rel=1e-6,
-            abs=1e-6,
-        )
-        expected = spectrum_moments(unequal, roller)
-        assert {name: found[name] for name in expected} == pytest.approx(expected, rel=1e-5)
 
 
 def test_density_of_the_surface_is_constant_below_the_roll_off(make_spec):
@@ -178,10 +135,6 @@ def test_each_roller_has_a_spectrum_of_its_own(make_spec):
     lines, others = draw_realisation(both, SEED, 1), draw_realisation(same, SEED, 1)
     np.testing.assert_array_equal(lines[0], others[0])
     assert np.std(lines[1]) == pytest.approx(np.std(others[1]), rel=1e-6)
-    attributes = line_attributes(both)
-    assert attributes["hurst"].tolist() == [0.7, 0.4]
-    assert line_attributes(same)["hurst"] == 0.7
-    assert both.q_min == same.q_min < attributes["q_min"][1]
 
 
 # --- Distribution and independence -------------------------------------------------------

@@ -5,7 +5,7 @@ from refusals import one_line
 from snakemake.cli import parse_config
 from studies import PAPER, SMOKE
 
-from lube.errors import StudyError
+from lube.errors import RecordError, StudyError
 from lube.study.study import load_study
 from lube.workflow.command_line import (
     check_command_line,
@@ -49,6 +49,19 @@ def test_a_target_after_an_option_is_to_be_put_first():
     )
     assert "begins with `based_on: a.yaml`" in refusal("--configfile", "a.yaml", "b.yaml")
     assert "`snakemake archive --config key=value`" in refusal("--config", "seed=3", "archive")
+
+
+def test_a_fluid_without_viscosity_is_refused_before_any_job(tmp_path):
+    (tmp_path / "fluid.yaml").write_text(
+        "name: my-fluid\ntitle: My fluid\n"
+        "viscosity: {source: CoolProp, coolprop_fluid: n-Undecane}\n"
+        "pressure_viscosity: {source: CoolProp, definition: slope-at-atmospheric}\n"
+        "temperature_range: {source: x, lowest: 0 degC, highest: 100 degC}\n"
+    )
+    path = tmp_path / "mine.yaml"
+    path.write_text(f"based_on: {SMOKE}\nname: mine\nlubricants: [fluid.yaml]\n")
+    line = one_line(RecordError, study_of_command, [path], {})
+    assert "lubricants: my-fluid: coolprop_fluid: got 'n-Undecane', need a fluid whose visc" in line
 
 
 def test_a_study_is_no_target():

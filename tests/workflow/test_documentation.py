@@ -40,8 +40,8 @@ def folder(smoke, tmp_path, monkeypatch):
     for name in ("workflow", "lube"):
         (tmp_path / name).symlink_to(smoke / name)
     for block in (content for _, content in code_blocks(ROOT / "docs/oil.md")):
-        if block.startswith("# my-oil.yaml\n"):
-            (tmp_path / "my-oil.yaml").write_text(block, encoding="utf-8")
+        if name := re.match(r"# ([\w-]+\.(yaml|csv))\n", block):
+            (tmp_path / name[1]).write_text(block, encoding="utf-8")
     results = tmp_path / "results"
     (results / "paper").mkdir(parents=True)
     for name in ("smoke", "my-study"):

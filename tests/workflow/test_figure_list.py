@@ -3,6 +3,7 @@
 import pytest
 from written_notebooks import write_notebook
 
+from lube.study.lubricant_record import load_record
 from lube.workflow.figure_list import chapters, study_figures
 
 
@@ -39,6 +40,15 @@ def test_a_figure_that_compares_levels_asks_for_several(write, study):
     grid = study.operating_grid.model_copy(update=one_slip)
     assert list(study_figures(study.model_copy(update={"operating_grid": grid}), folder)) == [
         "fig01_forces"
+    ]
+
+
+def test_a_figure_that_compares_oils_asks_for_several(write, study):
+    folder = write("fig01_oils", tags=["several-lubricant"])
+    assert not study_figures(study, folder)
+    oils = (*study.lubricants, load_record("pao-iso-vg-68"))
+    assert list(study_figures(study.model_copy(update={"lubricants": oils}), folder)) == [
+        "fig01_oils"
     ]
 
 

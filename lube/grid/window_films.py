@@ -1,0 +1,143 @@
+"""Films at the points of the contact window, with the shape of a computed film."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import CubicSpline
+
+from lube.errors import DataError
+from lube.types import Array
+
+
+@dataclass(frozen=True)
+class WindowFilm:
+    """Film at the points of a contact window and beyond, where lines may still reach it.
+
+    Attributes
+    ----------
+    film : numpy.ndarray
+        Film thickness, or gap outside the contact, at each point, shape (W,), height steps.
+    before : int
+        Points before the line of centres.
+    """
+
+    film: Array
+    before: int
+
+    def below(self, height: float) -> "WindowFilm":
+        """Return the part that a height can reach, at least one point of it.
+
+        Parameters
+        ----------
+        height : float
+            Height, height steps.
+
+        Returns
+        -------
+        WindowFilm
+            The points from the first to the last with a lower film.
+
+        Raises
+        ------
+        DataError
+            If the film is lower still at an end, so that points may be missing.
+        """
+        reached = np.flatnonzero(self.film < height)
+        if reached.size == 0:
+            reached = np.array([self.before])
+        first, last = reached[0], reached[-1]
+        if height > 0 and (first == 0 or last == self.film.size - 1) and self.film.size > 1:
+            raise DataError(
+                f"film profile: the gap at its end, {self.film[[0, -1]].min():.3g} height steps, "
+                f"is within reach of the lines, {height:.3g} height steps high; need a longer one"
+            )
+        return WindowFilm(self.film[first : last + 1], int(self.before - first))
+
+
+def shaped_films(film: xr.Dataset) -> xr.DataArray:
+    """Films with the computed shape and the thickness of each film formula.
+
+    The shape is scaled so that its film is the formula's where the formula refers to: at the line
+    of centres, at the thinnest point, or on average over Hertz' contact.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset with ``film_profile``.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over the dimensions of ``film_thickness`` and film_position, m.
+    """
+    profile, place = film["film_profile"], film["formula_place"]
+    inside = profile.sel(film_position=slice(-1.0, 1.0))
+    central = profile.sel(film_position=0.0, drop=True)
+    minimum = profile.min("film_position", skipna=False)
+    mean = inside.integrate("film_position") / 2.0
+    own = xr.where(place == "central", central, xr.where(place == "minimum", minimum, mean))
+    with xr.set_options(arithmetic_join="exact", keep_attrs=False):
+        shaped = film["film_thickness"] / own * profile
+    return shaped.transpose(*film["film_thickness"].dims, "film_position")
+
+
+def window_films(film: xr.Dataset, lines: xr.Dataset) -> tuple[list[WindowFilm | None], Array]:
+    """Films with the computed shape, in whole height steps and points.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        As in `shaped_films`.
+    lines : xarray.Dataset
+        A ``roughness`` or ``roughness_batch`` dataset, for its spacing and height step.
+
+    Returns
+    -------
+    films : list of WindowFilm
+        Of each operating point, in the order of ``film_thickness``, as far as the profile reaches;
+        None where the film is not known.
+    half_windows : numpy.ndarray of int64
+        Points on either side of the contact's centre.
+    """
+    shaped = shaped_films(film)
+    widths = film["contact_half_width"].broadcast_like(film["film_thickness"])
+    widths = widths.transpose(*film["film_thickness"].dims).values.ravel()
+    rows = shaped.stack(point=film["film_thickness"].dims).transpose("point", ...)
+    films = [_as_far(row, width, lines) for row, width in zip(rows, widths, strict=True)]
+    return films, np.floor(widths / lines.attrs["spacing"]).astype(np.int64)
+
+
+def _as_far(profile, half_width, lines):
+    """Film at all points of a line to which a profile reaches."""
+    if not np.isfinite(profile).all():
+        return None
+    ends = profile["film_position"].values[[0, -1]] * half_width / lines.attrs["spacing"]
+    points = np.arange(np.ceil(ends[0]), np.floor(ends[1]) + 1.0)
+    return WindowFilm(film_on_points(profile, half_width, points, lines), int(-points[0]))
+
+
+def film_on_points(
+    profile: xr.DataArray, half_width: float, points: Array, lines: xr.Dataset
+) -> Array:
+    """Film at points of a line.
+
+    Parameters
+    ----------
+    profile : xarray.DataArray
+        Film over film_position, m.
+    half_width : float
+        Half-width of the contact, m.
+    points : numpy.ndarray, shape (n,)
+        Points, counted from the line of centres.
+    lines : xarray.Dataset
+        A ``roughness`` or ``roughness_batch`` dataset, for its spacing and height step.
+
+    Returns
+    -------
+    numpy.ndarray of int64, shape (n,)
+        Film at the points, height steps, from a cubic spline through the profile.
+    """
+    film = CubicSpline(profile["film_position"].values, profile.values)
+    position = points * (lines.attrs["spacing"] / half_width)
+    return np.rint(film(position) / lines.attrs["height_step"]).astype(np.int64)

@@ -1,0 +1,43 @@
+"""Flattening of roughness in a lubricated contact."""
+
+from lube.types import Values
+
+
+def amplitude_ratio(wavelength: Values, moes_load: Values, moes_material: Values) -> Values:
+    r"""Share of its height that a wave keeps in an elastohydrodynamic line contact.
+
+    .. math::
+
+        \frac{A_d}{A_i} = \frac{1}{1 + 0.17\, N + 0.03\, N^2}, \qquad
+        N = \frac{\lambda}{a} \frac{M^{3/4}}{L^{1/2}}
+
+    Parameters
+    ----------
+    wavelength : float or numpy.ndarray
+        Wavelength :math:`\lambda` over the half-width a of the contact.
+    moes_load, moes_material : float or numpy.ndarray
+        M and L.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        The ratio, 1 for short waves, 0 for long ones.
+
+    Notes
+    -----
+    For transverse waves in pure rolling, under a full film. Below M = 5 it is an extrapolation. The
+    wave that the rough inlet sends through the contact with the oil is left out. Read in
+    transcription; its values follow the table of the source, which begins at M = 100, L = 11.
+
+    References
+    ----------
+    C. H. Venner, F. Couhier, A. A. Lubrecht and J. A. Greenwood, Amplitude reduction of waviness in
+    transient EHL line contacts, Proc. 23rd Leeds-Lyon Symposium on Tribology (1996).
+
+    Examples
+    --------
+    >>> f"{amplitude_ratio(1.0, 100.0, 11.0):.3f}"
+    '0.187'
+    """
+    number = wavelength * moes_load**0.75 / moes_material**0.5
+    return 1.0 / (1.0 + 0.17 * number + 0.03 * number**2)

@@ -1,0 +1,199 @@
+"""The film shape stage: probability of contact under flat films and under the computed one."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import CubicSpline
+
+from lube.grid.discretise import layer_factor_of
+from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits
+from lube.statistics.confidence import mean_interval
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
+from lube.surfaces.rare_contact import check_gaussian, rare_contact_under
+from lube.surfaces.spectra import line_attributes
+from lube.types import Array
+
+FILM_MODELS = ("formula", "flat", "open", "computed")
+"""Films that are compared: the study's first film formula and the computed central film, both flat
+and cut off at the edges of Hertz' contact; the latter with Hertz' gap around it; and the computed
+film with the gap around it."""
+PAIRS = 40
+"""Pairs of lines; errors follow from the scatter between them."""
+
+
+def film_shape_probabilities(
+    spec: LineSpec,
+    film: xr.Dataset,
+    profile: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    seed: int,
+    threads: int = 1,
+) -> xr.Dataset:
+    """Compute the probability of contact under the films of `FILM_MODELS`.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        Parameters of the lines; `Study.line_spec` of a study.
+    film, profile : xarray.Dataset
+        A ``film`` and a ``film_profile`` dataset of one study.
+    boundary_layer : BoundaryLayer
+        The boundary layer.
+    seed : int
+        Seed of the study.
+    threads : int, optional
+        Threads that share the work; they do not change the results.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``film_shape`` file of `lube.schema`; NaN where the film did not converge.
+
+    Raises
+    ------
+    StudyError
+        If the lines are not Gaussian: rare contact is sampled as in `lube.surfaces.rare_contact`.
+    """
+    check_gaussian(spec)
+    name = film["film_formula"].values[0]
+    thickness = film["film_thickness"].sel(film_formula=name).transpose(*POINT_DIMS)
+    profile = profile.transpose(*POINT_DIMS, "film_position")
+    central = profile["central_film"]
+    film_of = {"formula": thickness, "flat": central, "open": central, "computed": central}
+    sampled = _sampled(spec, film, profile, thickness, boundary_layer, (seed, threads))
+    contact, breakthrough = (
+        xr.DataArray(each, central.coords, _DIMS).assign_coords(film_model=list(FILM_MODELS))
+        for each in sampled
+    )
+    models = {"film_model": list(FILM_MODELS)}
+    thicknesses = xr.concat(list(film_of.values()), "film_model", join="exact", coords="minimal")
+    table = xr.Dataset(
+        {
+            **_limited("geometric_contact_probability", contact),
+            **_limited("breakthrough_probability", breakthrough),
+            **_ratios(breakthrough),
+            "lambda_ratio": thicknesses.drop_attrs() / film["composite_rms_roughness"].item(),
+            "film_formula": ((), name),
+        },
+        {dim: film[dim] for dim in POINT_DIMS} | models,
+    )
+    return label(table.transpose("film_model", *POINT_DIMS), "film_shape")
+
+
+_DIMS = ("pair", "film_model", *POINT_DIMS)
+
+
+def _sampled(spec, film, profile, thickness, boundary_layer, work):
+    """Geometric contact and breakthrough over `_DIMS`."""
+    seed, threads = work
+    lines = xr.Dataset(attrs=line_attributes(spec))
+    factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
+    widths = profile["contact_half_width"].broadcast_like(thickness).transpose(*POINT_DIMS)
+    rows = [
+        window_models(spec, *each, film["reduced_radius"].item())
+        for each in zip(
+            profile["film_position"].values[None].repeat(thickness.size, axis=0),
+            profile["film"].values.reshape(thickness.size, -1),
+            thickness.values.ravel(),
+            widths.values.ravel(),
+            strict=True,
+        )
+    ]
+    films = [row[model] for model in range(len(FILM_MODELS)) for row in rows]
+    known = [number for number, one in enumerate(films) if np.isfinite(one).all()]
+
+    def on_one_pair(number):
+        found = np.full((2, len(films)), np.nan)
+        found[:, known] = rare_contact_under(spec, seed, number, [films[i] for i in known], factor)
+        return found.reshape(2, len(FILM_MODELS), *thickness.shape)
+
+    with ThreadPoolExecutor(threads) as pool:
+        return np.moveaxis(np.stack(list(pool.map(on_one_pair, range(PAIRS)))), 1, 0)
+
+
+def window_models(
+    spec: LineSpec,
+    position: Array,
+    profile: Array,
+    thickness: float,
+    half_width: float,
+    reduced_radius: float,
+) -> tuple[Array, ...]:
+    """Films of `FILM_MODELS` at the points of the contact window, and around it where it is open.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        Parameters of the lines.
+    position, profile : numpy.ndarray, shape (n,)
+        Computed film, m, at positions over the half-width.
+    thickness : float
+        Film by the formula, m.
+    half_width, reduced_radius : float
+        Of the contact, m.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Films, height steps.
+    """
+    spacing = spec.spacing / half_width
+    inside = int(1.0 / spacing)
+    around = np.arange(int(position[0] / spacing), int(position[-1] / spacing) + 1) * spacing
+    central = np.interp(0.0, position, profile)
+    if np.isnan(central):
+        around, profile = around[:0], np.zeros(profile.size)
+    films = (
+        np.full(2 * inside + 1, thickness),
+        np.full(2 * inside + 1, central),
+        central + hertz_gap(around) * half_width**2 / reduced_radius,
+        CubicSpline(position, profile)(around),
+    )
+    return tuple(each / spec.height_step if each.size else np.array([np.nan]) for each in films)
+
+
+def hertz_gap(position: Array) -> Array:
+    r"""Gap around a dry line contact.
+
+    .. math:: \frac{h R^*}{a^2} = \frac12 \left( |X| \sqrt{X^2 - 1} - \mathrm{arcosh} |X| \right)
+
+    Parameters
+    ----------
+    position : numpy.ndarray
+        Positions X over the half-width.
+
+    Returns
+    -------
+    numpy.ndarray
+        The gap over a^2 / R*; zero in the contact.
+
+    Examples
+    --------
+    >>> hertz_gap(np.array([-2.0, 0.5, 1.0])).round(4).tolist()
+    [1.0736, 0.0, 0.0]
+    """
+    distance = np.maximum(np.abs(position), 1.0)
+    return 0.5 * (distance * np.sqrt(distance**2 - 1.0) - np.arccosh(distance))
+
+
+def _limited(name, values):
+    limits = mean_interval(values.values)
+    dims = values.dims[1:]
+    return values_with_limits(name, [(dims, np.minimum(limit, 1.0)) for limit in limits])
+
+
+def _ratios(breakthrough):
+    """Ratio to the formula's flat film, with an interval that knows both see the same lines."""
+    means = breakthrough.mean("pair")
+    relative = breakthrough / means
+    difference = relative - relative.sel(film_model="formula", drop=True)
+    _, lower, upper = mean_interval(1.0 + difference.transpose(*_DIMS).values)
+    half = 0.5 * (upper - lower)  # of the logarithm
+    ratio = (means / means.sel(film_model="formula", drop=True)).transpose(*_DIMS[1:])
+    limits = ratio.values, ratio.values * np.exp(-half), ratio.values * np.exp(half)
+    return {
+        f"probability_ratio{suffix}": (_DIMS[1:], values)
+        for suffix, values in zip(LIMITS, limits, strict=True)
+    }

@@ -1,0 +1,175 @@
+"""The spectrum of a line as a table: a power law between its values, within a band, its power."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.optimize
+
+from lube.errors import DataError
+from lube.types import Array, Pair
+
+TABLE_VALUES = 200
+"""Values of a spectrum's table."""
+
+_LAST = 5
+"""Last densities whose slope continues a spectrum to its limit."""
+
+
+@dataclass(frozen=True, eq=False)
+class LineSpectrum:
+    """Density of the line that stands for a measured surface.
+
+    Attributes
+    ----------
+    name : str
+        File or other name, for messages.
+    wave_vector : numpy.ndarray
+        Shape (n,), rising, rad/m.
+    density : numpy.ndarray
+        Shape (n,), m^3, one-sided.
+    estimates : numpy.ndarray
+        Shape (n,): number of independent estimates of which each density is the mean; the
+        relative standard error is one over its square root.
+    transfer : numpy.ndarray
+        Shape (n,): share of the power that the Gaussian filters have left.
+    isotropic : bool
+        Whether the surface is isotropic.
+    limits : tuple of float, optional
+        Smallest and largest wave vector that the densities are means over, rad/m; by default
+        those of the first and the last density.
+    """
+
+    name: str
+    wave_vector: Array
+    density: Array
+    estimates: Array
+    transfer: Array
+    isotropic: bool
+    limits: tuple[float, float] | None = None
+
+    def rms_height(self, q_min: float | None = None, q_max: float | None = None) -> float:
+        """Rms height of the waves between two wave vectors, m; by default of all.
+
+        Raises
+        ------
+        DataError
+            If the spectrum does not reach so far.
+        """
+        begin, end = _limits(self)
+        wave_vector, density = band_table(self, q_min or begin, q_max or end)
+        return math.sqrt(power_law_integral(wave_vector, density))
+
+
+def band_table(
+    spectrum: LineSpectrum, q_min: float, q_max: float, values: int = TABLE_VALUES
+) -> Pair:
+    """Tabulate a spectrum within a band, for drawing lines.
+
+    Parameters
+    ----------
+    spectrum : LineSpectrum
+        The spectrum.
+    q_min, q_max : float
+        Smallest and largest wave vector, rad/m.
+    values : int, optional
+        Number of values.
+
+    Returns
+    -------
+    wave_vector, density : numpy.ndarray
+        Shape (values,), equally spaced in the logarithm, rad/m and m^3; between them the density
+        is a power law.
+
+    Raises
+    ------
+    DataError
+        If the spectrum does not reach so far, or is not positive in the band.
+    """
+    begin, end = _limits(spectrum)
+    if q_min < begin * (1.0 - 1e-9):
+        raise DataError(
+            f"{spectrum.name}: got waves up to {2.0 * np.pi / begin:.3g} m, half the measured "
+            f"length, need up to {2.0 * np.pi / q_min:.3g} m, the longest wavelength of the study"
+        )
+    if q_max > end * (1.0 + 1e-9):
+        raise DataError(
+            f"{spectrum.name}: got waves down to {2.0 * np.pi / end:.3g} m, need down to "
+            f"{2.0 * np.pi / q_max:.3g} m, the shortest wavelength of the study"
+        )
+    if not np.all(spectrum.density > 0.0):
+        raise DataError(f"{spectrum.name}: got a density of zero or less, need a positive spectrum")
+    places, levels = np.log(spectrum.wave_vector), np.log(spectrum.density)
+    # Half a bin beyond the last density: on with the slope before it.
+    away = places[-_LAST:] - np.mean(places[-_LAST:])
+    slope = np.sum(away * levels[-_LAST:]) / np.sum(away**2)
+    places = np.append(places, max(np.log(q_max), places[-1]) + 1e-9)
+    levels = np.append(levels, levels[-1] + slope * (places[-1] - places[-2]))
+    wave_vector = np.geomspace(q_min, q_max, values)
+    return wave_vector, np.exp(np.interp(np.log(wave_vector), places, levels))
+
+
+def _limits(spectrum):
+    return spectrum.limits or (spectrum.wave_vector[0], spectrum.wave_vector[-1])
+
+
+def power_law_integral(wave_vector: Array, density: Array) -> float:
+    """Integrate a density that is a power law between the given values.
+
+    Parameters
+    ----------
+    wave_vector, density : numpy.ndarray
+        Shape (n,), rad/m and m^3.
+
+    Returns
+    -------
+    float
+        The integral, m^2.
+
+    Examples
+    --------
+    >>> q = np.array([1.0, 2.0, 10.0])
+    >>> f"{power_law_integral(q, q**-2.0):.6f}"
+    '0.900000'
+    """
+    # The integrand over ln q is exponential: its mean is the logarithmic mean of both ends.
+    power = wave_vector * density
+    steps, ratio = np.diff(np.log(wave_vector)), np.diff(np.log(power))
+    flat = np.abs(ratio) < 1e-9
+    means = np.where(flat, power[:-1], np.diff(power) / np.where(flat, 1.0, ratio))
+    return float(np.sum(means * steps))
+
+
+def with_power(wave_vector: Array, density: Array, estimates: Array, power: float) -> Array:
+    r"""Change a spectrum to one of another mean square height, most where it is least certain.
+
+    The densities are multiplied by :math:`\exp(\mu\, q\, C / n)`, where :math:`n` is the number of
+    estimates: to first order the smallest change in units of the standard errors.
+
+    Parameters
+    ----------
+    wave_vector, density, estimates : numpy.ndarray
+        Shape (n,), rad/m, m^3 and numbers.
+    power : float
+        Mean square height wanted, m^2; the spectrum's is at most doubled or halved.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n,), m^3.
+
+    Examples
+    --------
+    >>> q = np.geomspace(1.0, 100.0, 20)
+    >>> f"{power_law_integral(q, with_power(q, q**-2.0, q, 1.2)):.6f}"
+    '1.200000'
+    """
+    before = power_law_integral(wave_vector, density)
+    target = min(max(power, 0.5 * before), 2.0 * before)
+    share = wave_vector * density / estimates
+    share /= share.max()
+
+    def missing(factor):
+        return power_law_integral(wave_vector, density * np.exp(factor * share)) / target - 1.0
+
+    return density * np.exp(scipy.optimize.brentq(missing, -60.0, 60.0, xtol=1e-12) * share)

@@ -1,0 +1,79 @@
+"""Films with a shape at the points of the window: limits and exact scaling."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from lube.errors import DataError
+from lube.grid.window_films import WindowFilm, film_on_points, shaped_films, window_films
+
+POSITION = np.linspace(-3.0, 3.0, 601).round(6)
+LINES = xr.Dataset(attrs={"spacing": 1e-6, "height_step": 1e-12})
+WIDTHS = [50e-6, 100e-6]
+
+
+def film_table(thickness=((1e-6, 2e-6), (3e-6, 4e-6), (5e-6, 6e-6))):
+    """Three formulas at two forces; the film is a parabola, thinnest behind the centre."""
+    gap = 1e-6 * (1.0 + 0.5 * (POSITION - 0.5) ** 2)
+    profile = np.array([1.0, 2.0])[:, None] * gap
+    return xr.Dataset(
+        {
+            "film_thickness": (("film_formula", "force"), np.array(thickness)),
+            "film_profile": (("force", "film_position"), profile),
+            "contact_half_width": ("force", WIDTHS),
+            "formula_place": ("film_formula", ["central", "minimum", "mean"]),
+        },
+        {
+            "film_formula": ["one", "two", "three"],
+            "force": [1.0, 2.0],
+            "film_position": POSITION,
+        },
+    )
+
+
+def test_the_shape_has_the_formulas_film_where_the_formula_refers_to():
+    table = film_table()
+    shaped = shaped_films(table)
+    assert shaped.dims == ("film_formula", "force", "film_position")
+    central = shaped.sel(film_formula="one", film_position=0.0)
+    minimum = shaped.sel(film_formula="two").min("film_position")
+    inside = shaped.sel(film_formula="three", film_position=slice(-1.0, 1.0))
+    found = [central, minimum, inside.integrate("film_position") / 2.0]
+    np.testing.assert_allclose(found, table["film_thickness"], rtol=1e-12)
+
+
+def test_films_at_the_points_follow_the_profile():
+    table = film_table()
+    films, half_windows = window_films(table, LINES)
+    assert half_windows.tolist() == [50, 100] * 3
+    shaped = shaped_films(table).stack(point=["film_formula", "force"])
+    for number, (one, width) in enumerate(zip(films, WIDTHS * 3, strict=True)):
+        points = np.arange(one.film.size) - one.before
+        assert points[0] == round(-3.0 * width / 1e-6)
+        exact = np.interp(points * 1e-6 / width, POSITION, shaped.isel(point=number))
+        np.testing.assert_allclose(one.film * 1e-12, exact, rtol=1e-4)
+        assert one.film[one.before] == pytest.approx(exact[one.before] / 1e-12, abs=1)
+
+
+def test_a_film_that_is_not_known_is_none():
+    table = film_table()
+    table["film_profile"][1] = np.nan
+    films, _ = window_films(table, LINES)
+    assert [one is None for one in films] == [False, True] * 3
+
+
+def test_a_spline_through_a_parabola_is_exact():
+    profile = film_table()["film_profile"].isel(force=0)
+    points = np.arange(-100, 101)
+    position = points * 1e-6 / 50e-6
+    expected = np.rint((1.0 + 0.5 * (position - 0.5) ** 2) * 1e6)
+    np.testing.assert_allclose(film_on_points(profile, 50e-6, points, LINES), expected, atol=1)
+
+
+def test_only_points_within_reach_are_kept():
+    one = WindowFilm(np.array([9, 5, 3, 4, 8]), 2)
+    reached = one.below(5)
+    assert (reached.film.tolist(), reached.before) == ([3, 4], 0)
+    assert one.below(2).film.tolist() == [3]  # one point at least
+    with pytest.raises(DataError, match="within reach of the lines, 9 height steps high"):
+        one.below(9)

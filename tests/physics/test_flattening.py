@@ -1,0 +1,36 @@
+"""Flattening of waves: limits, then the table of the source."""
+
+import numpy as np
+import pytest
+
+from lube.physics.flattening import amplitude_ratio
+
+
+def test_short_waves_are_kept_and_long_ones_flattened():
+    wavelength = np.geomspace(1e-6, 1e6, 200)
+    ratio = amplitude_ratio(wavelength, 5.0, 8.0)
+    assert np.all(np.diff(ratio) < 0.0)
+    assert ratio[0] == pytest.approx(1.0, abs=1e-5) and ratio[-1] < 1e-9
+
+
+def test_only_one_number_matters():
+    one = amplitude_ratio(0.5, 16.0, 9.0)
+    assert amplitude_ratio(0.5 * 8.0 / 3.0, 1.0, 1.0) == pytest.approx(one, rel=1e-12)
+
+
+# M = 100 and L = 11: ratio by the formula and as computed in the source, physics-beyond.md, 11.
+TABLE = {
+    4.0: (0.020, 0.030),
+    2.0: (0.066, 0.073),
+    1.0: (0.187, 0.183),
+    0.5: (0.401, 0.394),
+    0.25: (0.635, 0.660),
+    0.125: (0.803, 0.839),
+}
+
+
+@pytest.mark.parametrize("wavelength", TABLE)
+def test_values_of_the_source(wavelength):
+    formula, computed = TABLE[wavelength]
+    assert amplitude_ratio(wavelength, 100.0, 11.0) == pytest.approx(formula, abs=6e-4)
+    assert amplitude_ratio(wavelength, 100.0, 11.0) == pytest.approx(computed, abs=0.04)
