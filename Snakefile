@@ -21,6 +21,8 @@ include: "workflow/rules/contact.smk"
 include: "workflow/rules/tail.smk"
 include: "workflow/rules/areal.smk"
 include: "workflow/rules/patch.smk"
+include: "workflow/rules/film_plane.smk"
+include: "workflow/rules/constant.smk"
 include: "workflow/rules/film_profile.smk"
 include: "workflow/rules/film_shape.smk"
 include: "workflow/rules/flattening.smk"
@@ -68,7 +70,7 @@ rule computed:
     input:
         products(made_by("computed", FIGURES)),
     message:
-        f"Done: film_profile.nc, film_shape.nc, flattening.nc and their figures are in {RESULTS}"
+        f"Done: the computed films, what they do to contact, and their figures are in {RESULTS}"
 
 
 rule benchmark:

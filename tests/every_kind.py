@@ -9,10 +9,12 @@ from lube.schema import COORDINATES, FILES, label
 from lube.stages.areal import strip_contacts
 from lube.stages.areal_gauge import gauge_by_surface
 from lube.stages.comparison import compare
+from lube.stages.constant import constant_effect
 from lube.stages.contact import contact_map, contact_statistics
 from lube.stages.ensemble import gather, gather_map
 from lube.stages.experiment import simulated_experiment
 from lube.stages.film import film_profile_table, film_table
+from lube.stages.film_plane import film_plane
 from lube.stages.film_shape import film_shape_probabilities
 from lube.stages.flattening import flattened_contact
 from lube.stages.gauge import gauge_records
@@ -90,6 +92,8 @@ def datasets_of_every_kind(study):
         "film_shape": film_shape_probabilities(spec, film, profile, layer, study.seed),
         "flattening": flattened_contact(spec, film, layer, study.seed, [0, 1]),
         "patch": measured_values("patch"),  # by a package that need not be installed
+        "film_plane": film_plane(oil, own.rollers.reduced_modulus),
+        "constant": constant_effect(oil, film, master),
         "speed": measured_values("speed"),
         "reading": measured_values("reading"),
         "coverage": measured_values("coverage"),

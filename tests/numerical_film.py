@@ -1,7 +1,8 @@
-"""A numerical solution with which film formulas are compared."""
+"""A naive second solution of Reynolds' equation, for tests and benchmarks of `lube.ehl`."""
 
 import numpy as np
 from paper_grid import LENGTH, MODULUS, RADIUS
+from scipy.sparse import csr_array
 
 from lube.ehl import film_formulas
 from lube.physics import dimensionless
@@ -59,6 +60,7 @@ class NumericalFilm:
         before = np.vstack([here[:1], here[:-1]])
         reach = np.concatenate([[0.0], step[1:] / (2 * step[:-1])])[:, None]
         self.upwind = here + reach * (here - before)
+        self.mean, self.slope, self.upwind = map(csr_array, (self.mean, self.slope, self.upwind))
 
     def oil(self, pressure):
         """Density and viscosity over their ambient values, with their pressure slopes."""
@@ -79,7 +81,7 @@ class NumericalFilm:
         gradient, conductance = (self.slope @ p)[:, None], (self.mean @ flow)[:, None]
         flux = self.upwind @ (rho * h) - conductance[:, 0] * gradient[:, 0]
         by_p = self.upwind @ (np.diag(d_rho * h) + rho[:, None] * self.deflection)
-        by_p = by_p - gradient * (self.mean @ d_flow) - conductance * self.slope
+        by_p = by_p - gradient * (self.mean @ d_flow) - self.slope.multiply(conductance)
         by_offset = self.upwind @ rho - gradient[:, 0] * (self.mean @ (3 * flow / h))
         return self.complementary_step(p, np.diff(flux), np.diff(by_p, axis=0), np.diff(by_offset))
 
@@ -109,16 +111,3 @@ class NumericalFilm:
             raise ArithmeticError("the numerical film did not converge")
         h = (offset + self.x**2 / 2 + self.deflection @ p) * self.a**2 / RADIUS
         return h[middle], h.min()
-
-
-def solve_at(moes_load, moes_material, viscosity, alpha):
-    """W, U and G of a contact at M and L with some oil, and its central and minimum film, m.
-
-    The oil is given, because Roelands' law needs more than M and L; speed and force follow.
-    """
-    material = dimensionless.dimensionless_material(alpha, 2 * MODULUS)
-    speed = (moes_material / material) ** 4 / 2
-    load = moes_load * np.sqrt(2 * speed)
-    scale = 2 * MODULUS * RADIUS
-    solver = NumericalFilm(load * scale * LENGTH, viscosity, alpha, speed * scale / viscosity)
-    return (load, speed, material), solver.solve()

@@ -4,6 +4,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from lube.ehl import film_formulas
+from lube.ehl.line_contact import LineContact
 from lube.physics import dimensionless, hertz
 
 RADIUS, LENGTH = 0.025, 0.01
@@ -30,6 +31,12 @@ def groups_at(force, speed, temperature):
         ),
         dimensionless.dimensionless_material(ALPHA[at], 2 * MODULUS),
     )
+
+
+def contact_at(force, speed, temperature):
+    """Line contact at one operating point of the paper's grid."""
+    viscosity = VISCOSITY[list(TEMPERATURE).index(temperature)]
+    return LineContact(*groups_at(force, speed, temperature), viscosity, 2 * MODULUS)
 
 
 def groups_of_the_grid():

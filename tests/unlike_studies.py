@@ -11,10 +11,12 @@ from lube.rig.simulator import SimulatedRig
 from lube.stages.areal import strip_contacts
 from lube.stages.areal_gauge import gauge_by_surface
 from lube.stages.comparison import compare
+from lube.stages.constant import constant_effect
 from lube.stages.contact import contact_map, contact_statistics
 from lube.stages.ensemble import gather, gather_map
 from lube.stages.experiment import measured_experiment, simulated_experiment
 from lube.stages.film import film_at_records, film_profile_table, film_table
+from lube.stages.film_plane import film_plane
 from lube.stages.film_shape import film_shape_probabilities
 from lube.stages.flattening import flattened_contact
 from lube.stages.gauge import gauge_records
@@ -203,6 +205,8 @@ def _datasets(study):
             "experiment": experiment,
             "comparison": comparison,
             "gauge": gauge,
+            "film_plane": film_plane(oil, study.rollers.reduced_modulus),
+            "constant": constant_effect(oil, film, master),
         }
     )
 

@@ -21,10 +21,14 @@ FLOODED = 1e4
 Ten times less thins the film by up to 0.2 %."""
 TOLERANCE = 1e-9
 """Largest defect of the mass flux, over that at the centre, and of the load, over the load."""
+_HERTZ_DEFLECTION = 0.25 + 0.5 * np.log(2.0)
+"""Of the dry contact at the line of centres, scaled."""
 _FITTINGS = 2
 _MOST_STEPS = 400
+_MOST_NODES = 1000
+"""A very sharp spike of pressure needs more; a step on as many takes half a second."""
 _LARGEST_CHANGE = 0.3
-_FIRST_SETTLING_TIME, _LONGEST_SETTLING_TIME = 0.5, 3.0
+_FIRST_SETTLING_TIME, _LONGEST_SETTLING_TIME, _SHORTEST_SETTLING_TIME = 0.5, 3.0, 1e-9
 
 
 class ConvergenceError(LubeError):
@@ -80,6 +84,12 @@ class LineContact:
         law, coefficient = PRESSURE_LAWS[self.law], self.material / self.film_modulus
         logarithm, slope = law(pressure * self.hertz_pressure, coefficient, self.viscosity)
         return logarithm, slope * self.hertz_pressure
+
+    @property
+    def name(self) -> str:
+        """Words for messages, with its Moes numbers."""
+        moes_load, moes_material = moes_numbers(self.load, self.speed, self.material)
+        return f"the film at M = {moes_load:.3g}, L = {moes_material:.3g}"
 
     @property
     def film_guess(self) -> float:
@@ -138,8 +148,15 @@ class FilmProfile:
 
     @cached_property
     def central_film(self) -> float:
-        """Film over R* at the line of centres."""
-        return float(self.film_at(np.zeros(1))[0])
+        """Film over R* at the line of centres.
+
+        By the cubic through the four nearest places midway between nodes, where the equation holds:
+        at a node the pressure's kink dents a thin film.
+        """
+        middle = 0.5 * (self.nodes[1:] + self.nodes[:-1])
+        first = int(np.searchsorted(middle, 0.0)) - 2
+        near = middle[first : first + 4]
+        return float(np.polyfit(near, self.film_at(near), 3)[-1])
 
     @cached_property
     def minimum_film(self) -> float:
@@ -149,6 +166,12 @@ class FilmProfile:
         near = np.searchsorted(self.nodes, thinnest) + np.array([-3, 2])
         low, high = self.nodes[np.clip(near, 0, self.nodes.size - 1)]
         return float(self.film_at(np.linspace(low, high, 201)).min())
+
+    @cached_property
+    def mean_film(self) -> float:
+        """Mean film over R* in the Hertzian zone, one half-width on either side."""
+        points, weights = np.polynomial.legendre.leggauss(64)
+        return float(self.film_at(points) @ weights / 2.0)
 
     @cached_property
     def mass_flux_defect(self) -> float:
@@ -215,7 +238,9 @@ def solve(
     '1.02 um, least 0.85 um'
     """
     _check(contact, meniscus)
-    with _libraries().limit(limits=1, user_api="blas"):
+    # A step that overflows is too large, and repeated.
+    quiet = np.errstate(over="ignore", invalid="ignore", divide="ignore")
+    with quiet, _libraries().limit(limits=1, user_api="blas"):
         return _solve(contact, meniscus, flooded, fineness)
 
 
@@ -227,7 +252,7 @@ def _libraries():
 
 def _solve(contact, meniscus, flooded, fineness):
     film = contact.film_guess
-    end = inlet_end(0.0, flooded * film) if meniscus is None else -meniscus
+    end = inlet_end(film - _HERTZ_DEFLECTION, flooded * film) if meniscus is None else -meniscus
     nodes = first_mesh(film, end)
     breadth = np.sqrt(1.0 + 2.0 * film)
     pressure = np.sqrt(np.maximum(1.0 - (nodes / breadth) ** 2, 0.0))
@@ -255,27 +280,39 @@ def _check(contact, meniscus):
 def _fit(profile, meniscus, flooded, fineness):
     """Nodes fitted to a solution, and its central film."""
     contact = profile.contact
-    film = profile.central_film / contact.half_width**2
+    middle = 0.5 * (profile.nodes[1:] + profile.nodes[:-1])
+    gap = profile.scaled_gap(middle)
+    film = float(np.interp(0.0, middle, gap))
     end = inlet_end(profile.offset, flooded * film) if meniscus is None else -meniscus
-    gap = profile.scaled_gap(0.5 * (profile.nodes[1:] + profile.nodes[:-1]))
     share = np.abs(profile.pressure_flow / profile.flux)
     profiles = profile.pressure, contact.log_viscosity(profile.pressure)[0], gap, share
     ends = end, profile.nodes[profile.end]
-    return fitted_mesh(profile.nodes, profiles, film, ends, fineness), film
+    nodes = fitted_mesh(profile.nodes, profiles, film, ends, fineness)
+    if nodes.size > _MOST_NODES * max(fineness, 1.0):
+        raise ConvergenceError(
+            f"{contact.name} needs {nodes.size} nodes, the most are {_MOST_NODES}: the spike of "
+            "pressure is too sharp"
+        )
+    return nodes, film
 
 
 def _settle(contact, nodes, pressure, film, steps):
     """Let the film settle on a mesh, from a guess of the pressure and the central film."""
     discrete = DiscreteContact(contact, nodes)
     pressure = pressure * (HERTZ_LOAD / (discrete.weight @ pressure))
-    offset = film - np.interp(0.0, discrete.middle, discrete.deflection @ pressure)
+    gap = discrete.gap(pressure, 0.0)
+    # Lifted where the guess would let the rollers touch.
+    offset = max(film - np.interp(0.0, discrete.middle, gap), 0.3 * film - gap.min())
     time, last = (_FIRST_SETTLING_TIME if steps == 0 else np.inf), steps + _MOST_STEPS
     flow = discrete.flow(pressure, offset)
-    while steps < last:
+    profile = FilmProfile(contact, nodes, pressure, offset, flow.flux, flow.pressure_flow, steps)
+    while steps < last and time > _SHORTEST_SETTLING_TIME:
         steps += 1
         change, shift = discrete.newton_step(pressure, offset, flow, time)
         widening = shift + discrete.deflection @ change
-        if np.abs(change).max() > _LARGEST_CHANGE or np.any(flow.gap + widening < 0.3 * flow.gap):
+        # Not the other way round: a change that is not a number is too large as well.
+        small = np.abs(change).max() <= _LARGEST_CHANGE
+        if not (small and np.all(flow.gap + widening >= 0.3 * flow.gap)):
             time = min(time, _LONGEST_SETTLING_TIME) / 6.0
             continue
         pressure, offset = np.maximum(pressure + change, 0.0), offset + shift
@@ -287,8 +324,7 @@ def _settle(contact, nodes, pressure, film, steps):
         if defect < TOLERANCE:
             return profile
         time = np.inf if defect < 1e-4 else 4.0 * time
-    moes = moes_numbers(contact.load, contact.speed, contact.material)
     raise ConvergenceError(
-        f"the film at M = {moes[0]:.3g}, L = {moes[1]:.3g} did not converge: mass flux off by "
-        f"{profile.mass_flux_defect:.1g}, load by {profile.load_defect:.1g} after {steps} steps"
+        f"{contact.name} did not converge: mass flux off by {profile.mass_flux_defect:.1g}, "
+        f"load by {profile.load_defect:.1g} after {steps} steps"
     )

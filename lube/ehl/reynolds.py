@@ -108,7 +108,7 @@ class DiscreteContact:
         Returns
         -------
         tuple
-            Changes of the pressures and of the offset.
+            Changes of the pressures and of the offset; NaN if there is no such step.
         """
         inner = np.arange(pressure.size - 2)
         jacobian = np.diff(self._dense(flow.by_gap, flow.by_left, flow.by_right), axis=0)
@@ -127,7 +127,10 @@ class DiscreteContact:
         matrix[:-1, -1], matrix[-1, :-1] = by_offset[film], self.weight[film + 1]
         missing_load = HERTZ_LOAD - self.weight @ (pressure + change)
         right = np.append(-residual[film] - jacobian[film] @ change, missing_load)
-        solution = np.linalg.solve(matrix, right)
+        try:
+            solution = np.linalg.solve(matrix, right)
+        except np.linalg.LinAlgError:
+            solution = np.full_like(right, np.nan)
         change[film + 1] = solution[:-1]
         return change, solution[-1]
 

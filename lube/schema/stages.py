@@ -150,6 +150,13 @@ _ROWS = (
         target="computed",
     ),
     Stage(
+        "film_plane",
+        inputs=("lubricant",),
+        values={"reduced_modulus": "rollers.reduced_modulus"},
+        target="computed",
+    ),
+    Stage("constant", inputs=("lubricant", "film", "master"), target="computed"),
+    Stage(
         "coverage",
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),

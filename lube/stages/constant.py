@@ -1,0 +1,76 @@
+"""The constant stage: contact by the paper's Eq. 3, by its source, and by the computed film.
+
+Eq. 3 is printed with the constant 2.992; its source has 2.922. Two digits are transposed.
+"""
+
+import numpy as np
+import scipy.special
+import xarray as xr
+
+from lube.ehl.film_formulas import formula
+from lube.physics.dimensionless import (
+    dimensionless_load,
+    dimensionless_material,
+    dimensionless_speed,
+)
+from lube.rig.map_curves import curve_at
+from lube.schema import OPERATING_DIMS, label
+
+FILMS = ("paper", "pan-hamrock", "computed")
+"""Eq. 3 as printed, as in its source, and the solution of Reynolds' equation."""
+
+
+def constant_effect(lubricant: xr.Dataset, film: xr.Dataset, master: xr.Dataset) -> xr.Dataset:
+    r"""Read the master map at the film of Eq. 3 as printed, as in its source, and as computed.
+
+    Parameters
+    ----------
+    lubricant, film, master : xarray.Dataset
+        The files of these names of `lube.schema`; any film formulas.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``constant`` file of `lube.schema`. One map of the same lines gives all three
+        probabilities, so that they differ by the film alone. A probability is NaN where no run of
+        the map had contact, and where the film was not computed.
+    """
+    points = film.drop_dims("film_formula")
+    with xr.set_options(arithmetic_join="exact", keep_attrs=False):
+        thickness = _films(lubricant, points) * points["reduced_radius"]
+        ratio = thickness / points["composite_rms_roughness"]
+    ratio = ratio.transpose(*OPERATING_DIMS)
+    probability = [
+        _read(curve_at(master, 2.0 * width), ratio.isel(force=at).values)
+        for at, width in enumerate(points["contact_half_width"].values)
+    ]
+    table = {
+        "film_thickness": thickness.transpose(*OPERATING_DIMS),
+        "lambda_ratio": ratio,
+        "breakthrough_probability": ratio.copy(data=np.stack(probability, axis=-1)),
+    }
+    return label(xr.Dataset(table), "constant")
+
+
+def _films(lubricant, points):
+    """Films over R* by each of `FILMS`."""
+    film_modulus = 2.0 * points["reduced_modulus"]
+    scale = film_modulus, points["reduced_radius"]
+    load = 0.5 * np.pi * points["hertz_pressure"] * points["contact_half_width"]  # per length
+    viscosity = lubricant["dynamic_viscosity"]
+    groups = (
+        dimensionless_load(load, *scale),
+        dimensionless_speed(viscosity, points["entrainment_speed"], *scale),
+        dimensionless_material(lubricant["pressure_viscosity_coefficient"], film_modulus),
+        *(viscosity, film_modulus),
+    )
+    films = [xr.apply_ufunc(formula(name).film, *groups, join="exact") for name in FILMS]
+    return xr.concat(films, xr.Variable("film_formula", list(FILMS)), join="exact")
+
+
+def _read(curve, ratios):
+    """Probability at lambda ratios, NaN beyond the curve."""
+    films = np.log(ratios)
+    low, high = curve.films[[0, -1]] if curve.films.size else (np.nan, np.nan)
+    seen = (films >= low) & (films <= high)
+    return np.where(seen, scipy.special.expit(curve.logit_at(films)), np.nan)

@@ -1,0 +1,102 @@
+"""The film_plane stage: the computed film over Moes' numbers, and how far off each formula is."""
+
+import logging
+
+import numpy as np
+import xarray as xr
+
+from lube.ehl.film_formulas import FORMULAS
+from lube.ehl.line_contact import ConvergenceError, LineContact, solve
+from lube.physics.dimensionless import dimensionless_material
+from lube.schema import label
+
+log = logging.getLogger(__name__)
+
+MOES_LOADS = np.geomspace(0.1, 100.0, 25)
+MOES_MATERIALS = np.arange(2.0, 16.0)
+PLACES = ("central", "minimum", "mean")
+_DIMS = ("lubricant", "moes_material", "moes_load")
+
+
+def film_plane(lubricant: xr.Dataset, reduced_modulus: float) -> xr.Dataset:
+    r"""Compute the film over the Moes numbers M and L, and the error of each film formula.
+
+    Parameters
+    ----------
+    lubricant : xarray.Dataset
+        A ``lubricant`` dataset. The film is computed with each of its oils at the middle of its
+        temperatures, as Roelands' law needs the viscosity and its coefficient besides M and L.
+    reduced_modulus : float
+        Reduced modulus E*, Pa.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``film_plane`` file of `lube.schema`. A film that did not converge is NaN and named in
+        the log; the attribute ``not_converged`` counts them.
+
+    Notes
+    -----
+    With the oil and the rollers' steel, M and L set the speed and the load:
+
+    .. math:: U = \frac{1}{2} \left( \frac{L}{G} \right)^4, \qquad W = M \sqrt{2U}
+
+    Each formula is compared with the computed film of its place: at the line of centres, the least,
+    or the mean of the Hertzian zone.
+    """
+    levels = np.sort(lubricant["temperature"].values)
+    oils = lubricant.sel(temperature=levels[levels.size // 2])
+    properties = ["dynamic_viscosity", "pressure_viscosity_coefficient"]
+    film_modulus = 2.0 * reduced_modulus
+    planes = [
+        _plane(*oil, film_modulus)
+        for oil in zip(*(oils[name].values.tolist() for name in properties), strict=True)
+    ]
+    films, groups = (np.array(each) for each in zip(*planes, strict=True))
+    found = {name: films[..., at] for at, name in enumerate(PLACES)}
+    load, speed, material = np.moveaxis(groups, -1, 0)
+    rows = [row for row in FORMULAS.values() if not row.depends_on_oil]
+    errors = [row.evaluate(load, speed, material) / found[row.thickness] - 1.0 for row in rows]
+    table = xr.Dataset(
+        {
+            **{
+                f"{name}_film_parameter": (_DIMS, film / np.sqrt(2.0 * speed))
+                for name, film in found.items()
+            },
+            "film_error": ((_DIMS[0], "film_formula", *_DIMS[1:]), np.stack(errors, axis=1)),
+            "hertz_pressure": (_DIMS, film_modulus * np.sqrt(load / (2.0 * np.pi))),
+            "formula_place": ("film_formula", [row.thickness for row in rows]),
+            "formula_source": ("film_formula", [row.source for row in rows]),
+            **{name: oils[name] for name in properties},
+        },
+        {
+            "film_formula": [row.name for row in rows],
+            "moes_material": MOES_MATERIALS,
+            "moes_load": MOES_LOADS,
+        },
+        {"not_converged": int(np.isnan(films[..., 0]).sum())},
+    )
+    return label(table, "film_plane")
+
+
+def _plane(viscosity, alpha, film_modulus):
+    """Films over R* by place, and W, U and G, shape (materials, loads, 3) each."""
+    material = dimensionless_material(alpha, film_modulus)
+    films, groups = [], []
+    for moes_material in MOES_MATERIALS:
+        speed = 0.5 * (moes_material / material) ** 4
+        for load in MOES_LOADS * np.sqrt(2.0 * speed):
+            groups.append((load, speed, material))
+            films.append(_films(LineContact(*groups[-1], viscosity, film_modulus)))
+    shape = (MOES_MATERIALS.size, MOES_LOADS.size, 3)
+    return np.reshape(films, shape), np.reshape(groups, shape)
+
+
+def _films(contact):
+    try:
+        profile = solve(contact)
+    except ConvergenceError as error:
+        log.warning("%s", error)
+        return [np.nan] * len(PLACES)
+    # To six digits, so that the last bits of a processor do not matter.
+    return [float(f"{getattr(profile, f'{name}_film'):.6g}") for name in PLACES]
