@@ -49,7 +49,7 @@ def constant_effect(lubricant: xr.Dataset, film: xr.Dataset, master: xr.Dataset)
         "lambda_ratio": ratio,
         "breakthrough_probability": ratio.copy(data=np.stack(probability, axis=-1)),
     }
-    return label(xr.Dataset(table), "constant")
+    return label(xr.Dataset(table).assign_coords(revolutions=1), "constant")
 
 
 def _films(lubricant, points):
