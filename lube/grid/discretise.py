@@ -160,7 +160,7 @@ def whole_numbers(
     -------
     films, half_windows : numpy.ndarray
         int64: :math:`h_0 / q` rounded, with the height step :math:`q`, and
-        :math:`\lfloor a / \Delta x \rfloor`.
+        :math:`\lfloor a / \Delta x \rfloor`. A film that is not known (NaN) becomes the highest.
 
     Examples
     --------
@@ -169,7 +169,7 @@ def whole_numbers(
     (array([1000]), array([3]))
     """
     # No sum of lines reaches 2**40 steps, and larger films could overflow int64.
-    steps = np.minimum(np.asarray(film_thickness) / lines.attrs["height_step"], 2.0**40)
+    steps = np.fmin(np.asarray(film_thickness) / lines.attrs["height_step"], 2.0**40)
     films = np.rint(steps)
     half_windows = np.floor(np.asarray(half_width) / lines.attrs["spacing"])
     return films.astype(np.int64), half_windows.astype(np.int64)

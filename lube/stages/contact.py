@@ -195,6 +195,7 @@ def contact_at(
             ratios = speed_ratios(ratio)
             counts[r, s] = run(pair, ratios, revolutions * revolution(pair, ratios))
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
+    counts[:, :, np.isnan(thickness.values.ravel())] = np.nan
     touching, breaking, points, overlap = np.moveaxis(counts, -1, 0)
     spacing = lines.attrs["spacing"]
     stiffness = reduced_modulus * spacing  # of one spring, Eq. 5

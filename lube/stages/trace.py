@@ -58,6 +58,7 @@ def contact_trace(
     spacing = lines.attrs["spacing"]
     broken = _broken_points(table, lines, (pair, ratios, steps), factor)
     length = broken * spacing
+    length[np.isnan(table["film_thickness"].values)] = np.nan
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
     trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(

@@ -317,3 +317,13 @@ def test_the_map_gets_its_intervals(mapped):
         np.testing.assert_allclose(gathered[f"{name}_mean"], mapped[name].mean("realisation"))
         assert (gathered[f"{name}_lower"] <= gathered[f"{name}_mean"]).all()
         assert (gathered[f"{name}_upper"] > 0).all()
+
+
+def test_where_the_film_is_not_known_contact_is_not_either(lines, film, layer, contact):
+    holed = film.copy(deep=True)
+    holed["film_thickness"][0, 0, 1, 1, 1] = np.nan
+    found = contact_statistics(lines, holed, layer)
+    for name in MEANS:
+        expected = contact[name].copy(deep=True)
+        expected[:, :, 0, 0, 1, 1, 1] = np.nan
+        np.testing.assert_array_equal(found[name], expected)

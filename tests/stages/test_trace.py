@@ -136,3 +136,15 @@ def test_segments_of_the_window_are_equations_5_and_6(case):
         assert this["broken"].item() == (layer < trace["critical_thickness"].item())
     assert (inside == (overlap > 0.0)).all()
     assert contact_window(lines, trace, 2, 5).sizes["segment"] == 0
+
+
+def test_where_the_film_is_not_known_the_trace_is_not_either(lines, film, study):
+    holed = film.copy(deep=True)
+    holed["film_thickness"][0, 1, 1, 1, 3] = np.nan
+    points = points_of(film, 0.0)
+    trace = contact_trace(lines, holed, points, study.boundary_layer, RESISTIVITY)
+    unknown = np.isnan(trace["contact_length"]).all("time") & np.isnan(
+        trace["contact_resistance"]
+    ).all("time")
+    assert unknown.values.tolist() == [False, True, False]
+    assert np.isfinite(trace["contact_length"][[0, 2]]).all()
