@@ -17,13 +17,10 @@ from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.stages.lubricant import lubricant_table
 from lube.study.field_types import bounded, validate
 from lube.study.line_spec import LineSpec, line_spec
-from lube.study.lubricant_record import (
-    LubricantRecord,
-    check_points,
-    load_record,
-    read_viscosity_csv,
-)
+from lube.study.lubricant_record import LubricantRecord, load_record
 from lube.study.rollers import BoundaryLayer, Roller, RollerPair, Roughness
+from lube.study.viscosity_checks import check_points
+from lube.study.viscosity_points import read_viscosity_csv
 from lube.types import File
 from lube.units import parse_quantity
 

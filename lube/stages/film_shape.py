@@ -7,8 +7,8 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from lube.grid.discretise import layer_factor_of
-from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits
-from lube.statistics.confidence import mean_interval
+from lube.schema import POINT_DIMS, label, values_with_limits
+from lube.statistics.confidence import mean_interval, ratio_interval
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.rare_contact import check_gaussian, rare_contact_under
@@ -73,7 +73,14 @@ def film_shape_probabilities(
         {
             **_limited("geometric_contact_probability", contact),
             **_limited("breakthrough_probability", breakthrough),
-            **_ratios(breakthrough),
+            # From the same lines, over the formula's flat film.
+            **values_with_limits(
+                "probability_ratio",
+                [
+                    (_DIMS[1:], each)
+                    for each in ratio_interval(breakthrough.values, breakthrough.values[:, :1])
+                ],
+            ),
             "lambda_ratio": thicknesses.drop_attrs() / film["composite_rms_roughness"].item(),
             "film_formula": ((), name),
         },
@@ -182,18 +189,3 @@ def _limited(name, values):
     limits = mean_interval(values.values)
     dims = values.dims[1:]
     return values_with_limits(name, [(dims, np.minimum(limit, 1.0)) for limit in limits])
-
-
-def _ratios(breakthrough):
-    """Ratio to the formula's flat film, with an interval that knows both see the same lines."""
-    means = breakthrough.mean("pair")
-    relative = breakthrough / means
-    difference = relative - relative.sel(film_model="formula", drop=True)
-    _, lower, upper = mean_interval(1.0 + difference.transpose(*_DIMS).values)
-    half = 0.5 * (upper - lower)  # of the logarithm
-    ratio = (means / means.sel(film_model="formula", drop=True)).transpose(*_DIMS[1:])
-    limits = ratio.values, ratio.values * np.exp(-half), ratio.values * np.exp(half)
-    return {
-        f"probability_ratio{suffix}": (_DIMS[1:], values)
-        for suffix, values in zip(LIMITS, limits, strict=True)
-    }

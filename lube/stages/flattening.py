@@ -12,7 +12,7 @@ from lube.kernels.strips import strip_statistics
 from lube.physics.flattening import amplitude_ratio
 from lube.rig.map_curves import windows_in
 from lube.schema import POINT_DIMS, label, values_with_limits
-from lube.statistics.confidence import mean_interval, probability_interval
+from lube.statistics.confidence import probability_interval, ratio_interval
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.spectra import line_attributes
@@ -61,11 +61,20 @@ def flattened_contact(
         probabilities, ratios = zip(*pool.map(run, realisations), strict=True)
     dims = ("realisation", "roughness_model", *POINT_DIMS)
     probability = np.stack(probabilities).reshape(-1, len(ROUGHNESS_MODELS), *points.shape)
+    # From the same lines; NaN where no contact was seen.
+    ratio = ratio_interval(probability[:, 1], probability[:, 0])
     table = xr.Dataset(
         {
             "breakthrough_probability": (dims, probability),
             **_limited(probability, dims[1:], points.windows),
-            **_ratios(probability),
+            # From the same lines; NaN where no contact was seen.
+            **values_with_limits(
+                "probability_ratio",
+                [
+                    (POINT_DIMS, each)
+                    for each in ratio_interval(probability[:, 1], probability[:, 0])
+                ],
+            ),
             "roughness_ratio": (POINT_DIMS, np.mean(ratios, axis=0).reshape(points.shape)),
             "lambda_ratio": film["lambda_ratio"].drop_attrs(),
         },
@@ -153,14 +162,3 @@ def _limited(probability, dims, windows):
         f"breakthrough_probability_{name}": (dims, values)
         for name, values in zip(names, limits, strict=True)
     }
-
-
-def _ratios(probability):
-    """Flattened over undeformed, from the same lines; NaN where no contact was seen."""
-    means = probability.mean(axis=0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        relative = probability / means
-        _, lower, upper = mean_interval(1.0 + relative[:, 1] - relative[:, 0])
-        ratio, half = means[1] / means[0], 0.5 * (upper - lower)
-    limits = ratio, ratio * np.exp(-half), ratio * np.exp(half)
-    return values_with_limits("probability_ratio", [(POINT_DIMS, values) for values in limits])

@@ -136,6 +136,35 @@ def probability_limits(mean: Array, sample_size: Values, degrees: Values, window
     return lower, upper
 
 
+def ratio_interval(values: Array, reference: Array) -> tuple[Array, Array, Array]:
+    """Ratio of two means over the same lines, and its 95 % confidence interval.
+
+    Lines with much of the one have much of the other, so the ratio is better known than either.
+
+    Parameters
+    ----------
+    values, reference : numpy.ndarray
+        Shapes (R, ...), which broadcast: one value for each pair of lines.
+
+    Returns
+    -------
+    ratio, lower, upper : numpy.ndarray
+        Shape (...) each; NaN where a mean is zero, but for a ratio of zero.
+
+    Examples
+    --------
+    >>> values = np.array([0.2, 0.3, 0.4])
+    >>> limits = ratio_interval(2.0 * values, values)
+    >>> [f"{limit:.3f}" for limit in limits]
+    ['2.000', '2.000', '2.000']
+    """
+    means = values.mean(axis=0), reference.mean(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        _, lower, upper = mean_interval(1.0 + values / means[0] - reference / means[1])
+        ratio, half = means[0] / means[1], 0.5 * (upper - lower)  # of the logarithm
+    return ratio, ratio * np.exp(-half), ratio * np.exp(half)
+
+
 def probability_interval(probabilities: Array, windows: Values) -> tuple[Array, Array, Array]:
     r"""Mean over realisations and its 95 % confidence interval.
 

@@ -8,7 +8,7 @@ the properties at a temperature are computed in `lube.stages.lubricant`.
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
@@ -24,8 +24,9 @@ from lube.physics.pressure_viscosity import DEFINITIONS, FORMULA_DEFINITION, GOL
 from lube.physics.viscosity_index import viscosity_at_100
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
 from lube.study.field_types import Slug, StrictModel, Text, pure_number, quantity, validate
-from lube.study.small_csv import HEADER_CELL, read_cells
 from lube.study.text_files import read_yaml
+from lube.study.viscosity_checks import ROUNDING, check_points
+from lube.study.viscosity_points import OilTemperature, ViscosityPoint, read_viscosity_csv
 from lube.types import File
 
 SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
@@ -38,61 +39,12 @@ GEAR_OIL_GRADES = tuple(grade for grade in ISO_GRADES if 32 <= grade <= 680)
 
 _GRADED = re.compile(r"(.+-iso-vg-)\d+")
 
-# Temperatures converted from K or degF to degC may miss a limit by rounding.
-_ROUNDING = 1e-6
-
-AGREEMENT = 0.02
-"""Relative difference up to which two viscosities in the same state count as one, repeated."""
-
-LEAST_PRESSURES = 3
-"""Pressures above atmospheric that a fit needs at each temperature; the law has two parameters."""
-
-LEAST_RISE = 5.0
-"""Factor by which the viscosity must rise for a reciprocal asymptotic isoviscous pressure.
-
-Its integral runs on beyond the measured pressures; with this factor about a fifth lies there.
-"""
-
-# Pressure up to which a viscosity counts as that at atmospheric pressure, Pa. It changes a
-# viscosity by less than 1 %, so it does not matter whether pressures are absolute.
-_AMBIENT = 2.0 * ATMOSPHERIC_PRESSURE
-
-OilTemperature = quantity("degC", above=-ZERO_CELSIUS, most=1000.0)
-
 
 class Sourced(StrictModel):
     """A section of a lubricant record, which must name the source of its values."""
 
     source: Text
     """where the values come from, or 'assumed: ...' and why"""
-
-
-class ViscosityPoint(StrictModel):
-    """Viscosity at one temperature, kinematic or dynamic or both."""
-
-    temperature: OilTemperature
-    """temperature of the value"""
-    kinematic_viscosity: quantity("m^2/s", above=0.0) | None = None
-    """kinematic viscosity; this or `dynamic_viscosity`, or both if they agree"""
-    dynamic_viscosity: quantity("Pa*s", above=0.0) | None = None
-    """dynamic viscosity"""
-    pressure: quantity("Pa", least=0.0, most=1e10) | None = None
-    """pressure of a dynamic viscosity, by default atmospheric"""
-
-    @model_validator(mode="after")
-    def _check_viscosity(self):
-        if self.kinematic_viscosity is None and self.dynamic_viscosity is None:
-            raise ValueError("need kinematic_viscosity or dynamic_viscosity")
-        if self.is_under_pressure and self.kinematic_viscosity is not None:
-            raise ValueError(
-                f"got kinematic_viscosity at {self.pressure / 1e6:g} MPa, need dynamic_viscosity"
-            )
-        return self
-
-    @property
-    def is_under_pressure(self) -> bool:
-        """Whether the pressure is above that of the atmosphere."""
-        return self.pressure is not None and self.pressure > _AMBIENT
 
 
 class Viscosity(Sourced):
@@ -163,7 +115,7 @@ class PressureViscosity(Sourced):
         if len(given) > 1:
             raise ValueError(f"got {' and '.join(given)}, need one of them")
         for cold, hot in pairwise(sorted(point.temperature for point in self.points or ())):
-            if hot - cold <= _ROUNDING:
+            if hot - cold <= ROUNDING:
                 raise ValueError(f"points: got two values at {hot:g} degC, need one")
         if (self.pressure is None) == (self.definition == "secant"):
             raise ValueError("pressure: need it with definition 'secant', and only there")
@@ -318,7 +270,7 @@ class LubricantRecord(StrictModel):
 
     def _ratios(self, points):
         temperature = points[0].temperature
-        same = [nu for at, nu in self.data if abs(at - temperature) <= _ROUNDING]
+        same = [nu for at, nu in self.data if abs(at - temperature) <= ROUNDING]
         if not same:
             raise RecordError(
                 f"viscosity: got pressures at {temperature:g} degC without atmospheric pressure, "
@@ -453,172 +405,6 @@ def _beside(record_path, name):
     return folder / name
 
 
-def check_points(record: LubricantRecord, where: File) -> None:
-    """Refuse viscosities that contradict one another, or that no law can fit.
-
-    Parameters
-    ----------
-    record : LubricantRecord
-        The lubricant, with its points.
-    where : str or Path
-        Where they come from, for the message.
-
-    Raises
-    ------
-    RecordError
-        If two viscosities in the same state differ by more than `AGREEMENT`, be they dynamic or
-        kinematic; if they are all at one temperature, rise with the temperature or fall with
-        pressure; if they leave the pressure-viscosity coefficient open, or give a second one.
-    """
-    try:
-        _check_ambient(record)
-        _check_isotherms(record)
-    except RecordError as error:
-        raise RecordError(f"{where}: {error}") from None
-    lowest, highest = record.valid_temperatures
-    if lowest > highest:
-        raise RecordError(
-            f"{where}: got no temperature with both viscosity and pressure-viscosity coefficient, "
-            "need some, or temperature_range"
-        )
-
-
-def _check_ambient(record):
-    states = sorted(
-        (state for point in record._ambient for state in _states(record, point)),
-        key=lambda state: state[:2],
-    )
-    if len({temperature for temperature, *_ in states}) < 2:
-        raise RecordError("viscosity: need values at two temperatures or more")
-    for (cold, thick, words), (hot, thin, others) in pairwise(states):
-        if hot - cold <= _ROUNDING:
-            _check_agreement(thick, thin, f"{words} and {others} at {hot:g} degC")
-        elif thick <= thin:
-            raise RecordError(
-                f"viscosity: need less at {hot:g} degC than at {cold:g} degC, got {others} and "
-                f"{words}"
-            )
-
-
-def _states(record, point) -> Iterable[tuple[float, float, str]]:
-    """Temperature, kinematic viscosity and words for each viscosity of a point."""
-    if point.kinematic_viscosity is not None:
-        value = point.kinematic_viscosity
-        yield point.temperature, value, f"{1e6 * value:.4g} mm2/s"
-    if point.dynamic_viscosity is not None:
-        density = record.density_at(point.temperature)
-        value = point.dynamic_viscosity / density
-        words = f"{1e3 * point.dynamic_viscosity:.4g} mPa s over {density:.4g} kg/m3"
-        yield point.temperature, value, f"{1e6 * value:.4g} mm2/s ({words})"
-
-
-def _check_agreement(one, other, words):
-    if max(one, other) > (1.0 + AGREEMENT) * min(one, other):
-        raise RecordError(
-            f"viscosity: got {words}, need one value, or several within {100 * AGREEMENT:g} %"
-        )
-
-
-def _check_isotherms(record):
-    given, alpha = record.pressure_viscosity.given, record.pressure_viscosity
-    if bool(given) == bool(record.isotherms):
-        came = f"{given[0]} beside viscosities under pressure" if given else "none"
-        raise RecordError(
-            f"pressure_viscosity: got {came}, need one of gold_base, value, points and viscosities "
-            "under pressure"
-        )
-    for temperature, pairs in record.isotherms.items():
-        at = f"at {temperature:g} degC"
-        for (low, thin), (high, thick) in pairwise([(0.0, 1.0), *pairs]):
-            if low == high:
-                words = f"{thin:.4g} and {thick:.4g} times that at atmospheric pressure {at}"
-                _check_agreement(thin, thick, f"{words} and {_absolute(high)}")
-            elif thick <= thin:
-                raise RecordError(
-                    f"viscosity: need more {at} and {_absolute(high)} than at {_absolute(low)}"
-                )
-        count, (most, rise) = len({pressure for pressure, _ in pairs}), pairs[-1]
-        if count < LEAST_PRESSURES:
-            raise RecordError(
-                f"viscosity: got {count} pressures above atmospheric {at}, need {LEAST_PRESSURES} "
-                "or more"
-            )
-        if alpha.definition == "reciprocal-asymptotic" and rise < LEAST_RISE:
-            raise RecordError(
-                f"viscosity: got a rise to {rise:.3g} times that at atmospheric pressure {at}, "
-                f"definition 'reciprocal-asymptotic' needs {LEAST_RISE:g} times or more"
-            )
-        if alpha.span is not None and alpha.span > (1.0 + _ROUNDING) * most:
-            raise RecordError(
-                f"pressure_viscosity.pressure: got {alpha.pressure / 1e6:g} MPa, the viscosities "
-                f"{at} end at {_absolute(most)}"
-            )
-
-
-def _absolute(pressure):
-    """Pressure above atmospheric as it was written."""
-    return f"{(pressure + ATMOSPHERIC_PRESSURE) / 1e6:g} MPa"
-
-
-_COLUMNS = (
-    "temperature [degC] and kinematic_viscosity [mm^2/s] or dynamic_viscosity [mPa*s] or both; "
-    "under pressure also pressure [MPa]"
-)
-
-
-def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
-    """Read measured viscosities against temperature, and against pressure if it was changed.
-
-    The first line names the columns with their units: ``temperature [degC]``, then
-    ``kinematic_viscosity [mm^2/s]`` or ``dynamic_viscosity [mPa*s]`` or both, and ``pressure
-    [MPa]`` if there are viscosities under pressure, which are dynamic. Columns are separated by
-    tabs, semicolons or commas; with tabs or semicolons, numbers may have decimal commas. Empty
-    lines and lines that begin with ``#`` are ignored.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file, UTF-8 text.
-
-    Returns
-    -------
-    tuple of ViscosityPoint
-        One point per row.
-
-    Raises
-    ------
-    RecordError
-        Which line and column, what came, what is needed.
-    """
-    (header_line, header), *rows = read_cells(path, RecordError)
-    columns = _csv_columns(header, f"{path}: line {header_line}")
-    decimal_comma = any("," in cell for _, cells in rows for cell in cells)
-    points = []
-    for number, cells in rows:
-        where = f"{path}: line {number}"
-        if len(cells) != len(columns):
-            raise RecordError(f"{where}: got {len(cells)} values, need {len(columns)}")
-        with_points = [cell for cell in cells if "." in cell]
-        if decimal_comma and with_points:  # thousands separators, or mistakes
-            raise RecordError(
-                f"{where}: got {shown(with_points[0])} in a file with decimal commas, need no point"
-            )
-        pairs = zip(columns.items(), cells, strict=True)
-        content = {name: f"{cell.replace(',', '.')} {units}" for (name, units), cell in pairs}
-        points.append(validate(ViscosityPoint, content, where, RecordError))
-    return tuple(points)
-
-
-def _csv_columns(cells, where):
-    """Units of the columns by name, in the order of the columns."""
-    columns = dict(cell.groups() for cell in map(HEADER_CELL.fullmatch, cells) if cell)
-    viscosities = set(columns) - {"temperature", "pressure"}
-    known = viscosities <= {"kinematic_viscosity", "dynamic_viscosity"}
-    if len(columns) != len(cells) or "temperature" not in columns or not viscosities or not known:
-        raise RecordError(f"{where}: got the columns {shown(', '.join(cells))}, need {_COLUMNS}")
-    return columns
-
-
 def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -> None:
     """Refuse temperatures at which a lubricant record is not valid.
 
@@ -638,7 +424,7 @@ def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -
     """
     lowest, highest = record.valid_temperatures
     for temperature in temperatures:
-        if not lowest - _ROUNDING <= temperature <= highest + _ROUNDING:
+        if not lowest - ROUNDING <= temperature <= highest + ROUNDING:
             raise RangeError(
                 f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC"
             )

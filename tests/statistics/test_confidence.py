@@ -9,7 +9,12 @@ import scipy.stats
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lube.statistics.confidence import mean_over_first, probability_limits, score_interval
+from lube.statistics.confidence import (
+    mean_over_first,
+    probability_limits,
+    ratio_interval,
+    score_interval,
+)
 
 NORMAL = scipy.stats.norm.ppf(0.975)
 # Whole numbers of a million samples, as real shares of time are.
@@ -83,3 +88,18 @@ def test_no_limit_is_tighter_than_that_of_contact_never_seen():
     lower, upper = probability_limits(rare, np.array([1e12, 1e12]), 10, 100.0)
     assert upper[0] == pytest.approx(never)
     assert lower[1] == pytest.approx(1.0 - never)
+
+
+def test_interval_of_a_ratio_knows_that_both_see_the_same_lines():
+    random = np.random.default_rng(1)
+    lines = random.lognormal(size=(400, 40, 1))
+    reference = 0.3 * lines
+    values = 0.6 * lines * (1.0 + 0.1 * random.standard_normal((400, 40, 1)))
+    limits = np.array([ratio_interval(*pair) for pair in zip(values, reference, strict=True)])
+    ratio, lower, upper = limits[..., 0].T
+    assert 0.92 < np.mean((lower < 2.0) & (upper > 2.0)) < 0.98
+    # Without that the interval would be some ten times as wide.
+    assert np.mean(upper / lower) < 1.15
+    assert np.all((lower < ratio) & (ratio < upper))
+    with_one = ratio_interval(np.zeros((3, 1)), np.ones((3, 1)))
+    assert with_one[0] == 0.0 and np.isnan(with_one[1:]).all()

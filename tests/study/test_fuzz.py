@@ -30,11 +30,11 @@ from lube.study.lubricant_record import (
     SHIPPED_FOLDER,
     check_temperatures,
     load_record,
-    read_viscosity_csv,
 )
 from lube.study.resolve import resolved_content, resolved_text
 from lube.study.study import load_study
 from lube.study.text_files import read_yaml
+from lube.study.viscosity_points import read_viscosity_csv
 
 FEW, MANY = 40, 1000
 

@@ -13,9 +13,9 @@ from lube.study.lubricant_record import (
     check_fluid,
     check_temperatures,
     load_record,
-    read_viscosity_csv,
     shipped_records,
 )
+from lube.study.viscosity_points import read_viscosity_csv
 
 OIL = """\
 name: my-oil
