@@ -67,13 +67,9 @@ def flattened_contact(
         {
             "breakthrough_probability": (dims, probability),
             **_limited(probability, dims[1:], points.windows),
-            # From the same lines; NaN where no contact was seen.
             **values_with_limits(
                 "probability_ratio",
-                [
-                    (POINT_DIMS, each)
-                    for each in ratio_interval(probability[:, 1], probability[:, 0])
-                ],
+                [(POINT_DIMS, each) for each in ratio],
             ),
             "roughness_ratio": (POINT_DIMS, np.mean(ratios, axis=0).reshape(points.shape)),
             "lambda_ratio": film["lambda_ratio"].drop_attrs(),
