@@ -1,4 +1,4 @@
-"""Six studies as unlike as users' are, small enough for a test, and their datasets."""
+"""Seven studies as unlike as users' are, small enough for a test, and their datasets."""
 
 import numpy as np
 import yaml
@@ -112,6 +112,15 @@ STUDIES = {
         traces=[_trace(800, 100, 65), _trace(1600, 100, 80)],
         experiment=PAPER_CONTENT["experiment"] | {"manifest": "records.csv"},
     ),
+    # A film that is thinner with slip, and at the greater force because the oil begins so near.
+    "corrections": _small(
+        "corrections",
+        film_formulas=["paper", "dowson-higginson-minimum"],
+        inlet_shear_heating="gupta-1992",
+        inlet_meniscus="0.4 mm",
+        operating_grid=_grid([400, 1600], [100, 200], [60, 80], [0, 1]),
+        traces=[_trace(1600, 100, 80, slide_to_roll_ratio=1)],
+    ),
     # Lines drawn from the spectrum of a map, against a profile that is the line.
     "topographies": _small(
         "topographies",
@@ -155,7 +164,15 @@ def write_datasets(content, folder):
 def _datasets(study):
     grid, layer = study.operating_grid, study.boundary_layer
     oil = lubricant_table(study.lubricants, grid.temperature)
-    film = film_table(oil, study.rough_rollers, grid.force, grid.speed, study.film_formulas)
+    film = film_table(
+        oil,
+        study.rough_rollers,
+        grid.force,
+        grid.speed,
+        study.film_formulas,
+        slide_to_roll_ratio=study.slips,
+        **study.film_corrections,
+    )
     lines = roughness_lines(study.line_spec, study.seed, study.kept_realisations)
     batch = roughness_batch(study.line_spec, study.seed, range(study.realisations))
     run = contact_statistics(batch, film, layer, study.slips, study.revolutions)
@@ -166,11 +183,14 @@ def _datasets(study):
     else:
         experiment = simulated_experiment(rig_lines, film, study)
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    at_records = film_at_records(experiment, oils, study.rough_rollers, study.film_formulas)
+    at_records = film_at_records(
+        experiment, oils, study.rough_rollers, study.film_formulas, **study.film_corrections
+    )
     model = model_at_records(at_records, experiment, film, contact, study)
     comparison = compare(model, experiment, contact)
     gauge = gauge_records(master, contact, comparison)
-    profile = film_profile_table(oil, study.rough_rollers, grid.force, grid.speed)
+    meniscus = study.film_corrections["inlet_meniscus"]
+    profile = film_profile_table(oil, study.rough_rollers, grid.force, grid.speed, meniscus)
     of_surface = {}
     if study.line_spec.is_gaussian:
         spec, rollers = study.line_spec, study.rollers

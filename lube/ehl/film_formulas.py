@@ -16,6 +16,7 @@ from lube.ehl.line_contact import ConvergenceError, LineContact, solve
 from lube.errors import StudyError, right_one
 from lube.physics.dimensionless import moes_numbers
 from lube.physics.regimes import moes_asymptotes
+from lube.physics.starvation import starvation_factor
 from lube.types import Values
 
 log = logging.getLogger(__name__)
@@ -48,7 +49,7 @@ class Formula:
         Which film thickness it gives: ``central``, ``minimum`` or ``mean``.
     evaluate : callable
         Film thickness over R* of (load, speed, material), that is of W, U and G; the computed
-        one of (load, speed, material, viscosity, film_modulus).
+        one of (load, speed, material, viscosity, film_modulus, meniscus).
     source : str
         Publication.
     remark : str
@@ -75,6 +76,7 @@ class Formula:
         material: Values,
         viscosity: Values,
         film_modulus: Values,
+        meniscus: float | None = None,
     ) -> Values:
         """Film thickness over R*.
 
@@ -86,6 +88,9 @@ class Formula:
             Dynamic viscosity at ambient pressure, Pa s.
         film_modulus : float
             E', Pa.
+        meniscus : float, optional
+            Distance over R*, from the line of centres, at which the oil begins; by default far
+            away. A formula's film is reduced by `starvation_factor`, the computed one is solved for.
 
         Returns
         -------
@@ -98,8 +103,13 @@ class Formula:
         >>> film == grubin(1.39e-5, 2.52e-11, 3696.0)
         True
         """
-        oil = (viscosity, film_modulus) if self.depends_on_oil else ()
-        return self.evaluate(load, speed, material, *oil)
+        if self.depends_on_oil:
+            return self.evaluate(load, speed, material, viscosity, film_modulus, meniscus)
+        film = self.evaluate(load, speed, material)
+        if meniscus is None:
+            return film
+        half_width = np.sqrt(8.0 * load / np.pi)
+        return film * starvation_factor(film / half_width**2, meniscus / half_width)
 
     def holds(self, moes_load: Values, moes_material: Values) -> bool | np.ndarray:
         """Check whether points lie within the formula's range of validity.
@@ -346,7 +356,12 @@ def moes(load: Values, speed: Values, material: Values) -> Values:
     depends_on_oil=True,
 )
 def computed(
-    load: Values, speed: Values, material: Values, viscosity: Values, film_modulus: Values
+    load: Values,
+    speed: Values,
+    material: Values,
+    viscosity: Values,
+    film_modulus: Values,
+    meniscus: float | None = None,
 ) -> Values:
     """Central film from Reynolds' equation, with Roelands' viscosity: `lube.ehl.line_contact`.
 
@@ -358,13 +373,16 @@ def computed(
     >>> f"{computed(1.39e-5, 2.52e-11, 3696.0, 0.28, 2.31e11):.3g}"
     '4.03e-05'
     """
-    return _computed(load, speed, material, viscosity, film_modulus)[()]
+    return _computed(load, speed, material, viscosity, film_modulus, meniscus)[()]
 
 
 @np.vectorize(otypes=[float])
-def _computed(*groups):
+def _computed(*groups_and_meniscus):
+    *groups, meniscus = groups_and_meniscus
+    contact = LineContact(*groups)
     try:
-        return float(f"{solve(LineContact(*groups)).central_film:.6g}")
+        profile = solve(contact, meniscus and meniscus / contact.half_width)
+        return float(f"{profile.central_film:.6g}")
     except ConvergenceError as error:
         log.warning("%s", error)
         return np.nan

@@ -47,25 +47,29 @@ def film_positions(half_width: float, reduced_radius: float, roughness: float) -
     return np.concatenate([-half[:0:-1], half])
 
 
-def profiles_of(*groups: Array) -> Array:
+def profiles_of(*groups: Array, meniscus: float | None = None) -> Array:
     """Solve for the films of many contacts.
 
     Parameters
     ----------
     *groups : numpy.ndarray
         W, U, G, viscosity and E' as of `lube.ehl.line_contact.LineContact`; they broadcast.
+    meniscus : float, optional
+        Distance over R*, from the line of centres, at which the oil begins; by default far away.
 
     Returns
     -------
     numpy.ndarray of object
         A `FilmProfile` each, None where it did not converge; the log names these.
     """
-    return np.vectorize(_profile, otypes=[object])(*groups)
+    return np.vectorize(_profile, otypes=[object])(*groups, meniscus)
 
 
-def _profile(*groups):
+def _profile(*groups_and_meniscus):
+    *groups, meniscus = groups_and_meniscus
+    contact = LineContact(*map(float, groups))
     try:
-        return solve(LineContact(*map(float, groups)))
+        return solve(contact, meniscus and meniscus / contact.half_width)
     except ConvergenceError as error:
         log.warning("%s", error)
         return None

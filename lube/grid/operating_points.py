@@ -38,6 +38,38 @@ def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tupl
     return entrainment_speed * first, entrainment_speed * second
 
 
+def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Dataset:
+    """Select the film at one slip, on which it depends by inlet shear heating.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset.
+    slide_to_roll_ratio : float, optional
+        One of its slide-to-roll ratios; by default pure rolling, or the first if it has none.
+
+    Returns
+    -------
+    xarray.Dataset
+        The dataset without the dimension ``slide_to_roll_ratio``. Where the film does not depend on
+        it, any ratio will do.
+
+    Examples
+    --------
+    >>> levels = {"slide_to_roll_ratio": [-1.0, 0.0]}
+    >>> film = xr.Dataset({"film_thickness": ("slide_to_roll_ratio", [0.9e-6, 1.0e-6])}, levels)
+    >>> at_slip(film).film_thickness.item()
+    1e-06
+    """
+    name = "slide_to_roll_ratio"
+    if name not in film["film_thickness"].dims:
+        return film.drop_dims(name, errors="ignore")
+    if slide_to_roll_ratio is None:
+        levels = film[name].values
+        slide_to_roll_ratio = 0.0 if 0.0 in levels else levels[0]
+    return film.sel({name: slide_to_roll_ratio}, drop=True)
+
+
 @dataclass(frozen=True)
 class OperatingPoint:
     """An operating point, with its film thickness and contact width.
@@ -87,7 +119,7 @@ def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[Oper
     table : xarray.Dataset
         A ``film`` dataset of one film formula, without that dimension.
     slide_to_roll_ratio : float
-        Slide-to-roll ratio of all points; the film thickness does not depend on it.
+        Slide-to-roll ratio of all points.
 
     Returns
     -------
@@ -110,7 +142,7 @@ def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[Oper
     >>> [point.force for point in operating_points(table, 0.0)]
     [200.0, 400.0]
     """
-    names = EXPERIMENT_DIMS[1:]
+    names, table = EXPERIMENT_DIMS[1:], at_slip(table, slide_to_roll_ratio)
     films = table["film_thickness"].transpose(*names).values
     half_widths = table["contact_half_width"].values
     speeds = table["entrainment_speed"].values

@@ -117,3 +117,27 @@ def maximum_pressure(
     """
     half_width = contact_half_width(force, length, reduced_radius, reduced_modulus)
     return 2.0 * force / (np.pi * half_width * length)
+
+
+def hertz_gap(position: Values) -> Values:
+    r"""Gap around a dry line contact.
+
+    .. math:: \frac{h R^*}{a^2} = \frac12 \left( |X| \sqrt{X^2 - 1} - \mathrm{arcosh} |X| \right)
+
+    Parameters
+    ----------
+    position : float or numpy.ndarray
+        Positions X over the half-width.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        The gap over a^2 / R*; zero in the contact.
+
+    Examples
+    --------
+    >>> hertz_gap(np.array([-2.0, 0.5, 1.0])).round(4).tolist()
+    [1.0736, 0.0, 0.0]
+    """
+    distance = np.maximum(np.abs(position), 1.0)
+    return 0.5 * (distance * np.sqrt(distance**2 - 1.0) - np.arccosh(distance))

@@ -10,6 +10,7 @@ import logging
 import numpy as np
 import xarray as xr
 
+from lube.grid.operating_points import at_slip
 from lube.rig.ensemble_runs import EnsembleRuns
 from lube.rig.record_scatter import record_scatter
 from lube.schema import OPERATING_DIMS
@@ -71,6 +72,7 @@ def _stored(runs, film, contact):
     rolling = contact["slide_to_roll_ratio"].values == 0.0
     if not rolling.any() or contact["revolutions"].item() != 1:
         return {}
+    film = at_slip(film, 0.0)
     thickness = film["film_thickness"].transpose(*OPERATING_DIMS)
     points = runs.points(thickness, film["contact_half_width"])
     stored = contact[PROBABILITY].isel(slide_to_roll_ratio=int(np.argmax(rolling))).values

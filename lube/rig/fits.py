@@ -141,7 +141,8 @@ def _lambda_ratios(comparison, factor):
     """Lambda ratios with the pressure-viscosity coefficient multiplied by a factor.
 
     The dimensionless groups follow from the film at the records: W = pi/8 (a / R*)^2 from Hertz'
-    half-width, U and G from Moes' numbers M = W (2U)^(-1/2) and L = G (2U)^(1/4).
+    half-width, U and G from Moes' numbers M = W (2U)^(-1/2) and L = G (2U)^(1/4). How much inlet
+    shear heating thins the film does not depend on the coefficient; starvation depends on the film.
     """
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         load = np.pi / 8.0 * (comparison["contact_half_width"] / comparison["reduced_radius"]) ** 2
@@ -149,19 +150,24 @@ def _lambda_ratios(comparison, factor):
         material = comparison["moes_material"] / (2.0 * speed) ** 0.25
         film_modulus = 2.0 * comparison["reduced_modulus"]
         groups = load, speed, material, comparison["dynamic_viscosity"], film_modulus
-        names = comparison["film_formula"]
-        films = [_films(formula(name), groups, factor) for name in names.values]
-        scale = comparison["reduced_radius"] / comparison["composite_rms_roughness"]
+        names, radius = comparison["film_formula"], comparison["reduced_radius"]
+        meniscus = None
+        if "inlet_meniscus" in comparison:
+            meniscus = (comparison["inlet_meniscus"] / radius).item()
+        films = [_films(formula(name), groups, factor, meniscus) for name in names.values]
+        scale = radius / comparison["composite_rms_roughness"]
+        scale = scale * comparison.get("inlet_shear_heating_factor", 1.0)
         return xr.concat(films, names, join="exact") * scale
 
 
-def _films(row, groups, factor):
+def _films(row, groups, factor, meniscus):
     """Films over R* with G multiplied by factors."""
     load, speed, material, *oil = groups
+    options = {"join": "exact", "kwargs": {"meniscus": meniscus}}
     if not row.depends_on_oil:
-        return row.evaluate(load, speed, factor * material)
+        return xr.apply_ufunc(row.film, load, speed, factor * material, *oil, **options)
     nodes = xr.DataArray(COMPUTED_FACTORS, dims="factor")
-    films = xr.apply_ufunc(row.evaluate, load, speed, nodes * material, *oil, join="exact")
+    films = xr.apply_ufunc(row.film, load, speed, nodes * material, *oil, **options)
     return xr.apply_ufunc(
         _between_nodes,
         films.rename(factor="node"),

@@ -106,7 +106,7 @@ def _check_coordinate(dataset, name, where):
 
 
 def _check_variable(array, name, expected, where):
-    if array.dims != expected.dims:
+    if array.dims not in (expected.dims, expected.all_dims):
         raise DataError(f"{where}: {name!r} has dimensions {array.dims}, need {expected.dims}")
     kind = {"O": "U", "T": "U", "u": "i"}.get(array.dtype.kind, array.dtype.kind)
     wanted = "i" if expected.kind == "b" and kind == "i" else expected.kind

@@ -6,7 +6,8 @@
 files          files that hold the variable, separated by spaces; ``any`` for a coordinate that
                means the same in every file that has it
 name           name of the variable
-dims           its dimensions, in order; none for a scalar
+dims           its dimensions, in order; none for a scalar; with a question mark if the variable
+               has the dimension in files of some studies only
 units          unit in UDUNITS notation, ``1`` for a pure number or a flag, none for text
 type           ``float``, ``integer``, ``boolean`` (stored as int8) or ``text``; with a question
                mark if only files of some studies have the variable
@@ -40,7 +41,7 @@ class Variable:
     Attributes
     ----------
     dims : tuple of str
-        Its dimensions, in order.
+        Its dimensions in every file, in order.
     units : str or None
         Unit in UDUNITS notation, ``"1"`` for a pure number or a flag, None for text.
     long_name : str
@@ -54,6 +55,8 @@ class Variable:
         Further CF attributes.
     optional : bool
         Whether a file may lack it.
+    all_dims : tuple of str
+        Its dimensions, in order, with those that it has in files of some studies only.
     """
 
     dims: tuple[str, ...]
@@ -63,6 +66,7 @@ class Variable:
     content: str
     attributes: Mapping[str, Any] = field(default_factory=dict)
     optional: bool = False
+    all_dims: tuple[str, ...] = ()
 
 
 def read_table(name: str) -> list[dict[str, str]]:
@@ -90,14 +94,16 @@ def _variable(row):
     for name in ("flag_meanings", "cell_methods", "comment"):
         if row[name]:
             attributes[name] = row[name]
+    dims = row["dims"].split()
     return Variable(
-        tuple(row["dims"].split()),
+        tuple(dim for dim in dims if not dim.endswith("?")),
         row["units"] or None,
         row["long_name"],
         _KINDS[row["type"].removesuffix("?")],
         row["content"],
         attributes,
         row["type"].endswith("?"),
+        tuple(dim.removesuffix("?") for dim in dims),
     )
 
 

@@ -61,7 +61,7 @@ def strip_contacts(
     seed : int
         Seed of the study.
     slide_to_roll_ratio : sequence of float, optional
-        Levels of the slide-to-roll ratio, on which nothing depends here.
+        Levels of the slide-to-roll ratio, on which the film alone may depend here.
     threads : int, optional
         Threads that share the work; they do not change the results.
 
@@ -95,7 +95,7 @@ def strip_contacts(
     the curvature of a summit.
     """
     check_isotropic(spec)
-    film = film.isel(film_formula=[0]).transpose(*OPERATING_DIMS)
+    film = film.isel(film_formula=[0]).transpose(*CONTACT_DIMS, ..., missing_dims="ignore")
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     widest, lowest = 2.0 * half_width.max().item(), thickness.min().item()
     if not lowest > 0.0:
@@ -121,7 +121,7 @@ def strip_contacts(
     surface = isotropic_surface(spec, widths.max(), smallest)
     found |= _sampled(spec, surface, (films, widths, strips), sharp, length, seed, threads)
     slips = np.asarray(slide_to_roll_ratio, float)
-    shape = (slips.size, *thickness.shape)
+    shape = (slips.size, *thickness.shape[-len(OPERATING_DIMS) :])
     variables = {
         name: (CONTACT_DIMS, np.broadcast_to(values.reshape(thickness.shape), shape).copy())
         for name, values in found.items()

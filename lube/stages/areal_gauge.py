@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
+from lube.grid.operating_points import at_slip
 from lube.rig.map_curves import windows_in
 from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
 from lube.statistics.curves import falling_curve, film_interval
@@ -68,6 +69,7 @@ def _curve(film, areal, comparison, width):
     nearest = np.argmin(np.abs(np.log(widths / width)))
     at_force = {"film_formula": 0, "force": nearest}
     strip = areal.isel(at_force | {"slide_to_roll_ratio": 0})
+    film = at_slip(film, areal["slide_to_roll_ratio"].values[0])
     ratios = film["lambda_ratio"].isel(at_force).transpose(*strip["contacts"].dims).values.ravel()
     limits = [strip[f"breakthrough_probability{limit}"].values.ravel() for limit in LIMITS]
     # Logarithm of the probability of no contact, in a strip of this width.

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
+from lube.grid.operating_points import at_slip
 from lube.grid.window_films import window_films
 from lube.kernels.shaped import shaped_statistics
 from lube.kernels.strips import strip_statistics
@@ -74,7 +75,7 @@ def contact_statistics(
     share is not small, film and asperities together carry more than the applied load.
     """
     film = film.transpose(*OPERATING_DIMS, ...)
-    results = contact_at(lines, film, boundary_layer, slide_to_roll_ratio, revolutions)
+    results = _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, revolutions)
     # F_N 2a/L' by Hertz: the maximum pressure is 4/pi times the mean one, F_N / (2a L').
     width = 2.0 * film["contact_half_width"]
     patch_load = np.pi / 4.0 * film["hertz_pressure"] * width * width
@@ -82,6 +83,18 @@ def contact_statistics(
     levels = {name: film[name] for name in OPERATING_DIMS} | {"revolutions": revolutions}
     levels["slide_to_roll_ratio"] = np.asarray(slide_to_roll_ratio, float)
     return label(results.assign_coords(levels), "contact_batch")
+
+
+def _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, revolutions):
+    """Results at each slip, with a film of its own if inlet shear heating thins it."""
+    if "slide_to_roll_ratio" not in film["film_thickness"].dims:
+        return contact_at(lines, film, boundary_layer, slide_to_roll_ratio, revolutions)
+    results = [
+        contact_at(lines, at_slip(film, ratio), boundary_layer, [ratio], revolutions)
+        for ratio in slide_to_roll_ratio
+    ]
+    options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
+    return xr.concat(results, "slide_to_roll_ratio", **options)
 
 
 def contact_map(

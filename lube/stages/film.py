@@ -1,5 +1,6 @@
 """The film stage: film thickness, lambda ratio and regime at every operating point."""
 
+import logging
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,6 +16,8 @@ from lube.physics.inlet_heating import inlet_shear_heating_factor
 from lube.physics.regimes import regime
 from lube.study.rollers import RollerPair
 
+log = logging.getLogger(__name__)
+
 
 def film_table(
     lubricant: xr.Dataset,
@@ -23,6 +26,9 @@ def film_table(
     speed: npt.ArrayLike,
     formulas: Sequence[str],
     with_shape: bool = False,
+    slide_to_roll_ratio: npt.ArrayLike = (0.0,),
+    inlet_shear_heating: str = "none",
+    inlet_meniscus: float | None = None,
 ) -> xr.Dataset:
     """Tabulate the film thickness of a pair of rollers over the operating grid.
 
@@ -38,17 +44,25 @@ def film_table(
         Normal forces F_N, N.
     speed : array_like, shape (speed,)
         Rotation speeds n of the first roller in pure rolling, rpm. Slip leaves the entrainment
-        speed as it is, so the film does not depend on it.
+        speed as it is, so the film depends on it by inlet shear heating alone.
     formulas : sequence of str
         Names of film formulas, keys of `lube.ehl.film_formulas.FORMULAS`.
     with_shape : bool, optional
         Whether the film has the shape of the computed one; by default it is flat.
+    slide_to_roll_ratio : array_like, shape (slide_to_roll_ratio,), optional
+        Levels of the slide-to-roll ratio; the default is pure rolling.
+    inlet_shear_heating : str, optional
+        One of `lube.physics.inlet_heating.INLET_HEATING`; by default the film is not reduced. The
+        factor is a variable of the result in any case.
+    inlet_meniscus : float, optional
+        Distance before the line of centres at which the oil begins, m; by default the contact is
+        fully flooded.
 
     Returns
     -------
     xarray.Dataset
-        The ``film`` file of `lube.schema`. The film thickness is not reduced by inlet shear
-        heating; the reduction factor is a variable of its own.
+        The ``film`` file of `lube.schema`. With inlet shear heating the film thickness depends on
+        slip; it is NaN, and the log says so, where there is no factor.
 
     Raises
     ------
@@ -56,6 +70,8 @@ def film_table(
         If a film formula is unknown.
     DataError
         If a dimension of the lubricant dataset has no coordinate.
+    RangeError
+        If the meniscus lies inside a contact.
 
     Examples
     --------
@@ -68,22 +84,28 @@ def film_table(
     >>> f"lambda ratio {film.lambda_ratio.item():.2f}"
     'lambda ratio 3.78'
     """
-    axes = xr.Dataset(coords={"force": np.asarray(force, float), "speed": np.asarray(speed, float)})
-    table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas)
+    levels = {"force": force, "speed": speed, "slide_to_roll_ratio": slide_to_roll_ratio}
+    axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
+    corrections = axes["slide_to_roll_ratio"], inlet_shear_heating, inlet_meniscus
+    table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas, *corrections)
     if with_shape:
-        profiles = film_profile_table(lubricant, rollers, force, speed)
+        profiles = film_profile_table(lubricant, rollers, force, speed, inlet_meniscus)
         table["film_profile"] = profiles["film"]
-    return schema.label(table.transpose(*schema.OPERATING_DIMS, ...), "film")
+    return schema.label(table.transpose(*schema.CONTACT_DIMS, ...), "film")
 
 
 def film_profile_table(
-    lubricant: xr.Dataset, rollers: RollerPair, force: npt.ArrayLike, speed: npt.ArrayLike
+    lubricant: xr.Dataset,
+    rollers: RollerPair,
+    force: npt.ArrayLike,
+    speed: npt.ArrayLike,
+    inlet_meniscus: float | None = None,
 ) -> xr.Dataset:
     """Compute pressure and film across the contact at every operating point.
 
     Parameters
     ----------
-    lubricant, rollers, force, speed
+    lubricant, rollers, force, speed, inlet_meniscus
         As in `film_table`.
 
     Returns
@@ -96,7 +118,9 @@ def film_profile_table(
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = _hertz_contact(rollers, axes["force"], axes["speed"])
         groups = _groups(lubricant, rollers, axes["force"], contact)
-        solved = xr.apply_ufunc(profiles_of, *groups, join="exact").transpose(*schema.POINT_DIMS)
+        meniscus = {"meniscus": _over_radius(inlet_meniscus, rollers)}
+        solved = xr.apply_ufunc(profiles_of, *groups, join="exact", kwargs=meniscus)
+        solved = solved.transpose(*schema.POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
     positions = film_positions(
         float(contact["contact_half_width"].min()),
@@ -132,7 +156,12 @@ _NUMBERS = {
 
 
 def film_at_records(
-    experiment: xr.Dataset, lubricant: xr.Dataset, rollers: RollerPair, formulas: Sequence[str]
+    experiment: xr.Dataset,
+    lubricant: xr.Dataset,
+    rollers: RollerPair,
+    formulas: Sequence[str],
+    inlet_shear_heating: str = "none",
+    inlet_meniscus: float | None = None,
 ) -> xr.Dataset:
     """Film thickness at the conditions of each record.
 
@@ -142,25 +171,32 @@ def film_at_records(
         An ``experiment`` dataset.
     lubricant : xarray.Dataset
         A ``lubricant`` dataset at all temperatures of the records.
-    rollers, formulas
-        As in `film_table`.
+    rollers, formulas, inlet_shear_heating, inlet_meniscus
+        As in `film_table`; the slip is that of each record.
 
     Returns
     -------
     xarray.Dataset
         ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material``,
         ``contact_half_width`` and ``dynamic_viscosity`` over film_formula and record;
-        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``.
+        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. With inlet shear
+        heating its factor over record, and with a meniscus its distance.
     """
-    force, speed, temperature, oil = (
+    force, speed, temperature, oil, slip = (
         xr.DataArray(experiment[name].values, dims="record")
-        for name in ("force", "speed", "temperature", "lubricant")
+        for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio")
     )
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
-    table = film_at(properties, rollers, force, speed, formulas)
+    corrections = slip, inlet_shear_heating, inlet_meniscus
+    table = film_at(properties, rollers, force, speed, formulas, *corrections)
     table["dynamic_viscosity"] = properties["dynamic_viscosity"]
     names = ["film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width"]
     names += ["reduced_radius", "reduced_modulus", "composite_rms_roughness", "dynamic_viscosity"]
+    if inlet_shear_heating != "none":
+        names.append("inlet_shear_heating_factor")
+    if inlet_meniscus is not None:
+        names.append("inlet_meniscus")
+        table["inlet_meniscus"] = inlet_meniscus
     return table[names].transpose("film_formula", "record")
 
 
@@ -170,6 +206,9 @@ def film_at(
     force: xr.DataArray,
     speed: xr.DataArray,
     formulas: Sequence[str],
+    slide_to_roll_ratio: xr.DataArray | float = 0.0,
+    inlet_shear_heating: str = "none",
+    inlet_meniscus: float | None = None,
 ) -> xr.Dataset:
     """Film thickness over the dimensions that the lubricant, force and speed have.
 
@@ -183,6 +222,10 @@ def film_at(
         Normal force, N, and rotation speed of the first roller in pure rolling, rpm.
     formulas : sequence of str
         Names of film formulas.
+    slide_to_roll_ratio : xarray.DataArray or float, optional
+        Slide-to-roll ratio.
+    inlet_shear_heating, inlet_meniscus
+        As in `film_table`.
 
     Returns
     -------
@@ -193,6 +236,8 @@ def film_at(
     ------
     StudyError
         If a film formula is unknown.
+    RangeError
+        If the meniscus lies inside a contact.
     """
     chosen = [formula(name) for name in formulas]
     # "exact": coordinates that differ in one value would otherwise be cut to their intersection.
@@ -200,14 +245,42 @@ def film_at(
         contact = _hertz_contact(rollers, force, speed)
         groups = _groups(lubricant, rollers, force, contact)
         table = contact.merge(_regime(*groups[:3]), join="exact")
-        table = table.merge(_film(chosen, rollers, groups, table), join="exact")
-        table["inlet_shear_heating_factor"] = inlet_shear_heating_factor(
-            lubricant["dynamic_viscosity"],
-            lubricant["temperature_viscosity_coefficient"],
-            contact["entrainment_speed"],
-            lubricant["thermal_conductivity"],
+        table = table.merge(_film(chosen, rollers, groups, table, inlet_meniscus), join="exact")
+        factor = _heating_factor(lubricant, contact, slide_to_roll_ratio)
+        if inlet_shear_heating != "none":
+            for name in ("film_thickness", "lambda_ratio"):
+                table[name] = table[name] * factor
+            _warn(factor)
+    return table.assign(inlet_shear_heating_factor=factor)
+
+
+def _heating_factor(lubricant, contact, slide_to_roll_ratio):
+    film_modulus = 2.0 * contact["reduced_modulus"]
+    return xr.apply_ufunc(
+        inlet_shear_heating_factor,
+        lubricant["dynamic_viscosity"],
+        lubricant["temperature_viscosity_coefficient"],
+        contact["entrainment_speed"],
+        lubricant["thermal_conductivity"],
+        contact["hertz_pressure"] / film_modulus,
+        slide_to_roll_ratio,
+        join="exact",
+    )
+
+
+def _warn(factor):
+    unknown = int(factor.isnull().sum())
+    if unknown:
+        log.warning(
+            "inlet_shear_heating: the film is not known at %d of %d operating points, whose speed "
+            "is beyond the range of the formula",
+            unknown,
+            factor.size,
         )
-    return table
+
+
+def _over_radius(inlet_meniscus, rollers):
+    return None if inlet_meniscus is None else inlet_meniscus / rollers.reduced_radius
 
 
 def _hertz_contact(rollers, force, speed):
@@ -245,10 +318,17 @@ def _regime(load, speed, material):
     return xr.Dataset({"moes_load": moes_load, "moes_material": moes_material, "regime": flag})
 
 
-def _film(formulas, rollers, groups, table):
+def _film(formulas, rollers, groups, table, inlet_meniscus):
     names = xr.DataArray([row.name for row in formulas], dims="film_formula", name="film_formula")
-    films = [xr.apply_ufunc(row.film, *groups, join="exact") for row in formulas]
-    film = xr.concat(films, dim=names, join="exact") * rollers.reduced_radius
+    meniscus = _over_radius(inlet_meniscus, rollers)
+
+    def films(meniscus):
+        options = {"join": "exact", "kwargs": {"meniscus": meniscus}}
+        of_formulas = [xr.apply_ufunc(row.film, *groups, **options) for row in formulas]
+        return xr.concat(of_formulas, dim=names, join="exact") * rollers.reduced_radius
+
+    film = films(meniscus)
+    starved = {} if meniscus is None else {"starvation_factor": film / films(None)}
     valid = [row.holds(table["moes_load"], table["moes_material"]) for row in formulas]
     return xr.Dataset(
         {
@@ -257,5 +337,6 @@ def _film(formulas, rollers, groups, table):
             "in_validity_range": xr.concat(valid, dim=names, join="exact"),
             "formula_place": ("film_formula", [row.thickness for row in formulas]),
             "formula_source": ("film_formula", [row.source for row in formulas]),
+            **starved,
         }
     )

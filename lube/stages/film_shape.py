@@ -7,6 +7,8 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from lube.grid.discretise import layer_factor_of
+from lube.grid.operating_points import at_slip
+from lube.physics.hertz import hertz_gap
 from lube.schema import POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval, ratio_interval
 from lube.study.line_spec import LineSpec
@@ -38,7 +40,7 @@ def film_shape_probabilities(
     spec : LineSpec
         Parameters of the lines; `Study.line_spec` of a study.
     film, profile : xarray.Dataset
-        A ``film`` and a ``film_profile`` dataset of one study.
+        A ``film`` and a ``film_profile`` dataset of one study; of several slips `at_slip` selects.
     boundary_layer : BoundaryLayer
         The boundary layer.
     seed : int
@@ -57,6 +59,7 @@ def film_shape_probabilities(
         If the lines are not Gaussian: rare contact is sampled as in `lube.surfaces.rare_contact`.
     """
     check_gaussian(spec)
+    film = at_slip(film)
     name = film["film_formula"].values[0]
     thickness = film["film_thickness"].sel(film_formula=name).transpose(*POINT_DIMS)
     profile = profile.transpose(*POINT_DIMS, "film_position")
@@ -159,30 +162,6 @@ def window_models(
         CubicSpline(position, profile)(around),
     )
     return tuple(each / spec.height_step if each.size else np.array([np.nan]) for each in films)
-
-
-def hertz_gap(position: Array) -> Array:
-    r"""Gap around a dry line contact.
-
-    .. math:: \frac{h R^*}{a^2} = \frac12 \left( |X| \sqrt{X^2 - 1} - \mathrm{arcosh} |X| \right)
-
-    Parameters
-    ----------
-    position : numpy.ndarray
-        Positions X over the half-width.
-
-    Returns
-    -------
-    numpy.ndarray
-        The gap over a^2 / R*; zero in the contact.
-
-    Examples
-    --------
-    >>> hertz_gap(np.array([-2.0, 0.5, 1.0])).round(4).tolist()
-    [1.0736, 0.0, 0.0]
-    """
-    distance = np.maximum(np.abs(position), 1.0)
-    return 0.5 * (distance * np.sqrt(distance**2 - 1.0) - np.arccosh(distance))
 
 
 def _limited(name, values):

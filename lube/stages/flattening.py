@@ -8,6 +8,7 @@ import scipy.fft
 import xarray as xr
 
 from lube.grid.discretise import layer_factor_of, whole_numbers
+from lube.grid.operating_points import at_slip
 from lube.kernels.strips import strip_statistics
 from lube.physics.flattening import amplitude_ratio
 from lube.rig.map_curves import windows_in
@@ -51,7 +52,7 @@ def flattened_contact(
     xarray.Dataset
         The ``flattening`` file of `lube.schema`, in pure rolling.
     """
-    film = film.isel(film_formula=0).transpose(*POINT_DIMS, ...)
+    film = at_slip(film).isel(film_formula=0).transpose(*POINT_DIMS, ...)
     points = _Points(spec, film, boundary_layer)
 
     def run(number):

@@ -26,6 +26,7 @@ PAIRS = 40
 follow from the scatter between them."""
 FEWER_PAIRS = 8
 """Pairs of lines for the other film formulas, the first of these."""
+_SLIP = "slide_to_roll_ratio"
 _PARTS = slice(0, 1), slice(1, None)
 """The first film formula, and the others."""
 
@@ -82,6 +83,8 @@ def tail_probabilities(
 
     of them per second. The mean number in the window, divided by this rate, is the mean duration.
 
+    Where inlet shear heating thins the film, they do depend on slip, as the film does.
+
     In pure rolling, equal rollers repeat themselves. Groups of breakthroughs a longest wavelength
     apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the
     share of pairs with any is :math:`1 - e^{-\mu}`.
@@ -91,6 +94,10 @@ def tail_probabilities(
     if not lowest > 0.0:
         raise DataError(f"film thickness: got {lowest:g} m, need above 0")
     levels = np.asarray(slide_to_roll_ratio, float)
+    if _SLIP in film["film_thickness"].dims:
+        film = film.sel({_SLIP: levels})
+    else:
+        film = film.drop_dims(_SLIP, errors="ignore")
     try:
         check_gaussian(spec)
     except StudyError as error:
@@ -121,8 +128,7 @@ def _unknown(film, slide_to_roll_ratio, remark):
 
 def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
     """Variables of some film formulas, unlabelled."""
-    slip = xr.DataArray(slide_to_roll_ratio, dims="slide_to_roll_ratio")
-    slip = slip.assign_coords(slide_to_roll_ratio=slip)
+    slip = xr.DataArray(slide_to_roll_ratio, dims=_SLIP).assign_coords({_SLIP: slide_to_roll_ratio})
     points = _window_points(spec, film)
     in_windows, runs = outcomes
     contact, breakthrough = in_windows.transpose("outcome", ...)
@@ -145,10 +151,22 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
         **_limited("breakthrough_rate", rate),
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
-        **_touching_pairs(groups * spec.points[0], breakthrough, windows, perimeter / speed),
+        **_touching_pairs(
+            _in_pure_rolling(groups) * spec.points[0],
+            _in_pure_rolling(breakthrough),
+            windows,
+            perimeter / speed,
+        ),
         **_asymptotes(spec, film, boundary_layer),
     }
     return xr.Dataset(table)
+
+
+def _in_pure_rolling(values):
+    """Values without slip, if they depend on it; NaN if no level is without."""
+    if _SLIP not in values.dims:
+        return values
+    return values.reindex({_SLIP: [0.0]}).isel({_SLIP: 0}, drop=True)
 
 
 def _window_points(spec, film):

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
-from lube.grid.operating_points import surface_speeds
+from lube.grid.operating_points import at_slip, surface_speeds
 from lube.grid.window_films import film_on_points, shaped_films, window_films
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
@@ -100,6 +100,7 @@ def _rows(film, points):
         name: ("operating_point", [point[name] for point in points]) for name in CONTACT_DIMS
     }
     levels = xr.Dataset(columns)
+    film = at_slip(film, points[0]["slide_to_roll_ratio"])
     rows = film.sel({name: levels[name] for name in OPERATING_DIMS})
     return rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
 

@@ -9,7 +9,7 @@ and those after it only.
 import math
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, StrictInt, field_validator, model_validator
 from pydantic_core import to_jsonable_python
@@ -18,12 +18,14 @@ from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, shown
 from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
+from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import DATASETS, STAGES, forerunners
 from lube.study.field_types import (
     Slug,
     StrictModel,
     collected,
     each_once,
+    length_or_words,
     levels,
     pure_number,
     quantity,
@@ -44,6 +46,7 @@ from lube.study.rollers import ROLLERS, BoundaryLayer, RollerPair, Roughness
 from lube.study.size_limits import check_sizes
 from lube.study.written_forms import Written
 from lube.types import File
+from lube.units import with_unit
 
 
 @collected()
@@ -77,6 +80,8 @@ class OperatingGrid(StrictModel):
     slide_to_roll_ratio: levels(None, least=-2.0, most=2.0)
     """(v1 - v2) / mean surface speed; 0 is pure rolling"""
 
+
+_Meniscus = length_or_words(lambda value: value == "none", "none", "^none$")
 
 _TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "speed", "force")
 
@@ -124,6 +129,14 @@ class Study(StrictModel):
     """names of shipped records, or paths of your own YAML records"""
     film_formulas: tuple[_Formula, ...] = Field(min_length=1)
     """names from the registry of film formulas"""
+    inlet_shear_heating: Literal[INLET_HEATING] = "none"
+    """whether heating of the oil at the inlet thins the film, the more so the more the rollers slip,
+    by the formula of Gupta et al. (1992)
+    """
+    inlet_meniscus: _Meniscus = "none"
+    """distance before the line of centres at which the oil begins, more than the half-width of the
+    contact; without it the contact is fully flooded
+    """
     operating_grid: OperatingGrid
     roughness: Roughness
     boundary_layer: BoundaryLayer
@@ -152,6 +165,12 @@ class Study(StrictModel):
     def rough_rollers(self) -> RollerPair:
         """The rollers, each measured one with the rms height of its line."""
         return self.rollers.with_rms_heights(self.line_spec.rms_height)
+
+    @property
+    def film_corrections(self) -> dict[str, str | float | None]:
+        """What reduces the film, as arguments of `lube.stages.film.film_table`."""
+        meniscus = None if self.inlet_meniscus == "none" else self.inlet_meniscus
+        return {"inlet_shear_heating": self.inlet_shear_heating, "inlet_meniscus": meniscus}
 
     @property
     def topographies(self) -> dict[str, RollerTopography]:
@@ -213,6 +232,8 @@ class Study(StrictModel):
     def check_window(self, force: float) -> None:
         """Refuse a force whose contact is finer than the grid or wider than a roller's perimeter.
 
+        So is one whose contact reaches the meniscus of the oil.
+
         Parameters
         ----------
         force : float
@@ -223,8 +244,16 @@ class Study(StrictModel):
         StudyError
             With the contact width, and what is needed.
         """
-        width = 2.0 * self.rollers.contact_half_width(force)
-        check_width(self.line_spec, width, f"operating_grid.force: the contact at {force:g} N")
+        half_width = self.rollers.contact_half_width(force)
+        what = f"operating_grid.force: the contact at {force:g} N"
+        check_width(self.line_spec, 2.0 * half_width, what)
+        meniscus = self.film_corrections["inlet_meniscus"]
+        if meniscus is not None and meniscus <= half_width:
+            came, least = with_unit(meniscus, "m"), with_unit(float(f"{half_width:.3g}"), "m")
+            raise StudyError(
+                f"inlet_meniscus: got {came}, need more than {least}, the half-width of the contact "
+                f"at {force:g} N"
+            )
 
     @property
     def evaluation(self) -> dict:
@@ -273,11 +302,21 @@ class Study(StrictModel):
         with collected("operating_grid.temperature"):
             for record in self.lubricants:
                 check_temperatures(record, self.operating_grid.temperature)
+        if self.inlet_shear_heating != "none":
+            self._check_conductivity()
         with collected():
             for force in self.operating_grid.force:
                 self.check_window(force)
             check_sizes(self)
         return self
+
+    def _check_conductivity(self):
+        for record in self.lubricants:
+            if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:
+                raise ValueError(
+                    f"inlet_shear_heating: got {self.inlet_shear_heating}, need none for the "
+                    f"lubricant {record.name}, whose thermal_conductivity is not given"
+                )
 
     @model_validator(mode="after")
     def _check_traces(self):

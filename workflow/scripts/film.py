@@ -9,5 +9,13 @@ begin_job(snakemake.log[0])
 study = load_study(**snakemake.config["study"])
 grid = study.operating_grid
 lubricant = load(snakemake.input.lubricant, "lubricant", study)
-table = film_table(lubricant, study.rough_rollers, grid.force, grid.speed, study.film_formulas)
+table = film_table(
+    lubricant,
+    study.rough_rollers,
+    grid.force,
+    grid.speed,
+    study.film_formulas,
+    slide_to_roll_ratio=study.slips,
+    **study.film_corrections,
+)
 save(table, snakemake.output[0], "film", study, [snakemake.input.lubricant])

@@ -9,5 +9,11 @@ begin_job(snakemake.log[0])
 study = load_study(**snakemake.config["study"])
 grid = study.operating_grid
 lubricant = load(snakemake.input.lubricant, "lubricant", study)
-profiles = film_profile_table(lubricant, study.rough_rollers, grid.force, grid.speed)
+profiles = film_profile_table(
+    lubricant,
+    study.rough_rollers,
+    grid.force,
+    grid.speed,
+    study.film_corrections["inlet_meniscus"],
+)
 save(profiles, snakemake.output[0], "film_profile", study, [snakemake.input.lubricant])

@@ -1,0 +1,89 @@
+"""Starvation: how an inlet with too little oil thins the film."""
+
+import numpy as np
+
+from lube.errors import RangeError
+from lube.physics.hertz import hertz_gap
+from lube.types import Array, Values
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
+_REACH = 12.0
+"""Of the integral to either side, in the logarithm of the distance over its scale."""
+_STEPS = 40
+
+
+def starvation_factor(film: Values, meniscus: Values) -> Values:
+    r"""Factor by which the film is thinner if the oil begins at a meniscus near the contact.
+
+    In the inlet analysis of Ertel and Grubin the pressure at the edge of Hertz' contact is the
+    same at any load, and it is built up in the gap of the dry contact, lifted by the film:
+
+    .. math::
+
+        \int_1^{X_m} \frac{G}{(H + G)^3} \, dX = \int_1^\infty \frac{G}{(H_\infty + G)^3} \, dX,
+        \qquad C = \frac{H}{H_\infty}
+
+    with the gap G(X) of `hertz_gap`, and the film H and that of a flooded contact H_inf scaled as
+    the gap is. Speed, viscosity and the pressure-viscosity coefficient act through the flooded film
+    alone.
+
+    Parameters
+    ----------
+    film : float or numpy.ndarray
+        Flooded film over a^2 / R*, with the half-width a of the contact.
+    meniscus : float or numpy.ndarray
+        Distance of the meniscus before the line of centres over a; they broadcast.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        The factor, between 0 and 1.
+
+    Raises
+    ------
+    RangeError
+        If a meniscus lies inside the contact.
+
+    References
+    ----------
+    A. N. Grubin, Central Sci. Res. Inst. Technol. Mech. Eng., Book 30 (1949), here with an inlet of
+    finite length, as in L. E. Wolveridge, K. P. Baglin and J. F. Archard, The starved lubrication of
+    cylinders in line contact, Proc. Inst. Mech. Eng. 185 (1971) 1159-1169 (not read). Its deviation
+    from the solution of Reynolds' equation is tested in ``tests/physics/test_starvation.py``.
+
+    Examples
+    --------
+    >>> starvation_factor(1.16, np.array([2.0, 5.0, 50.0])).round(3).tolist()
+    [0.663, 0.962, 1.0]
+    """
+    film, meniscus = np.broadcast_arrays(np.asarray(film, float), np.asarray(meniscus, float))
+    if not np.all(meniscus > 1.0):
+        raise RangeError(
+            f"meniscus: got one {meniscus.min():g} half-widths before the line of centres, inside "
+            "the contact, need more than 1"
+        )
+    wanted, _ = _inlet(np.log(film), film, np.inf)
+    log_film = np.log(film)
+    # The integral's logarithm is concave in that of the film, so Newton's steps do not overshoot.
+    for _ in range(_STEPS):
+        found, slope = _inlet(log_film, film, meniscus)
+        step = (wanted - found) / slope
+        log_film = log_film + step
+        if np.nanmax(np.abs(step), initial=0.0) < 1e-12:
+            break
+    return (np.exp(log_film) / film)[()]
+
+
+def _inlet(log_film: Array, flooded: Array, meniscus: Values) -> tuple[Array, Array]:
+    """Logarithm of the inlet's integral, and its slope over that of the film."""
+    # Where the gap is as high as the film: it grows as d^1.5 near the contact, as d^2 far off.
+    scales = np.log(flooded) * np.array([[2.0 / 3.0], [0.5]]).reshape(2, *(1,) * flooded.ndim)
+    last = np.minimum(np.log(meniscus - 1.0), scales.max(axis=0) + _REACH)
+    first = np.minimum(scales.min(axis=0), last) - _REACH
+    half = 0.5 * (last - first)[..., None]
+    distance = np.exp(last[..., None] - half * (1.0 - _NODES))
+    gap, film = hertz_gap(1.0 + distance), np.exp(log_film)[..., None]
+    share = _WEIGHTS * half * distance * gap / (film + gap) ** 3
+    total = share.sum(axis=-1)
+    slope = -3.0 * (share * film / (film + gap)).sum(axis=-1) / total
+    return np.log(total), slope
