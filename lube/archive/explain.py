@@ -169,10 +169,19 @@ def in_words(explanation: Explanation) -> str:
         "explanation.txt",
         **vars(explanation),
         dims=CONTACT_DIMS,
+        corrections=_corrections(explanation.film),
         differing=explanation.differing,
         realised=[name for name in again if "realisation" in again[name].dims],
         stated=_stated,
     ).strip()
+
+
+def _corrections(film):
+    """Names of the factors that the film has been reduced by."""
+    heated = "slide_to_roll_ratio" in film["film_thickness"].dims
+    factors = {"starvation_factor": "starvation_factor" in film}
+    factors["inlet_shear_heating_factor"] = heated
+    return tuple(name for name, applied in factors.items() if applied)
 
 
 def _stated(array):

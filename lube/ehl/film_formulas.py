@@ -90,7 +90,7 @@ class Formula:
             E', Pa.
         meniscus : float, optional
             Distance over R*, from the line of centres, at which the oil begins; by default far
-            away. A formula's film is reduced by `starvation_factor`, the computed one is solved for.
+            away. A formula's film is reduced by `starvation_factor`, the computed one solved for.
 
         Returns
         -------

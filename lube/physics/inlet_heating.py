@@ -41,8 +41,8 @@ def inlet_shear_heating_factor(
     Returns
     -------
     float or numpy.ndarray
-        Factor :math:`C` on the film thickness, above 0 and at most 1. NaN where the numerator is not
-        above 0: there the speed is beyond the formula's range.
+        Factor :math:`C` on the film thickness, above 0 and at most 1. NaN where the numerator is
+        not above 0: there the speed is beyond the formula's range.
 
     References
     ----------
@@ -52,9 +52,10 @@ def inlet_shear_heating_factor(
 
     Examples
     --------
-    >>> rolling, sliding = inlet_shear_heating_factor(0.28, 0.05, 0.52, 0.14, 2e-3, np.array([0, 2]))
+    >>> slip = np.array([0.0, 2.0])
+    >>> rolling, sliding = inlet_shear_heating_factor(0.28, 0.05, 0.52, 0.14, 2e-3, slip)
     >>> f"{rolling:.3f}, {sliding:.3f}"
-    '0.972, 0.917'
+    '0.974, 0.900'
     """
     heating = viscosity * temperature_viscosity_coefficient * entrainment_speed**2
     loading = heating / thermal_conductivity

@@ -46,10 +46,9 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
 
     References
     ----------
-    A. N. Grubin, Central Sci. Res. Inst. Technol. Mech. Eng., Book 30 (1949), here with an inlet of
-    finite length, as in L. E. Wolveridge, K. P. Baglin and J. F. Archard, The starved lubrication of
-    cylinders in line contact, Proc. Inst. Mech. Eng. 185 (1971) 1159-1169 (not read). Its deviation
-    from the solution of Reynolds' equation is tested in ``tests/physics/test_starvation.py``.
+    A. N. Grubin, Central Sci. Res. Inst. Technol. Mech. Eng., Book 30 (1949), here with an inlet
+    of finite length. Against the solution of Reynolds' equation the factor is right to 0.02 at
+    M = 1.9 and above, to 0.09 at M = 1.2: ``tests/physics/test_starvation.py``.
 
     Examples
     --------

@@ -105,9 +105,15 @@ def _table(head, rows):
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
+def _dimensions(variable):
+    """Names of the dimensions, in brackets those of some studies only."""
+    dims = variable.all_dims
+    return ", ".join(dim if dim in variable.dims else f"({dim})" for dim in dims)
+
+
 def _variables(variables):
     rows = [
-        (f"`{name}`", ", ".join(one.dims), one.units or "text", one.long_name)
+        (f"`{name}`", _dimensions(one), one.units or "text", one.long_name)
         for name, one in variables.items()
     ]
     return _table(("name", "dimensions", "unit", "meaning"), rows)

@@ -142,6 +142,10 @@ def _film(film, first):
         "points": film["regime"].size,
         "outside": outside,
         "heating": heating if math.isfinite(heating) else None,
+        "heated": "slide_to_roll_ratio" in thickness.dims,
+        "starving": 1.0 - film["starvation_factor"].min().item()
+        if "starvation_factor" in film
+        else None,
     }
 
 

@@ -130,8 +130,8 @@ class Study(StrictModel):
     film_formulas: tuple[_Formula, ...] = Field(min_length=1)
     """names from the registry of film formulas"""
     inlet_shear_heating: Literal[INLET_HEATING] = "none"
-    """whether heating of the oil at the inlet thins the film, the more so the more the rollers slip,
-    by the formula of Gupta et al. (1992)
+    """formula by which heating of the oil at the inlet thins the film, the more so the more the
+    rollers slip: that of Gupta et al. (1992)
     """
     inlet_meniscus: _Meniscus = "none"
     """distance before the line of centres at which the oil begins, more than the half-width of the
@@ -249,10 +249,9 @@ class Study(StrictModel):
         check_width(self.line_spec, 2.0 * half_width, what)
         meniscus = self.film_corrections["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:
-            came, least = with_unit(meniscus, "m"), with_unit(float(f"{half_width:.3g}"), "m")
             raise StudyError(
-                f"inlet_meniscus: got {came}, need more than {least}, the half-width of the contact "
-                f"at {force:g} N"
+                f"inlet_meniscus: got {with_unit(meniscus, 'm')}, need more than "
+                f"{with_unit(half_width, 'm')}, the half-width of the contact at {force:g} N"
             )
 
     @property

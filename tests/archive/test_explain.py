@@ -21,15 +21,24 @@ POINT = {"force": 1600.0, "speed": 100.0, "temperature": 80.0}
 REALISATIONS = 9  # from eight on, NumPy sums pairwise
 
 
+CORRECTED = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 0.4e-3}
+
+
 @pytest.fixture(scope="module")
 def folder(study, tmp_path_factory):
     """Contact results of the smoke study on a coarser grid, and the files they were made from."""
-    folder = tmp_path_factory.mktemp("study")
+    return results(study, tmp_path_factory.mktemp("study"))
+
+
+def results(study, folder):
+    """A folder with the results of a study on a coarser grid."""
     coarse = study.roughness.model_copy(update={"points": 12_000})
     study = study.model_copy(update={"roughness": coarse})
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
-    film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+    levels = grid.force, grid.speed, study.film_formulas
+    corrections = {"slide_to_roll_ratio": study.slips, **study.film_corrections}
+    film = film_table(oil, study.rollers, *levels, **corrections)
     lines = roughness_batch(study.line_spec, study.seed, range(REALISATIONS))
     run = contact_statistics(lines, film, study.boundary_layer, study.slips, study.revolutions)
     save(oil, folder / "lubricant.nc", "lubricant", study)
@@ -87,6 +96,15 @@ def test_an_explanation_states_what_determines_a_number(folder, study):
     words = in_words(explain(folder / "contact.nc", None, **POINT))
     assert f"all {REALISATIONS} realisations" in words
     assert "NOT" not in words
+
+
+def test_a_corrected_film_is_explained_by_its_factors(study, tmp_path):
+    path = results(study.model_copy(update=CORRECTED), tmp_path) / "contact.nc"
+    result = explain(path, None, slide_to_roll_ratio=0.1, **POINT)
+    assert result.differing == []
+    words = in_words(result)
+    for stated in ("film over that of a flooded contact", "film over that without inlet shear"):
+        assert stated in words
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ def test_every_point_has_the_values_of_its_levels_in_any_order_of_dimensions(fil
         for name in ("film_thickness", "contact_half_width", "entrainment_speed"):
             assert getattr(point, name) == here[name].item()
         assert point.reduced_modulus == table["reduced_modulus"].item()
-    turned = table.transpose("force", "lubricant", "speed", "temperature")
+    turned = table.transpose("force", "lubricant", "speed", "temperature", ...)
     assert operating_points(turned, 0.1) == points
     forces = table["force"].values.tolist()  # which change fastest
     assert [point.force for point in points] == forces * (len(points) // len(forces))

@@ -11,6 +11,7 @@ import xarray as xr
 
 from lube import BoundaryLayer, contact_map, contact_statistics, gather_map, roughness_lines
 from lube.grid.discretise import line_pair
+from lube.grid.operating_points import at_slip
 from lube.kernels.layer import layer_factor
 from lube.kernels.strips import strip_statistics
 from lube.schema import OPERATING_DIMS
@@ -148,7 +149,7 @@ def test_only_film_and_half_width_matter(lines, film, layer, contact):
         assert (values[0] > values[1]).all()
         assert (values == values[:, :, :1, :1, :1, :1, :1]).all()
         assert (values[:, 0] != values[:, 1]).all()
-    turned = film.transpose("force", "speed", "film_formula", "temperature", "lubricant")
+    turned = film.transpose("force", "speed", "film_formula", "temperature", "lubricant", ...)
     # Equal rollers without slip repeat themselves.
     assert same(contact_statistics(lines, turned, layer, revolutions=3), contact)
 
@@ -202,6 +203,26 @@ def test_slip_changes_which_asperities_meet_and_next_to_none_changes_nothing(lin
     back, rolling, forth, slip = (contact.isel(slide_to_roll_ratio=number) for number in range(4))
     assert same(back, rolling) and same(forth, rolling)
     assert not same(slip, rolling)
+
+
+def test_each_slip_has_the_film_that_heating_leaves_there(lines, film, layer):
+    few = film.isel(temperature=[2, 3], speed=[0, 1], force=[2, 4])
+    slips = [0.0, 0.3]
+    thinner = xr.DataArray([1.0, 0.8], {"slide_to_roll_ratio": slips}, "slide_to_roll_ratio")
+    heated = few.drop_dims("slide_to_roll_ratio").assign(
+        film_thickness=thinner * few["film_thickness"], lambda_ratio=thinner * few["lambda_ratio"]
+    )
+    contact = contact_statistics(lines, heated, layer, slips)
+    for slip in slips:
+        alone = contact_statistics(lines, at_slip(heated, slip), layer, [slip])
+        xr.testing.assert_identical(contact.sel(slide_to_roll_ratio=[slip]), alone)
+    cold = contact_statistics(lines, few, layer, slips)
+    assert same(cold.isel(slide_to_roll_ratio=0), contact.isel(slide_to_roll_ratio=0))
+    name = "geometric_contact_probability"
+    more = (contact[name] - cold[name]).sel(slide_to_roll_ratio=0.3)
+    assert (more >= 0.0).all() and more.sum() > 0.0
+    mapped = contact_map(lines, heated, layer, 4, 2)
+    assert mapped["lambda_ratio"].min() == pytest.approx(0.3 * heated["lambda_ratio"].min().item())
 
 
 def test_the_travel_is_the_circumference_of_the_smaller_roller(make_spec, film, layer):

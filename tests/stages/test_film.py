@@ -11,7 +11,7 @@ from studies import PAPER
 from lube import schema
 from lube.ehl import film_formulas
 from lube.errors import DataError, LubeError
-from lube.stages.film import film_at, film_table
+from lube.stages.film import film_at, film_at_records, film_profile_table, film_table
 from lube.stages.lubricant import lubricant_table
 from lube.study.study import load_study
 
@@ -130,3 +130,78 @@ def test_figures_of_the_paper_over_the_grid(table):
     assert outside.sum(["temperature", "speed"]).values.tolist() == [25, 25, 15, 1, 0]
     assert outside.sel(force=100, speed=200, temperature=40)
     assert not outside.sel(force=800, speed=100, temperature=40)
+
+
+# --- Corrections -------------------------------------------------------------------------
+
+SLIPS = [-1.0, 0.0, 2.0]
+AXES = {"force": [400.0, 1600.0], "speed": [100.0, 200.0]}
+NAMES = ["paper", "dowson-higginson-minimum"]
+
+
+def corrected(**corrections):
+    return film_table(
+        oil(), ROLLERS, *AXES.values(), NAMES, slide_to_roll_ratio=SLIPS, **corrections
+    )
+
+
+def test_inlet_shear_heating_thins_the_film_by_its_factor_at_each_slip():
+    cold, hot = corrected(), corrected(inlet_shear_heating="gupta-1992")
+    schema.check(hot, "film")
+    assert hot["film_thickness"].dims == schema.CONTACT_DIMS
+    factor = hot["inlet_shear_heating_factor"]
+    np.testing.assert_array_equal(factor, cold["inlet_shear_heating_factor"])
+    for name in ("film_thickness", "lambda_ratio"):
+        expected = (cold[name] * factor).transpose(*schema.CONTACT_DIMS)
+        np.testing.assert_allclose(hot[name], expected, rtol=1e-14)
+    left, rolling, right = hot["film_thickness"]
+    assert (right < left).all() and (left < rolling).all()
+    at = {"force": 1600, "speed": 200, "temperature": 40, "slide_to_roll_ratio": 2}
+    assert factor.isel(lubricant=0).sel(at) == pytest.approx(0.80, abs=0.005)
+    assert "starvation_factor" not in hot
+
+
+def test_a_meniscus_thins_the_film_by_its_factor_before_heating_does():
+    flooded, starved = corrected(), corrected(inlet_meniscus=0.4e-3)
+    schema.check(starved, "film")
+    factor = starved["starvation_factor"]
+    assert (factor < 0.98).all() and (factor.diff("force") < 0.0).all()
+    np.testing.assert_allclose(starved["film_thickness"], flooded["film_thickness"] * factor, 1e-14)
+    both = corrected(inlet_shear_heating="gupta-1992", inlet_meniscus=0.4e-3)
+    np.testing.assert_array_equal(both["starvation_factor"], factor)
+    expected = starved["film_thickness"] * both["inlet_shear_heating_factor"]
+    np.testing.assert_allclose(both["film_thickness"], expected.transpose(*schema.CONTACT_DIMS))
+    xr.testing.assert_identical(corrected(inlet_meniscus=100.0)["regime"], flooded["regime"])
+    far = corrected(inlet_meniscus=100.0)["film_thickness"]
+    np.testing.assert_allclose(far, flooded["film_thickness"], rtol=1e-8)
+
+
+def test_a_starved_computed_film_is_that_of_the_profile():
+    point = [800.0], [100.0]
+    one = oil().sel(temperature=[40.0])
+    film = film_table(one, ROLLERS, *point, ["computed"], inlet_meniscus=0.4e-3)
+    profile = film_profile_table(one, ROLLERS, *point, inlet_meniscus=0.4e-3)
+    assert film["film_thickness"].item() == pytest.approx(profile["central_film"].item(), rel=1e-5)
+    assert 0.8 < film["starvation_factor"].item() < 0.95
+
+
+def test_beyond_the_range_of_the_heating_formula_the_film_is_not_known(caplog):
+    fast = [100.0, 1e6]
+    table = film_table(oil(), ROLLERS, [1600.0], fast, ["paper"], inlet_shear_heating="gupta-1992")
+    slow, unknown = (table["film_thickness"].sel(speed=speed) for speed in fast)
+    assert slow.notnull().all() and unknown.isnull().all()
+    assert "the film is not known at 5 of 10 operating points" in caplog.text
+
+
+def test_each_record_is_heated_by_its_own_slip():
+    rows = {"force": [400.0, 1600.0], "speed": [200.0, 100.0], "slide_to_roll_ratio": [2.0, -1.0]}
+    rows |= {"temperature": [40.0, 40.0], "lubricant": [oil()["lubricant"].values[0]] * 2}
+    experiment = xr.Dataset({name: ("record", values) for name, values in rows.items()})
+    corrections = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 0.4e-3}
+    found = film_at_records(experiment, oil(), ROLLERS, NAMES, **corrections)
+    table = corrected(**corrections).isel(lubricant=0).sel(temperature=40.0)
+    assert found["inlet_meniscus"] == 0.4e-3
+    for record in range(2):
+        at = {name: rows[name][record] for name in ("force", "speed", "slide_to_roll_ratio")}
+        for name in ("film_thickness", "lambda_ratio", "inlet_shear_heating_factor"):
+            np.testing.assert_allclose(found[name].isel(record=record), table[name].sel(at), 1e-14)

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from lube import contact_statistics, film_table, gather, roughness_lines
+from lube.physics.hertz import hertz_gap
 from lube.stages.film import film_profile_table
-from lube.stages.film_shape import FILM_MODELS, film_shape_probabilities, hertz_gap, window_models
+from lube.stages.film_shape import FILM_MODELS, film_shape_probabilities, window_models
 from lube.stages.lubricant import lubricant_table
 from lube.stages.tail import tail_probabilities
 

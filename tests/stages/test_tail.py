@@ -7,6 +7,7 @@ import xarray as xr
 from lube import contact_statistics, gather, roughness_lines
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
+from lube.grid.operating_points import at_slip
 from lube.kernels.layer import layer_factor
 from lube.kernels.motion import surface_position
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS
@@ -71,6 +72,32 @@ def test_probabilities_do_not_depend_on_slip_but_contacts_become_more_and_shorte
     assert np.all(duration.diff("slide_to_roll_ratio") < 0.0)
     present = rate * duration
     np.testing.assert_allclose(present, present.isel(slide_to_roll_ratio=[0] * len(RATIOS)))
+
+
+def test_each_slip_has_the_film_that_heating_leaves_there(tail, spec, few, study):
+    """With two formulas; what holds in pure rolling is not known without it."""
+    name = "slide_to_roll_ratio"
+    thinner = xr.DataArray([1.0, 0.95, 0.8], {name: list(RATIOS)}, name)
+    heated = few.drop_dims("slide_to_roll_ratio").assign(
+        film_thickness=thinner * few["film_thickness"]
+    )
+    found = tail_probabilities(spec, heated, study.boundary_layer, SEED, RATIOS)
+    assert found["breakthrough_asymptote"].dims == CONTACT_DIMS
+    for ratio in RATIOS:
+        one = at_slip(heated, ratio)
+        alone = tail_probabilities(spec, one, study.boundary_layer, SEED, [ratio])
+        for name in (*PROBABILITIES, "breakthrough_rate", "breakthrough_duration"):
+            here = found[name].sel(slide_to_roll_ratio=[ratio])
+            np.testing.assert_allclose(here, alone[name], rtol=1e-12)
+        for name in ("breakthrough_asymptote", "geometric_contact_asymptote"):
+            here = found[name].sel(slide_to_roll_ratio=ratio)
+            np.testing.assert_allclose(here, alone[name], rtol=1e-12)
+    for name in ("touching_pair_share", "touching_pair_share_upper", "first_breakthrough_time"):
+        np.testing.assert_allclose(found[name], tail[name], rtol=1e-12)
+    without = tail_probabilities(spec, heated, study.boundary_layer, SEED, RATIOS[1:])
+    assert without["touching_pair_share"].isnull().all()
+    expected = found["breakthrough_rate"].isel(slide_to_roll_ratio=slice(1, None))
+    np.testing.assert_allclose(without["breakthrough_rate"], expected, rtol=1e-12)
 
 
 def test_in_pure_rolling_a_breakthrough_lasts_as_long_as_its_passage(tail, few):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lube import BoundaryLayer, contact_statistics, contact_trace, contact_window
-from lube.schema import CONTACT_DIMS
+from lube.schema import CONTACT_DIMS, OPERATING_DIMS
 
 RESISTIVITY = 0.2e-6
 
@@ -12,9 +12,7 @@ RESISTIVITY = 0.2e-6
 def point(film, ratio, **indices):
     """Operating point at these indices of the film table."""
     place = film.isel({"lubricant": 0, "speed": 1, **indices})
-    return {"slide_to_roll_ratio": ratio} | {
-        name: place[name].item() for name in CONTACT_DIMS if name in place.coords
-    }
+    return {"slide_to_roll_ratio": ratio} | {name: place[name].item() for name in OPERATING_DIMS}
 
 
 def points_of(film, ratio):
@@ -78,7 +76,7 @@ def test_operating_points_carry_their_coordinates(case, film):
     for number, place in enumerate(points_of(film, ratio)):
         here = trace.isel(operating_point=number)
         assert {name: here[name].item() for name in CONTACT_DIMS} == place
-        there = film.sel({name: place[name] for name in CONTACT_DIMS[1:]})
+        there = film.sel({name: place[name] for name in OPERATING_DIMS})
         for name in ("film_thickness", "contact_half_width"):
             assert here[name].item() == there[name].item()
 

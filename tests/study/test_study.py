@@ -62,6 +62,23 @@ def test_the_force_of_a_record_needs_a_contact_that_the_grid_resolves():
         study.check_window(1e12)
 
 
+def test_what_corrects_the_film_is_off_by_default_and_asks_for_what_it_needs(paper_with):
+    assert load_study(PAPER).film_corrections == {
+        "inlet_shear_heating": "none",
+        "inlet_meniscus": None,
+    }
+    changes = ("inlet_shear_heating", "gupta-1992"), ("inlet_meniscus", "0.4 mm")
+    study = load_study(paper_with(*changes))
+    assert study.film_corrections == {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 4e-4}
+    # So is the force of a record.
+    with pytest.raises(StudyError, match=r"got 400 µm, need more than .* the contact at 6000 N"):
+        study.check_window(6000.0)
+    oil = study.lubricants[0].model_copy(update={"thermal_conductivity": None})
+    values = dict(study) | {"lubricants": (oil,)}
+    with pytest.raises(ValueError, match=r"need none for the lubricant .* thermal_conductivity is"):
+        study.model_copy(update=values)._check_conductivity()
+
+
 def test_the_lines_follow_from_the_largest_contact_width_and_the_radii(paper_with):
     study = load_study(PAPER)
     width = 2.0 * study.rollers.contact_half_width(max(study.operating_grid.force))
@@ -120,7 +137,9 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
     for key, value, stages in [
         ("resistivity", "0.3 uohm*m", {"trace", "experiment"}),
         ("boundary_layer.critical_thickness", "6 nm", LAYER),
-        ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS),
+        ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS | {"film"}),
+        ("inlet_shear_heating", "gupta-1992", {"film"}),
+        ("inlet_meniscus", "0.4 mm", {"film"}),
         ("revolutions", 3, {"contact"}),
         ("seed", 1, LINES),
         ("roughness.points", 500_000, SPECTRUM),

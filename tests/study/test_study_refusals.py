@@ -35,6 +35,14 @@ PURE_NUMBERS = [
     ("operating_grid.slide_to_roll_ratio", [], "need a list such as [0, 0.1]"),
 ]
 
+CORRECTIONS = [
+    ("inlet_meniscus", "0.2 mm", "got 200 µm, need more than 210.093 µm, the half-width of"),
+    ("inlet_meniscus", "0.4", "got '0.4', need a number with its unit, such as '1 m', or none"),
+    ("inlet_meniscus", "far", "or none"),
+    ("inlet_meniscus", "-1 mm", "got -0.001, need a value above 0 m, or none"),
+    ("inlet_shear_heating", "gupta", "need 'none' or 'gupta-1992'"),
+]
+
 COUNTS = [
     ("seed", -1, "got -1, need at least 0"),
     ("seed", 1.5, "got 1.5, need a whole number"),
@@ -86,7 +94,15 @@ TRACES = [
 
 
 def test_a_mistake_is_refused_by_key_value_and_what_is_needed(paper_with):
-    for key, value, needed in [*UNKNOWN_KEYS, *PURE_NUMBERS, *COUNTS, *GRIDS, *NAMES, *TRACES]:
+    for key, value, needed in [
+        *UNKNOWN_KEYS,
+        *PURE_NUMBERS,
+        *COUNTS,
+        *GRIDS,
+        *NAMES,
+        *TRACES,
+        *CORRECTIONS,
+    ]:
         message = refusal(paper_with((key, value)))
         assert needed in message
         assert NEEDED.search(message)

@@ -282,7 +282,8 @@ function showValues(point) {
     ].map((name) => [variables[name].long_name, shown(name, point)]);
     rows.splice(4, 0, ["contact width", `${rounded(2e6 * at("contact_half_width", point))} µm`]);
     const heating = at("inlet_shear_heating_factor", point);
-    rows.push(["film reduction by inlet shear heating, not applied", percent(heating === null ? null : 1 - heating)]);
+    const applied = variables.film_thickness.dims.includes("slide_to_roll_ratio") ? "" : ", not applied";
+    rows.push([`film reduction by inlet shear heating${applied}`, percent(heating === null ? null : 1 - heating)]);
     if (content.sampled) rows.push(["breakthroughs counted in the realisations", withInterval(counted(point))]);
     rows.push(["geometric contact probability", probability(point, "geometric_contact").text]);
     showTable("values", rows.map(([name, value]) => [name[0].toUpperCase() + name.slice(1), value]));

@@ -1,0 +1,34 @@
+"""Fits to all records: the films that are tried are those of the records, changed by a factor."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from experiments import experiment_of
+
+from lube.physics.starvation import starvation_factor
+from lube.rig.fits import _lambda_ratios
+from lube.stages.film import film_at_records
+from lube.stages.lubricant import lubricant_table
+
+CORRECTED = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 0.4e-3}
+FORMULAS = ["paper", "moes", "computed"]
+
+
+@pytest.mark.parametrize("corrections", [{}, CORRECTED])
+def test_with_the_studys_coefficient_the_films_are_those_of_the_records(study, corrections):
+    conditions = [400.0, 1600.0], [100.0, 200.0], [60.0, 80.0]
+    experiment = experiment_of([0.1, 0.2], *conditions, slide_to_roll_ratio=[0.0, 1.5])
+    oil = lubricant_table(study.lubricants, [60.0, 80.0])
+    found = film_at_records(experiment, oil, study.rollers, FORMULAS, **corrections)
+    factor = xr.DataArray([0.5, 1.0], dims="factor")
+    half, whole = _lambda_ratios(found, factor).transpose("factor", "film_formula", "record")
+    np.testing.assert_allclose(whole, found["lambda_ratio"], rtol=1e-5)
+    # Heating is as before; a thinner film starves less.
+    flooded = film_at_records(experiment, oil, study.rollers, ["paper"])["lambda_ratio"][0]
+    expected = flooded * 0.5**0.470 * found.get("inlet_shear_heating_factor", 1.0)
+    if corrections:
+        width = found["contact_half_width"]
+        scale = found["reduced_radius"] * found["composite_rms_roughness"] / width**2
+        starved = starvation_factor(flooded * 0.5**0.470 * scale, 0.4e-3 / width)
+        expected = expected * starved
+    np.testing.assert_allclose(half.sel(film_formula="paper"), expected, rtol=1e-9)
