@@ -57,7 +57,8 @@ def datasets_of_every_kind(study):
     )
     spec = own.line_spec
     oil = lubricant_table(study.lubricants, grid.temperature)
-    film = film_table(oil, own.rollers, grid.force, grid.speed, study.film_formulas)
+    levels = grid.force, grid.speed, study.film_formulas
+    film = film_table(oil, own.rollers, *levels, slide_to_roll_ratio=study.slips)
     profile = film_profile_table(oil, own.rollers, grid.force, grid.speed)
     lines = roughness_lines(spec, study.seed, [0, 1])
     batch = roughness_batch(spec, study.seed, [0, 1])

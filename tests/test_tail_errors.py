@@ -14,7 +14,7 @@ SEEDS, REALISATIONS = 10, 150
 
 @pytest.fixture(scope="module")
 def first(busy):
-    return busy.film.isel(film_formula=[0], speed=[0]).transpose(*OPERATING_DIMS)
+    return busy.film.isel(film_formula=[0], speed=[0]).transpose(*OPERATING_DIMS, ...)
 
 
 @pytest.fixture(scope="module")

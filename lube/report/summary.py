@@ -130,6 +130,7 @@ def _film(film, first):
         name: int((~film["in_validity_range"].sel(film_formula=name).astype(bool)).sum())
         for name in film["film_formula"].values
     }
+    starved = film.sel(first).get("starvation_factor")
     heating = 1.0 - film["inlet_shear_heating_factor"].min().item()
     return {
         "thickness": [thickness.min().item(), thickness.max().item()],
@@ -143,9 +144,7 @@ def _film(film, first):
         "outside": outside,
         "heating": heating if math.isfinite(heating) else None,
         "heated": "slide_to_roll_ratio" in thickness.dims,
-        "starving": 1.0 - film["starvation_factor"].min().item()
-        if "starvation_factor" in film
-        else None,
+        "starving": 1.0 - starved.min().item() if starved is not None else None,
     }
 
 

@@ -54,7 +54,7 @@ def prepared(study_file):
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants[:1], grid.temperature)
     film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
-    return study, film.transpose(*OPERATING_DIMS)
+    return study, film.transpose(*OPERATING_DIMS, ...)
 
 
 # Stated errors
