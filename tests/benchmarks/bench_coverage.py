@@ -103,7 +103,9 @@ def film_of(study):
     """Film table of a study's operating grid."""
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
-    return film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
+    levels = grid.force, grid.speed, study.film_formulas
+    slips = {"slide_to_roll_ratio": study.slips}
+    return film_table(oil, study.rollers, *levels, **slips, **study.film_corrections)
 
 
 def make_ensembles(study, count, pool):
@@ -206,7 +208,8 @@ def comparisons(study, ensemble, table, motion, turns=TURNS):
 def model_of(experiment, ensemble, study):
     """The model at the records, by one ensemble."""
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    films = film_at_records(experiment, oils, study.rollers, study.film_formulas)
+    own = study.rollers, study.film_formulas
+    films = film_at_records(experiment, oils, *own, **study.film_corrections)
     return model_at_records(films, experiment, ensemble.film, ensemble.contact, study)
 
 
