@@ -69,10 +69,7 @@ def film_table(
     'lambda ratio 3.78'
     """
     axes = xr.Dataset(coords={"force": np.asarray(force, float), "speed": np.asarray(speed, float)})
-    table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas)
-    if with_shape:
-        profiles = film_profile_table(lubricant, rollers, force, speed)
-        table["film_profile"] = profiles["film"]
+    table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas, with_shape)
     return schema.label(table.transpose(*schema.OPERATING_DIMS, ...), "film")
 
 
@@ -98,21 +95,8 @@ def film_profile_table(
         groups = _groups(lubricant, rollers, axes["force"], contact)
         solved = xr.apply_ufunc(profiles_of, *groups, join="exact").transpose(*schema.POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
-    positions = film_positions(
-        float(contact["contact_half_width"].min()),
-        rollers.reduced_radius,
-        rollers.composite_rms_roughness,
-    )
-    films, pressures = (
-        (
-            (*schema.POINT_DIMS, "film_position"),
-            sampled(solved.values, sample, positions),
-        )
-        for sample in (FilmProfile.film_at, FilmProfile.pressure_at)
-    )
-    table = table.assign_coords(solved.coords).assign_coords(film_position=positions)
-    table = table.assign(film=films, pressure=pressures)
-    table["film"] = table["film"] * rollers.reduced_radius
+    table["film"] = _sampled(solved, FilmProfile.film_at, rollers, contact) * rollers.reduced_radius
+    table["pressure"] = _sampled(solved, FilmProfile.pressure_at, rollers, contact)
     table["pressure"] = table["pressure"] * table["hertz_pressure"]
     for name, value in _NUMBERS.items():
         found = [float(f"{value(one):.6g}") if one else np.nan for one in solved.values.ravel()]
@@ -120,6 +104,15 @@ def film_profile_table(
     for name in ("central_film", "minimum_film"):
         table[name] = table[name] * rollers.reduced_radius
     return schema.label(table.transpose(*schema.POINT_DIMS, "film_position"), "film_profile")
+
+
+def _sampled(solved, sample, rollers, contact):
+    """Something of all film profiles, over their dimensions and film_position."""
+    half_width = float(contact["contact_half_width"].min())
+    positions = film_positions(half_width, rollers.reduced_radius, rollers.composite_rms_roughness)
+    values = sampled(solved.values, sample, positions)
+    coordinates = solved.coords.merge({"film_position": positions}).coords
+    return xr.DataArray(values, coordinates, (*solved.dims, "film_position"))
 
 
 _NUMBERS = {
@@ -132,7 +125,11 @@ _NUMBERS = {
 
 
 def film_at_records(
-    experiment: xr.Dataset, lubricant: xr.Dataset, rollers: RollerPair, formulas: Sequence[str]
+    experiment: xr.Dataset,
+    lubricant: xr.Dataset,
+    rollers: RollerPair,
+    formulas: Sequence[str],
+    with_shape: bool = False,
 ) -> xr.Dataset:
     """Film thickness at the conditions of each record.
 
@@ -142,7 +139,7 @@ def film_at_records(
         An ``experiment`` dataset.
     lubricant : xarray.Dataset
         A ``lubricant`` dataset at all temperatures of the records.
-    rollers, formulas
+    rollers, formulas, with_shape
         As in `film_table`.
 
     Returns
@@ -150,18 +147,20 @@ def film_at_records(
     xarray.Dataset
         ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material``,
         ``contact_half_width`` and ``dynamic_viscosity`` over film_formula and record;
-        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``.
+        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. If they have a
+        shape, ``film_profile`` over record and film_position, and ``formula_place``.
     """
     force, speed, temperature, oil = (
         xr.DataArray(experiment[name].values, dims="record")
         for name in ("force", "speed", "temperature", "lubricant")
     )
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
-    table = film_at(properties, rollers, force, speed, formulas)
+    table = film_at(properties, rollers, force, speed, formulas, with_shape)
     table["dynamic_viscosity"] = properties["dynamic_viscosity"]
     names = ["film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width"]
     names += ["reduced_radius", "reduced_modulus", "composite_rms_roughness", "dynamic_viscosity"]
-    return table[names].transpose("film_formula", "record")
+    names += ["film_profile", "formula_place"] if with_shape else []
+    return table[names].transpose("film_formula", "record", ...)
 
 
 def film_at(
@@ -170,6 +169,7 @@ def film_at(
     force: xr.DataArray,
     speed: xr.DataArray,
     formulas: Sequence[str],
+    with_shape: bool = False,
 ) -> xr.Dataset:
     """Film thickness over the dimensions that the lubricant, force and speed have.
 
@@ -183,6 +183,8 @@ def film_at(
         Normal force, N, and rotation speed of the first roller in pure rolling, rpm.
     formulas : sequence of str
         Names of film formulas.
+    with_shape : bool, optional
+        As in `film_table`.
 
     Returns
     -------
@@ -207,6 +209,10 @@ def film_at(
             contact["entrainment_speed"],
             lubricant["thermal_conductivity"],
         )
+        if with_shape:
+            solved = xr.apply_ufunc(profiles_of, *groups, join="exact")
+            profile = _sampled(solved, FilmProfile.film_at, rollers, contact)
+            table["film_profile"] = profile * rollers.reduced_radius
     return table
 
 

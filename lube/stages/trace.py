@@ -108,7 +108,8 @@ def contact_window(
     step : int
         Time step.
     reach : float, optional
-        Half-width of the window, m; by default the contact half-width.
+        Half-width of the window, m; by default the contact half-width, or farther if the film has
+        a shape and lines touch beyond it.
 
     Returns
     -------
@@ -129,11 +130,11 @@ def contact_window(
     """
     point = trace.isel(operating_point=operating_point)
     spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
-    reach = point["contact_half_width"].item() if reach is None else reach
-    film, half_window = whole_numbers(point["film_thickness"], reach, lines)
+    half_width, shaped = point["contact_half_width"].item(), "film_profile" in point
+    widest = half_width * (point["film_position"].values[-1] if shaped else 1.0)
+    film, half_window = whole_numbers(point["film_thickness"], reach or widest, lines)
     window = np.arange(-half_window, half_window + 1)
-    if "film_profile" in point:
-        half_width = point["contact_half_width"].item()
+    if shaped:
         film = film_on_points(point["film_profile"], half_width, window, lines)
     ratios = speed_ratios(point["slide_to_roll_ratio"].item())
     pair = line_pair(lines, REALISATION)
@@ -144,6 +145,10 @@ def contact_window(
     rows = [line[(surface_position(step, ratio) + window) % line.size] for line, ratio in moving]
     heights = np.array(rows, np.int64)
     overlap = heights.sum(axis=0) - film
+    if reach is None:
+        touching = np.abs(window[overlap > 0]).max(initial=0)
+        shown = np.abs(window) <= max(half_width / spacing, touching + 1)
+        window, heights, overlap = window[shown], heights[:, shown], overlap[shown]
     segments = _segments(overlap, point, lines)
     return xr.Dataset(
         {

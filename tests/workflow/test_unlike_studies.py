@@ -1,4 +1,4 @@
-"""All figures of six unlike studies: what a reader would complain about."""
+"""All figures of eight unlike studies: what a reader would complain about."""
 
 from pathlib import Path
 

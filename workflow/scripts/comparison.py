@@ -15,7 +15,9 @@ study = load_study(**snakemake.config["study"])
 inputs = {kind: snakemake.input[kind] for kind in ("film", "contact", "experiment")}
 film, contact, experiment = (load(path, kind, study) for kind, path in inputs.items())
 oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-at_records = film_at_records(experiment, oils, study.rough_rollers, study.film_formulas)
+at_records = film_at_records(
+    experiment, oils, study.rough_rollers, study.film_formulas, study.film_shape != "flat"
+)
 model = model_at_records(at_records, experiment, film, contact, study)
 result = compare(model, experiment, contact)
 save(result, snakemake.output[0], "comparison", study, inputs.values())

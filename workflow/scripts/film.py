@@ -9,5 +9,12 @@ begin_job(snakemake.log[0])
 study = load_study(**snakemake.config["study"])
 grid = study.operating_grid
 lubricant = load(snakemake.input.lubricant, "lubricant", study)
-table = film_table(lubricant, study.rough_rollers, grid.force, grid.speed, study.film_formulas)
+table = film_table(
+    lubricant,
+    study.rough_rollers,
+    grid.force,
+    grid.speed,
+    study.film_formulas,
+    with_shape=study.film_shape != "flat",
+)
 save(table, snakemake.output[0], "film", study, [snakemake.input.lubricant])
