@@ -127,7 +127,9 @@ def test_every_key_without_a_default_is_needed(paper_with):
 def test_lines_that_the_oil_flattens_need_pure_rolling(paper_with):
     flattened = ("roughness_deformation", "venner-1997")
     message = refusal(paper_with(flattened, ("operating_grid.slide_to_roll_ratio", [0, 0.1])))
-    assert "roughness_deformation: got venner-1997 with a slide-to-roll ratio of 0.1, need" in message
+    assert (
+        "roughness_deformation: got venner-1997 with a slide-to-roll ratio of 0.1, need" in message
+    )
     assert "need 'flat' or 'computed'" in refusal(paper_with(("film_shape", "curved")))
 
 

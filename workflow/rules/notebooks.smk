@@ -12,6 +12,9 @@ CHAPTERS = chapters(FIGURES)
 
 products = FILES.products
 
+if not IS_MODULE:
+    FILES.check_targets(workflow.dag_settings.targets)
+
 
 def in_report(path):
     """Show a picture in the report, in its figure's chapter, with its notebook's words."""
