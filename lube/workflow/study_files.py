@@ -205,7 +205,7 @@ class StudyFiles:
         Parameters
         ----------
         targets : iterable of str
-            Targets of the command: rules such as ``areal_contact``, or files.
+            Words of the command, among them rules such as ``areal_contact``, or files.
         """
         for target in targets:
             for stage, row in STAGES.items():

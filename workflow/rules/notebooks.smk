@@ -13,7 +13,8 @@ CHAPTERS = chapters(FIGURES)
 products = FILES.products
 
 if not IS_MODULE:
-    FILES.check_targets(workflow.dag_settings.targets)
+    # Snakemake itself reads its targets later.
+    FILES.check_targets(sys.argv[1:])
 
 
 def in_report(path):
