@@ -197,7 +197,7 @@ def _datasets(study):
     if spec.is_gaussian:
         some["patch"] = patch_contact(spec, rollers.reduced_modulus, study.seed)
         some["film_shape"] = film_shape_probabilities(spec, film, profile, layer, study.seed, 2)
-    if spec.is_gaussian and study.has("areal"):
+    if study.has("areal"):
         areal = strip_contacts(spec, film, layer, rollers.length, study.seed, study.slips)
         some |= {"areal": areal, "areal_gauge": gauge_by_surface(film, areal, comparison, gauge)}
     if study.has("height_distribution"):

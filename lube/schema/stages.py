@@ -132,18 +132,19 @@ _ROWS = (
         inputs=("film",),
         values=_LINES | _CONTACT | {"length": "rollers.length"},
         target="areal_contact",
-        **_MAPPED,
+        only_with=("line_spec.is_gaussian", "follows_master_map"),
     ),
     Stage(
         "areal_gauge",
         inputs=("film", "areal", "comparison", "gauge"),
         target="areal_contact",
-        **_MAPPED,
+        only_with=("line_spec.is_gaussian", "follows_master_map"),
     ),
     Stage(
         "patch",
         values=_LINES | {"reduced_modulus": "rollers.reduced_modulus"},
         target="patch_contact",
+        only_with=("line_spec.is_gaussian",),
     ),
     Stage("film_profile", inputs=("lubricant",), same_values=("film",), target="computed"),
     Stage(
@@ -151,6 +152,7 @@ _ROWS = (
         inputs=("film", "film_profile"),
         values=_LINES | _LAYER,
         target="computed",
+        only_with=("line_spec.is_gaussian",),
     ),
     Stage(
         "flattening",

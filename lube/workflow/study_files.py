@@ -83,6 +83,7 @@ def origin(figure: str) -> str:
 
 _NEEDED = {
     "topographies": "a measured topography of a roller",
+    "line_spec.is_gaussian": "Gaussian roughness lines",
     "line_spec.is_drawn": "lines that are drawn from a spectrum",
     "follows_master_map": "`film_shape: flat` and `roughness_deformation: none`",
 }
