@@ -91,6 +91,13 @@ def film(study):
 
 
 @pytest.fixture(scope="session")
+def shaped_film(study):
+    """Films with the computed shape at four operating points, for two film formulas."""
+    oil = lubricant_table(study.lubricants, [60.0, 80.0])
+    return film_table(oil, study.rollers, [400.0, 1600.0], [100.0], ["paper", "computed"], True)
+
+
+@pytest.fixture(scope="session")
 def lines(make_spec):
     """Two realisations, a tenth as fine as the paper's."""
     return roughness_lines(make_spec(100_000), seed=11, realisations=[0, 1])

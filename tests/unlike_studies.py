@@ -1,4 +1,4 @@
-"""Seven studies as unlike as users' are, small enough for a test, and their datasets."""
+"""Nine studies as unlike as users' are, small enough for a test, and their datasets."""
 
 import numpy as np
 import yaml
@@ -112,6 +112,23 @@ STUDIES = {
         traces=[_trace(800, 100, 65), _trace(1600, 100, 80)],
         experiment=PAPER_CONTENT["experiment"] | {"manifest": "records.csv"},
     ),
+    "shaped": _small(
+        "shaped",
+        film_shape="computed",
+        film_formulas=["paper", "computed", "dowson-higginson-minimum"],
+        operating_grid=_grid([400, 1600], [100, 200], [50, 65, 80], [0, 0.1]),
+        traces=[_trace(400, 100, 65), _trace(1600, 100, 80)],
+    ),
+    # Unequal rollers, so that records have several alignments.
+    "flattened": _small(
+        "flattened",
+        film_shape="computed",
+        roughness_deformation="venner-1997",
+        rollers=PAPER_CONTENT["rollers"] | {"second": _SILICON_NITRIDE | {"roughness": _BAND}},
+        film_formulas=["computed"],
+        operating_grid=_grid([200, 800], [600], [50, 80, 95]),
+        traces=[_trace(800, 600, 95)],
+    ),
     # A film that is thinner with slip, and at the greater force because the oil begins so near.
     "corrections": _small(
         "corrections",
@@ -164,71 +181,57 @@ def write_datasets(content, folder):
 def _datasets(study):
     grid, layer = study.operating_grid, study.boundary_layer
     oil = lubricant_table(study.lubricants, grid.temperature)
-    film = film_table(
-        oil,
-        study.rough_rollers,
-        grid.force,
-        grid.speed,
-        study.film_formulas,
-        slide_to_roll_ratio=study.slips,
-        **study.film_corrections,
-    )
+    shaped, flattened = study.film_shape != "flat", study.is_flattened
+    rough, formulas = study.rough_rollers, study.film_formulas
+    levels, corrections = (grid.force, grid.speed), study.film_corrections
+    slips = {"slide_to_roll_ratio": study.slips}
+    film = film_table(oil, rough, *levels, formulas, shaped, **slips, **corrections)
     lines = roughness_lines(study.line_spec, study.seed, study.kept_realisations)
     batch = roughness_batch(study.line_spec, study.seed, range(study.realisations))
-    run = contact_statistics(batch, film, layer, study.slips, study.revolutions)
-    contact, master = gather([run], film), gather_map([contact_map(batch, film, layer)])
+    run = contact_statistics(batch, film, layer, study.slips, study.revolutions, flattened)
+    contact = gather([run], film)
     rig_lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     if study.experiment.manifest:
         experiment = measured_experiment(read_manifest(study.experiment.manifest), study)
     else:
         experiment = simulated_experiment(rig_lines, film, study)
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    at_records = film_at_records(
-        experiment, oils, study.rough_rollers, study.film_formulas, **study.film_corrections
-    )
+    at_records = film_at_records(experiment, oils, rough, formulas, shaped, **corrections)
     model = model_at_records(at_records, experiment, film, contact, study)
     comparison = compare(model, experiment, contact)
-    gauge = gauge_records(master, contact, comparison)
-    meniscus = study.film_corrections["inlet_meniscus"]
-    profile = film_profile_table(oil, study.rough_rollers, grid.force, grid.speed, meniscus)
-    of_surface = {}
-    if study.line_spec.is_gaussian:
-        spec, rollers = study.line_spec, study.rollers
+    profile = film_profile_table(oil, rough, *levels, corrections["inlet_meniscus"])
+    spec, rollers, some = study.line_spec, study.rollers, {}
+    if study.has("master"):
+        master = gather_map([contact_map(batch, film, layer)])
+        gauge = gauge_records(master, contact, comparison)
+        some |= {"master": master, "gauge": gauge, "constant": constant_effect(oil, film, master)}
+    if spec.is_gaussian:
+        some["patch"] = patch_contact(spec, rollers.reduced_modulus, study.seed)
+        some["film_shape"] = film_shape_probabilities(spec, film, profile, layer, study.seed, 2)
+    if study.has("areal"):
         areal = strip_contacts(spec, film, layer, rollers.length, study.seed, study.slips)
-        of_surface = {
-            "areal": areal,
-            "areal_gauge": gauge_by_surface(film, areal, comparison, gauge),
-            "patch": patch_contact(spec, rollers.reduced_modulus, study.seed),
-            "film_shape": film_shape_probabilities(spec, film, profile, layer, study.seed, 2),
-        }
-    spec, some = study.line_spec, {}
-    if spec.is_drawn:
+        some |= {"areal": areal, "areal_gauge": gauge_by_surface(film, areal, comparison, gauge)}
+    if study.has("height_distribution"):
         some["height_distribution"] = height_distributions(spec, film, layer, study.seed)
     if not spec.is_one_pair:
         realisations = range(study.realisations)
         some["flattening"] = flattened_contact(spec, film, layer, study.seed, realisations, 2)
     if study.topographies:
         some["surface"] = measured_surfaces(study.topographies, spec, 0.7)
-    return (
-        of_surface
-        | some
-        | {
-            "lubricant": oil,
-            "film": film,
-            "film_profile": profile,
-            "roughness": lines,
-            "contact": contact,
-            "tail": tail_probabilities(study.line_spec, film, layer, study.seed, study.slips),
-            "master": master,
-            "trace": contact_trace(lines, film, study.trace_points, layer, study.resistivity),
-            "rig": rig_records(rig_lines, film, study),
-            "experiment": experiment,
-            "comparison": comparison,
-            "gauge": gauge,
-            "film_plane": film_plane(oil, study.rollers.reduced_modulus),
-            "constant": constant_effect(oil, film, master),
-        }
-    )
+    tracing = study.trace_points, layer, study.resistivity, flattened
+    return some | {
+        "lubricant": oil,
+        "film": film,
+        "film_profile": profile,
+        "roughness": lines,
+        "contact": contact,
+        "tail": tail_probabilities(spec, film, layer, study.seed, study.slips, 1, flattened),
+        "trace": contact_trace(lines, film, *tracing),
+        "rig": rig_records(rig_lines, film, study),
+        "experiment": experiment,
+        "comparison": comparison,
+        "film_plane": film_plane(oil, rollers.reduced_modulus),
+    }
 
 
 def _write_scan(path):

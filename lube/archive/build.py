@@ -97,7 +97,9 @@ def archive_contents(
     results = Path(results)
     written = written_files(study, path)
     study_file = next(iter(written))
-    summarised = {kind: load(results / f"{kind}.nc", kind) for kind in SUMMARISED}
+    summarised = {
+        kind: load(results / f"{kind}.nc", kind) for kind in SUMMARISED if study.has(kind)
+    }
     drawn = [name for figure in figures for name in (*products(figure), origin(figure))]
     return {
         **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in study.datasets},

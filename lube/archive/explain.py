@@ -143,10 +143,11 @@ def _computed_again(stored, film, run):
         )
     spec = LineSpec(**run["lines"])
     layer = BoundaryLayer.model_construct(**run["boundary_layer"])
+    flattened = run["roughness_deformation"] != "none"
     ratios, parts = stored["slide_to_roll_ratio"].values.tolist(), []
     for realisation in stored["realisation"].values.tolist():
         lines = roughness_batch(spec, run["seed"], [realisation])
-        parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"]))
+        parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"], flattened))
     options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
     return xr.concat(parts, "realisation", **options)
 

@@ -55,8 +55,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     Parameters
     ----------
     datasets : dict of str to xarray.Dataset
-        The study's ``lubricant``, ``film``, ``contact``, ``tail``, ``master``, ``trace`` and
-        ``comparison``.
+        The study's ``lubricant``, ``film``, ``contact``, ``tail``, ``trace`` and ``comparison``,
+        and its ``master`` if it has one.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         - ``sampled``: whether there is contact at any rarity, by importance sampling;
         - ``regimes``: names of the regimes of lubrication;
         - ``validity``: limits of the Moes numbers within which each film formula was validated;
-        - ``master``: the master map;
+        - ``master``: the master map, or None;
         - ``records``: conditions and contact shares of the rig's records;
         - ``traces``: the traces, each with its place in the levels.
     """
@@ -89,7 +89,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         "sampled": not datasets["tail"].attrs["remarks"],
         "regimes": datasets["film"]["regime"].attrs["flag_meanings"].split(),
         "validity": {name: _validity(FORMULAS[name]) for name in levels["film_formula"]},
-        "master": _master(datasets["master"]),
+        "master": _master(datasets["master"]) if "master" in datasets else None,
         "records": _records(datasets["comparison"]),
         "traces": [_trace(point, levels) for point in _points(datasets["trace"])],
     }

@@ -103,7 +103,7 @@ def draw(
         "regimes": _regime_map(datasets["film"], content["validity"], sources),
         "curve": _master_curve(sources, ratios, shares),
     }
-    if len(content["master"]["contact_width"]) > 1:
+    if content["master"] and len(content["master"]["contact_width"]) > 1:
         figures["map"] = _master_map(content["master"], ratios, sources)
     for part in ("whole", "close"):
         figures |= _trace(part, sources[part], _resistance_range(datasets["trace"]))
@@ -121,14 +121,16 @@ def _film_range(datasets):
 
 
 def _ratio_range(datasets):
-    ratios = [datasets[kind]["lambda_ratio"].values.ravel() for kind in ("film", "master")]
+    kinds = [kind for kind in ("film", "master") if kind in datasets]
+    ratios = [datasets[kind]["lambda_ratio"].values.ravel() for kind in kinds]
     return _spread(np.concatenate(ratios), 1.1)
 
 
 def _share_range(datasets):
     """Probabilities of the study: down to the smallest, or limit where none was seen."""
     sampled = datasets["tail"]["breakthrough_probability"].values.ravel()
-    counted = np.concatenate([_estimate_or_limit(datasets[kind]) for kind in ("contact", "master")])
+    kinds = [kind for kind in ("contact", "master") if kind in datasets]
+    counted = np.concatenate([_estimate_or_limit(datasets[kind]) for kind in kinds])
     low, _ = _spread(counted if datasets["tail"].attrs["remarks"] else sampled)
     return max(low, _RAREST), 1.6
 
@@ -279,7 +281,7 @@ def _regime_map(film, validity, sources):
 
 
 def _master_curve(sources, ratios, shares):
-    """Probability against the lambda ratio, by the master map."""
+    """Probability against the lambda ratio, and the master map's if there is one."""
     plot = _plot(
         "Lambda ratio", "Breakthrough probability",
         x_axis_type="log", y_axis_type="log", x_range=ratios, y_range=shares,

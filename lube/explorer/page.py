@@ -43,8 +43,7 @@ def explorer_page(datasets: dict[str, xr.Dataset]) -> str:
     Parameters
     ----------
     datasets : dict of str to xarray.Dataset
-        The study's ``lubricant``, ``film``, ``contact``, ``tail``, ``master``, ``trace`` and
-        ``comparison``, as loaded.
+        As of `lube.explorer.content.page_content`, as loaded.
 
     Returns
     -------

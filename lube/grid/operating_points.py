@@ -1,6 +1,6 @@
 """Operating points as plain numbers, and the speeds of their surfaces."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
@@ -88,6 +88,8 @@ class OperatingPoint:
         Entrainment speed v, m/s.
     reduced_modulus : float
         E*, Pa.
+    row : xarray.Dataset
+        The film table at the point, without coordinates of the operating variables.
     """
 
     slide_to_roll_ratio: float
@@ -99,6 +101,7 @@ class OperatingPoint:
     contact_half_width: float
     entrainment_speed: float
     reduced_modulus: float
+    row: xr.Dataset = field(compare=False, repr=False)
 
     @property
     def levels(self) -> dict[str, float | str]:
@@ -142,17 +145,18 @@ def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[Oper
     >>> [point.force for point in operating_points(table, 0.0)]
     [200.0, 400.0]
     """
-    names, table = EXPERIMENT_DIMS[1:], at_slip(table, slide_to_roll_ratio)
-    films = table["film_thickness"].transpose(*names).values
-    half_widths = table["contact_half_width"].values
-    speeds = table["entrainment_speed"].values
-    modulus = table["reduced_modulus"].item()
+    names = EXPERIMENT_DIMS[1:]
+    table = at_slip(table, slide_to_roll_ratio).transpose(*names, ...)
     every_level = product(*(table[name].values.tolist() for name in names))
     return [
-        OperatingPoint(
-            slide_to_roll_ratio, *levels, film, half_widths[force], speeds[speed], modulus
-        )
-        for ((*_, speed, force), film), levels in zip(
-            np.ndenumerate(films), every_level, strict=True
+        _point(table.isel(dict(zip(names, index, strict=True))), slide_to_roll_ratio, levels)
+        for index, levels in zip(
+            np.ndindex(table["film_thickness"].shape), every_level, strict=True
         )
     ]
+
+
+def _point(row, slide_to_roll_ratio, levels):
+    names = "film_thickness", "contact_half_width", "entrainment_speed", "reduced_modulus"
+    numbers = (row[name].item() for name in names)
+    return OperatingPoint(slide_to_roll_ratio, *levels, *numbers, row.reset_coords(drop=True))

@@ -113,7 +113,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
         spread=_spread(film, contact, first),
         agreement=_agreement(comparison, first),
-        gauged=_gauged(results["gauge"]),
+        gauged=_gauged(results["gauge"]) if "gauge" in results else None,
         traces=[_trace(point, film, contact, comparison) for point in study.trace_points],
         notes={
             "Records that were refused, and are in no result": _lines(results, "refused"),

@@ -51,7 +51,7 @@ def model_at_records(
         The probabilities are those of one revolution of pure rolling, because slip does not
         change the expected probability. It changes the scatter of a record.
     """
-    runs = EnsembleRuns(study)
+    runs = EnsembleRuns(study, at_records)
     points = runs.points(at_records["film_thickness"], at_records["contact_half_width"])
     stored = _stored(runs, film, contact)
     probability = _probability(runs, points, stored, contact.sizes["realisation"])
@@ -64,6 +64,9 @@ def model_at_records(
         model[name] = (*lead, *dims), values.reshape(values.shape[:-1] + shape)
     model = model.assign_coords(realisation=contact["realisation"].values)
     attributes = {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
+    model = model.drop_dims("film_position", errors="ignore").drop_vars(
+        "formula_place", errors="ignore"
+    )
     return model.assign_attrs(attributes)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from lube.grid.contact_runs import ContactRuns
 from lube.grid.discretise import layer_factor_of, revolution, speed_ratios, whole_numbers
 from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_statistics
@@ -20,13 +21,23 @@ class EnsembleRuns:
     ----------
     study : Study
         Its rollers, roughness lines, boundary layer and seed are used.
+    films : xarray.Dataset, optional
+        Films at the points to run, where the study gives them a shape, or flattens the lines there;
+        without them all films are flat, and the lines as drawn.
     """
 
-    def __init__(self, study: Study):
+    def __init__(self, study: Study, films: xr.Dataset | None = None):
         self._study = study
         self._lines = xr.Dataset(attrs=line_attributes(study.line_spec))
         modulus = study.rollers.reduced_modulus
         self._factor = layer_factor_of(self._lines, modulus, study.boundary_layer)
+        self._at = None
+        if films is not None and not study.follows_master_map:
+            layer = study.boundary_layer
+            self._at = ContactRuns(self._lines, films, layer, study.is_flattened)
+            thickness, widths = xr.broadcast(films["film_thickness"], films["contact_half_width"])
+            points = self.points(thickness.values, widths.values)
+            self._numbers = {tuple(point): number for number, point in enumerate(points.T.tolist())}
 
     def pair(self, realisation: int) -> Pair:
         """Draw the two lines of a realisation."""
@@ -61,14 +72,23 @@ class EnsembleRuns:
             Shape (P,).
         """
         steps = max(round(turns * revolution(pair, speed_ratios(slip))), 1)
-        return self.breakthroughs(pair, slip, points, begin, begin + steps) / steps
+        if self._at is None:
+            return self.breakthroughs(pair, slip, points, begin, begin + steps) / steps
+        numbers = np.array([self._numbers[tuple(point)] for point in points.T.tolist()], int)
+        pair, ratios = _begun(pair, slip, begin), speed_ratios(slip)
+        return self._at.statistics(pair, ratios, steps, numbers)[:, 1]
 
     def breakthroughs(self, pair: Pair, slip: float, points: Array, begin: int, end: int) -> Array:
-        """Count the time steps from `begin` to `end` with breakthrough, shape (P,)."""
-        ratios = speed_ratios(slip)
-        if begin:
-            positions = (surface_position(begin, ratio) for ratio in ratios)
-            pair = tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))
+        """Count the time steps from `begin` to `end` with breakthrough under flat films, (P,)."""
+        pair, ratios = _begun(pair, slip, begin), speed_ratios(slip)
         films, half_windows = np.ascontiguousarray(points)
         counts = strip_statistics(pair, ratios, end - begin, films, half_windows, self._factor)
         return counts[:, 1]
+
+
+def _begun(pair, slip, begin):
+    """Lines as they lie at a time step."""
+    if not begin:
+        return pair
+    positions = (surface_position(begin, ratio) for ratio in speed_ratios(slip))
+    return tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))

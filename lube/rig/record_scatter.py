@@ -74,13 +74,13 @@ def record_scatter(
         alignments, each first line is paired with several second lines for this mean: otherwise
         the error of the mean is a large part of the small scatter of such records.
     """
-    runs = EnsembleRuns(study)
+    runs = EnsembleRuns(study, model)
     points = runs.points(model["film_thickness"], model["contact_half_width"])
     formulas = points.shape[1] // model.sizes["record"]
     slips = np.tile(experiment["slide_to_roll_ratio"].values, formulas)
     turns = np.tile(experiment["turns"].values, formulas)
     variance = _variance(probability)
-    persistent, line_effects = _line_effects(runs, model, study, slips, turns, len(probability))
+    persistent, line_effects = _line_effects(model, study, slips, turns, len(probability))
     ratio, deviation = 1.0 / turns, probability - probability.mean(axis=0)
     for slip in np.unique(slips):
         here = np.flatnonzero((slips == slip) & (turns >= 1.0))
@@ -186,11 +186,11 @@ def _standardised(values):
     return offsets / np.where(scale > 0.0, scale, 1.0)
 
 
-def _line_effects(runs, model, study, slips, turns, realisations):
+def _line_effects(model, study, slips, turns, realisations):
     """Part of the scatter that is due to each line alone, and persists in all alignments.
 
-    It is estimated from the ensemble's own lines, paired crosswise, if any record has several
-    alignments.
+    It is estimated from the ensemble's own lines as drawn, under flat films, paired crosswise, if
+    any record has several alignments.
 
     Returns
     -------
@@ -205,6 +205,7 @@ def _line_effects(runs, model, study, slips, turns, realisations):
     if one_alignment or not (turns > 1.0).any() or realisations < 2:
         return (np.zeros if one_alignment else np.ones)(ratio.size), None
     thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
+    runs = EnsembleRuns(study)
     levels = runs.points(thickness, model["contact_half_width"].mean().item())
     in_first, in_second = _crosswise(runs, min(realisations, MOST_PAIRS), levels)
     persistent = persistent_share(in_first, in_second)

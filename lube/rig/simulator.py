@@ -22,11 +22,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
+from lube.grid.contact_runs import ContactRuns
+from lube.grid.discretise import line_pair, revolution, speed_ratios
 from lube.grid.operating_points import OperatingPoint
 from lube.kernels.circuit import sampled_voltage
 from lube.kernels.motion import surface_position
-from lube.kernels.strips import strip_trace
 from lube.physics.electrical import contact_resistance, film_capacitance
 from lube.study.rig_settings import Rig
 from lube.study.study import Study
@@ -110,15 +110,11 @@ class SimulatedRig:
 
     def _contacts(self, pair, steps, numbers):
         """Grid points in contact over one revolution, shape (operating points, steps)."""
-        points = [self._points[number] for number in numbers]
-        modulus = points[0].reduced_modulus
-        factor = layer_factor_of(self._lines, modulus, self._study.boundary_layer)
-        films, half_windows = whole_numbers(
-            [point.film_thickness for point in points],
-            [point.contact_half_width for point in points],
-            self._lines,
-        )
-        return strip_trace(pair, self._ratios, steps, films, half_windows, factor)
+        rows = [self._points[number].row for number in numbers]
+        film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
+        film["reduced_modulus"] = rows[0]["reduced_modulus"]  # the same at all
+        layer, flattened = self._study.boundary_layer, self._study.is_flattened
+        return ContactRuns(self._lines, film, layer, flattened).trace(pair, self._ratios, steps)
 
     def _revolution(self, contact, number, seed):
         point, spacing = self._points[number], self._lines.attrs["spacing"]

@@ -29,8 +29,8 @@ class Stage:
     target : str
         Target of Snakemake that makes the file: ``all``, or one that is made on request only,
         such as ``areal_contact``. Files of ``benchmark`` are not results of the study.
-    only_with : str
-        Attribute of the study without which there is no such file; by default none.
+    only_with : tuple of str
+        Attributes of the study without which there is no such file.
     """
 
     name: str
@@ -38,7 +38,7 @@ class Stage:
     values: dict = field(default_factory=dict)
     same_values: tuple[str, ...] = ()
     target: str = "all"
-    only_with: str = ""
+    only_with: tuple[str, ...] = ()
 
 
 def _cylinder(roller):
@@ -47,9 +47,13 @@ def _cylinder(roller):
     return {name: f"rollers.{roller}.{name}" for name in names}
 
 
+_MAPPED = {"only_with": ("follows_master_map",)}
 _LINES = {"seed": "seed", "lines": "line_spec"}
 _LAYER = {"reduced_modulus": "rollers.reduced_modulus", "boundary_layer": "boundary_layer"}
-_CONTACT = _LAYER | {"slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"}
+_CONTACT = _LAYER | {
+    "slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio",
+    "roughness_deformation": "roughness_deformation",
+}
 
 _ROWS = (
     Stage(
@@ -69,6 +73,7 @@ _ROWS = (
             "reduced_modulus": "rollers.reduced_modulus",
             "composite_rms_roughness": "rough_rollers.composite_rms_roughness",
             "film_formulas": "film_formulas",
+            "film_shape": "film_shape",
             "force": "operating_grid.force",
             "speed": "operating_grid.speed",
             "slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio",
@@ -80,7 +85,7 @@ _ROWS = (
     Stage(
         "surface",
         values={"surfaces": "measured_surfaces", "lines": "line_spec"},
-        only_with="topographies",
+        only_with=("topographies",),
     ),
     Stage(
         "contact",
@@ -94,9 +99,11 @@ _ROWS = (
         inputs=("film",),
         values=_LINES | _LAYER,
         same_values=("roughness",),  # whose lines have other distributions here
-        only_with="line_spec.is_drawn",
+        only_with=("line_spec.is_drawn", "follows_master_map"),
     ),
-    Stage("master", inputs=("film",), values=_LINES | _LAYER, same_values=("roughness",)),
+    Stage(
+        "master", inputs=("film",), values=_LINES | _LAYER, same_values=("roughness",), **_MAPPED
+    ),
     Stage(
         "trace",
         inputs=("film", "roughness"),
@@ -122,22 +129,25 @@ _ROWS = (
     ),
     Stage("rig", inputs=("film",), values={"traces": "traces"}, same_values=("experiment",)),
     Stage("comparison", inputs=("film", "contact", "experiment")),
-    Stage("gauge", inputs=("master", "contact", "comparison")),
+    Stage("gauge", inputs=("master", "contact", "comparison"), **_MAPPED),
     Stage(
         "areal",
         inputs=("film",),
         values=_LINES | _CONTACT | {"length": "rollers.length"},
         target="areal_contact",
+        only_with=("line_spec.is_gaussian", "follows_master_map"),
     ),
     Stage(
         "areal_gauge",
         inputs=("film", "areal", "comparison", "gauge"),
         target="areal_contact",
+        only_with=("line_spec.is_gaussian", "follows_master_map"),
     ),
     Stage(
         "patch",
         values=_LINES | {"reduced_modulus": "rollers.reduced_modulus"},
         target="patch_contact",
+        only_with=("line_spec.is_gaussian",),
     ),
     Stage("film_profile", inputs=("lubricant",), same_values=("film",), target="computed"),
     Stage(
@@ -145,6 +155,7 @@ _ROWS = (
         inputs=("film", "film_profile"),
         values=_LINES | _LAYER,
         target="computed",
+        only_with=("line_spec.is_gaussian",),
     ),
     Stage(
         "flattening",
@@ -158,7 +169,7 @@ _ROWS = (
         values={"reduced_modulus": "rollers.reduced_modulus"},
         target="computed",
     ),
-    Stage("constant", inputs=("lubricant", "film", "master"), target="computed"),
+    Stage("constant", inputs=("lubricant", "film", "master"), target="computed", **_MAPPED),
     Stage(
         "coverage",
         values={"realisations": "realisations"},

@@ -12,11 +12,9 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
+from lube.grid.contact_runs import ContactRuns
+from lube.grid.discretise import line_pair, revolution, speed_ratios
 from lube.grid.operating_points import at_slip
-from lube.grid.window_films import window_films
-from lube.kernels.shaped import shaped_statistics
-from lube.kernels.strips import strip_statistics
 from lube.schema import LAYER_DIMS, MASTER_DIMS, OPERATING_DIMS, label
 from lube.study.rollers import BoundaryLayer
 
@@ -26,9 +24,6 @@ LAYER_FACTORS = 2.0 ** np.arange(-3, 4)
 """Strengths of the boundary layer in the coarse map, relative to the study's."""
 LAYER_LEVELS = (12, 3)
 """Numbers of levels of the lambda ratio and of the contact width in the coarse map."""
-WINDOWS_PER_WIDTH = 10
-"""Windows per width of the contact, under a film that is not flat. More hardly reduce the scatter
-between realisations, since neighbouring windows see nearly the same."""
 THINNER_FILMS = np.geomspace(0.3, 1.0, 5)[:-1]
 """Lambda ratios of the map below the lowest of the film table, relative to it."""
 
@@ -39,6 +34,7 @@ def contact_statistics(
     boundary_layer: BoundaryLayer,
     slide_to_roll_ratio: Sequence[float] = (0.0,),
     revolutions: int = 1,
+    flattened: bool = False,
 ) -> xr.Dataset:
     r"""Run the contact model for all realisations and operating points.
 
@@ -54,6 +50,8 @@ def contact_statistics(
         Levels of the slide-to-roll ratio; the default is pure rolling.
     revolutions : int, optional
         Revolutions of the roller with the faster surface.
+    flattened : bool, optional
+        Whether the oil flattens the lines (`lube.physics.flattening`).
 
     Returns
     -------
@@ -75,7 +73,7 @@ def contact_statistics(
     share is not small, film and asperities together carry more than the applied load.
     """
     film = film.transpose(*OPERATING_DIMS, ...)
-    results = _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, revolutions)
+    results = _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, revolutions, flattened)
     # F_N 2a/L' by Hertz: the maximum pressure is 4/pi times the mean one, F_N / (2a L').
     width = 2.0 * film["contact_half_width"]
     patch_load = np.pi / 4.0 * film["hertz_pressure"] * width * width
@@ -85,12 +83,12 @@ def contact_statistics(
     return label(results.assign_coords(levels), "contact_batch")
 
 
-def _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, revolutions):
+def _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, *run):
     """Results at each slip, with a film of its own if inlet shear heating thins it."""
     if "slide_to_roll_ratio" not in film["film_thickness"].dims:
-        return contact_at(lines, film, boundary_layer, slide_to_roll_ratio, revolutions)
+        return contact_at(lines, film, boundary_layer, slide_to_roll_ratio, *run)
     results = [
-        contact_at(lines, at_slip(film, ratio), boundary_layer, [ratio], revolutions)
+        contact_at(lines, at_slip(film, ratio), boundary_layer, [ratio], *run)
         for ratio in slide_to_roll_ratio
     ]
     options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
@@ -175,12 +173,13 @@ def contact_at(
     boundary_layer: BoundaryLayer,
     slide_to_roll_ratio: Sequence[float] = (0.0,),
     revolutions: int = 1,
+    flattened: bool = False,
 ) -> xr.Dataset:
     """Run the contact model over the dimensions that the films and contact widths have.
 
     Parameters
     ----------
-    lines, boundary_layer, slide_to_roll_ratio, revolutions
+    lines, boundary_layer, slide_to_roll_ratio, revolutions, flattened
         As in `contact_statistics`.
     film : xarray.Dataset
         With ``film_thickness`` and ``contact_half_width``, m, over any dimensions, and
@@ -194,24 +193,18 @@ def contact_at(
         slide_to_roll_ratio, dimensions of the films), without attributes of their variables.
         Its own are ``travel`` and ``longest_wavelength``, both m, of a realisation.
     """
-    thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    reduced_modulus = film["reduced_modulus"].item()
-    factor = layer_factor_of(lines, reduced_modulus, boundary_layer)
-    if "film_profile" in film:
-        run = _under_shaped_films(lines, film, factor)
-    else:
-        run = _under_flat_films(lines, thickness, half_width, factor)
+    thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
+    runs = ContactRuns(lines, film, boundary_layer, flattened)
     counts = np.empty((lines.sizes["realisation"], len(slide_to_roll_ratio), thickness.size, 4))
     for r, realisation in enumerate(lines["realisation"].values):
         pair = line_pair(lines, realisation)
         for s, ratio in enumerate(slide_to_roll_ratio):
             ratios = speed_ratios(ratio)
-            counts[r, s] = run(pair, ratios, revolutions * revolution(pair, ratios))
+            counts[r, s] = runs.statistics(pair, ratios, revolutions * revolution(pair, ratios))
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
-    counts[:, :, np.isnan(thickness.values.ravel())] = np.nan
     touching, breaking, points, overlap = np.moveaxis(counts, -1, 0)
     spacing = lines.attrs["spacing"]
-    stiffness = reduced_modulus * spacing  # of one spring, Eq. 5
+    stiffness = film["reduced_modulus"].item() * spacing  # of one spring, Eq. 5
     results = {
         "geometric_contact_probability": touching,
         "breakthrough_probability": breaking,
@@ -228,37 +221,3 @@ def contact_at(
     longest = 2.0 * np.pi / np.fmin.reduce(np.atleast_1d(lines.attrs["q_min"]))
     travel = spacing * min(lines.attrs["points"])
     return xr.Dataset(variables, coords, {"travel": travel, "longest_wavelength": longest})
-
-
-def _under_flat_films(lines, thickness, half_width, factor):
-    """Contact statistics of a pair of lines at all operating points, as means over time."""
-    points = whole_numbers(thickness.values.ravel(), half_width.values.ravel(), lines)
-    (films, half_windows), inverse = np.unique(np.stack(points), axis=1, return_inverse=True)
-
-    def run(pair, ratios, steps):
-        counts = strip_statistics(pair, ratios, steps, films, half_windows, factor) / steps
-        return counts[inverse.ravel()]
-
-    return run
-
-
-def _under_shaped_films(lines, film, factor):
-    """Contact statistics as of `_under_flat_films`, with the shape of the computed film."""
-    films, half_windows = window_films(film, lines)
-    known = [number for number, one in enumerate(films) if one is not None]
-    strides = np.maximum(1, (2 * half_windows[known] + 1) // WINDOWS_PER_WIDTH)
-
-    def run(pair, ratios, steps):
-        if ratios[0] == ratios[1] and pair[0].size == pair[1].size:
-            pair = pair[0] + pair[1], np.zeros(1, np.int32)  # one line passes the contact
-        reached = [films[number].below(pair[0].max() + pair[1].max()) for number in known]
-        begin = np.cumsum([0, *(one.film.size for one in reached)])
-        joined = np.concatenate([one.film for one in reached])
-        centres = np.array([one.before for one in reached])
-        counts = np.full((len(films), 4), np.nan)
-        counts[known] = shaped_statistics(
-            pair, ratios, steps, -(-steps // strides), (joined, begin, centres), factor
-        )
-        return counts
-
-    return run

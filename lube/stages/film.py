@@ -86,11 +86,9 @@ def film_table(
     """
     levels = {"force": force, "speed": speed, "slide_to_roll_ratio": slide_to_roll_ratio}
     axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
-    corrections = axes["slide_to_roll_ratio"], inlet_shear_heating, inlet_meniscus
-    table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas, *corrections)
-    if with_shape:
-        profiles = film_profile_table(lubricant, rollers, force, speed, inlet_meniscus)
-        table["film_profile"] = profiles["film"]
+    slip = axes["slide_to_roll_ratio"]
+    options = with_shape, slip, inlet_shear_heating, inlet_meniscus
+    table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas, *options)
     return schema.label(table.transpose(*schema.CONTACT_DIMS, ...), "film")
 
 
@@ -118,25 +116,10 @@ def film_profile_table(
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = _hertz_contact(rollers, axes["force"], axes["speed"])
         groups = _groups(lubricant, rollers, axes["force"], contact)
-        meniscus = {"meniscus": _over_radius(inlet_meniscus, rollers)}
-        solved = xr.apply_ufunc(profiles_of, *groups, join="exact", kwargs=meniscus)
-        solved = solved.transpose(*schema.POINT_DIMS)
+        solved = _profiles(groups, rollers, inlet_meniscus).transpose(*schema.POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
-    positions = film_positions(
-        float(contact["contact_half_width"].min()),
-        rollers.reduced_radius,
-        rollers.composite_rms_roughness,
-    )
-    films, pressures = (
-        (
-            (*schema.POINT_DIMS, "film_position"),
-            sampled(solved.values, sample, positions),
-        )
-        for sample in (FilmProfile.film_at, FilmProfile.pressure_at)
-    )
-    table = table.assign_coords(solved.coords).assign_coords(film_position=positions)
-    table = table.assign(film=films, pressure=pressures)
-    table["film"] = table["film"] * rollers.reduced_radius
+    table["film"] = _sampled(solved, FilmProfile.film_at, rollers, contact) * rollers.reduced_radius
+    table["pressure"] = _sampled(solved, FilmProfile.pressure_at, rollers, contact)
     table["pressure"] = table["pressure"] * table["hertz_pressure"]
     for name, value in _NUMBERS.items():
         found = [float(f"{value(one):.6g}") if one else np.nan for one in solved.values.ravel()]
@@ -144,6 +127,15 @@ def film_profile_table(
     for name in ("central_film", "minimum_film"):
         table[name] = table[name] * rollers.reduced_radius
     return schema.label(table.transpose(*schema.POINT_DIMS, "film_position"), "film_profile")
+
+
+def _sampled(solved, sample, rollers, contact):
+    """Something of all film profiles, over their dimensions and film_position."""
+    half_width = float(contact["contact_half_width"].min())
+    positions = film_positions(half_width, rollers.reduced_radius, rollers.composite_rms_roughness)
+    values = sampled(solved.values, sample, positions)
+    coordinates = solved.coords.merge({"film_position": positions}).coords
+    return xr.DataArray(values, coordinates, (*solved.dims, "film_position"))
 
 
 _NUMBERS = {
@@ -160,6 +152,7 @@ def film_at_records(
     lubricant: xr.Dataset,
     rollers: RollerPair,
     formulas: Sequence[str],
+    with_shape: bool = False,
     inlet_shear_heating: str = "none",
     inlet_meniscus: float | None = None,
 ) -> xr.Dataset:
@@ -171,7 +164,7 @@ def film_at_records(
         An ``experiment`` dataset.
     lubricant : xarray.Dataset
         A ``lubricant`` dataset at all temperatures of the records.
-    rollers, formulas, inlet_shear_heating, inlet_meniscus
+    rollers, formulas, with_shape, inlet_shear_heating, inlet_meniscus
         As in `film_table`; the slip is that of each record.
 
     Returns
@@ -179,25 +172,27 @@ def film_at_records(
     xarray.Dataset
         ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material``,
         ``contact_half_width`` and ``dynamic_viscosity`` over film_formula and record;
-        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. With inlet shear
-        heating its factor over record, and with a meniscus its distance.
+        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. If they have a
+        shape, ``film_profile`` over record and film_position, and ``formula_place``. With inlet
+        shear heating its factor over record, and with a meniscus its distance.
     """
     force, speed, temperature, oil, slip = (
         xr.DataArray(experiment[name].values, dims="record")
         for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio")
     )
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
-    corrections = slip, inlet_shear_heating, inlet_meniscus
-    table = film_at(properties, rollers, force, speed, formulas, *corrections)
+    options = with_shape, slip, inlet_shear_heating, inlet_meniscus
+    table = film_at(properties, rollers, force, speed, formulas, *options)
     table["dynamic_viscosity"] = properties["dynamic_viscosity"]
     names = ["film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width"]
     names += ["reduced_radius", "reduced_modulus", "composite_rms_roughness", "dynamic_viscosity"]
+    names += ["film_profile", "formula_place"] if with_shape else []
     if inlet_shear_heating != "none":
         names.append("inlet_shear_heating_factor")
     if inlet_meniscus is not None:
         names.append("inlet_meniscus")
         table["inlet_meniscus"] = inlet_meniscus
-    return table[names].transpose("film_formula", "record")
+    return table[names].transpose("film_formula", "record", ...)
 
 
 def film_at(
@@ -206,6 +201,7 @@ def film_at(
     force: xr.DataArray,
     speed: xr.DataArray,
     formulas: Sequence[str],
+    with_shape: bool = False,
     slide_to_roll_ratio: xr.DataArray | float = 0.0,
     inlet_shear_heating: str = "none",
     inlet_meniscus: float | None = None,
@@ -224,7 +220,7 @@ def film_at(
         Names of film formulas.
     slide_to_roll_ratio : xarray.DataArray or float, optional
         Slide-to-roll ratio.
-    inlet_shear_heating, inlet_meniscus
+    with_shape, inlet_shear_heating, inlet_meniscus
         As in `film_table`.
 
     Returns
@@ -251,7 +247,12 @@ def film_at(
             for name in ("film_thickness", "lambda_ratio"):
                 table[name] = table[name] * factor
             _warn(factor)
-    return table.assign(inlet_shear_heating_factor=factor)
+        table["inlet_shear_heating_factor"] = factor
+        if with_shape:
+            solved = _profiles(groups, rollers, inlet_meniscus)
+            profile = _sampled(solved, FilmProfile.film_at, rollers, contact)
+            table["film_profile"] = profile * rollers.reduced_radius
+    return table
 
 
 def _heating_factor(lubricant, contact, slide_to_roll_ratio):
@@ -277,6 +278,12 @@ def _warn(factor):
             unknown,
             factor.size,
         )
+
+
+def _profiles(groups, rollers, inlet_meniscus):
+    """Film profile of each operating point."""
+    meniscus = {"meniscus": _over_radius(inlet_meniscus, rollers)}
+    return xr.apply_ufunc(profiles_of, *groups, join="exact", kwargs=meniscus)
 
 
 def _over_radius(inlet_meniscus, rollers):

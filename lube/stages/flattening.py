@@ -4,20 +4,19 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-import scipy.fft
 import xarray as xr
 
-from lube.grid.discretise import layer_factor_of, whole_numbers
+from lube.grid.contact_runs import ContactRuns
+from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.operating_points import at_slip
-from lube.kernels.strips import strip_statistics
 from lube.physics.flattening import amplitude_ratio
-from lube.rig.map_curves import windows_in
 from lube.schema import POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import probability_interval, ratio_interval
+from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.spectra import line_attributes
-from lube.surfaces.synthetic import draw_realisation
+from lube.surfaces.synthetic import draw_realisation, wave_amplitudes
 
 ROUGHNESS_MODELS = ("undeformed", "flattened")
 
@@ -53,26 +52,33 @@ def flattened_contact(
         The ``flattening`` file of `lube.schema`, in pure rolling.
     """
     film = at_slip(film).isel(film_formula=0).transpose(*POINT_DIMS, ...)
-    points = _Points(spec, film, boundary_layer)
+    lines = xr.Dataset(attrs=line_attributes(spec))
+    models = [
+        ContactRuns(lines, film, boundary_layer, flattened=model == "flattened")
+        for model in ROUGHNESS_MODELS
+    ]
+    ratios = speed_ratios(0.0)
 
     def run(number):
-        return points.run(draw_realisation(spec, seed, number))
+        pair = draw_realisation(spec, seed, number)
+        steps = revolution(pair, ratios)
+        return [model.statistics(pair, ratios, steps)[:, 1] for model in models]
 
     with ThreadPoolExecutor(threads) as pool:
-        probabilities, ratios = zip(*pool.map(run, realisations), strict=True)
+        probability = np.array(list(pool.map(run, realisations)))
     dims = ("realisation", "roughness_model", *POINT_DIMS)
-    probability = np.stack(probabilities).reshape(-1, len(ROUGHNESS_MODELS), *points.shape)
+    probability = probability.reshape(*probability.shape[:2], *film["film_thickness"].shape)
     # From the same lines; NaN where no contact was seen.
     ratio = ratio_interval(probability[:, 1], probability[:, 0])
     table = xr.Dataset(
         {
             "breakthrough_probability": (dims, probability),
-            **_limited(probability, dims[1:], points.windows),
+            **_limited(probability, dims[1:], _windows(spec, film)),
             **values_with_limits(
                 "probability_ratio",
                 [(POINT_DIMS, each) for each in ratio],
             ),
-            "roughness_ratio": (POINT_DIMS, np.mean(ratios, axis=0).reshape(points.shape)),
+            "roughness_ratio": _roughness_ratio(spec, film),
             "lambda_ratio": film["lambda_ratio"].drop_attrs(),
         },
         {name: film[name] for name in POINT_DIMS}
@@ -84,72 +90,32 @@ def flattened_contact(
     return label(table, "flattening")
 
 
-class _Points:
-    """All operating points, flat lists in the order of `POINT_DIMS`."""
+def _roughness_ratio(spec, film):
+    """Rms height of both lines together, flattened over as drawn."""
+    waves = [wave_amplitudes(spec, roller) for roller in range(len(spec.lines))]
+    power = np.concatenate([amplitudes**2 for _, amplitudes in waves])
+    wavelength = np.concatenate(
+        [
+            points * spec.spacing / (first + np.arange(amplitudes.size))
+            for points, (first, amplitudes) in zip(spec.points, waves, strict=True)
+        ]
+    )
 
-    def __init__(self, spec, film, boundary_layer):
-        thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-        half_width = half_width.transpose(*POINT_DIMS)
-        lines = xr.Dataset(attrs=line_attributes(spec))
-        self.shape = thickness.shape
-        self.films, self.half_windows = whole_numbers(
-            thickness.values.ravel(), half_width.values.ravel(), lines
-        )
-        self.factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
-        load = film["moes_load"].transpose(*POINT_DIMS)
-        material = film["moes_material"].broadcast_like(load).transpose(*POINT_DIMS)
-        numbers = (each.values.ravel() for each in (half_width, load, material))
-        self.contacts = list(zip(*numbers, strict=True))
-        self.spacing, self.q_max = spec.spacing, spec.q_max
-        travel = xr.Dataset(
-            attrs={
-                "travel": spec.spacing * min(spec.points),
-                "longest_wavelength": 2.0 * np.pi / spec.q_min,
-            }
-        )
-        self.windows = windows_in(travel, 2.0 * half_width.values)
+    def ratio(half_width, *moes):
+        kept = amplitude_ratio(wavelength / half_width, *moes)
+        return np.sqrt(np.sum(kept**2 * power) / np.sum(power))
 
-    def run(self, pair):
-        """Breakthrough probability of a pair of lines over (roughness model, point), and rms ratio.
-
-        The rms ratio is that of both lines together, flattened over as drawn.
-        """
-        found, ratios = np.empty((2, self.films.size)), np.empty(self.films.size)
-        found[0] = self._broken(pair, slice(None))
-        if pair[0].size == pair[1].size:
-            # Both lines are flattened alike, so their sum is.
-            pair = [pair[0] + pair[1]]
-        waves = [_Waves(line, self.spacing, self.q_max) for line in pair]
-        for point, contact in enumerate(self.contacts):
-            flattened, powers = zip(*(one.flattened(*contact) for one in waves), strict=True)
-            found[1, point] = self._broken(flattened, slice(point, point + 1))[0]
-            ratios[point] = np.sqrt(sum(powers) / sum(one.power.sum() for one in waves))
-        return found, ratios
-
-    def _broken(self, lines, points):
-        pair = tuple(lines) if len(lines) == 2 else (lines[0], np.zeros_like(lines[0]))
-        steps = pair[0].size
-        own = self.films[points], self.half_windows[points], self.factor
-        return strip_statistics(pair, (1.0, 1.0), steps, *own)[:, 1] / steps
+    names = ("contact_half_width", "moes_load", "moes_material")
+    contact = (film[name].drop_attrs() for name in names)
+    return xr.apply_ufunc(ratio, *contact, vectorize=True).transpose(*POINT_DIMS)
 
 
-class _Waves:
-    """Waves of a line, each of which can be flattened."""
-
-    def __init__(self, line, spacing, q_max):
-        step = 2.0 * np.pi / (line.size * spacing)
-        self.size, last = line.size, int(q_max / step * (1.0 + 1e-9))
-        self.waves = scipy.fft.rfft(line.astype(float))[1 : last + 1]
-        self.power = np.abs(self.waves) ** 2
-        self.wavelength = 2.0 * np.pi / (step * np.arange(1, last + 1))
-
-    def flattened(self, half_width, moes_load, moes_material):
-        """Heights of the flattened line, height steps, and their power."""
-        kept = amplitude_ratio(self.wavelength / half_width, moes_load, moes_material)
-        spectrum = np.zeros(self.size // 2 + 1, complex)
-        spectrum[1 : kept.size + 1] = self.waves * kept
-        line = np.rint(scipy.fft.irfft(spectrum, self.size, overwrite_x=True)).astype(np.int32)
-        return line, np.sum(kept**2 * self.power)
+def _windows(spec, film):
+    """Independent windows of each operating point in one realisation."""
+    travel = spec.spacing * min(spec.points)
+    width = 2.0 * film["contact_half_width"].broadcast_like(film["film_thickness"])
+    width = width.transpose(*POINT_DIMS).values
+    return independent_windows(travel, width, 2.0 * np.pi / spec.q_min)
 
 
 def _limited(probability, dims, windows):

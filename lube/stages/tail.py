@@ -27,6 +27,10 @@ follow from the scatter between them."""
 FEWER_PAIRS = 8
 """Pairs of lines for the other film formulas, the first of these."""
 _SLIP = "slide_to_roll_ratio"
+_AS_DRAWN = (
+    "roughness_deformation: got lines that the oil flattens, need none: importance sampling is for "
+    "lines that are the same at all operating points"
+)
 _PARTS = slice(0, 1), slice(1, None)
 """The first film formula, and the others."""
 
@@ -38,6 +42,7 @@ def tail_probabilities(
     seed: int,
     slide_to_roll_ratio: Sequence[float] = (0.0,),
     threads: int = 1,
+    flattened: bool = False,
 ) -> xr.Dataset:
     r"""Compute probability and rate of contact at all operating points, at any rarity.
 
@@ -55,13 +60,15 @@ def tail_probabilities(
         Levels of the slide-to-roll ratio S; the default is pure rolling.
     threads : int, optional
         Threads that share the work; they do not change the results.
+    flattened : bool, optional
+        Whether the oil flattens the lines, so that they differ from one operating point to another.
 
     Returns
     -------
     xarray.Dataset
         The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty, but where the lines
-        are not Gaussian: then it says so, and all values are NaN. Under films that are not flat,
-        rates and durations are NaN.
+        are flattened or not Gaussian: then it says so, and all values are NaN. Under films that
+        are not flat, rates and durations are NaN.
 
     Raises
     ------
@@ -94,6 +101,8 @@ def tail_probabilities(
     if not lowest > 0.0:
         raise DataError(f"film thickness: got {lowest:g} m, need above 0")
     levels = np.asarray(slide_to_roll_ratio, float)
+    if flattened:
+        return _unknown(film, levels, _AS_DRAWN)
     if _SLIP in film["film_thickness"].dims:
         film = film.sel({_SLIP: levels})
     else:

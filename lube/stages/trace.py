@@ -5,19 +5,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from lube.grid.contact_runs import ContactRuns, Waves
 from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
 from lube.grid.operating_points import at_slip, surface_speeds
-from lube.grid.window_films import film_on_points, shaped_films, window_films
+from lube.grid.window_films import film_on_points, shaped_films
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
-from lube.kernels.shaped import shaped_trace
-from lube.kernels.strips import strip_trace
 from lube.physics.electrical import contact_resistance
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
 from lube.study.rollers import BoundaryLayer
 
 REALISATION = 0
 """The realisation that traces show."""
+_MOES = ["moes_load", "moes_material"]
 
 
 def contact_trace(
@@ -26,6 +26,7 @@ def contact_trace(
     points: Sequence[Mapping[str, float | str]],
     boundary_layer: BoundaryLayer,
     resistivity: float,
+    flattened: bool = False,
 ) -> xr.Dataset:
     """Contact at every time step of one revolution, at some operating points.
 
@@ -42,6 +43,8 @@ def contact_trace(
         With attributes ``critical_thickness`` (m) and ``shear_strength`` (Pa).
     resistivity : float
         Resistivity of the rollers' material, ohm m.
+    flattened : bool, optional
+        Whether the oil flattens the lines (`lube.physics.flattening`).
 
     Returns
     -------
@@ -50,15 +53,14 @@ def contact_trace(
         (operating_point, time).
     """
     table = _rows(film, points)
-    factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
+    runs = ContactRuns(lines, table, boundary_layer, flattened)
     pair = line_pair(lines, REALISATION)
     ratio = points[0]["slide_to_roll_ratio"]
     ratios = speed_ratios(ratio)
     steps = revolution(pair, ratios)
     spacing = lines.attrs["spacing"]
-    broken = _broken_points(table, lines, (pair, ratios, steps), factor)
-    length = broken * spacing
-    length[np.isnan(table["film_thickness"].values)] = np.nan
+    length = runs.trace(pair, ratios, steps) * spacing
+    length[runs.unknown] = np.nan
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
     trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
@@ -71,27 +73,9 @@ def contact_trace(
     )
     if "film_profile" in table:
         trace["film_profile"] = shaped_films(table)
+    if flattened:
+        trace = trace.assign({name: table[name] for name in _MOES})
     return label(trace.assign_coords(time=spacing / faster_surface * np.arange(steps)), "trace")
-
-
-def _broken_points(table, lines, motion, factor):
-    """Broken points in the window over (operating point, time step)."""
-    pair, ratios, steps = motion
-    if "film_profile" not in table:
-        points = whole_numbers(table["film_thickness"], table["contact_half_width"], lines)
-        return strip_trace(pair, ratios, steps, *points, factor)
-    films = [
-        one.below(pair[0].max() + pair[1].max()) if one else None
-        for one in window_films(table, lines)[0]
-    ]
-    return np.array(
-        [
-            shaped_trace(pair, ratios, steps, steps, one.film, one.before, factor)[:, 1]
-            if one
-            else np.full(steps, np.nan)
-            for one in films
-        ]
-    )
 
 
 def _rows(film, points):
@@ -125,7 +109,8 @@ def contact_window(
     step : int
         Time step.
     reach : float, optional
-        Half-width of the window, m; by default the contact half-width.
+        Half-width of the window, m; by default the contact half-width, or farther if the film has
+        a shape and lines touch beyond it.
 
     Returns
     -------
@@ -146,17 +131,25 @@ def contact_window(
     """
     point = trace.isel(operating_point=operating_point)
     spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
-    reach = point["contact_half_width"].item() if reach is None else reach
-    film, half_window = whole_numbers(point["film_thickness"], reach, lines)
+    half_width, shaped = point["contact_half_width"].item(), "film_profile" in point
+    widest = half_width * (point["film_position"].values[-1] if shaped else 1.0)
+    film, half_window = whole_numbers(point["film_thickness"], reach or widest, lines)
     window = np.arange(-half_window, half_window + 1)
-    if "film_profile" in point:
-        half_width = point["contact_half_width"].item()
+    if shaped:
         film = film_on_points(point["film_profile"], half_width, window, lines)
     ratios = speed_ratios(point["slide_to_roll_ratio"].item())
-    moving = zip(line_pair(lines, REALISATION), ratios, strict=True)
+    pair = line_pair(lines, REALISATION)
+    if "moes_load" in point:
+        contact = [point[name].item() for name in ("contact_half_width", *_MOES)]
+        pair = [Waves(line, lines).flattened(*contact) for line in pair]
+    moving = zip(pair, ratios, strict=True)
     rows = [line[(surface_position(step, ratio) + window) % line.size] for line, ratio in moving]
     heights = np.array(rows, np.int64)
     overlap = heights.sum(axis=0) - film
+    if reach is None:
+        touching = np.abs(window[overlap > 0]).max(initial=0)
+        shown = np.abs(window) <= max(half_width / spacing, touching + 1)
+        window, heights, overlap = window[shown], heights[:, shown], overlap[shown]
     segments = _segments(overlap, point, lines)
     return xr.Dataset(
         {

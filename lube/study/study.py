@@ -129,6 +129,10 @@ class Study(StrictModel):
     """names of shipped records, or paths of your own YAML records"""
     film_formulas: tuple[_Formula, ...] = Field(min_length=1)
     """names from the registry of film formulas"""
+    film_shape: Literal["flat", "computed"] = "flat"
+    """flat, and cut off at the edges of the contact, as in the paper; or computed by Reynolds'
+    equation, with the gap outside the contact
+    """
     inlet_shear_heating: Literal[INLET_HEATING] = "none"
     """formula by which heating of the oil at the inlet thins the film, the more so the more the
     rollers slip: that of Gupta et al. (1992)
@@ -139,6 +143,9 @@ class Study(StrictModel):
     """
     operating_grid: OperatingGrid
     roughness: Roughness
+    roughness_deformation: Literal["none", "venner-1997"] = "none"
+    """none, as in the paper; or waves that the oil flattens, in pure rolling
+    """
     boundary_layer: BoundaryLayer
     resistivity: quantity("ohm*m", above=0.0)
     """resistivity of the rollers' material (Eq. 1)"""
@@ -184,6 +191,21 @@ class Study(StrictModel):
         return {name: one.content for name, one in self.topographies.items()}
 
     @property
+    def is_flattened(self) -> bool:
+        """Whether the oil flattens the roughness lines."""
+        return self.roughness_deformation != "none"
+
+    @property
+    def follows_master_map(self) -> bool:
+        """Whether contact depends on the film thickness and the contact width alone."""
+        return self.film_shape == "flat" and not self.is_flattened
+
+    @property
+    def is_sampled(self) -> bool:
+        """Whether rare contact can be sampled: lines that are Gaussian, and stay as drawn."""
+        return self.line_spec.is_gaussian and not self.is_flattened
+
+    @property
     def readings(self) -> dict[str, dict]:
         """Argument of `load_study` that saves it from reading large topographies again."""
         read = {}
@@ -198,8 +220,7 @@ class Study(StrictModel):
 
     def has(self, stage: str) -> bool:
         """Whether the study has what a stage is about."""
-        needed = STAGES[stage].only_with
-        return not needed or bool(attrgetter(needed)(self))
+        return all(attrgetter(name)(self) for name in STAGES[stage].only_with)
 
     @property
     def batches(self) -> range:
@@ -307,6 +328,12 @@ class Study(StrictModel):
             for force in self.operating_grid.force:
                 self.check_window(force)
             check_sizes(self)
+        if self.is_flattened and any(self.slips):
+            raise ValueError(
+                f"roughness_deformation: got {self.roughness_deformation} with a slide-to-roll "
+                f"ratio of {next(filter(None, self.slips)):g}, need none, or pure rolling: its "
+                "formula is for rolling"
+            )
         return self
 
     def _check_conductivity(self):

@@ -17,7 +17,10 @@ NO_FIGURE = "no-figure"
 """Tag of a notebook that is none of the study's figures."""
 
 GAUSSIAN = "gaussian-lines"
-"""Tag of a notebook that needs Gaussian roughness lines."""
+"""Tag of a notebook that needs Gaussian roughness lines, as drawn."""
+
+MAPPED = "flat-film"
+"""Tag of a notebook that needs contact to depend on the film thickness and the width alone."""
 
 ENSEMBLE = "ensemble"
 """Tag of a notebook about the scatter between pairs of lines."""
@@ -75,13 +78,16 @@ class Figure:
         -------
         bool
             False if a tag such as ``several-force`` or ``several-lubricant`` asks for several
-            where the study has one, the tag ``gaussian-lines`` for Gaussian lines where it has
-            others, the tag ``ensemble`` for several pairs where it has one measured pair, or a
-            dataset for what the study lacks.
+            where the study has one, the tag ``gaussian-lines`` for Gaussian lines as drawn where
+            it has others, the tag ``flat-film`` for contact that depends on the film thickness and
+            the width alone, the tag ``ensemble`` for several pairs where it has one measured pair,
+            or a dataset for what the study lacks.
         """
         if not all(study.has(name) for name in self.datasets):
             return False
-        if GAUSSIAN in self.tags and not study.line_spec.is_gaussian:
+        if GAUSSIAN in self.tags and not study.is_sampled:
+            return False
+        if MAPPED in self.tags and not study.follows_master_map:
             return False
         if ENSEMBLE in self.tags and study.line_spec.is_one_pair:
             return False

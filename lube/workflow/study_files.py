@@ -81,6 +81,15 @@ def origin(figure: str) -> str:
     return f"figures/{figure}.json"
 
 
+_NEEDED = {
+    "topographies": "a measured topography of a roller",
+    "line_spec.is_gaussian": "Gaussian roughness lines",
+    "line_spec.is_drawn": "lines that are drawn from a spectrum",
+    "follows_master_map": "`film_shape: flat` and `roughness_deformation: none`",
+}
+"""What a study needs for the stages that are `only_with` it, in words."""
+
+
 class StudyFiles:
     """Paths and fingerprints of one study, for the rules.
 
@@ -189,6 +198,28 @@ class StudyFiles:
         steps |= {"figures": list(figures), "explorer": ["explorer"]}
         file = "benchmarks/{}.tsv".format
         return {step: [self.result(file(job)) for job in jobs] for step, jobs in steps.items()}
+
+    @one_line_errors()
+    def check_targets(self, targets: Iterable[str]) -> None:
+        """End Snakemake with one line if it is asked for what the study lacks.
+
+        Parameters
+        ----------
+        targets : iterable of str
+            Words of the command, among them rules such as ``areal_contact``, or files.
+        """
+        for target in targets:
+            for stage, row in STAGES.items():
+                if target in (self.result(f"{stage}.nc"), row.target) and not self.study.has(stage):
+                    self._check_stage(target, row)
+
+    def _check_stage(self, target, row):
+        """Refuse a file, or a target that makes no other file."""
+        others = [name for name, one in STAGES.items() if one.target == row.target]
+        if target == row.target and any(self.study.has(name) for name in others):
+            return
+        needed = " and ".join(_NEEDED[name] for name in row.only_with)
+        raise LubeError(f"{self.path}: got the target {target}, need {needed}")
 
     def refused_records(self) -> str | None:
         """Say in one line which measured records were refused, and why; None if none was."""

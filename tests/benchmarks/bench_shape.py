@@ -19,12 +19,13 @@ from itertools import repeat
 
 import numpy as np
 
+from lube.grid.contact_runs import WINDOWS_PER_WIDTH
 from lube.grid.discretise import layer_factor_of, line_pair
 from lube.grid.window_films import window_films
 from lube.kernels.scan import scan_trace
 from lube.kernels.shaped import shaped_statistics
 from lube.schema import OPERATING_DIMS
-from lube.stages.contact import WINDOWS_PER_WIDTH, contact_statistics
+from lube.stages.contact import contact_statistics
 from lube.stages.film import film_table
 from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch

@@ -95,6 +95,34 @@ def test_records_off_the_grid_are_those_of_a_literal_run(off_grid, few):
             np.testing.assert_array_equal(here[name], table[name].values)
 
 
+@pytest.mark.parametrize("deformation", ["none", "venner-1997"])
+def test_records_under_films_with_a_shape_are_those_of_a_literal_run(few, shaped_film, deformation):
+    """On the grid from contact.nc, or run if that holds none; off the grid run."""
+    study = few[0].model_copy(
+        update={
+            "film_shape": "computed",
+            "film_formulas": tuple(shaped_film["film_formula"].values.tolist()),
+            "roughness_deformation": deformation,
+        }
+    )
+    lines = roughness_batch(study.line_spec, study.seed, range(3))
+    flattened = deformation != "none"
+    contact = contact_statistics(lines, shaped_film, study.boundary_layer, flattened=flattened)
+    experiment = experiment_at(shaped_film, np.zeros(4))
+    expected = contact[PROBABILITY].squeeze(["slide_to_roll_ratio", "lubricant"])
+    expected = expected.stack(record=["temperature", "speed", "force"]).transpose(
+        "realisation", "film_formula", "record"
+    )
+    for stored in (contact, contact.assign_coords(revolutions=2)):
+        model = model_of_records(experiment, shaped_film, stored, study)
+        np.testing.assert_array_equal(model[PROBABILITY], expected.values)
+    slipping = experiment_at(shaped_film, np.zeros(4), slide_to_roll_ratio=0.1, turns=3.0)
+    model = model_of_records(slipping, shaped_film, contact, study)
+    np.testing.assert_array_equal(model[PROBABILITY], expected.values)
+    assert (model["scatter_ratio"] > 0.0).all()
+    assert 0.0 < expected.min() < expected.max() < 1.0
+
+
 def test_neither_order_nor_number_nor_slip_of_records_changes_a_probability(off_grid, few):
     study, film, contact = few
     for order in ([3, 1, 0, 2, 1, 1], [2]):

@@ -127,6 +127,23 @@ def test_its_contacts_are_those_of_the_contact_stage(
     assert touched.max() > 0.01
 
 
+@pytest.mark.parametrize("deformation", ["none", "venner-1997"])
+def test_under_films_with_a_shape_too(lines_of, study, with_rig, shaped_film, deformation):
+    """The contact stage looks at some windows, and rounds flattened lines otherwise."""
+    changed = with_rig(
+        study.model_copy(update={"roughness_deformation": deformation}), revolutions=1
+    )
+    lines, flattened = lines_of(changed), deformation != "none"
+    found = contact_statistics(lines, shaped_film, study.boundary_layer, flattened=flattened)[
+        "breakthrough_probability"
+    ]
+    points = operating_points(shaped_film.isel(film_formula=0), 0.0)
+    touched = [np.mean(one.contact > 0) for _, _, one in run(lines, changed, points)]
+    expected = found.isel(film_formula=0).values.ravel()
+    np.testing.assert_allclose(touched, expected, rtol=0.1, atol=5e-4)
+    assert max(touched) > 0.003
+
+
 @pytest.mark.parametrize(("drift", "kept"), [(0.3, 0.7**0.5), (1.0, 0.0)])
 def test_drift_renews_its_share_of_the_variance_each_turn(
     lines_of, study, with_rig, points, drift, kept

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lube import contact_statistics, roughness_lines
+from lube.grid import contact_runs
 from lube.physics.flattening import amplitude_ratio
 from lube.stages import flattening
 from lube.stages.flattening import flattened_contact
@@ -44,7 +45,8 @@ def test_undeformed_lines_are_those_of_the_contact_model(spec, few, weak, found)
 
 
 def test_without_flattening_both_are_the_same(spec, few, weak, monkeypatch):
-    monkeypatch.setattr(flattening, "amplitude_ratio", lambda wavelength, *_: 0 * wavelength + 1)
+    for module in (flattening, contact_runs):
+        monkeypatch.setattr(module, "amplitude_ratio", lambda wavelength, *_: 0 * wavelength + 1)
     same = flattened_contact(spec, few, weak, SEED, [0, 1])
     both = same["breakthrough_probability"].transpose("roughness_model", ...).values
     # The waves beyond the band, of the rounding to whole height steps, are left out.

@@ -46,6 +46,12 @@ def rare(spec, few, study):
 # --- Theory and limits -------------------------------------------------------------------
 
 
+def test_lines_that_the_oil_flattens_are_refused_in_words(few, spec, study):
+    found = tail_probabilities(spec, few, study.boundary_layer, SEED, RATIOS, 1, flattened=True)
+    assert found.attrs["remarks"].startswith("roughness_deformation: got lines that the oil")
+    assert all(np.isnan(found[name]).all() for name in found.data_vars)
+
+
 def test_results_are_over_the_dimensions_of_the_contact_model(tail, few):
     assert tail["breakthrough_rate"].dims == CONTACT_DIMS
     assert tail["touching_pair_share"].dims == OPERATING_DIMS

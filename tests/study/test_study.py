@@ -147,6 +147,8 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("rollers.second.rms_roughness", "0.3 um", SPECTRUM | {"film"}),
         ("rollers.first.radius", "60 mm", SPECTRUM | {"film"}),
         ("film_formulas", ["paper"], {"film"}),
+        ("film_shape", "computed", {"film"}),
+        ("roughness_deformation", "venner-1997", MECHANICS),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
         ("traces.1.temperature", "60 degC", {"trace", "rig"}),
@@ -162,6 +164,16 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("operating_grid.force", newtons(800, 1600, 1700), SPECTRUM | {"film"}),
     ]:
         assert changed_stages((key, value)) == stages
+
+
+@pytest.mark.parametrize(
+    "change", [("film_shape", "computed"), ("roughness_deformation", "venner-1997")]
+)
+def test_what_reads_the_master_map_needs_flat_films_and_lines_as_drawn(paper_with, change):
+    paper, study = load_study(PAPER), load_study(paper_with(change))
+    mapped = {"master", "gauge", "constant", "areal", "areal_gauge", "height_distribution"}
+    assert all(paper.has(stage) for stage in mapped)
+    assert {stage for stage in STAGES if paper.has(stage) and not study.has(stage)} == mapped
 
 
 def test_the_same_value_in_another_unit_changes_nothing(changed_stages):

@@ -132,12 +132,24 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
     assert tested >= 20
 
 
+WITH_DEFAULT = ("about", "rig", "experiment", "film_shape", "roughness_deformation")
+
+
 def test_every_key_without_a_default_is_needed(paper_with):
-    keys = [key for key in PAPER_CONTENT if key not in ("about", "rig", "experiment")]
+    keys = [key for key in PAPER_CONTENT if key not in WITH_DEFAULT]
     for section in ("rollers", "operating_grid", "roughness", "boundary_layer"):
         keys += [f"{section}.{key}" for key in PAPER_CONTENT[section]]
     for key in [*keys, "rollers.first.radius"]:
         assert f"{key}: missing" in refusal(paper_with((key, REMOVED)))
+
+
+def test_lines_that_the_oil_flattens_need_pure_rolling(paper_with):
+    flattened = ("roughness_deformation", "venner-1997")
+    message = refusal(paper_with(flattened, ("operating_grid.slide_to_roll_ratio", [0, 0.1])))
+    assert (
+        "roughness_deformation: got venner-1997 with a slide-to-roll ratio of 0.1, need" in message
+    )
+    assert "need 'flat' or 'computed'" in refusal(paper_with(("film_shape", "curved")))
 
 
 def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_with):

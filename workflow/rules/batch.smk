@@ -3,8 +3,11 @@ rule batch:
         film=result("film.nc"),
         sources=script_sources("batch"),
     output:
-        contact=result("batches/contact_{first}.nc"),
-        master=result("batches/master_{first}.nc"),
+        **{
+            kind: result(f"batches/{kind}_{{first}}.nc")
+            for kind in ("contact", "master")
+            if STUDY.has(kind)
+        },
     log:
         result("logs/batch_{first}.log"),
     benchmark:
@@ -15,6 +18,6 @@ rule batch:
         study=stage_inputs("contact", "master"),
         realisations=batch_limits,
     message:
-        "Batch: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points and over the master map"
+        "Batch: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points"
     script:
         "../scripts/batch.py"

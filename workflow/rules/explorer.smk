@@ -1,4 +1,8 @@
-EXPLORED = ("lubricant", "film", "contact", "tail", "master", "trace", "comparison")
+EXPLORED = [
+    kind
+    for kind in ("lubricant", "film", "contact", "tail", "master", "trace", "comparison")
+    if STUDY.has(kind)
+]
 
 
 rule explorer:

@@ -12,6 +12,10 @@ CHAPTERS = chapters(FIGURES)
 
 products = FILES.products
 
+if not IS_MODULE:
+    # Snakemake itself reads its targets later.
+    FILES.check_targets(sys.argv[1:])
+
 
 def in_report(path):
     """Show a picture in the report, in its figure's chapter, with its notebook's words."""

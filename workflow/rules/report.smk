@@ -8,7 +8,7 @@ TEMPLATES = [from_here(path) for path in sorted(Path(ROOT, "lube/report/template
 
 rule pages:
     input:
-        **{kind: result(f"{kind}.nc") for kind in SUMMARISED},
+        **{kind: result(f"{kind}.nc") for kind in SUMMARISED if STUDY.has(kind)},
         study=FILES.study_file,
         paper=from_here(PAPER),
         docs=[from_here(f"docs/{page}.md") for page in ("limits", "assumptions", "architecture")],

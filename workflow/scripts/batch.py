@@ -14,8 +14,9 @@ study = load_study(**snakemake.config["study"])
 film = load(snakemake.input.film, "film", study)
 batch = study.batch(int(snakemake.wildcards.first))
 lines = roughness_batch(study.line_spec, study.seed, batch)
-ratios = study.operating_grid.slide_to_roll_ratio
-contact = contact_statistics(lines, film, study.boundary_layer, ratios, study.revolutions)
+run = study.operating_grid.slide_to_roll_ratio, study.revolutions, study.is_flattened
+contact = contact_statistics(lines, film, study.boundary_layer, *run)
 save(contact, snakemake.output.contact, "contact_batch", study, [snakemake.input.film])
-master = contact_map(lines, film, study.boundary_layer)
-save(master, snakemake.output.master, "master_batch", study, [snakemake.input.film])
+if study.has("master"):
+    master = contact_map(lines, film, study.boundary_layer)
+    save(master, snakemake.output.master, "master_batch", study, [snakemake.input.film])

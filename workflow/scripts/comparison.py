@@ -16,7 +16,12 @@ inputs = {kind: snakemake.input[kind] for kind in ("film", "contact", "experimen
 film, contact, experiment = (load(path, kind, study) for kind, path in inputs.items())
 oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
 at_records = film_at_records(
-    experiment, oils, study.rough_rollers, study.film_formulas, **study.film_corrections
+    experiment,
+    oils,
+    study.rough_rollers,
+    study.film_formulas,
+    study.film_shape != "flat",
+    **study.film_corrections,
 )
 model = model_at_records(at_records, experiment, film, contact, study)
 result = compare(model, experiment, contact)

@@ -16,7 +16,7 @@ from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study, paper = load_study(**snakemake.config["study"]), load_study(snakemake.input.paper)
-results = {kind: load(snakemake.input[kind], kind, study) for kind in SUMMARISED}
+results = {kind: load(snakemake.input[kind], kind, study) for kind in SUMMARISED if study.has(kind)}
 written = Path(snakemake.input.study).read_text(encoding="utf-8")
 docs = {Path(file).stem: Path(file).read_text(encoding="utf-8") for file in snakemake.input.docs}
 title, assumptions = title_and_text(assumptions_of(study, paper, docs["assumptions"]))

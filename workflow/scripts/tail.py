@@ -14,5 +14,6 @@ tail = tail_probabilities(
     study.seed,
     study.operating_grid.slide_to_roll_ratio,
     snakemake.threads,
+    study.is_flattened,
 )
 save(tail, snakemake.output[0], "tail", study, [snakemake.input.film])

@@ -13,5 +13,6 @@ trace = contact_trace(
     study.trace_points,
     study.boundary_layer,
     study.resistivity,
+    study.is_flattened,
 )
 save(trace, snakemake.output[0], "trace", study, [snakemake.input.roughness, snakemake.input.film])

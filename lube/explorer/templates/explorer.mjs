@@ -146,7 +146,8 @@ function showAnswers(point) {
     if (content.sampled) {
         const rate = limits("tail.breakthrough_rate", ["", "_lower", "_upper"], point);
         const [often, least, most] = [rate.mean, rate.lower, rate.upper].map((one) => rounded(3600 * one));
-        element("rate").textContent = `${often} breakthroughs per hour (${least} to ${most}), on average over pairs of rollers`;
+        element("rate").textContent =
+            rate.mean === null ? "" : `${often} breakthroughs per hour (${least} to ${most}), on average over pairs of rollers`;
     }
     element("film").textContent = shown("film_thickness", point);
     const valid = at("in_validity_range", point);
@@ -202,6 +203,7 @@ function showRecords(point, along, source) {
 }
 
 function showMaster(point, source) {
+    if (content.master === null) return; // the film thickness and the width alone do not tell
     const { lambda_ratio, contact_width, mean, lower, upper } = content.master;
     const width = 2 * at("contact_half_width", point);
     const away = contact_width.map((one) => Math.abs(one - width));
