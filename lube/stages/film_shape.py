@@ -6,8 +6,10 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
 
-from lube.grid.discretise import layer_factor_of
+from lube.grid.discretise import layer_factor_of, whole_numbers
 from lube.grid.operating_points import at_slip
+from lube.kernels.strips import strip_statistics
+from lube.kernels.whole_runs import whole_run_steps
 from lube.physics.hertz import hertz_gap
 from lube.schema import POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval, ratio_interval
@@ -15,6 +17,7 @@ from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.rare_contact import check_gaussian, rare_contact_under
 from lube.surfaces.spectra import line_attributes
+from lube.surfaces.synthetic import draw_realisation
 from lube.types import Array
 
 FILM_MODELS = ("formula", "flat", "open", "computed")
@@ -84,12 +87,44 @@ def film_shape_probabilities(
                     for each in ratio_interval(breakthrough.values, breakthrough.values[:, :1])
                 ],
             ),
+            **_edges(spec, film, thickness, boundary_layer, (seed, threads)),
             "lambda_ratio": thicknesses.drop_attrs() / film["composite_rms_roughness"].item(),
             "film_formula": ((), name),
         },
         {dim: film[dim] for dim in POINT_DIMS} | models,
     )
     return label(table.transpose("film_model", *POINT_DIMS), "film_shape")
+
+
+def _edges(spec, film, thickness, boundary_layer, work):
+    """Breakthrough judged by whole runs, and that of the pieces in the window over it.
+
+    Counted in realisations of the study in pure rolling.
+    """
+    seed, threads = work
+    lines = xr.Dataset(attrs=line_attributes(spec))
+    widths = film["contact_half_width"].broadcast_like(thickness).transpose(*POINT_DIMS)
+    points = whole_numbers(thickness.values.ravel(), widths.values.ravel(), lines)
+    factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
+
+    def on_one_pair(number):
+        first, second = draw_realisation(spec, seed, number)
+        line = first + np.resize(second, first.size)
+        pair = line, np.zeros_like(line)
+        pieces = strip_statistics(pair, (1.0, 1.0), line.size, *points, factor)[:, 1]
+        return np.stack([whole_run_steps(line, *points, factor), pieces]) / line.size
+
+    with ThreadPoolExecutor(threads) as pool:
+        found = np.stack(list(pool.map(on_one_pair, range(PAIRS))))
+    whole, pieces = (found[:, each].reshape(-1, *thickness.shape) for each in (0, 1))
+    judged = {
+        "whole_run_probability": mean_interval(whole),
+        "edge_ratio": ratio_interval(pieces, whole),
+    }
+    table = {}
+    for name, limits in judged.items():
+        table |= values_with_limits(name, [(POINT_DIMS, each) for each in limits])
+    return table
 
 
 _DIMS = ("pair", "film_model", *POINT_DIMS)

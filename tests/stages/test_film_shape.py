@@ -6,7 +6,7 @@ import pytest
 from lube import contact_statistics, film_table, gather, roughness_lines
 from lube.physics.hertz import hertz_gap
 from lube.stages.film import film_profile_table
-from lube.stages.film_shape import FILM_MODELS, film_shape_probabilities, window_models
+from lube.stages.film_shape import FILM_MODELS, PAIRS, film_shape_probabilities, window_models
 from lube.stages.lubricant import lubricant_table
 from lube.stages.tail import tail_probabilities
 
@@ -79,6 +79,17 @@ def test_a_study_of_the_computed_film_alone_has_ratio_one_in_both_flat_models(sh
     assert np.all(shapes["probability_ratio"] <= shapes["probability_ratio_upper"])
     assert shapes["film_model"].values.tolist() == list(FILM_MODELS)
     assert shapes["film_formula"].item() == "computed"
+
+
+def test_pieces_in_the_window_are_those_of_the_contact_model(spec, film, weak, shapes):
+    """And whole runs break less often, the more so the narrower the contact."""
+    lines = roughness_lines(spec, SEED, range(PAIRS))
+    pieces = gather([contact_statistics(lines, film, weak)], film).squeeze()
+    found = (shapes["edge_ratio"] * shapes["whole_run_probability"]).squeeze()
+    expected = pieces["breakthrough_probability_mean"].transpose(*found.dims)
+    np.testing.assert_allclose(found.fillna(0.0), expected, rtol=1e-12)
+    ratio = shapes["edge_ratio"].squeeze().isel(temperature=1)
+    assert np.all((ratio > 1.0) & (ratio < 2.0)) and np.all(ratio.diff("force") < 0.0)
 
 
 def test_a_film_that_did_not_converge_is_unknown_and_the_others_are_not(
