@@ -296,7 +296,10 @@ def _shaped_asymptotes(film, moments, curvature):
     """Crossings of a film that changes along the contact, the slope of the film neglected."""
     films = shaped_films(film)
     crossings = crossing_rate(films, moments) * film["contact_half_width"]
-    share = films.copy(data=sharp_summit_share(films.values, moments, curvature))
+    rows = films.values.reshape(-1, films.sizes["film_position"])
+    # One after the other: the integral over the curvature takes a thousand times their memory.
+    shares = [sharp_summit_share(row, moments, curvature) for row in rows]
+    share = films.copy(data=np.reshape(shares, films.shape))
     return {
         "geometric_contact_asymptote": crossings.integrate("film_position"),
         "breakthrough_asymptote": (crossings * share).integrate("film_position"),

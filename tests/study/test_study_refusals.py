@@ -132,7 +132,10 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
     assert tested >= 20
 
 
-WITH_DEFAULT = ("about", "rig", "experiment", "film_shape", "roughness_deformation")
+WITH_DEFAULT = (
+    *("about", "rig", "experiment", "film_shape", "inlet_shear_heating", "inlet_meniscus"),
+    "roughness_deformation",
+)
 
 
 def test_every_key_without_a_default_is_needed(paper_with):
