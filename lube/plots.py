@@ -440,7 +440,8 @@ def interval_bars(
     bars = np.where(seen, [mean - lower, upper - mean], 0.0)
     points = np.where(seen, mean, np.nan)
     axes.errorbar(x, points, yerr=bars, capsize=2, elinewidth=1.0, **style)
-    at, limits = np.asarray(x)[~seen], np.asarray(upper)[~seen]
+    limited = ~seen & (np.asarray(upper) > 0.0)  # both are 0 below the smallest number there is
+    at, limits = np.asarray(x)[limited], np.asarray(upper)[limited]
     arrows = {"uplims": True, "linestyle": "none", "capsize": 2.5, "elinewidth": 1.0}
     axes.errorbar(at, limits, yerr=0.5 * limits, color=style.get("color"), **arrows)
 

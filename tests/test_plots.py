@@ -54,9 +54,11 @@ def test_the_style_leaves_the_users_other_settings():
 
 
 def test_a_probability_of_zero_hangs_from_its_limit_on_a_logarithmic_scale():
-    x, mean = np.array([1.0, 2.0]), np.array([0.0, 0.1])
-    lower, upper = np.array([0.0, 0.05]), np.array([1e-3, 0.2])
-    for scale, drawn, limits in (("log", [np.nan, 0.1], [1e-3]), ("linear", [0.0, 0.1], [])):
+    """Unless its limit is zero too: one below the smallest number there is."""
+    x, mean = np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.1, 0.0])
+    lower, upper = np.array([0.0, 0.05, 0.0]), np.array([1e-3, 0.2, 0.0])
+    shown = {"log": ([np.nan, 0.1, np.nan], [1e-3]), "linear": ([0.0, 0.1, 0.0], [])}
+    for scale, (drawn, limits) in shown.items():
         _, axes = plt.subplots()
         axes.set_yscale(scale)
         plots.interval_bars(axes, x, mean, lower, upper, color="black", marker="o")

@@ -381,10 +381,10 @@ def _record_path(name_or_path, folder):
     """Path of a record's file, and the grade to put in its place."""
     if is_record_path(name_or_path):
         return Path(folder) / name_or_path, None
-    shipped = _shipped()
-    if name_or_path in shipped:
+    shipped, is_name = _shipped(), isinstance(name_or_path, str)
+    if is_name and name_or_path in shipped:
         return shipped[name_or_path]
-    near = right_one(name_or_path, shipped) if isinstance(name_or_path, str) else ""
+    near = right_one(name_or_path, shipped) if is_name else ""
     lowest, *_, highest = GEAR_OIL_GRADES
     grades = f"-iso-vg-<{lowest} to {highest}>"
     names = {re.sub(r"-iso-vg-\d+", grades, name): None for name in sorted(shipped)}

@@ -74,6 +74,7 @@ NAMES = [
     ("lubricants", [], "got (), need at least 1"),
     ("lubricants", OIL, f"got '{OIL}', need a list"),
     ("lubricants", [3], "lubricants: got 3, need one of "),
+    ("lubricants", [[OIL]], f"got ['{OIL}'], need one of "),
     ("lubricants", [OIL, OIL], f"{OIL} is repeated, need each once"),
     ("film_formulas", ["nope"], "film_formulas.0: unknown film formula 'nope', need one of paper"),
     ("film_formulas", [], "got [], need at least 1"),
