@@ -1,10 +1,13 @@
 """Contact under the computed film: its cost beside that of flat films and of the literal scan.
 
+Beside them that of lines that the oil flattens.
+
     python tests/benchmarks/bench_shape.py [STUDY] [REALISATIONS]
 
 For the paper's study, if none is named, and 64 realisations:
 
-- time for all operating points on all cores, flat and with the computed shape;
+- time for all operating points on all cores, flat and with the computed shape, and flat with lines
+  that the oil flattens;
 - time of one realisation at some points, by the literal scan of every window and by blocks of every
   few windows;
 - scatter between realisations with fewer and fewer windows, over that with every window.
@@ -15,7 +18,6 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from itertools import repeat
 
 import numpy as np
 
@@ -48,12 +50,17 @@ def prepared(study_file):
 
 def print_ensemble(study, film, lines):
     """Time all operating points on all cores."""
-    for name, table in (("flat", film.drop_vars("film_profile")), ("computed shape", film)):
-        contact_statistics(lines[0], table.isel(force=[0]), study.boundary_layer)  # compile
+    flat, layer = film.drop_vars("film_profile"), study.boundary_layer
+    for name, table, flattened in (
+        ("flat", flat, False),
+        ("computed shape", film, False),
+        ("flat, flattened lines", flat, True),
+    ):
+        run = partial(contact_statistics, film=table, boundary_layer=layer, flattened=flattened)
+        run(lines[0], film=table.isel(force=[0]))  # compile
         start = time.perf_counter(), time.process_time()
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            layers = repeat(study.boundary_layer)
-            list(pool.map(contact_statistics, lines, repeat(table), layers))
+            list(pool.map(run, lines))
         passed = time.perf_counter() - start[0], time.process_time() - start[1]
         points = table["film_thickness"].size
         print(f"{name}: {points} points, {len(lines)} realisations: {passed[0]:.1f} s", end="")
