@@ -74,6 +74,6 @@ def experiment_at(levels, shares, **values):
 def model_of_records(experiment, film, contact, study):
     """The model at the conditions of each record, as the workflow makes it."""
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    shaped = study.film_shape != "flat"
-    films = film_at_records(experiment, oils, study.rollers, study.film_formulas, shaped)
+    model = study.film_model
+    films = film_at_records(experiment, oils, study.rollers, study.film_formulas, **model)
     return model_at_records(films, experiment, film, contact, study)

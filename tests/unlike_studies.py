@@ -181,11 +181,11 @@ def write_datasets(content, folder):
 def _datasets(study):
     grid, layer = study.operating_grid, study.boundary_layer
     oil = lubricant_table(study.lubricants, grid.temperature)
-    shaped, flattened = study.film_shape != "flat", study.is_flattened
+    flattened = study.is_flattened
     rough, formulas = study.rough_rollers, study.film_formulas
-    levels, corrections = (grid.force, grid.speed), study.film_corrections
+    levels, films = (grid.force, grid.speed), study.film_model
     slips = {"slide_to_roll_ratio": study.slips}
-    film = film_table(oil, rough, *levels, formulas, shaped, **slips, **corrections)
+    film = film_table(oil, rough, *levels, formulas, **slips, **films)
     lines = roughness_lines(study.line_spec, study.seed, study.kept_realisations)
     batch = roughness_batch(study.line_spec, study.seed, range(study.realisations))
     run = contact_statistics(batch, film, layer, study.slips, study.revolutions, flattened)
@@ -196,10 +196,10 @@ def _datasets(study):
     else:
         experiment = simulated_experiment(rig_lines, film, study)
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    at_records = film_at_records(experiment, oils, rough, formulas, shaped, **corrections)
+    at_records = film_at_records(experiment, oils, rough, formulas, **films)
     model = model_at_records(at_records, experiment, film, contact, study)
     comparison = compare(model, experiment, contact)
-    profile = film_profile_table(oil, rough, *levels, corrections["inlet_meniscus"])
+    profile = film_profile_table(oil, rough, *levels, films["inlet_meniscus"])
     spec, rollers, some = study.line_spec, study.rollers, {}
     if study.has("master"):
         master = gather_map([contact_map(batch, film, layer)])

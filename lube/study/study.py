@@ -26,8 +26,6 @@ from lube.study.field_types import (
     collected,
     each_once,
     length_or_words,
-    levels,
-    pure_number,
     quantity,
     validate,
 )
@@ -39,6 +37,7 @@ from lube.study.lubricant_record import (
     shipped_records,
 )
 from lube.study.metadata import About
+from lube.study.operating_grid import TRACED, OperatingGrid, TracePoint
 from lube.study.resolve import resolved_content, with_topographies
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.roller_topography import RollerTopography
@@ -68,39 +67,7 @@ def _names_of_records():
     return {"type": "array", "items": one, "minItems": 1, "format": "list of names or paths"}
 
 
-class OperatingGrid(StrictModel):
-    """Levels of the operating variables; every combination is an operating point."""
-
-    force: levels("N", above=0.0)
-    """normal forces"""
-    speed: levels("rpm", above=0.0)
-    """rotation speeds of the first roller when it rolls without slip"""
-    temperature: levels("degC", above=-273.15)
-    """temperatures of rollers and oil"""
-    slide_to_roll_ratio: levels(None, least=-2.0, most=2.0)
-    """(v1 - v2) / mean surface speed; 0 is pure rolling"""
-
-
 _Meniscus = length_or_words(lambda value: value == "none", "none", "^none$")
-
-_TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "speed", "force")
-
-
-class TracePoint(StrictModel):
-    """An operating point whose contact is kept at every time step of a revolution."""
-
-    force: quantity("N")
-    """a force of the grid"""
-    speed: quantity("rpm")
-    """a speed of the grid, the same for all traces"""
-    temperature: quantity("degC")
-    """a temperature of the grid"""
-    lubricant: str | None = None
-    """a lubricant of the study; by default its first"""
-    film_formula: str | None = None
-    """a formula of the study; by default its first"""
-    slide_to_roll_ratio: pure_number() | None = None
-    """a ratio of the grid; by default its first"""
 
 
 class Study(StrictModel):
@@ -174,10 +141,13 @@ class Study(StrictModel):
         return self.rollers.with_rms_heights(self.line_spec.rms_height)
 
     @property
-    def film_corrections(self) -> dict[str, str | float | None]:
-        """What reduces the film, as arguments of `lube.stages.film.film_table`."""
-        meniscus = None if self.inlet_meniscus == "none" else self.inlet_meniscus
-        return {"inlet_shear_heating": self.inlet_shear_heating, "inlet_meniscus": meniscus}
+    def film_model(self) -> dict[str, bool | str | float | None]:
+        """What the study assumes of its films, as arguments of `lube.stages.film.film_table`."""
+        return {
+            "with_shape": self.film_shape != "flat",
+            "inlet_shear_heating": self.inlet_shear_heating,
+            "inlet_meniscus": None if self.inlet_meniscus == "none" else self.inlet_meniscus,
+        }
 
     @property
     def topographies(self) -> dict[str, RollerTopography]:
@@ -268,7 +238,7 @@ class Study(StrictModel):
         half_width = self.rollers.contact_half_width(force)
         what = f"operating_grid.force: the contact at {force:g} N"
         check_width(self.line_spec, 2.0 * half_width, what)
-        meniscus = self.film_corrections["inlet_meniscus"]
+        meniscus = self.film_model["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:
             raise StudyError(
                 f"inlet_meniscus: got {with_unit(meniscus, 'm')}, need more than "
@@ -331,8 +301,8 @@ class Study(StrictModel):
         if self.is_flattened and any(self.slips):
             raise ValueError(
                 f"roughness_deformation: got {self.roughness_deformation} with a slide-to-roll "
-                f"ratio of {next(filter(None, self.slips)):g}, need none, or pure rolling: its "
-                "formula is for rolling"
+                f"ratio of {next(filter(None, self.slips)):g}, need none, or a ratio of 0: its "
+                "formula is for pure rolling"
             )
         return self
 
@@ -396,7 +366,7 @@ class Study(StrictModel):
             "film_formula": self.film_formulas,
         }
         found = {}
-        for variable in _TRACED:
+        for variable in TRACED:
             wanted, given = getattr(point, variable), available[variable]
             index = 0 if wanted is None else level_index(given, wanted, SAME)
             if index is None:

@@ -37,7 +37,7 @@ def results(study, folder):
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
     levels = grid.force, grid.speed, study.film_formulas
-    corrections = {"slide_to_roll_ratio": study.slips, **study.film_corrections}
+    corrections = {"slide_to_roll_ratio": study.slips, **study.film_model}
     film = film_table(oil, study.rollers, *levels, **corrections)
     lines = roughness_batch(study.line_spec, study.seed, range(REALISATIONS))
     run = contact_statistics(lines, film, study.boundary_layer, study.slips, study.revolutions)

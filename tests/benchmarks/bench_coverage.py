@@ -105,7 +105,7 @@ def film_of(study):
     oil = lubricant_table(study.lubricants, grid.temperature)
     levels = grid.force, grid.speed, study.film_formulas
     slips = {"slide_to_roll_ratio": study.slips}
-    return film_table(oil, study.rollers, *levels, **slips, **study.film_corrections)
+    return film_table(oil, study.rollers, *levels, **slips, **study.film_model)
 
 
 def make_ensembles(study, count, pool):
@@ -209,7 +209,7 @@ def model_of(experiment, ensemble, study):
     """The model at the records, by one ensemble."""
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     own = study.rollers, study.film_formulas
-    films = film_at_records(experiment, oils, *own, **study.film_corrections)
+    films = film_at_records(experiment, oils, *own, **study.film_model)
     return model_at_records(films, experiment, ensemble.film, ensemble.contact, study)
 
 

@@ -62,14 +62,13 @@ def test_the_force_of_a_record_needs_a_contact_that_the_grid_resolves():
         study.check_window(1e12)
 
 
-def test_what_corrects_the_film_is_off_by_default_and_asks_for_what_it_needs(paper_with):
-    assert load_study(PAPER).film_corrections == {
-        "inlet_shear_heating": "none",
-        "inlet_meniscus": None,
-    }
+def test_the_papers_film_is_flat_and_not_corrected_and_another_asks_for_what_it_needs(paper_with):
+    plain = {"with_shape": False, "inlet_shear_heating": "none", "inlet_meniscus": None}
+    assert load_study(PAPER).film_model == plain
     changes = ("inlet_shear_heating", "gupta-1992"), ("inlet_meniscus", "0.4 mm")
     study = load_study(paper_with(*changes))
-    assert study.film_corrections == {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 4e-4}
+    heated = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 4e-4}
+    assert study.film_model == plain | heated
     # So is the force of a record.
     with pytest.raises(StudyError, match=r"got 400 µm, need more than .* the contact at 6000 N"):
         study.check_window(6000.0)

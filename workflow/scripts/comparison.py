@@ -20,8 +20,7 @@ at_records = film_at_records(
     oils,
     study.rough_rollers,
     study.film_formulas,
-    study.film_shape != "flat",
-    **study.film_corrections,
+    **study.film_model,
 )
 model = model_at_records(at_records, experiment, film, contact, study)
 result = compare(model, experiment, contact)

@@ -15,8 +15,7 @@ table = film_table(
     grid.force,
     grid.speed,
     study.film_formulas,
-    with_shape=study.film_shape != "flat",
     slide_to_roll_ratio=study.slips,
-    **study.film_corrections,
+    **study.film_model,
 )
 save(table, snakemake.output[0], "film", study, [snakemake.input.lubricant])

@@ -14,6 +14,6 @@ profiles = film_profile_table(
     study.rough_rollers,
     grid.force,
     grid.speed,
-    study.film_corrections["inlet_meniscus"],
+    study.film_model["inlet_meniscus"],
 )
 save(profiles, snakemake.output[0], "film_profile", study, [snakemake.input.lubricant])

@@ -1,0 +1,36 @@
+"""The operating points of a study, and those of them that are traced."""
+
+from lube.study.field_types import StrictModel, levels, pure_number, quantity
+
+TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "speed", "force")
+"""Variables that a trace names a level of."""
+
+
+class OperatingGrid(StrictModel):
+    """Levels of the operating variables; every combination is an operating point."""
+
+    force: levels("N", above=0.0)
+    """normal forces"""
+    speed: levels("rpm", above=0.0)
+    """rotation speeds of the first roller when it rolls without slip"""
+    temperature: levels("degC", above=-273.15)
+    """temperatures of rollers and oil"""
+    slide_to_roll_ratio: levels(None, least=-2.0, most=2.0)
+    """(v1 - v2) / mean surface speed; 0 is pure rolling"""
+
+
+class TracePoint(StrictModel):
+    """An operating point whose contact is kept at every time step of a revolution."""
+
+    force: quantity("N")
+    """a force of the grid"""
+    speed: quantity("rpm")
+    """a speed of the grid, the same for all traces"""
+    temperature: quantity("degC")
+    """a temperature of the grid"""
+    lubricant: str | None = None
+    """a lubricant of the study; by default its first"""
+    film_formula: str | None = None
+    """a formula of the study; by default its first"""
+    slide_to_roll_ratio: pure_number() | None = None
+    """a ratio of the grid; by default its first"""
