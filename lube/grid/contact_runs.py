@@ -92,31 +92,30 @@ class ContactRuns:
         counts[self.unknown[points]] = np.nan
         return counts
 
-    def trace(self, pair: Pair, ratios: Ratios, steps: int, points: Array | None = None) -> Array:
+    def trace(self, pair: Pair, ratios: Ratios, steps: int) -> Array:
         """Count the points with a broken boundary layer at every time step.
 
         Parameters
         ----------
-        pair, ratios, steps, points
+        pair, ratios, steps
             As in `statistics`; every time step is looked at.
 
         Returns
         -------
         numpy.ndarray
-            Shape (points, steps), int32; 0 where the film is not known.
+            Shape (operating points, steps), int32; 0 where the film is not known.
         """
-        points = np.arange(self._films.size) if points is None else points
+        points = np.arange(self._films.size)
         broken = np.zeros((points.size, steps), np.int32)
         for lines, here in self._in_contact(pair, points):
             if self._shapes is None:
-                films = self._films[points[here]], self._half_windows[points[here]]
+                films = self._films[here], self._half_windows[here]
                 broken[here] = strip_trace(lines, ratios, steps, *films, self._factor)
                 continue
-            for row in here:
-                if not self.unknown[points[row]]:
-                    film = self._shapes[points[row]].below(_highest(lines))
-                    motion = lines, ratios, steps, steps
-                    broken[row] = shaped_trace(*motion, film.film, film.before, self._factor)[:, 1]
+            for point in here[~self.unknown[here]]:
+                film = self._shapes[point].below(_highest(lines))
+                motion = lines, ratios, steps, steps
+                broken[point] = shaped_trace(*motion, film.film, film.before, self._factor)[:, 1]
         return broken
 
     def _in_contact(self, pair, points):

@@ -10,6 +10,10 @@ from lube.errors import DataError
 from lube.grid.operating_points import surface_speeds
 from lube.kernels.layer import layer_factor
 
+UNKNOWN_FILM = 2**40
+"""Height steps of a film that is not known. No sum of lines reaches so high, and larger films could
+overflow int64."""
+
 
 class Layer(Protocol):
     """Boundary layer on the rollers.
@@ -168,8 +172,7 @@ def whole_numbers(
     >>> whole_numbers([1e-9], [3.9e-6], lines)
     (array([1000]), array([3]))
     """
-    # No sum of lines reaches 2**40 steps, and larger films could overflow int64.
-    steps = np.fmin(np.asarray(film_thickness) / lines.attrs["height_step"], 2.0**40)
+    steps = np.fmin(np.asarray(film_thickness) / lines.attrs["height_step"], UNKNOWN_FILM)
     films = np.rint(steps)
     half_windows = np.floor(np.asarray(half_width) / lines.attrs["spacing"])
     return films.astype(np.int64), half_windows.astype(np.int64)

@@ -70,6 +70,25 @@ def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Da
     return film.sel({name: slide_to_roll_ratio}, drop=True)
 
 
+def known_films(film: xr.Dataset) -> xr.DataArray:
+    """Where the film is known, with its shape if it has one.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset, or rows of one.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over the dimensions of its ``film_thickness``.
+    """
+    known = film["film_thickness"].notnull()
+    if "film_profile" in film:
+        known = known & film["film_profile"].notnull().all("film_position")
+    return known
+
+
 @dataclass(frozen=True)
 class OperatingPoint:
     """An operating point, with its film thickness and contact width.
@@ -107,6 +126,11 @@ class OperatingPoint:
     def levels(self) -> dict[str, float | str]:
         """Levels of the operating variables, by the names of `lube.schema.EXPERIMENT_DIMS`."""
         return {name: getattr(self, name) for name in EXPERIMENT_DIMS}
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the film is known here, with its shape if it has one."""
+        return bool(known_films(self.row))
 
     @property
     def faster_speed(self) -> float:

@@ -7,6 +7,7 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from lube.errors import DataError
+from lube.physics.hertz import hertz_gap
 from lube.types import Array
 
 
@@ -59,12 +60,13 @@ def shaped_films(film: xr.Dataset) -> xr.DataArray:
     """Films with the computed shape and the thickness of each film formula.
 
     The shape is scaled so that its film is the formula's where the formula refers to: at the line
-    of centres, at the thinnest point, or on average over Hertz' contact.
+    of centres, at the thinnest point, or on average over Hertz' contact. The gap of the dry
+    contact, which is zero there and most of the film far outside, is not scaled.
 
     Parameters
     ----------
     film : xarray.Dataset
-        A ``film`` dataset with ``film_profile``.
+        A ``film`` dataset with ``film_profile``, or its rows.
 
     Returns
     -------
@@ -78,8 +80,31 @@ def shaped_films(film: xr.Dataset) -> xr.DataArray:
     mean = inside.integrate("film_position") / 2.0
     own = xr.where(place == "central", central, xr.where(place == "minimum", minimum, mean))
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
-        shaped = film["film_thickness"] / own * profile
+        shaped = scaled_film(profile, film["film_thickness"] / own, film)
     return shaped.transpose(*film["film_thickness"].dims, "film_position")
+
+
+def scaled_film(profile: xr.DataArray, scale: xr.DataArray, film: xr.Dataset) -> xr.DataArray:
+    """Scale a film with a shape, but not the gap of the dry contact that is part of it.
+
+    Parameters
+    ----------
+    profile : xarray.DataArray
+        Film over film_position and other dimensions, m.
+    scale : xarray.DataArray
+        What the film in the contact is multiplied by.
+    film : xarray.Dataset
+        With ``contact_half_width`` and ``reduced_radius``, m.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over the dimensions of both, m.
+    """
+    position = profile["film_position"]
+    gap = position.copy(data=hertz_gap(position.values)).drop_attrs()
+    gap = gap * film["contact_half_width"] ** 2 / film["reduced_radius"]
+    return scale * (profile - gap) + gap
 
 
 def window_films(film: xr.Dataset, lines: xr.Dataset) -> tuple[list[WindowFilm | None], Array]:

@@ -32,8 +32,8 @@ def lubricant_of(entry: Entry, study: Study) -> str:
     Raises
     ------
     DataError
-        If the study has no such lubricant, it is not valid at the temperature, or the contact at
-        the force is too narrow or too wide.
+        If the study has no such lubricant, it is not valid at the temperature, the contact at the
+        force is too narrow or too wide, or the study's model does not hold at the slip.
     """
     lubricants = {record.name: record for record in study.lubricants}
     name = entry.lubricant or study.lubricants[0].name
@@ -45,6 +45,7 @@ def lubricant_of(entry: Entry, study: Study) -> str:
     try:
         check_temperatures(lubricants[name], [entry.temperature])
         study.check_window(entry.force)
+        study.check_slip(entry.slide_to_roll_ratio or 0.0)
     except LubeError as error:
         raise DataError(f"{entry.where}: {error}") from None
     return name

@@ -48,11 +48,12 @@ def model_at_records(
         same dimensions, most without realisation; and the attributes ``travel`` and
         ``longest_wavelength``, both m, of one realisation.
 
-        The probabilities are those of one revolution of pure rolling, because slip does not
-        change the expected probability. It changes the scatter of a record.
+        The probabilities are those of one revolution of pure rolling, at the film of the record's
+        own slip: apart from that film slip does not change the expected probability. It changes the
+        scatter of a record.
     """
     runs = EnsembleRuns(study, at_records)
-    points = runs.points(at_records["film_thickness"], at_records["contact_half_width"])
+    points = runs.points_of(at_records)
     stored = _stored(runs, film, contact)
     probability = _probability(runs, points, stored, contact.sizes["realisation"])
     scatter = record_scatter(at_records, experiment, probability, study)
@@ -76,8 +77,7 @@ def _stored(runs, film, contact):
     if not rolling.any() or contact["revolutions"].item() != 1:
         return {}
     film = at_slip(film, 0.0)
-    thickness = film["film_thickness"].transpose(*OPERATING_DIMS)
-    points = runs.points(thickness, film["contact_half_width"])
+    points = runs.points_of(film.transpose(*OPERATING_DIMS, ...))
     stored = contact[PROBABILITY].isel(slide_to_roll_ratio=int(np.argmax(rolling))).values
     columns = stored.reshape(len(stored), -1).T
     return dict(zip(map(tuple, points.T.tolist()), columns, strict=True))

@@ -5,7 +5,13 @@ import numpy.typing as npt
 import xarray as xr
 
 from lube.grid.contact_runs import ContactRuns
-from lube.grid.discretise import layer_factor_of, revolution, speed_ratios, whole_numbers
+from lube.grid.discretise import (
+    UNKNOWN_FILM,
+    layer_factor_of,
+    revolution,
+    speed_ratios,
+    whole_numbers,
+)
 from lube.kernels.motion import surface_position
 from lube.kernels.strips import strip_statistics
 from lube.study.study import Study
@@ -35,8 +41,7 @@ class EnsembleRuns:
         if films is not None and not study.follows_master_map:
             layer = study.boundary_layer
             self._at = ContactRuns(self._lines, films, layer, study.is_flattened)
-            thickness, widths = xr.broadcast(films["film_thickness"], films["contact_half_width"])
-            points = self.points(thickness.values, widths.values)
+            points = self.points_of(films)
             self._numbers = {tuple(point): number for number, point in enumerate(points.T.tolist())}
 
     def pair(self, realisation: int) -> Pair:
@@ -47,6 +52,18 @@ class EnsembleRuns:
         """Convert films and half-widths (m) to height steps and grid points, shape (2, P)."""
         thickness, widths = np.broadcast_arrays(film_thickness, half_width)
         return np.stack(whole_numbers(thickness.ravel(), widths.ravel(), self._lines))
+
+    def points_of(self, films: xr.Dataset) -> Array:
+        """Points of a film table, shape (2, P); or (4, P) where more decides than film and width.
+
+        Then the bits of Moes' numbers M and L are added, which tell operating points apart.
+        """
+        names = ["contact_half_width"]
+        names += ["moes_load", "moes_material"] if self._at else []
+        spread = xr.broadcast(films["film_thickness"], *(films[name] for name in names))
+        thickness, half_width, *moes = (each.values.ravel() for each in spread)
+        bits = [np.ascontiguousarray(each).view(np.int64)[None] for each in moes]
+        return np.concatenate([self.points(thickness, half_width), *bits])
 
     def share(
         self, pair: Pair, slip: float, points: Array, turns: float = 1.0, begin: int = 0
@@ -60,7 +77,7 @@ class EnsembleRuns:
         slip : float
             Slide-to-roll ratio.
         points : numpy.ndarray
-            From `points`, shape (2, P).
+            From `points_of`.
         turns : float, optional
             Revolutions of the roller with the faster surface; a single time step at least.
         begin : int, optional
@@ -69,11 +86,12 @@ class EnsembleRuns:
         Returns
         -------
         numpy.ndarray
-            Shape (P,).
+            Shape (P,); NaN where the film is not known.
         """
         steps = max(round(turns * revolution(pair, speed_ratios(slip))), 1)
         if self._at is None:
-            return self.breakthroughs(pair, slip, points, begin, begin + steps) / steps
+            counts = self.breakthroughs(pair, slip, points, begin, begin + steps)
+            return np.where(points[0] < UNKNOWN_FILM, counts / steps, np.nan)
         numbers = np.array([self._numbers[tuple(point)] for point in points.T.tolist()], int)
         pair, ratios = _begun(pair, slip, begin), speed_ratios(slip)
         return self._at.statistics(pair, ratios, steps, numbers)[:, 1]

@@ -75,7 +75,7 @@ def record_scatter(
         the error of the mean is a large part of the small scatter of such records.
     """
     runs = EnsembleRuns(study, model)
-    points = runs.points(model["film_thickness"], model["contact_half_width"])
+    points = runs.points_of(model)
     formulas = points.shape[1] // model.sizes["record"]
     slips = np.tile(experiment["slide_to_roll_ratio"].values, formulas)
     turns = np.tile(experiment["turns"].values, formulas)

@@ -45,9 +45,24 @@ def simulated_experiment(lines: xr.Dataset, film: xr.Dataset, study: Study) -> x
     Returns
     -------
     xarray.Dataset
-        The ``experiment`` file of `lube.schema`, of the origin ``simulated``.
+        The ``experiment`` file of `lube.schema`, of the origin ``simulated``. Its attribute
+        ``refused`` has a line for each operating point whose film is not known.
+
+    Raises
+    ------
+    DataError
+        If no film is known.
     """
-    points = operating_points(film.isel(film_formula=0), study.rig_slip)
+    every = operating_points(film.isel(film_formula=0), study.rig_slip)
+    points = [point for point in every if point.is_known]
+    refused = [
+        f"{_name_of_point(_conditions_of_point(point, 0, study), study)}: the film is not known"
+        for point in every
+        if not point.is_known
+    ]
+    _log_refused(refused)
+    if not points:
+        raise DataError(f"no record can be simulated; the first: {refused[0]}")
     records = {
         (pair, number): Record(_conditions_of_point(point, pair, study), study)
         for pair in range(study.rig.pairs)
@@ -59,7 +74,12 @@ def simulated_experiment(lines: xr.Dataset, film: xr.Dataset, study: Study) -> x
         record.evaluate() | {"record": _name_of_point(record.conditions, study)}
         for record in records.values()
     ]
-    return _dataset(rows, study, "simulated")
+    return _dataset(rows, study, "simulated", refused)
+
+
+def _log_refused(refused: Sequence[str]) -> None:
+    for line in refused:
+        log.warning("Refused: %s", line)
 
 
 def _conditions_of_point(point: OperatingPoint, pair: int, study: Study) -> Conditions:
@@ -117,7 +137,8 @@ def measured_experiment(manifest: Manifest, study: Study) -> xr.Dataset:
             rows.append(_row_of_entry(entry, study, remarks))
         except LubeError as error:
             refused.append(str(error))
-    for line in (*(f"Refused: {line}" for line in refused), *remarks):
+    _log_refused(refused)
+    for line in remarks:
         log.warning("%s", line)
     if not rows:
         raise DataError(f"no record can be used; the first: {refused[0] if refused else 'none'}")

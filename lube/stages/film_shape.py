@@ -8,11 +8,13 @@ from scipy.interpolate import CubicSpline
 
 from lube.grid.discretise import layer_factor_of, whole_numbers
 from lube.grid.operating_points import at_slip
+from lube.grid.window_films import scaled_film
 from lube.kernels.strips import strip_statistics
 from lube.kernels.whole_runs import whole_run_steps
 from lube.physics.hertz import hertz_gap
 from lube.schema import POINT_DIMS, label, values_with_limits
-from lube.statistics.confidence import mean_interval, ratio_interval
+from lube.statistics.confidence import mean_interval, probability_interval, ratio_interval
+from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.rare_contact import check_gaussian, rare_contact_under
@@ -66,6 +68,11 @@ def film_shape_probabilities(
     name = film["film_formula"].values[0]
     thickness = film["film_thickness"].sel(film_formula=name).transpose(*POINT_DIMS)
     profile = profile.transpose(*POINT_DIMS, "film_position")
+    if "inlet_shear_heating_factor" in film:  # which thins the computed film as the formula's
+        factor = film["inlet_shear_heating_factor"]
+        heated = scaled_film(profile["film"], factor, film).transpose(*profile["film"].dims)
+        central = (factor * profile["central_film"]).transpose(*POINT_DIMS)
+        profile = profile.assign(film=heated, central_film=central)
     central = profile["central_film"]
     film_of = {"formula": thickness, "flat": central, "open": central, "computed": central}
     sampled = _sampled(spec, film, profile, thickness, boundary_layer, (seed, threads))
@@ -99,7 +106,8 @@ def film_shape_probabilities(
 def _edges(spec, film, thickness, boundary_layer, work):
     """Breakthrough judged by whole runs, and that of the pieces in the window over it.
 
-    Counted in realisations of the study in pure rolling.
+    Counted in pure rolling, in the first `PAIRS` pairs of lines of the study's seed. Where the
+    lines differ in length, the second is continued until the first ends.
     """
     seed, threads = work
     lines = xr.Dataset(attrs=line_attributes(spec))
@@ -116,9 +124,12 @@ def _edges(spec, film, thickness, boundary_layer, work):
 
     with ThreadPoolExecutor(threads) as pool:
         found = np.stack(list(pool.map(on_one_pair, range(PAIRS))))
+    found[:, :, np.isnan(thickness.values.ravel())] = np.nan
     whole, pieces = (found[:, each].reshape(-1, *thickness.shape) for each in (0, 1))
+    travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
+    windows = independent_windows(travel, 2.0 * widths.values, longest)
     judged = {
-        "whole_run_probability": mean_interval(whole),
+        "whole_run_probability": probability_interval(whole, windows),
         "edge_ratio": ratio_interval(pieces, whole),
     }
     table = {}

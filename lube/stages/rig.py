@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.errors import DataError
 from lube.grid.operating_points import OperatingPoint, operating_points
 from lube.physics.electrical import resistance_from_voltage
 from lube.rig.contact_share import record_counter
@@ -31,9 +32,18 @@ def rig_records(lines: xr.Dataset, film: xr.Dataset, study: Study) -> xr.Dataset
     xarray.Dataset
         The ``rig`` file of `lube.schema`: voltage (V) and resistance (ohm) over
         (operating_point, rig_time) of the study's rig over the first revolution, and contact
-        shares by bandwidth and threshold over all revolutions of all pairs of rollers.
+        shares by bandwidth and threshold over all revolutions of all pairs of rollers. Points
+        where the film is not known are left out.
+
+    Raises
+    ------
+    DataError
+        If the film is known at none of the points.
     """
     points = [_point_at(levels, film) for levels in study.trace_points]
+    points = [point for point in points if point.is_known]
+    if not points:
+        raise DataError("traces: the film is known at none of the points, need one at least")
     records = [_BandwidthRecord(study) for _ in points]
     for _, number, revolution in SimulatedRig(lines, study, points).revolutions():
         records[number].add(revolution)

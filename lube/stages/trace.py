@@ -1,19 +1,23 @@
 """The trace stage: contact at every time step, and the details of one contact window."""
 
+import logging
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
 
+from lube.errors import DataError
 from lube.grid.contact_runs import ContactRuns, Waves
 from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
-from lube.grid.operating_points import at_slip, surface_speeds
+from lube.grid.operating_points import at_slip, known_films, surface_speeds
 from lube.grid.window_films import film_on_points, shaped_films
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.physics.electrical import contact_resistance
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
 from lube.study.rollers import BoundaryLayer
+
+log = logging.getLogger(__name__)
 
 REALISATION = 0
 """The realisation that traces show."""
@@ -50,9 +54,15 @@ def contact_trace(
     -------
     xarray.Dataset
         The ``trace`` file of `lube.schema`: contact length (m) and resistance (ohm, Eq. 1) over
-        (operating_point, time).
+        (operating_point, time). Points where the film is not known are left out, and the log names
+        them.
+
+    Raises
+    ------
+    DataError
+        If the film is known at none of the points.
     """
-    table = _rows(film, points)
+    table = _known_rows(film, points)
     runs = ContactRuns(lines, table, boundary_layer, flattened)
     pair = line_pair(lines, REALISATION)
     ratio = points[0]["slide_to_roll_ratio"]
@@ -60,7 +70,6 @@ def contact_trace(
     steps = revolution(pair, ratios)
     spacing = lines.attrs["spacing"]
     length = runs.trace(pair, ratios, steps) * spacing
-    length[runs.unknown] = np.nan
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
     trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
@@ -78,7 +87,7 @@ def contact_trace(
     return label(trace.assign_coords(time=spacing / faster_surface * np.arange(steps)), "trace")
 
 
-def _rows(film, points):
+def _known_rows(film, points):
     """Rows of the film table at the operating points, along ``operating_point``."""
     columns = {
         name: ("operating_point", [point[name] for point in points]) for name in CONTACT_DIMS
@@ -86,7 +95,13 @@ def _rows(film, points):
     levels = xr.Dataset(columns)
     film = at_slip(film, points[0]["slide_to_roll_ratio"])
     rows = film.sel({name: levels[name] for name in OPERATING_DIMS})
-    return rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
+    rows = rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
+    known = known_films(rows).values
+    for number in np.flatnonzero(~known):
+        log.warning("traces.%d: left out, the film is not known there", number)
+    if not known.any():
+        raise DataError("traces: the film is known at none of the points, need one at least")
+    return rows.isel(operating_point=known)
 
 
 def contact_window(

@@ -245,6 +245,26 @@ class Study(StrictModel):
                 f"{with_unit(half_width, 'm')}, the half-width of the contact at {force:g} N"
             )
 
+    def check_slip(self, slide_to_roll_ratio: float) -> None:
+        """Refuse slip of lines that the oil flattens.
+
+        Parameters
+        ----------
+        slide_to_roll_ratio : float
+            Slide-to-roll ratio.
+
+        Raises
+        ------
+        StudyError
+            With the ratio, and what is needed.
+        """
+        if self.is_flattened and slide_to_roll_ratio:
+            raise StudyError(
+                f"roughness_deformation: got {self.roughness_deformation} with a slide-to-roll "
+                f"ratio of {slide_to_roll_ratio:g}, need none, or a ratio of 0: its formula is for "
+                "pure rolling"
+            )
+
     @property
     def evaluation(self) -> dict:
         """Settings of the experiment; for the manifest only whether there is one.
@@ -298,12 +318,8 @@ class Study(StrictModel):
             for force in self.operating_grid.force:
                 self.check_window(force)
             check_sizes(self)
-        if self.is_flattened and any(self.slips):
-            raise ValueError(
-                f"roughness_deformation: got {self.roughness_deformation} with a slide-to-roll "
-                f"ratio of {next(filter(None, self.slips)):g}, need none, or a ratio of 0: its "
-                "formula is for pure rolling"
-            )
+            for ratio in self.slips:
+                self.check_slip(ratio)
         return self
 
     def _check_conductivity(self):

@@ -210,7 +210,8 @@ class StudyFiles:
         """
         for target in targets:
             for stage, row in STAGES.items():
-                if target in (self.result(f"{stage}.nc"), row.target) and not self.study.has(stage):
+                names = stage, self.result(f"{stage}.nc"), row.target
+                if os.path.normpath(target) in names and not self.study.has(stage):
                     self._check_stage(target, row)
 
     def _check_stage(self, target, row):

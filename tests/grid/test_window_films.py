@@ -6,6 +6,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.grid.window_films import WindowFilm, film_on_points, shaped_films, window_films
+from lube.physics.hertz import hertz_gap
 
 POSITION = np.linspace(-3.0, 3.0, 601).round(6)
 LINES = xr.Dataset(attrs={"spacing": 1e-6, "height_step": 1e-12})
@@ -21,6 +22,7 @@ def film_table(thickness=((1e-6, 2e-6), (3e-6, 4e-6), (5e-6, 6e-6))):
             "film_thickness": (("film_formula", "force"), np.array(thickness)),
             "film_profile": (("force", "film_position"), profile),
             "contact_half_width": ("force", WIDTHS),
+            "reduced_radius": 0.025,
             "formula_place": ("film_formula", ["central", "minimum", "mean"]),
         },
         {
@@ -40,6 +42,18 @@ def test_the_shape_has_the_formulas_film_where_the_formula_refers_to():
     inside = shaped.sel(film_formula="three", film_position=slice(-1.0, 1.0))
     found = [central, minimum, inside.integrate("film_position") / 2.0]
     np.testing.assert_allclose(found, table["film_thickness"], rtol=1e-12)
+
+
+def test_the_dry_gap_outside_the_contact_is_not_scaled():
+    """Nor is a film that has the formula's thickness already."""
+    table = film_table().isel(film_formula=[0])
+    same = table.assign(
+        film_thickness=table["film_profile"].sel(film_position=0.0).expand_dims("film_formula")
+    )
+    np.testing.assert_allclose(shaped_films(same)[0], table["film_profile"], rtol=1e-12)
+    half = shaped_films(same.assign(film_thickness=0.5 * same["film_thickness"]))[0]
+    gap = hertz_gap(POSITION) * np.array(WIDTHS)[:, None] ** 2 / 0.025
+    np.testing.assert_allclose(half - gap, 0.5 * (table["film_profile"] - gap), rtol=1e-9)
 
 
 def test_films_at_the_points_follow_the_profile():

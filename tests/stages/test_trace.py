@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from lube import BoundaryLayer, contact_statistics, contact_trace, contact_window
+from lube.errors import DataError
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS
 
 RESISTIVITY = 0.2e-6
@@ -154,13 +156,12 @@ def test_segments_of_the_window_are_equations_5_and_6(case):
     assert contact_window(lines, trace, 2, 5).sizes["segment"] == 0
 
 
-def test_where_the_film_is_not_known_the_trace_is_not_either(lines, film, study):
+def test_where_the_film_is_not_known_there_is_no_trace(lines, film, study):
     holed = film.copy(deep=True)
     holed["film_thickness"][0, 1, 1, 1, 3] = np.nan
     points = points_of(film, 0.0)
     trace = contact_trace(lines, holed, points, study.boundary_layer, RESISTIVITY)
-    unknown = np.isnan(trace["contact_length"]).all("time") & np.isnan(
-        trace["contact_resistance"]
-    ).all("time")
-    assert unknown.values.tolist() == [False, True, False]
-    assert np.isfinite(trace["contact_length"][[0, 2]]).all()
+    every = contact_trace(lines, film, points, study.boundary_layer, RESISTIVITY)
+    xr.testing.assert_equal(trace, every.isel(operating_point=[0, 2]))
+    with pytest.raises(DataError, match="known at none of the points"):
+        contact_trace(lines, holed, points[1:2], study.boundary_layer, RESISTIVITY)
