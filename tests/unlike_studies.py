@@ -138,6 +138,18 @@ STUDIES = {
         operating_grid=_grid([400, 1600], [100, 200], [60, 80], [0, 1]),
         traces=[_trace(1600, 100, 80, slide_to_roll_ratio=1)],
     ),
+    # So fast that at the greater force, 40 degC, the heating is beyond its formula's range.
+    "unknown": _small(
+        "unknown",
+        film_shape="computed",
+        film_formulas=["paper", "computed"],
+        inlet_shear_heating="gupta-1992",
+        operating_grid=_grid([800, 1600], [100, 60_000], [40, 80], [0, 1]),
+        traces=[
+            _trace(1600, 60_000, 40, slide_to_roll_ratio=1),
+            _trace(1600, 60_000, 80, slide_to_roll_ratio=1),
+        ],
+    ),
     # Lines drawn from the spectrum of a map, against a profile that is the line.
     "topographies": _small(
         "topographies",

@@ -161,6 +161,7 @@ def _contact(contact):
     seen = mean > 0.0
     found = {
         "points": mean.size,
+        "unknown": int(mean.isnull().sum()),
         "touched": int(seen.sum()),
         "frequent": int((mean > _FREQUENT).sum()),
         "rare": int((seen & (mean < _RARE)).sum()),

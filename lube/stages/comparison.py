@@ -116,7 +116,7 @@ def _agreement(table, experiment):
 
 def _figures(table, shares):
     """Figures of agreement of one film formula with the shares at one threshold."""
-    known = np.isfinite(shares)
+    known = np.isfinite(shares) & np.isfinite(table["simulated_probability"].values)
     sides = ("simulated_probability", "predicted_share_lower", "predicted_share_upper")
     return agreement(*(table[name].values[known] for name in sides), shares[known])
 
@@ -192,10 +192,13 @@ def _expected(table):
     Each realisation in turn is left out of the ensemble and compared with the others as the
     record of a pair of rollers, at all records at once.
     """
-    known = np.isfinite(table["measured_share"].values)
-    windows = windows_in(table, 2.0 * table["contact_half_width"].values)[known]
+    measured = np.isfinite(table["measured_share"].values)
+    windows = windows_in(table, 2.0 * table["contact_half_width"].values)
     members = table[PROBABILITY].transpose("film_formula", "realisation", "record").values
-    ranges = np.array([_ranges(of_formula[:, known], windows) for of_formula in members])
+    known = [measured & np.isfinite(of_formula).all(axis=0) for of_formula in members]
+    ranges = np.array(
+        [_ranges(row[:, here], windows[here]) for row, here in zip(members, known, strict=True)]
+    )
     return xr.Dataset(
         {
             f"{name}_expected_{side}": ("film_formula", ranges[:, figure, end])
@@ -229,7 +232,9 @@ def _level_means(table):
         assigned = table[f"{name}_level"].values
         levels = np.unique(assigned[np.isfinite(assigned)])
         at = [(assigned == level) & np.isfinite(measured) for level in levels]
-        rows = np.array([[_mean(row[here]) for here in at] for row in simulated])
+        rows = np.array(
+            [[_mean(row[here & np.isfinite(row)]) for here in at] for row in simulated]
+        )
         means |= {
             f"{name}_group": levels,
             f"simulated_mean_by_{name}": (("film_formula", f"{name}_group"), rows),

@@ -273,7 +273,7 @@ def _warn(factor):
     unknown = int(factor.isnull().sum())
     if unknown:
         log.warning(
-            "inlet_shear_heating: the film is not known at %d of %d operating points, whose speed "
+            "inlet_shear_heating: the film is not known at %d of %d conditions, where the heating "
             "is beyond the range of the formula",
             unknown,
             factor.size,
