@@ -165,7 +165,12 @@ def _films(row, groups, factor, meniscus):
     load, speed, material, *oil = groups
     options = {"join": "exact", "kwargs": {"meniscus": meniscus}}
     if not row.depends_on_oil:
-        return xr.apply_ufunc(row.film, load, speed, factor * material, *oil, **options)
+        # One factor after another: the integral of starvation takes a hundred times their memory.
+        films = [
+            xr.apply_ufunc(row.film, load, speed, one * material, *oil, **options)
+            for one in factor.values
+        ]
+        return xr.concat(films, "factor", join="exact")
     nodes = xr.DataArray(COMPUTED_FACTORS, dims="factor")
     films = xr.apply_ufunc(row.film, load, speed, nodes * material, *oil, **options)
     return xr.apply_ufunc(

@@ -79,7 +79,7 @@ class SimulatedRig:
 
     def _turns(self, drawn, numbers):
         """Grid points in contact at all time steps of each turn, at some operating points."""
-        rig, contacts = self._study.rig, None
+        rig, contacts, runs = self._study.rig, None, self._runs(numbers)
         for turn, pair in enumerate(self._rollers(drawn)):
             steps = revolution(pair, self._ratios)
             if contacts is None or not self._repeats(pair):
@@ -87,7 +87,7 @@ class SimulatedRig:
                     np.roll(line, -surface_position(turn * steps, ratio))
                     for line, ratio in zip(pair, self._ratios, strict=True)
                 )
-                contacts = self._contacts(begun, steps, numbers)
+                contacts = runs.trace(begun, self._ratios, steps)
             part = min(rig.revolutions - turn, 1.0)
             yield contacts[:, : max(round(part * steps), 1)]
 
@@ -108,13 +108,13 @@ class SimulatedRig:
                 )
             yield pair
 
-    def _contacts(self, pair, steps, numbers):
-        """Grid points in contact over one revolution, shape (operating points, steps)."""
+    def _runs(self, numbers):
+        """Prepare the contact model at some operating points."""
         rows = [self._points[number].row for number in numbers]
         film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
         film["reduced_modulus"] = rows[0]["reduced_modulus"]  # the same at all
         layer, flattened = self._study.boundary_layer, self._study.is_flattened
-        return ContactRuns(self._lines, film, layer, flattened).trace(pair, self._ratios, steps)
+        return ContactRuns(self._lines, film, layer, flattened)
 
     def _revolution(self, contact, number, seed):
         point, spacing = self._points[number], self._lines.attrs["spacing"]

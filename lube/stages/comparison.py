@@ -232,9 +232,7 @@ def _level_means(table):
         assigned = table[f"{name}_level"].values
         levels = np.unique(assigned[np.isfinite(assigned)])
         at = [(assigned == level) & np.isfinite(measured) for level in levels]
-        rows = np.array(
-            [[_mean(row[here & np.isfinite(row)]) for here in at] for row in simulated]
-        )
+        rows = np.array([[_mean(row[here & np.isfinite(row)]) for here in at] for row in simulated])
         means |= {
             f"{name}_group": levels,
             f"simulated_mean_by_{name}": (("film_formula", f"{name}_group"), rows),

@@ -77,9 +77,9 @@ def tail_probabilities(
 
     Notes
     -----
-    In expectation the probabilities do not depend on slip: the lines are stationary and
-    independent, so every alignment is as good as another. Slip changes how many contacts there
-    are, and how long they last.
+    At equal film thickness the probabilities do not depend on slip, in expectation: the lines are
+    stationary and independent, so every alignment is as good as another. Slip changes how many
+    contacts there are, and how long they last; and the film, where inlet shear heating thins it.
 
     A *breakthrough* is counted where the boundary layer breaks on a whole run of touching points,
     not on a piece that the window's edge cuts off. There are :math:`\nu` of them per point of the
@@ -89,8 +89,6 @@ def tail_probabilities(
     .. math:: \frac{v}{\Delta x} (\nu + |S|\, \beta)
 
     of them per second. The mean number in the window, divided by this rate, is the mean duration.
-
-    Where inlet shear heating thins the film, they do depend on slip, as the film does.
 
     In pure rolling, equal rollers repeat themselves. Groups of breakthroughs a longest wavelength
     apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the

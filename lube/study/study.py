@@ -111,7 +111,8 @@ class Study(StrictModel):
     operating_grid: OperatingGrid
     roughness: Roughness
     roughness_deformation: Literal["none", "venner-1997"] = "none"
-    """none, as in the paper; or waves that the oil flattens, in pure rolling
+    """none, as in the paper; or long waves flattened by the oil, by the formula of Venner et al.
+    (1997), which is for pure rolling
     """
     boundary_layer: BoundaryLayer
     resistivity: quantity("ohm*m", above=0.0)

@@ -96,7 +96,9 @@ def test_records_off_the_grid_are_those_of_a_literal_run(off_grid, few):
 
 
 @pytest.mark.parametrize("deformation", ["none", "venner-1997"])
-def test_records_under_films_with_a_shape_are_those_of_a_literal_run(few, shaped_film, deformation):
+def test_records_under_films_with_a_shape_are_those_of_contact_statistics(
+    few, shaped_film, deformation
+):
     """On the grid from contact.nc, or run if that holds none; off the grid run."""
     study = few[0].model_copy(
         update={

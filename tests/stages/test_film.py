@@ -190,7 +190,7 @@ def test_beyond_the_range_of_the_heating_formula_the_film_is_not_known(caplog):
     table = film_table(oil(), ROLLERS, [1600.0], fast, ["paper"], inlet_shear_heating="gupta-1992")
     slow, unknown = (table["film_thickness"].sel(speed=speed) for speed in fast)
     assert slow.notnull().all() and unknown.isnull().all()
-    assert "the film is not known at 5 of 10 operating points" in caplog.text
+    assert "the film is not known at 5 of 10 conditions" in caplog.text
 
 
 def test_each_record_is_heated_by_its_own_slip():
