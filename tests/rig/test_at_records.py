@@ -99,7 +99,7 @@ def test_records_off_the_grid_are_those_of_a_literal_run(off_grid, few):
 def test_records_under_films_with_a_shape_are_those_of_contact_statistics(
     few, shaped_film, deformation
 ):
-    """On the grid from contact.nc, or run if that holds none; off the grid run."""
+    """From contact.nc, or run if that holds none of one revolution."""
     study = few[0].model_copy(
         update={
             "film_shape": "computed",
