@@ -76,7 +76,7 @@ def touching_windows(
         rise = touching[1][m] - window[origin]
         for j in range(width):  # without a branch, so the compiler vectorises it
             overlap[j] = window[j] + shape[j] * rise - film[j]
-        points, broken = _judged(overlap, factor)
+        points, broken, _ = _judged(overlap, factor)
         weight = 1.0 / max(points, 1)  # rounding may put the known point just below the film
         contact += weight
         if broken:
@@ -86,9 +86,12 @@ def touching_windows(
 
 @inlined
 def _judged(overlap, factor):
-    """Count touching points, and decide whether the boundary layer breaks on a segment of them."""
+    """Count touching points, and find the first segment of them whose boundary layer breaks.
+
+    The last value returned is its first point, or the number of points if there is none.
+    """
     points, total, touching = 0, 0.0, 0
-    broken = False
+    broken, begin = False, overlap.size
     for first in range(0, overlap.size, BLOCK):
         block = overlap[first : first + BLOCK]
         here = np.int32(0)  # as wide as the heights, so the compiler vectorises the loop
@@ -104,10 +107,12 @@ def _judged(overlap, factor):
                 total += block[j]
             elif points > 0:
                 if layer_breaks(points, total, factor):
-                    broken = True
+                    broken, begin = True, first + j - points
                     break
                 points, total = 0, 0.0
-    return touching, broken or layer_breaks(points, total, factor)
+    if not broken and layer_breaks(points, total, factor):
+        broken, begin = True, overlap.size - points
+    return touching, broken, begin
 
 
 @kernel
@@ -117,6 +122,7 @@ def touching_runs(
     correlations: Pair,
     heights: Array,
     film: float,
+    width: int,
     factor: float,
 ) -> Array:
     r"""Weigh runs of points above a film, each found from one point that is known to touch.
@@ -137,18 +143,22 @@ def touching_runs(
         Shape (M,), float32 height steps: the sum of the lines at the known point.
     film : float
         Film thickness, height steps.
+    width : int
+        Points in a contact window.
     factor : float
         From `lube.kernels.layer.layer_factor`.
 
     Returns
     -------
     numpy.ndarray
-        Shape (6,), sums over the M runs of their weights: of all; of those whose boundary layer
+        Shape (10,), sums over the M runs of their weights: of all; of those whose boundary layer
         breaks; of these without another one within L points behind their known point; of these
-        without a forerunner one relative step earlier; and the second and the fourth again, times
-        the points of each run.
+        without a forerunner one relative step earlier; the second and the fourth again, times
+        the points of each run; the third, times the points that were searched behind each; and,
+        of broken runs with another one behind, times the points between the two, the windows that
+        hold neither, and the sum over these windows of the steps until the next run.
     """
-    sums = np.zeros(6)
+    sums = np.zeros(10)
     reach = correlations[0].size // 2
     behind = np.empty(reach + 1, np.float32)
     correlation = correlations[0] + correlations[1]
@@ -168,8 +178,15 @@ def touching_runs(
             known = correlation[reach + stop :]
             for j in range(rest.size):  # without a branch, so the compiler vectorises it
                 rest[j] = first[j] + second[j] + known[j] * rise - film
-            if not _judged(rest, factor)[1]:
+            _, broken, between = _judged(rest, factor)
+            if broken:
+                gap = max(between - width + 1, 0)
+                sums[7] += weight * between
+                sums[8] += weight * gap
+                sums[9] += weight * (gap * (gap + 1) / 2.0)
+            else:
                 sums[2] += weight
+                sums[6] += weight * rest.size
             if not _broke_before(moved, start, stop, factor):
                 sums[3] += weight
                 sums[5] += 1.0

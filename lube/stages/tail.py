@@ -139,7 +139,7 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
     points = _window_points(spec, film)
     in_windows, runs = outcomes
     contact, breakthrough = in_windows.transpose("outcome", ...)
-    _, broken, groups, new, broken_points, new_points = runs.transpose("outcome", ...)
+    _, broken, groups, new, broken_points, new_points, *_ = runs.transpose("outcome", ...)
     everywhere = xr.ones_like(slip)
     speed = film["entrainment_speed"]
     # A run is in the window if any of its points is.
@@ -159,11 +159,11 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
         **_touching_pairs(
-            _in_pure_rolling(groups) * spec.points[0],
-            _in_pure_rolling(breakthrough),
-            windows,
-            perimeter / speed,
+            _in_pure_rolling(groups) * spec.points[0], _in_pure_rolling(breakthrough), windows
         ),
+        "first_breakthrough_time": spec.spacing
+        / speed
+        * _first_breakthrough(_in_pure_rolling(runs).mean("pair"), points, spec.points[0]),
         **_asymptotes(spec, film, boundary_layer),
     }
     return xr.Dataset(table)
@@ -225,7 +225,7 @@ def _shaped_films(spec, film):
 def _under_shaped_films(spec, pair, films, factor):
     """Probabilities and runs as of `rare_contact`; the runs are not known."""
     known = [number for number, one in enumerate(films) if one is not None]
-    windows, runs = np.full((2, len(films)), np.nan), np.full((6, len(films)), np.nan)
+    windows, runs = np.full((2, len(films)), np.nan), np.full((10, len(films)), np.nan)
     windows[:, known] = rare_contact_under(spec, *pair, [films[i] for i in known], factor)
     return windows, runs
 
@@ -239,13 +239,12 @@ def _limited(name, values, most=np.inf):
     )
 
 
-def _touching_pairs(groups, breakthrough, windows, revolution):
-    """Share of pairs with a breakthrough in a revolution, and when they have the first.
+def _touching_pairs(groups, breakthrough, windows):
+    """Share of pairs with a breakthrough in a revolution.
 
     Groups of breakthroughs come independently of one another. Where contact is so frequent that
     hardly any group ends, they are fewer than the independent windows with a breakthrough, which
-    are counted instead. The first one, if mu of them are expected within a revolution T, comes on
-    average after T (1 / mu - 1 / (e^mu - 1)); unless there is one at the beginning.
+    are counted instead.
     """
     expected = _limited("touching_pair_share", groups)
     seen = _limited("touching_pair_share", breakthrough, most=1.0)
@@ -255,14 +254,35 @@ def _touching_pairs(groups, breakthrough, windows, revolution):
             name: (dims, np.maximum(values, -windows.values * np.log1p(-seen[name][1])))
             for name, (dims, values) in expected.items()
         }
-    shares = {name: (dims, -np.expm1(-values)) for name, (dims, values) in expected.items()}
-    mean = xr.Variable(*expected["touching_pair_share"])
-    # The difference of two large numbers where few groups are expected.
-    with np.errstate(over="ignore"):
-        exact = 1.0 / mean - 1.0 / np.expm1(mean)
-    moment = xr.where(mean < 1e-4, 0.5 - mean / 12.0, exact)
-    without = 1.0 - breakthrough.mean("pair")
-    return shares | {"first_breakthrough_time": moment * without * revolution}
+    return {name: (dims, -np.expm1(-values)) for name, (dims, values) in expected.items()}
+
+
+def _first_breakthrough(runs, points, revolution):
+    r"""Mean steps to the first breakthrough, for pairs that have one in a revolution.
+
+    The gaps between broken runs are known up to a longest wavelength, from run to run. Longer ones
+    end independently of what was before, so they exceed it by an exponentially distributed length.
+    Its mean follows from the sum of all runs and gaps, which is the whole line. With F the share
+    of windows without a broken run and w the mean steps from any window to the next run, a window
+    without one waits for :math:`m = w / F`, and within T steps for
+
+    .. math:: m - \frac{T}{e^{T / m} - 1}
+    """
+    _, _, apart, _, run_points, _, searched, between, free, steps = runs.transpose("outcome", ...)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        excess = xr.where(apart > 0.0, (1.0 - run_points - between - searched) / apart, 0.0)
+        excess = excess.clip(min=0.0)
+        gap = xr.where(apart > 0.0, searched / apart, 0.0) - (points - 1.0)
+        # A window longer than the gap leaves the part of the excess that reaches beyond it.
+        left = apart * xr.where(excess > 0.0, np.exp(gap.clip(max=0.0) / excess), 1.0)
+        gap = gap.clip(min=0.0)
+        free = free + left * (gap + excess)
+        steps = steps + left * (0.5 * gap**2 + gap * excess + excess**2)
+        turns = revolution * free / steps
+    # The difference of two large numbers where few breakthroughs are expected.
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        exact = 1.0 / turns - 1.0 / np.expm1(turns)
+    return revolution * free * xr.where(turns < 1e-4, 0.5 - turns / 12.0, exact)
 
 
 def _asymptotes(spec, film, boundary_layer):

@@ -178,9 +178,10 @@ def rare_contact(
     windows : numpy.ndarray
         Shape (2, P): probabilities of geometric contact and of breakthrough in a window.
     runs : numpy.ndarray
-        Shape (6, P), per point of the line: runs of touching points; runs whose boundary layer
+        Shape (10, P), per point of the line: runs of touching points; runs whose boundary layer
         breaks; groups of these, a longest wavelength apart; those of these that appear in a
-        relative step of one point; the points of broken runs; and those of the runs that appear.
+        relative step of one point; and the points of these runs and between them, as in
+        `lube.kernels.tail.touching_runs`.
 
     Raises
     ------
@@ -188,15 +189,14 @@ def rare_contact(
         If the lines are not Gaussian.
     """
     drawn = _Drawn(spec, seed, number, int(widths.max()))
-    windows, runs = np.empty((2, films.size)), np.empty((6, films.size))
+    windows, runs = np.empty((2, films.size)), np.empty((10, films.size))
     for i, (film, width) in enumerate(zip(films, widths, strict=True)):
         log_tail = scipy.special.log_ndtr(-film / drawn.both.rms)
         touching = (drawn.place * width).astype(np.int64), drawn.heights(log_tail)
         shape = np.full(width, film, np.float32)
         windows[:, i] = drawn.windows(shape, touching, factor) * (width * np.exp(log_tail))
-        found = touching_runs(
-            drawn.lines, drawn.places, drawn.covariances, touching[1][:RUNS], film, factor
-        )
+        known = drawn.lines, drawn.places, drawn.covariances, touching[1][:RUNS]
+        found = touching_runs(*known, film, width, factor)
         runs[:, i] = found * (np.exp(log_tail) / RUNS)
     return windows, runs
 

@@ -63,10 +63,11 @@ def test_windows_are_weighed_as_by_a_naive_implementation(film):
 
 def test_runs_are_weighed_as_by_a_naive_implementation():
     lines, reach, film = (smooth_line(6000), smooth_line(6000)), 60, np.float32(3.5)
+    width = 9
     covariances = tuple(correlation_of(reach + 1, width) / 2.0 for width in (4.0, 7.0))
     places = reach + 10 + np.arange(120) * 40
     heights = (film + RNG.exponential(0.8, 120)).astype(np.float32)
-    expected = np.zeros(6)
+    expected = np.zeros(10)
     for place, height in zip(places, heights, strict=True):
         around = slice(place - reach, place + reach + 1)
         rise = height - lines[0][place] - lines[1][place]
@@ -81,21 +82,27 @@ def test_runs_are_weighed_as_by_a_naive_implementation():
         if not breaks(overlap, mine):
             continue
         expected[[1, 4]] += weight, 1.0
-        behind = [run for run in runs if run.start > mine.start]
-        expected[2] += weight * (not any(breaks(overlap, run) for run in behind))
+        behind = [run for run in runs if run.start > mine.start and breaks(overlap, run)]
+        if behind:
+            gap = max(behind[0].start - mine.stop - (width - 1), 0)
+            between = behind[0].start - mine.stop
+            expected[7:] += weight * np.array([between, gap, sum(range(1, gap + 1))])
+        else:
+            expected[[2, 6]] += weight * np.array([1.0, overlap.size - mine.stop])
         before = first[:-1] + second[1:] - film  # its point i is `overlap`'s point i + 1
         old = range(mine.start - 2, mine.stop - 1)
         forerunners = (run for run in runs_above(before) if set(run) & set(old))
         new = not any(breaks(before, run) for run in forerunners)
         expected[[3, 5]] += weight * new, new
-    found = touching_runs(lines, places, covariances, heights, film, FACTOR)
+    found = touching_runs(lines, places, covariances, heights, film, width, FACTOR)
     np.testing.assert_allclose(found, expected, rtol=1e-6)
     assert np.all(np.diff(found[[3, 1, 0]]) > 0.0) and 0.0 < found[2] < found[1]
+    assert np.all(found[6:] > 0.0)
 
 
 def test_a_point_that_rounding_puts_on_the_film_counts_as_a_run_of_one():
     lines = np.zeros(9, np.float32), np.zeros(9, np.float32)
     covariances = (correlation_of(3, 0.1) / 2.0,) * 2
     film = np.float32(2.0)
-    found = touching_runs(lines, np.array([4]), covariances, np.array([film]), film, FACTOR)
-    assert found.tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    found = touching_runs(lines, np.array([4]), covariances, np.array([film]), film, 3, FACTOR)
+    assert found.tolist() == [1.0, *[0.0] * 9]

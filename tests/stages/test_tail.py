@@ -227,6 +227,42 @@ def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study
     assert error < 0.15 * expected
 
 
+def steps_to_the_next(line, film, window, factor):
+    """Mean steps from any window of a periodic line to one that a broken run reaches into."""
+    line = np.roll(line, -np.argmin(line))
+    edges = np.flatnonzero(np.diff((line > film).astype(int))) + 1
+    reached = np.zeros(line.size, bool)
+    for start, stop in edges.reshape(-1, 2):
+        if (stop - start) ** 3 < factor * (line[start:stop] - film).sum():
+            reached[np.arange(start - window + 1, stop)] = True
+    found = np.flatnonzero(reached)
+    gaps = np.diff(found, append=found[0] + line.size) - 1
+    return np.sum(gaps * (gaps + 1) / 2) / line.size
+
+
+@pytest.mark.parametrize(("shear_strength", "force", "temperature"), [(3e4, 1, 1), (1e4, 0, 1)])
+def test_the_first_breakthrough_comes_when_counting_finds_it(
+    make_spec, few, study, shear_strength, force, temperature
+):
+    """Where contact is frequent, in pure rolling; in windows wide and narrow."""
+    spec = make_spec(50_000)
+    weak = study.boundary_layer.model_copy(update={"shear_strength": shear_strength})
+    point = few.isel(film_formula=[0], temperature=[temperature], force=[force])
+    found = tail_probabilities(spec, point, weak, SEED).squeeze()
+    assert 0.1 < found["breakthrough_probability"] < 0.7
+    factor = layer_factor(
+        point["reduced_modulus"].item(), 5e-9, shear_strength, spec.spacing, spec.height_step
+    )
+    film = point["film_thickness"].item() / spec.height_step
+    window = 2 * int(point["contact_half_width"].item() / spec.spacing) + 1
+    counted = []
+    for number in range(30):
+        first, second = draw_pair(spec, SEED, 100 + number)[0]
+        counted.append(steps_to_the_next(first + second, film, window, factor))
+    time = np.mean(counted) * spec.spacing / point["entrainment_speed"].item()
+    assert found["first_breakthrough_time"] == pytest.approx(time, rel=0.15)
+
+
 # --- Lines that are not Gaussian ---------------------------------------------------------
 
 
