@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from lube.statistics.curves import Curve, falling_curve
+from lube.statistics.curves import Curve, peaked_curve
 from lube.statistics.sample_size import effective_sample_size, independent_windows
 from lube.types import Values
 
@@ -83,7 +83,7 @@ def _curve(probability, master, width, sample_size):
     nearest = np.clip(width, widths[0], widths[-1])
     here = np.array([np.interp(width, widths, row) for row in intensity]) * width / nearest
     resolution = 1.0 / (windows_in(master, width) * master.sizes["realisation"])
-    return falling_curve(np.log(ratios), -np.expm1(-here), sample_size, resolution)
+    return peaked_curve(np.log(ratios), -np.expm1(-here), sample_size, resolution)
 
 
 def logits_on(

@@ -69,8 +69,10 @@ def _films(lubricant, points):
 
 
 def _read(curve, ratios):
-    """Probability at lambda ratios, NaN beyond the curve."""
+    """Probability at lambda ratios, NaN beyond the last film that had contact."""
     films = np.log(ratios)
-    low, high = curve.films[[0, -1]] if curve.films.size else (np.nan, np.nan)
-    seen = (films >= low) & (films <= high)
-    return np.where(seen, scipy.special.expit(curve.logit_at(films)), np.nan)
+    if not curve.films.size:
+        return np.full(ratios.shape, np.nan)
+    seen = films <= curve.thickest + 1e-9  # the film itself, but for rounding
+    logits = curve.logit_at(np.clip(films, *curve.films[[0, -1]]))
+    return np.where(seen, scipy.special.expit(logits), np.nan)

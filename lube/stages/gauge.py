@@ -71,7 +71,10 @@ def gauge_film(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
         over ``record``, NaN without a share. A share below the resolution of the map has no
         value, only a lower limit, and infinity as the upper limit; a share above that of the
         map's thinnest film has only an upper limit, and zero as the lower limit. The 95 %
-        intervals include the scatter of one pair's record and the error of the ensemble.
+        intervals include the scatter of one pair's record and the error of the ensemble. Where
+        contact is so frequent that it falls as the film thins, a share belongs to two films: these
+        are the thicker one, and ``gauged_thinner_film_thickness`` (m) is the other, NaN where
+        there is none.
     """
     curve, realisations = cache(lambda width: curve_at(master, width)), master.sizes["realisation"]
     names = ("contact_half_width", "measured_share", "share_error")
@@ -82,9 +85,15 @@ def gauge_film(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
     ]
     ratios = np.exp(films)
     ratios[:, 0] = np.where(np.isfinite(films)[:, 0], ratios[:, 0], np.nan)
-    thickness = ratios * comparison["composite_rms_roughness"].item()
+    sigma = comparison["composite_rms_roughness"].item()
+    thickness = ratios * sigma
     found = values_with_limits("gauged_lambda_ratio", ratios.T)
     found |= values_with_limits("gauged_film_thickness", thickness.T)
+    thinner = [
+        curve(2.0 * half_width).thinner_film_at(share)
+        for half_width, share in zip(*columns[:2], strict=True)
+    ]
+    found["gauged_thinner_film_thickness"] = sigma * np.exp(thinner)
     return xr.Dataset({name: ("record", values) for name, values in found.items()})
 
 
@@ -130,7 +139,7 @@ def _leave_one_out(curve, film, shares):
     """Whether the interval of each realisation contains a film, and whether it has two limits."""
     if curve.films.size < 2:
         return np.ones(shares.size, bool), np.zeros(shares.size, bool)
-    ends = curve.films[0], film, curve.films[-1]
+    ends = curve.films[curve.peak], film, curve.films[-1]
     thinnest, here, thickest = (_distance(curve, each, shares) for each in ends)
     limit = quantile(shares.size - 1)
     return np.abs(here) <= limit, (thinnest < -limit) & (thickest > limit)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+import scipy.integrate
 import scipy.optimize
 import scipy.special
 
@@ -21,16 +22,22 @@ STEPS = 16
 
 @dataclass(frozen=True)
 class Curve:
-    """A probability that falls as the film grows.
+    """A probability that falls as the film grows, but may rise before, at the thinnest films.
 
     Attributes
     ----------
     films : numpy.ndarray
         Logarithms of the lambda ratio, shape (n,), rising.
     logits : numpy.ndarray
-        Logits of the probability there, shape (n,), strictly falling.
+        Logits of the probability there, shape (n,), strictly falling from the peak on and strictly
+        rising before.
     sample_size : numpy.ndarray
         Effective sample size of one realisation there, shape (n,).
+    peak : int
+        Index of the largest probability; by default 0: nowhere does it rise.
+    thickest : float
+        Largest film of which the probability is known; levels with one probability are joined, so
+        it may lie beyond the last of `films`.
 
     Examples
     --------
@@ -42,6 +49,8 @@ class Curve:
     films: Array
     logits: Array
     sample_size: Array
+    peak: int = 0
+    thickest: float = np.inf
 
     def logit_at(self, films: npt.ArrayLike) -> Array:
         """Logit of the probability at given films, extrapolated linearly beyond the ends.
@@ -63,7 +72,7 @@ class Curve:
         return self.logits[segment] + slopes[segment] * (films - self.films[segment])
 
     def film_at(self, share: float) -> float:
-        """Film at which the probability has a given value.
+        """Film beyond the peak at which the probability has a given value.
 
         Parameters
         ----------
@@ -78,8 +87,28 @@ class Curve:
         """
         if not self.films.size:
             return np.nan
-        logit = scipy.special.logit(share)
-        return np.interp(-logit, -self.logits, self.films, left=-np.inf, right=np.inf)
+        logit, falling = scipy.special.logit(share), slice(self.peak, None)
+        ends = {"left": -np.inf, "right": np.inf}
+        return np.interp(-logit, -self.logits[falling], self.films[falling], **ends)
+
+    def thinner_film_at(self, share: float) -> float:
+        """Film before the peak at which the probability has a given value as well.
+
+        Parameters
+        ----------
+        share : float
+            Probability from 0 to 1.
+
+        Returns
+        -------
+        float
+            Logarithm of the lambda ratio; NaN if there is no such film on the curve.
+        """
+        if not self.peak:
+            return np.nan
+        logit, rising = scipy.special.logit(share), slice(self.peak + 1)
+        ends = {"left": np.nan, "right": np.nan}
+        return np.interp(logit, self.logits[rising], self.films[rising], **ends)
 
 
 def falling_curve(
@@ -117,10 +146,52 @@ def falling_curve(
     falling = scipy.optimize.isotonic_regression(probabilities, increasing=False).x
     inside = (falling >= resolution) & (falling <= 1.0 - resolution)
     sinking, level = np.unique(-scipy.special.logit(falling[inside]), return_inverse=True)
+    thickest = films[inside].max(initial=-np.inf)
     films, sample_size = (
         np.bincount(level, each[inside]) / np.bincount(level) for each in (films, sample_size)
     )
-    return Curve(films, -sinking, sample_size)
+    return Curve(films, -sinking, sample_size, thickest=thickest)
+
+
+def peaked_curve(
+    films: Array, probabilities: Array, sample_size: Array, resolution: float
+) -> Curve:
+    """Fit a curve that falls from its largest probability on, and rises before.
+
+    Where contact is frequent and the film very thin, segments merge and hold: their boundary layers
+    are squeezed less than those of the segments that they are made of. Then the probability of a
+    breakthrough is largest at some film, and smaller at thinner ones.
+
+    Parameters
+    ----------
+    films, probabilities, sample_size, resolution
+        As in `falling_curve`.
+
+    Returns
+    -------
+    Curve
+        The levels of `falling_curve` on both sides of the largest probability.
+
+    Examples
+    --------
+    >>> curve = peaked_curve(np.arange(3.0), np.array([0.4, 0.5, 0.1]), np.full(3, 9.0), 1e-6)
+    >>> curve.peak, float(curve.film_at(0.4)) > 1.0, float(curve.thinner_film_at(0.4))
+    (1, True, 0.0)
+    """
+    peak = int(np.argmax(probabilities))
+    beyond, before = slice(peak, None), slice(peak, None, -1)
+    falling = falling_curve(films[beyond], probabilities[beyond], sample_size[beyond], resolution)
+    # The other side, seen in a mirror, falls too.
+    rising = falling_curve(-films[before], probabilities[before], sample_size[before], resolution)
+    if not falling.films.size or rising.films.size < 2:
+        return falling
+    sides = (
+        (-rising.films, falling.films),
+        (rising.logits, falling.logits),
+        (rising.sample_size, falling.sample_size),
+    )
+    joined = (np.concatenate([thin[:0:-1], thick]) for thin, thick in sides)
+    return Curve(*joined, peak=rising.films.size - 1, thickest=falling.thickest)
 
 
 def film_interval(
@@ -147,7 +218,8 @@ def film_interval(
     Returns
     -------
     film, lower, upper : float
-        Logarithms of the lambda ratio. The film is -inf or +inf if the share lies beyond the
+        Logarithms of the lambda ratio. The film is that beyond the peak of the curve, and the
+        interval holds all films around it. The film is -inf or +inf if the share lies beyond the
         range of the curve. A limit is -inf or +inf if even the last film of the curve on that
         side agrees with the record. If no film of the curve agrees with it, the finite limit is
         the last film of the curve. All three are NaN if the share is NaN or the curve has fewer
@@ -161,16 +233,26 @@ def film_interval(
     """
     if np.isnan(share) or curve.films.size < 2:
         return np.nan, np.nan, np.nan
-    films, distance = _distances(curve, share, ratio, realisations, noise)
-    limit = quantile(realisations)
+    record, limit = (share, ratio, realisations, noise), quantile(realisations)
+    last = curve.films.size - 1
+    films, distance = _distances(curve, (curve.peak, last), record)
     lower = np.interp(-limit, distance, films, left=-np.inf, right=films[-1])
     upper = np.interp(limit, distance, films, left=films[0], right=np.inf)
+    if lower == -np.inf and curve.peak and distance[0] <= limit:
+        thinner, distance = _distances(curve, (curve.peak, 0), record)
+        lower = np.interp(limit, distance, thinner, right=-np.inf)
     return curve.film_at(share), lower, upper
 
 
-def _distances(curve, share, ratio, realisations, noise):
-    """Distance of a share from a curve's, over its standard error, made non-decreasing."""
-    levels = np.arange(STEPS * (curve.films.size - 1) + 1) / STEPS
+def _distances(curve, ends, record):
+    """Distance of a share from a curve's, over its standard error, made non-decreasing.
+
+    From one level of the curve to another.
+    """
+    share, ratio, realisations, noise = record
+    first, last = ends
+    levels = np.arange(STEPS * abs(last - first) + 1) / STEPS
+    levels = first + np.sign(last - first) * levels
     films = np.interp(levels, np.arange(curve.films.size), curve.films)
     model = scipy.special.expit(curve.logit_at(films))
     sample_size = np.interp(films, curve.films, curve.sample_size)
@@ -237,7 +319,8 @@ def fit_factor(
     log_factors : numpy.ndarray
         Logarithms of the factor, shape (F,), rising.
     logits : numpy.ndarray
-        Logits of the model's probability, shape (F, P), falling with the factor.
+        Logits of the model's probability, shape (F, P). They fall with the factor, but where
+        contact is so frequent that segments merge.
     shares : numpy.ndarray
         Measured shares, shape (P,).
     sample_size : numpy.ndarray
@@ -253,7 +336,8 @@ def fit_factor(
     -------
     factor, lower, upper : float
         The factor is NaN if it lies beyond the levels; a limit there is 0 or +inf. If no level is
-        compatible with the records, the finite limit is the nearest level.
+        compatible with the records, the finite limit is the nearest level. If several factors
+        solve the equation, it is that of the largest quasi-likelihood, the integral of S.
 
     References
     ----------
@@ -282,9 +366,14 @@ def fit_factor(
     errors = weights * np.sqrt(model * (1.0 - model) / sample_size)
     variance = np.einsum("fi,ij,fj->f", errors, covariance, errors, optimize=False)
     variance += np.sum((weights * noise) ** 2, axis=1)
-    misfit = np.sum(weights * (shares - model), axis=1) / np.sqrt(variance)
-    falling = np.minimum.accumulate(misfit)
-    limit = quantile(realisations)
+    score = np.sum(weights * (shares - model), axis=1)
+    misfit, limit = score / np.sqrt(variance), quantile(realisations)
+    likeliest = np.argmax(scipy.integrate.cumulative_trapezoid(score, log_factors, initial=0.0))
+    # The score falls to its zero there from where it begins to be positive. Before, at films so thin
+    # that segments merge, it may have another zero, and be clearly negative beyond.
+    dip = np.max(np.flatnonzero(misfit[:likeliest] < -limit), initial=0)
+    first = dip + np.argmax(score[dip : likeliest + 1] >= 0.0)
+    log_factors, falling = log_factors[first:], np.minimum.accumulate(misfit[first:])
     first, last = log_factors[[0, -1]]
     factor = np.interp(0.0, -falling, log_factors, left=np.nan, right=np.nan)
     lower = np.interp(-limit, -falling, log_factors, left=-np.inf, right=last)

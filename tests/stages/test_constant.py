@@ -10,6 +10,7 @@ from lube.stages.ensemble import gather_map
 from lube.stages.film import film_table
 from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch
+from lube.study.line_spec import line_spec
 
 FORCES, SPEEDS, TEMPERATURES = [400.0, 1600.0], [100.0, 200.0], [50.0, 80.0]
 
@@ -69,3 +70,20 @@ def test_a_map_without_contact_gives_no_probability(files):
     for name in ("breakthrough_probability", "breakthrough_probability_mean"):
         none[name] = 0.0 * master[name]
     assert constant_effect(oil, film, none)["breakthrough_probability"].isnull().all()
+
+
+def test_where_contact_falls_as_the_film_thins_its_probability_is_known_too(study):
+    """Very rough rollers: at the thinnest films segments merge, and more of them hold."""
+    rough = {
+        name: getattr(study.rollers, name).model_copy(update={"rms_roughness": 2e-6})
+        for name in ("first", "second")
+    }
+    rollers = study.rollers.model_copy(update=rough)
+    roughness = study.roughness.model_copy(update={"points": 50_000})
+    oil = lubricant_table(study.lubricants, TEMPERATURES)
+    film = film_table(oil, rollers, FORCES, SPEEDS, ["paper"])
+    lines = roughness_batch(line_spec(rollers, roughness, max(FORCES)), 2, range(4))
+    master = gather_map([contact_map(lines, film, study.boundary_layer)])
+    assert any(curve_at(master, width).peak for width in master["contact_width"].values)
+    found = constant_effect(oil, film, master)
+    assert found["breakthrough_probability"].notnull().all()

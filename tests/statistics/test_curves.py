@@ -12,6 +12,7 @@ from lube.statistics.curves import (
     falling_curve,
     film_interval,
     fit_factor,
+    peaked_curve,
     realisation_correlation,
 )
 from lube.statistics.one_pair import prediction_limits, quantile, standard_error
@@ -216,3 +217,62 @@ def test_the_interval_of_the_factor_covers_it(tie):
         _, lower, upper = fitted(shares, 200.0, correlation)
         covered += lower <= 1.0 <= upper
     assert 0.92 <= covered / 600 <= 0.98
+
+
+# --- Contact so frequent that it falls as the film thins ---------------------------------
+
+PEAKED = peaked_curve(
+    np.linspace(-1.0, 1.0, 9),
+    np.array([0.80, 0.82, 0.84, 0.85, 0.7, 0.5, 0.3, 0.1, 0.01]),
+    np.full(9, 1e3),
+    1e-6,
+)
+
+
+@given(st.floats(0.801, 0.849))
+def test_a_share_near_the_largest_belongs_to_two_films(share):
+    thick, thin = PEAKED.film_at(share), PEAKED.thinner_film_at(share)
+    assert thin < PEAKED.films[PEAKED.peak] < thick
+    np.testing.assert_allclose(expit(PEAKED.logit_at([thick, thin])), share)
+
+
+def test_other_shares_belong_to_one_film():
+    assert np.isnan(PEAKED.thinner_film_at(0.3)) and np.isnan(PEAKED.thinner_film_at(0.9))
+    assert PEAKED.film_at(0.9) == -np.inf
+    assert np.isnan(CURVE.thinner_film_at(0.5))
+
+
+def test_a_falling_curve_has_no_peak():
+    films, probabilities = CURVE.films, expit(CURVE.logits)
+    peaked, falling = (
+        fit(films, probabilities, CURVE.sample_size, 1e-6) for fit in (peaked_curve, falling_curve)
+    )
+    assert peaked.peak == 0
+    for name in ("films", "logits", "sample_size"):
+        np.testing.assert_array_equal(getattr(peaked, name), getattr(falling, name))
+
+
+@pytest.mark.parametrize(("share", "size"), [(0.83, 1e3), (0.83, 1e7), (0.849, 1e5), (0.3, 1e3)])
+def test_the_interval_holds_the_films_around_the_thicker_one_that_agree(share, size):
+    curve = Curve(PEAKED.films, PEAKED.logits, np.full(9, size), PEAKED.peak)
+    film, lower, upper = film_interval(curve, share, 1.0, REALISATIONS)
+    assert film == curve.film_at(share)
+    tried = np.linspace(-1.0, 1.0, 200_001)
+    model = expit(curve.logit_at(tried))
+    error = standard_error(model, np.full(tried.size, size), 1.0, REALISATIONS)
+    agrees = np.abs(share - model) <= quantile(REALISATIONS) * error
+    known = int(np.searchsorted(tried, film))
+    others = np.flatnonzero(~agrees)
+    first, last = others[others < known].max(initial=-1), others[others > known].min()
+    expected = tried[first + 1] if first >= 0 else -np.inf
+    assert lower == pytest.approx(expected, abs=2e-3)
+    assert upper == pytest.approx(tried[last], abs=2e-3)
+
+
+def test_a_factor_is_found_beyond_the_peak():
+    """At a small factor the probabilities fall with the film; a plain search would end there."""
+    log_factors = np.linspace(-2.0, 2.0, 401)
+    logits = np.stack([1.5 - 0.8 * (log_factors + c) ** 2 for c in (0.6, 0.8, 1.0)], axis=1)
+    shares, sizes = expit(logits[200]), np.full(3, 1e3)
+    found = fit_factor(log_factors, logits, shares, sizes, np.eye(3), 10_000, np.zeros(3))
+    assert found[0] == pytest.approx(1.0, rel=1e-6) and found[1] < 1.0 < found[2]
