@@ -369,8 +369,8 @@ def fit_factor(
     score = np.sum(weights * (shares - model), axis=1)
     misfit, limit = score / np.sqrt(variance), quantile(realisations)
     likeliest = np.argmax(scipy.integrate.cumulative_trapezoid(score, log_factors, initial=0.0))
-    # The score falls to its zero there from where it begins to be positive. Before, at films so thin
-    # that segments merge, it may have another zero, and be clearly negative beyond.
+    # The score falls to its zero there from where it begins to be positive. Before, at films so
+    # thin that segments merge, it may have another zero, and be clearly negative beyond.
     dip = np.max(np.flatnonzero(misfit[:likeliest] < -limit), initial=0)
     first = dip + np.argmax(score[dip : likeliest + 1] >= 0.0)
     log_factors, falling = log_factors[first:], np.minimum.accumulate(misfit[first:])
