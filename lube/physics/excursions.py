@@ -49,6 +49,33 @@ def crossing_rate(level: Values, moments: Sequence[float]) -> Values:
     return math.sqrt(m2 / m0) / (2.0 * math.pi) * np.exp(-0.5 * np.square(level) / m0)
 
 
+def mean_overlap(level: Values, rms: float) -> Values:
+    r"""Mean height of a Gaussian line above a level, zero where it is below.
+
+    .. math:: \sigma \left( \varphi(t) - t\, Q(t) \right), \qquad t = h / \sigma
+
+    Parameters
+    ----------
+    level : float or numpy.ndarray
+        Level h, m.
+    rms : float
+        Rms height :math:`\sigma` of the line, m.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        m.
+
+    Examples
+    --------
+    >>> f"{mean_overlap(0.0, 1.0):.4f}"
+    '0.3989'
+    """
+    height = level / rms
+    density = np.exp(-0.5 * np.square(height)) / math.sqrt(2.0 * math.pi)
+    return rms * (density - height * scipy.special.ndtr(-height))
+
+
 def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float) -> Array:
     r"""Share of the summits of a line above a level that are sharper than a given curvature.
 

@@ -1,0 +1,149 @@
+"""What an engineer looks at before a long computation, and what is unlikely to be meant."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from lube.physics.excursions import mean_overlap
+from lube.units import with_unit
+
+
+def expected_load_share(film: xr.Dataset, rollers) -> xr.DataArray:
+    r"""Share of the load that the asperities of Gaussian lines carry, in expectation.
+
+    It is the expectation of ``contact_load_share`` in ``contact.nc``. With the mean overlap
+    :math:`\bar z` of the lines it is
+
+    .. math:: \frac{E^* L' \bar z}{F_N}
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        With ``film_thickness`` (m) and ``force`` (N).
+    rollers : RollerPair
+        The rollers, with the rms heights of their lines.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over the dimensions of the films and forces.
+    """
+    overlap = mean_overlap(film["film_thickness"], rollers.composite_rms_roughness)
+    return overlap * rollers.reduced_modulus * rollers.length / film["force"]
+
+
+def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
+    """Say what pressures, films and roughness rollers have at their operating points.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset; of several film formulas the first counts.
+    lines : LineSpec
+        The roughness lines.
+    rollers : RollerPair
+        The rollers, with the rms heights of their lines.
+
+    Returns
+    -------
+    dict of str to str
+        A text for each.
+    """
+    film = film.isel(film_formula=0)
+    width, shortest = 2.0 * film["contact_half_width"], 2.0 * math.pi / lines.q_max
+    invalid = ~film["in_validity_range"].astype(bool)
+    share = 100.0 * expected_load_share(film, rollers).max().item()
+    return {
+        "Hertz pressure": _range(film["hertz_pressure"], "Pa"),
+        "film": f"{_range(film['film_thickness'], 'm')}, by {film['film_formula'].item()}; "
+        f"{int(invalid.sum())} of {invalid.size} outside its range of validity",
+        "lambda ratio": _range(film["lambda_ratio"]),
+        "contact width": f"{_range(width, 'm')}, {_range(width / shortest)} shortest waves",
+        "grid": f"{shortest / lines.spacing:.3g} points in the shortest wave, "
+        f"{_range(width / lines.spacing)} in the contact width",
+        "load share": f"{share:.2g} % at most, of the asperities of the line",
+    }
+
+
+def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
+    """Say what is unlikely to be meant, and what is outside of what the model can hold.
+
+    Parameters
+    ----------
+    film, lines, rollers
+        As in `overview`.
+
+    Returns
+    -------
+    list of str
+        What came, and what is usual.
+
+    References
+    ----------
+    K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, chapters 4 and 6, for the
+    half-space and for the pressure at which steel begins to flow.
+    """
+    film = film.isel(film_formula=0)
+    moduli = rollers.first.young_modulus, rollers.second.young_modulus
+    widths, shortest = 2.0 * film["contact_half_width"], 2.0 * math.pi / lines.q_max
+    width, waves = widths.max().item(), widths.min().item() / shortest
+    pressure, thinnest = film["hertz_pressure"].max().item(), film["film_thickness"].min().item()
+    radius, points = rollers.reduced_radius, shortest / lines.spacing
+    share = expected_load_share(film, rollers)
+    loaded, overloaded = (int((share > limit).sum()) for limit in (0.1, 1.0))
+    found = [
+        (
+            min(moduli) < 1e9 or max(moduli) > 1.2e12,
+            f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel 210 GPa",
+        ),
+        (
+            pressure > 2.5e9,
+            f"Hertz pressure: up to {_short(pressure, 'Pa')}; gears and bearings have less than "
+            "2.5 GPa, hardened steel flows from some 3 GPa on, and the model is elastic",
+        ),
+        (
+            width > 0.2 * radius,
+            f"contact width: up to {_short(width, 'm')}; by Hertz' theory it is small against the "
+            f"reduced radius, {_short(radius, 'm')}",
+        ),
+        (
+            waves < 20.0,
+            f"contact width: {waves:.2g} shortest waves at the smallest force; with fewer than 20 "
+            "the probability means little",
+        ),
+        (
+            shortest > 5e-6,
+            f"shortest wave: {_short(shortest, 'm')}; waves of some 3 µm decide whether the "
+            "boundary layer breaks, so there will be too little contact",
+        ),
+        (
+            points < 10.0 * (1.0 - 1e-6),
+            f"grid: {points:.3g} points in the shortest wave; for the curvature of asperities it "
+            "takes 10",
+        ),
+        (
+            thinnest < 1e-8,
+            f"film: down to {_short(thinnest, 'm')}, no thicker than a boundary layer",
+        ),
+        (
+            not film["in_validity_range"].any(),
+            f"film: nowhere in the range of validity of {film['film_formula'].item()}",
+        ),
+        (
+            loaded,
+            f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
+            f"more than a tenth of the load, at {overloaded} more than all of it; the film formula "
+            "leaves all to the oil",
+        ),
+    ]
+    return [text for unlikely, text in found if unlikely]
+
+
+def _short(value, unit=""):
+    return with_unit(float(f"{value:.3g}"), unit)
+
+
+def _range(values, unit=""):
+    ends = _short(np.nanmin(values), unit), _short(np.nanmax(values), unit)
+    return " to ".join(dict.fromkeys(ends))
