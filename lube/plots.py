@@ -81,7 +81,6 @@ _OTHER_COORDINATES = {
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
 _FOOTNOTE_LINE = 130  # characters that fit below a figure
 _MOST_LABELS = 9  # on a logarithmic axis
-_LONGEST_NAME = 32  # characters of a record's name; of a longer one the end is shown
 _SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) |(?<=pair) ")  # or a letter's
 
 
@@ -260,7 +259,6 @@ def record_name(record: xr.Dataset, pairs: int = 1) -> str:
         simulated record the conditions alone.
     """
     name = record["record"].item() if record["origin"].item() == "measured" else ""
-    name = name if len(name) <= _LONGEST_NAME else "…" + name[1 - _LONGEST_NAME :]
     words = [name] * bool(name) + [f"pair {record['pair'].item()}"] * (pairs > 1)
     return "\n".join([", ".join(words)] * bool(words) + [point_name(record)])
 

@@ -283,7 +283,10 @@ def _write_records(study, manifest):
         voltages.setdefault(number, []).append(revolution.voltage(study.rig))
     rows = ["file,force [N],speed [rpm],temperature [degC]"]
     for number, parts in voltages.items():
-        point, name = points[number], f"measurement-of-november-{number:02d}.csv"
+        point, name = (
+            points[number],
+            f"measurement-of-november-by-bench-two-{number:02d}.csv",
+        )
         voltage = np.concatenate(parts)
         times = np.arange(voltage.size) / study.rig.sampling_rate
         columns = np.column_stack([times, 1e3 * voltage])
