@@ -45,7 +45,7 @@ rule all:
     default_target: True
     input:
         [result(f"{kind}.nc") for kind in STUDY.datasets],
-        products(ARCHIVED),
+        products(ALWAYS),
         result("explorer.html"),
         [result(f"report/{page}.html") for page in ("configuration", "assumptions", "run_times")],
     message:

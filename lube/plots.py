@@ -26,7 +26,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from lube.schema import COORDINATES
 from lube.storage.files import written_whole
-from lube.units import convert
+from lube.units import SYMBOLS, convert
 from lube.workflow.stamps import stamp
 
 COLOURS = {
@@ -71,21 +71,6 @@ _STYLE = {
     "agg.path.chunksize": 10000,  # long traces are drawn in pieces
 }
 
-# UDUNITS notation of the files -> what a reader expects on an axis.
-_AXIS_UNITS = {
-    "degC": "°C",
-    "um": "µm",
-    "mm2 s-1": "mm²/s",
-    "m2 s-1": "m²/s",
-    "Pa-1": "1/Pa",
-    "GPa-1": "1/GPa",
-    "kg m-3": "kg/m³",
-    "m s-1": "m/s",
-    "rpm": "r/min",
-    "ohm": "Ω",
-}
-
-
 # Coordinates that force, speed and temperature leave open, and the words before their values.
 _OTHER_COORDINATES = {
     "lubricant": "",
@@ -96,7 +81,6 @@ _OTHER_COORDINATES = {
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
 _FOOTNOTE_LINE = 130  # characters that fit below a figure
 _MOST_LABELS = 9  # on a logarithmic axis
-_LONGEST_NAME = 32  # characters of a record's name; of a longer one the end is shown
 _SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) |(?<=pair) ")  # or a letter's
 
 
@@ -162,7 +146,7 @@ def axis_label(array: xr.DataArray, symbol: str | None = None) -> str:
     """
     name = array.attrs["long_name"]
     units = array.attrs.get("units", "1")
-    unit = None if units == "1" else f"({_AXIS_UNITS.get(units, units)})"
+    unit = None if units == "1" else f"({SYMBOLS.get(units, units)})"
     return " ".join(word for word in (name[0].upper() + name[1:], symbol, unit) if word)
 
 
@@ -193,7 +177,7 @@ def level_markers(levels: npt.ArrayLike) -> dict[float, str]:
 def level_name(value: float, units: str) -> str:
     """Level of an operating variable as text: ``86 r/min``, ``800 N``, ``40.5 °C``."""
     digits = ".0f" if abs(value - round(value)) <= 0.004 * abs(value) else ".3g"
-    return f"{value:{digits}} {_AXIS_UNITS.get(units, units)}"
+    return f"{value:{digits}} {SYMBOLS.get(units, units)}"
 
 
 def point_name(point: xr.Dataset | xr.DataArray, *variables: str) -> str:
@@ -275,7 +259,6 @@ def record_name(record: xr.Dataset, pairs: int = 1) -> str:
         simulated record the conditions alone.
     """
     name = record["record"].item() if record["origin"].item() == "measured" else ""
-    name = name if len(name) <= _LONGEST_NAME else "…" + name[1 - _LONGEST_NAME :]
     words = [name] * bool(name) + [f"pair {record['pair'].item()}"] * (pairs > 1)
     return "\n".join([", ".join(words)] * bool(words) + [point_name(record)])
 
@@ -444,6 +427,37 @@ def interval_bars(
     at, limits = np.asarray(x)[limited], np.asarray(upper)[limited]
     arrows = {"uplims": True, "linestyle": "none", "capsize": 2.5, "elinewidth": 1.0}
     axes.errorbar(at, limits, yerr=0.5 * limits, color=style.get("color"), **arrows)
+
+
+def probability_limits(*panels: Axes, least: float = 0.0) -> None:
+    """End axes of probabilities above the largest that is shown, at 1 at most.
+
+    Points at an end are drawn whole.
+
+    Parameters
+    ----------
+    *panels : matplotlib.axes.Axes
+        Panels with all their points, which get the same limits.
+    least : float, optional
+        The lower limit; on a logarithmic scale above 0.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> from lube import plots
+    >>> _, axes = plt.subplots()
+    >>> _ = axes.plot([40, 60, 80], [0.0, 0.4, 0.98], "o")
+    >>> plots.probability_limits(axes)
+    >>> [float(end) for end in axes.get_ylim()]
+    [0.0, 1.0]
+    """
+    highest = max([one.dataLim.ymax for one in panels if one.dataLim.ymax > 0.0], default=1.0)
+    for panel in panels:
+        room = 1.05 if panel.get_yscale() == "linear" else 1.5
+        panel.set_ylim(least, min(room * highest, 1.0))
+        for line in [line for line in panel.lines if line.get_marker() not in NOT_POINTS]:
+            below = (np.asarray(line.get_ydata(), float) < least).any()
+            line.set(clip_on=bool(below), in_layout=False)
 
 
 def mark_outside(*panels: Axes) -> None:

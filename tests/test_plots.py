@@ -9,6 +9,7 @@ from PIL import Image
 
 from lube import plots
 from lube.storage.provenance import global_attributes
+from lube.units import with_unit
 from lube.workflow.stamps import stamp
 
 matplotlib.use("Agg")
@@ -84,6 +85,28 @@ def test_points_outside_a_panel_are_marked_at_its_edge_in_their_colour():
     assert {line.get_color() for line in marks.values()} == {"red"}
 
 
+@pytest.mark.parametrize(
+    ("values", "scale", "least", "top"),
+    [([0.2, 0.98], "linear", 0.0, 1.0), ([0.2, 0.4], "linear", 0.0, 0.42), ([], "linear", 0.0, 1.0),
+     ([0.01, 0.8], "log", 1e-3, 1.0), ([0.01, 0.1], "log", 1e-3, 0.15)],
+)  # fmt: skip
+def test_axes_of_probabilities_end_at_one_or_above_the_data_and_cut_no_marker(
+    values, scale, least, top
+):
+    _, axes = plt.subplots()
+    axes.set_yscale(scale)
+    (points,) = axes.plot(range(len(values)), values, "o")
+    (below,) = axes.plot([0.0], [least - 0.1], "o")
+    plots.probability_limits(axes, least=least)
+    np.testing.assert_allclose(axes.get_ylim(), (least, top))
+    assert not points.get_clip_on() and below.get_clip_on()
+
+
+def test_units_are_spelt_alike_in_figures_and_text():
+    for unit in ("rpm", "degC", "ohm"):
+        assert plots.level_name(2.0, unit) == with_unit(2.0, unit)
+
+
 @pytest.fixture
 def records():
     """Three records of two pairs of rollers, the last not at a level of force."""
@@ -107,7 +130,8 @@ def test_rig_and_records_are_named(records):
     first, last = records.isel(record=0), records.isel(record=2)
     conditions = "1603 N, 100 r/min, 80 °C"
     assert plots.record_name(first) == f"run1.nc (list.csv: line 2)\n{conditions}"
-    assert plots.record_name(last).splitlines()[0] == "…ong-name.csv (list.csv: line 4)"
+    whole = "in-a-folder-of-a-long-name.csv (list.csv: line 4)"
+    assert plots.record_name(last).splitlines()[0] == whole
     assert plots.record_name(first, pairs=2).splitlines()[0].endswith("line 2), pair A")
     simulated = first.assign_coords(origin="simulated")
     assert plots.record_name(simulated) == conditions

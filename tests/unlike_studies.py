@@ -1,4 +1,4 @@
-"""Nine studies as unlike as users' are, small enough for a test, and their datasets."""
+"""Studies as unlike as users' are, small enough for a test, and their datasets."""
 
 import numpy as np
 import yaml
@@ -150,6 +150,20 @@ STUDIES = {
             _trace(1600, 60_000, 80, slide_to_roll_ratio=1),
         ],
     ),
+    # Rougher rollers at a lambda ratio of 0.02 to 2.4, which touch most of the time. At the
+    # smallest force asperities would carry more than the load, at the largest merged segments hold.
+    "frequent": _small(
+        "frequent",
+        realisations=16,
+        rollers={
+            name: value | {"rms_roughness": "0.3 um"} if isinstance(value, dict) else value
+            for name, value in PAPER_CONTENT["rollers"].items()
+        },
+        boundary_layer=PAPER_CONTENT["boundary_layer"] | {"shear_strength": "0.1 MPa"},
+        film_formulas=["pan-hamrock", "paper"],
+        operating_grid=_grid([50, 200, 1600], [1, 5, 50], [40, 60, 90], [0, 0.1, 1]),
+        traces=[_trace(1600, 5, 90), _trace(200, 5, 40)],
+    ),
     # Lines drawn from the spectrum of a map, against a profile that is the line.
     "topographies": _small(
         "topographies",
@@ -269,7 +283,10 @@ def _write_records(study, manifest):
         voltages.setdefault(number, []).append(revolution.voltage(study.rig))
     rows = ["file,force [N],speed [rpm],temperature [degC]"]
     for number, parts in voltages.items():
-        point, name = points[number], f"measurement-of-november-{number:02d}.csv"
+        point, name = (
+            points[number],
+            f"measurement-of-november-by-bench-two-{number:02d}.csv",
+        )
         voltage = np.concatenate(parts)
         times = np.arange(voltage.size) / study.rig.sampling_rate
         columns = np.column_stack([times, 1e3 * voltage])

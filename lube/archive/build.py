@@ -100,20 +100,21 @@ def archive_contents(
     summarised = {
         kind: load(results / f"{kind}.nc", kind) for kind in SUMMARISED if study.has(kind)
     }
+    kinds = study.datasets_in(results)
     drawn = [name for figure in figures for name in (*products(figure), origin(figure))]
     return {
-        **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in study.datasets},
+        **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in kinds},
         **{name: results / name for name in drawn},
         "explorer.html": results / "explorer.html",
         **{f"study/{name}": path for name, path in written.items()},
         **{f"lubricants/{name}": path for name, path in _records(study).items()},
         **{f"code/{name}": ROOT / name for name in code_files()},
         "code/COMMIT": commit() + "\n",
-        VALUES: values_text(study, study_file),
+        VALUES: values_text(study, study_file, kinds),
         "versions.txt": exact_versions(),
         "CITATION.cff": citation_file(study),
         ".zenodo.json": zenodo_metadata(study),
-        "README.md": archive_page(study, study_file, summarised),
+        "README.md": archive_page(study, study_file, kinds, summarised),
     }
 
 
@@ -182,7 +183,7 @@ def _records(study):
     }
 
 
-def values_text(study: Study, study_file: str) -> str:
+def values_text(study: Study, study_file: str, kinds: list[str]) -> str:
     """State a study as it was understood: the values that determine each dataset.
 
     Parameters
@@ -191,6 +192,8 @@ def values_text(study: Study, study_file: str) -> str:
         The study.
     study_file : str
         Path of its file below the archive's folder ``study``, with slashes.
+    kinds : list of str
+        Its datasets in the archive.
 
     Returns
     -------
@@ -203,8 +206,8 @@ def values_text(study: Study, study_file: str) -> str:
         "seed": study.seed,
         "realisations": study.realisations,
         "about": study.about.in_files,
-        "config_sha256": {kind: digest(config_text(study, kind)) for kind in study.datasets},
-        "values": {kind: study.stage_inputs(kind) for kind in study.datasets},
+        "config_sha256": {kind: digest(config_text(study, kind)) for kind in kinds},
+        "values": {kind: study.stage_inputs(kind) for kind in kinds},
     }
     return json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 

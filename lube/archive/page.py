@@ -12,7 +12,9 @@ from lube.study.metadata import LICENCES, PAPER
 from lube.study.study import Study
 
 
-def archive_page(study: Study, study_file: str, results: Mapping[str, xr.Dataset]) -> str:
+def archive_page(
+    study: Study, study_file: str, kinds: list[str], results: Mapping[str, xr.Dataset]
+) -> str:
     """Write the README.md of an archive.
 
     Parameters
@@ -21,6 +23,8 @@ def archive_page(study: Study, study_file: str, results: Mapping[str, xr.Dataset
         The study.
     study_file : str
         Path of its file below the archive's folder ``study``, with slashes.
+    kinds : list of str
+        Its datasets in the archive.
     results : dict of str to xarray.Dataset
         Its datasets `lube.report.SUMMARISED`, by name.
 
@@ -36,7 +40,7 @@ def archive_page(study: Study, study_file: str, results: Mapping[str, xr.Dataset
         about=study.about,
         licence=LICENCES[study.about.licence],
         paper=PAPER,
-        datasets={kind: SUMMARIES[kind] for kind in study.datasets},
+        datasets={kind: SUMMARIES[kind] for kind in kinds},
         study_file=study_file,
         commit=commit(),
         changed=changed_code(),

@@ -118,13 +118,14 @@ def _wrong_datasets(folder):
     except LubeError as error:
         yield str(error)
         return
-    for kind in study.datasets:
+    kinds = study.datasets_in(folder / "data")
+    for kind in kinds:
         path = folder / "data" / f"{kind}.nc"
         try:
             yield from _wrong_origin(load(path, kind, study), path, kind, study)
         except DataError as error:
             yield str(error)
-    if text != values_text(study, study_file):
+    if text != values_text(study, study_file, kinds):
         yield f"{VALUES}: not what study/{study_file} says"
 
 

@@ -9,6 +9,7 @@ import xarray as xr
 
 from lube import schema
 from lube.ehl.film_formulas import FORMULAS
+from lube.grid.model_limits import merged, overloaded
 from lube.schema import COORDINATES, FILES
 from lube.units import with_unit
 
@@ -66,6 +67,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         - ``levels``: for each of `CHOICES` its values, and their names for a reader;
         - ``variables``: for each of `SHOWN`, by `page_name`, its dimensions, unit, meaning, and
           values in the order of the dimensions, the last one fastest;
+        - ``marks``: points outside the model, and those where merged segments hold;
         - ``sampled``: whether there is contact at any rarity, by importance sampling;
         - ``regimes``: names of the regimes of lubrication;
         - ``validity``: limits of the Moes numbers within which each film formula was validated;
@@ -75,6 +77,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     """
     contact = datasets["contact"]
     levels = {name: contact[name].values.tolist() for name in CHOICES}
+    load_share = contact["contact_load_share"].mean("realisation", keep_attrs=True)
     return {
         "study": contact.attrs["study"],
         "levels": {
@@ -85,6 +88,14 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
             page_name(kind, name): _variable(datasets[kind][name], kind)
             for kind, names in SHOWN.items()
             for name in names
+        }
+        | {"contact_load_share": _variable(load_share, "contact")},
+        "marks": {
+            name: {"dims": list(where.dims), "values": _plain(where.values.ravel())}
+            for name, where in (
+                ("overloaded", overloaded(contact)),
+                ("merged", merged(contact, datasets["film"])),
+            )
         },
         "sampled": not datasets["tail"].attrs["remarks"],
         "regimes": datasets["film"]["regime"].attrs["flag_meanings"].split(),

@@ -60,6 +60,7 @@ THEME = Theme(
 """Look of all figures, legible on a phone."""
 _POINT = (
     *("x", "film", "mean", "lower", "upper", "limit", "lambda", "width", "M", "L", "name"),
+    *("outside", "falling"),
     *CHOICES,
 )
 COLUMNS = {
@@ -73,7 +74,8 @@ COLUMNS = {
     "whole": ("time", "length", "resistance"),
     "close": ("time", "length", "resistance"),
 }
-"""Columns of what the figures draw; ``limit`` is an upper limit where no contact was seen."""
+"""Columns of what the figures draw; ``limit`` is an upper limit where no contact was seen,
+``outside`` and ``falling`` are means where the model cannot hold or merged segments hold."""
 
 
 def draw(
@@ -212,6 +214,13 @@ def _probabilities(plot, sources, x, around):
     """Probabilities with their intervals; where no contact was seen, their upper limits."""
     _whiskers(plot, sources["chosen"], x, "black", 2)
     _all_points(plot, sources, x, "mean", around)
+    for column, size, face, edge in (
+        ("outside", 8, "white", COLOURS["blue"]), ("falling", 15, None, "black"),
+    ):  # fmt: skip
+        mark = plot.scatter(
+            x, column, source=sources[around], size=size, fill_color=face, line_color=edge
+        )
+        mark.nonselection_glyph = mark.glyph
     for name, size, colour in ((around, 8, COLOURS["blue"]), ("chosen", 15, COLOURS["vermilion"])):
         limits = plot.scatter(
             x, "limit", source=sources[name], size=size, marker="inverted_triangle",

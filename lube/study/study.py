@@ -19,7 +19,7 @@ from lube.errors import LubeError, StudyError, shown
 from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
-from lube.schema.stages import DATASETS, STAGES, forerunners
+from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import (
     Slug,
     StrictModel,
@@ -188,6 +188,12 @@ class Study(StrictModel):
     def datasets(self) -> tuple[str, ...]:
         """Names of the study's results, one file each."""
         return tuple(name for name in DATASETS if self.has(name))
+
+    def datasets_in(self, folder: File) -> list[str]:
+        """Names of the study's results, and of those made on request that a folder holds."""
+        extra = [name for name, target in ON_REQUEST.items() if target != "benchmark"]
+        made = [name for name in extra if Path(folder, f"{name}.nc").is_file() and self.has(name)]
+        return [*self.datasets, *made]
 
     def has(self, stage: str) -> bool:
         """Whether the study has what a stage is about."""

@@ -1,5 +1,6 @@
 """The figures of a study, from their notebooks' cells: what each needs and what it says."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -139,6 +140,36 @@ def study_figures(study: Study, folder: File = "notebooks") -> dict[str, Figure]
 def made_by(target: str, figures: dict[str, Figure]) -> list[str]:
     """List the figures that a target of Snakemake makes, such as ``all`` or ``benchmark``."""
     return [name for name, figure in figures.items() if figure.target == target]
+
+
+def made_on_request(
+    figures: dict[str, Figure], folder: File, targets: Iterable[str] = ()
+) -> list[str]:
+    """List the figures made on request that are there, or that the same run makes.
+
+    A picture stays where a job fails or is repeated, so the list is the same in every process of a
+    run. Measured times are left out: they are not results of the study.
+
+    Parameters
+    ----------
+    figures : dict of str to Figure
+        As from `study_figures`.
+    folder : str or Path
+        Folder of the study's results.
+    targets : iterable of str, optional
+        Words of the command, among them targets such as ``computed``.
+
+    Returns
+    -------
+    list of str
+        Their names.
+    """
+    return [
+        name
+        for name, figure in figures.items()
+        if figure.target not in ("all", "benchmark")
+        and (figure.target in targets or Path(folder, f"figures/{name}.png").is_file())
+    ]
 
 
 def chapters(figures: dict[str, Figure]) -> dict[str, str]:

@@ -1,10 +1,13 @@
 """The figures of a study, from their notebooks: what each needs, and what it says."""
 
+import re
+from collections import Counter
+
 import pytest
 from written_notebooks import write_notebook
 
 from lube.study.lubricant_record import load_record
-from lube.workflow.figure_list import chapters, study_figures
+from lube.workflow.figure_list import chapters, made_on_request, study_figures
 
 
 @pytest.fixture
@@ -74,3 +77,28 @@ def test_chapters_are_numbered_by_their_figures_measured_times_last(write, study
         "fig01_a": "1 Oil and film",
         "fig02_b": "1 Oil and film",
     }
+
+
+def test_every_figure_is_in_a_chapter_of_several(study):
+    """A misspelt tag would make a chapter of its own."""
+    figures = study_figures(study)
+    found = Counter(one.chapter for one in figures.values() if one.target != "benchmark")
+    assert min(found.values()) > 1, found
+
+
+def test_figures_on_request_are_listed_where_they_are_made_or_asked_for(study, tmp_path):
+    figures = study_figures(study)
+    assert made_on_request(figures, tmp_path) == []
+    asked = made_on_request(figures, tmp_path, ["archive", "patch_contact", "benchmark"])
+    assert asked == ["fig24_patch"]
+    (tmp_path / "figures").mkdir()
+    for name in ("bench01_speed", "fig02_film", "fig22_areal"):
+        (tmp_path / f"figures/{name}.png").touch()
+    assert made_on_request(figures, tmp_path) == ["fig22_areal"]
+
+
+def test_captions_do_not_speak_of_the_papers_points_or_axes(study):
+    """Another study has its own; that a figure is drawn like one of the paper is true of all."""
+    for figure in study_figures(study).values():
+        words = re.sub(r"Drawn like Fig\. \w+ of the paper", "", f"{figure.title} {figure.text}")
+        assert not re.search(r"the paper's|Fig\. \d|transposed", words), figure.name

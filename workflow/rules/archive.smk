@@ -5,8 +5,8 @@ from lube.storage.git import changed_code, commit, commit_date
 rule archive:
     input:
         written=lambda wildcards: archived_texts(FILES),
-        datasets=[result(f"{kind}.nc") for kind in STUDY.datasets],
-        products=products(ARCHIVED),
+        datasets=[result(f"{kind}.nc") for kind in KINDS],
+        products=products([*ALWAYS, *EXTRA]),
         explorer=result("explorer.html"),
     output:
         # An old archive stays until the new one is complete.
@@ -21,7 +21,7 @@ rule archive:
     params:
         about=digest(STUDY.about.model_dump(mode="json")),
         code=lambda wildcards: [commit(), commit_date(), changed_code()],
-        figures=ARCHIVED,
+        figures=[*ALWAYS, *EXTRA],
     message:
         "Archive: {output.zip}, and the same as a folder beside it"
     script:

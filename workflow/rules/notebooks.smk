@@ -1,13 +1,18 @@
 # The figures of the study, read from their notebooks before any job.
 from lube.report.markdown import plain, to_html
+from lube.schema import SUMMARIES
 from lube.study.metadata import PAPER as PAPER_TITLE
-from lube.workflow.figure_list import chapters, made_by, study_figures
+from lube.workflow.figure_list import chapters, made_by, made_on_request, study_figures
 
 with one_line_errors():
     FIGURES = study_figures(STUDY)
 
-# Others are made on request only, such as `snakemake benchmark`.
-ARCHIVED = made_by("all", FIGURES)
+# Others are made on request only, such as `snakemake computed`. Report and archive have those that
+# were made, and keep them up to date; bare `snakemake` leaves them alone.
+ALWAYS = made_by("all", FIGURES)
+EXTRA = made_on_request(FIGURES, RESULTS, sys.argv[1:])
+KINDS = {kind for name in EXTRA for kind in FIGURES[name].datasets}
+KINDS = sorted(KINDS.union(STUDY.datasets_in(RESULTS)))
 CHAPTERS = chapters(FIGURES)
 
 products = FILES.products
@@ -39,5 +44,6 @@ config["report"] = {
     "summary": STUDY.about.summary,
     "paper": PAPER_TITLE,
     "folder": result("report"),
+    "extra": {kind: SUMMARIES[kind] for kind in KINDS if kind not in STUDY.datasets},
     "captions": {name: to_html(figure.text) for name, figure in FIGURES.items()},
 }

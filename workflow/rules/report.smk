@@ -54,7 +54,7 @@ rule times:
     input:
         # When all else is done.
         [result(f"{kind}.nc") for kind in STUDY.datasets],
-        products(ARCHIVED),
+        products(ALWAYS),
         result("explorer.html"),
         templates=TEMPLATES,
         sources=script_sources("times"),
@@ -70,7 +70,7 @@ rule times:
     benchmark:
         result("benchmarks/times.tsv")
     params:
-        jobs=FILES.benchmarks(ARCHIVED),
+        jobs=FILES.benchmarks(ALWAYS),
     message:
         "Report: run times and memory of all jobs"
     script:
@@ -84,7 +84,9 @@ if not IS_MODULE:
         input:
             rules.pages.output,
             rules.times.output,
-            # The report shows all that rule `times` waits for.
+            # The report shows all that rule `times` waits for, and these.
+            [result(f"{kind}.nc") for kind in KINDS],
+            products(EXTRA),
             [from_here(path) for path in sorted(Path(ROOT, "workflow/report").iterdir())],
         output:
             result("report.html"),
@@ -94,7 +96,10 @@ if not IS_MODULE:
             result("benchmarks/report.tsv")
         localrule: True
         params:
-            snakemake=[sys.executable, "-m", "snakemake", *same_study(**SOURCE)],
+            snakemake=[
+                *(sys.executable, "-m", "snakemake", "all", *products(EXTRA)),
+                *same_study(**SOURCE),
+            ],
         message:
             "Report: {output}"
         shell:

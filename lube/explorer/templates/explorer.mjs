@@ -36,8 +36,8 @@ const percent = (share) => (share === null ? "–" : `${rounded(100 * share)}\u0
 
 // Values at an operating point, which is an index for each choice
 
-function at(name, point) {
-    const variable = variables[name];
+function at(name, point, among = variables) {
+    const variable = among[name];
     const place = (sum, dim) => sum * levels[dim].values.length + point[dim];
     return variable.values[variable.dims.reduce(place, 0)];
 }
@@ -69,6 +69,13 @@ function limits(name, endings, point) {
 
 const withInterval = ({ text, seen, lower, upper }) => (seen ? `${text} (${percent(lower)} to ${percent(upper)})` : text);
 
+// Where the model cannot hold, or contact falls as the film thins
+const marks = {
+    overloaded: "outside the model: the asperities would carry more than the load",
+    merged: "less contact than at a thicker film: merged segments hold",
+};
+const marked = (point) => Object.keys(marks).filter((name) => at(name, point, content.marks));
+
 // One row of a source of operating points
 function row(point, along) {
     const found = probability(point);
@@ -85,7 +92,9 @@ function row(point, along) {
         width: 2e6 * at("contact_half_width", point),
         M: at("moes_load", point),
         L: at("moes_material", point),
-        name: `${named(point, grid)}: ${withInterval(found)}`,
+        outside: at("overloaded", point, content.marks) ? positive(mean) : NaN,
+        falling: at("merged", point, content.marks) ? positive(mean) : NaN,
+        name: [`${named(point, grid)}: ${withInterval(found)}`, ...marked(point).map((name) => marks[name])].join("; "),
     };
 }
 
@@ -143,6 +152,7 @@ function showAnswers(point) {
     element("interval").textContent = seen
         ? `of the time; 95 % interval ${percent(lower)} to ${percent(upper)}`
         : "of the time: none was seen; 95 % upper limit";
+    element("marks").textContent = marked(point).map((name) => marks[name]).join("; ");
     if (content.sampled) {
         const rate = limits("tail.breakthrough_rate", ["", "_lower", "_upper"], point);
         const [often, least, most] = [rate.mean, rate.lower, rate.upper].map((one) => rounded(3600 * one));
@@ -287,6 +297,7 @@ function showValues(point) {
     const applied = variables.film_thickness.dims.includes("slide_to_roll_ratio") ? "" : ", not applied";
     rows.push([`film reduction by inlet shear heating${applied}`, percent(heating === null ? null : 1 - heating)]);
     if (content.sampled) rows.push(["breakthroughs counted in the realisations", withInterval(counted(point))]);
+    rows.push([variables.contact_load_share.long_name, shown("contact_load_share", point)]);
     rows.push(["geometric contact probability", probability(point, "geometric_contact").text]);
     showTable("values", rows.map(([name, value]) => [name[0].toUpperCase() + name.slice(1), value]));
     showTable(

@@ -1,0 +1,64 @@
+"""Points at which the model cannot hold, on small tables."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from lube.grid.model_limits import merged, overloaded
+
+
+def table(mean, geometric, half=0.01, film=(3.0, 2.0, 1.0)):
+    """Contact at one speed and one force, the film the thinner the hotter."""
+    dims = ("temperature", "speed", "force")
+    levels = {"temperature": [40.0, 60.0, 80.0], "speed": [100.0], "force": [800.0]}
+    columns = {
+        "breakthrough_probability_lower": np.subtract(mean, half),
+        "breakthrough_probability_upper": np.add(mean, half),
+        "geometric_contact_probability_mean": np.array(geometric),
+    }
+    contact = xr.Dataset({n: (dims, v[:, None, None]) for n, v in columns.items()}, levels)
+    films = xr.Dataset({"film_thickness": (dims, np.reshape(film, (3, 1, 1)))}, levels)
+    return contact, films
+
+
+@pytest.mark.parametrize(
+    ("mean", "geometric", "half", "expected"),
+    [
+        ([0.87, 0.84, 0.80], [0.90, 0.95, 0.99], 0.01, [False, True, True]),
+        ([0.87, 0.86, 0.80], [1.0, 1.0, 1.0], 0.01, [False, False, True]),
+        ([0.87, 0.86, 0.85], [0.90, 0.95, 0.99], 0.01, [False, False, False]),
+        ([0.87, 0.84, 0.80], [0.90, 0.87, 0.82], 0.01, [False, False, False]),
+        ([0.50, 0.60, 0.70], [0.60, 0.70, 0.80], 0.01, [False, False, False]),
+        ([0.87, 0.84, 0.80], [0.90, 0.95, 0.99], np.nan, [False, False, False]),
+    ],
+    ids=["falls", "only the last by more than the intervals", "within the intervals",
+         "less geometric contact", "rises", "one measured pair without intervals"],
+)  # fmt: skip
+def test_merged_segments_are_found_where_contact_falls_as_the_film_thins(
+    mean, geometric, half, expected
+):
+    found = merged(*table(mean, geometric, half))
+    assert found.dims == ("temperature", "speed", "force")
+    assert found.values.ravel().tolist() == expected
+
+
+def test_unknown_films_are_compared_with_none():
+    found = merged(*table([0.87, 0.84, 0.8], [0.9, 0.9, 0.9], film=(np.nan, 2.0, 1.0)))
+    assert found.values.ravel().tolist() == [False, False, True]
+
+
+def test_contact_widths_formulas_and_slips_are_not_compared_with_each_other():
+    contact, film = table([0.87, 0.84, 0.80], [0.90, 0.95, 0.99])
+    turned = contact.rename(temperature="force", force="temperature")
+    turned = turned.transpose("temperature", "speed", "force")
+    films = film.rename(temperature="force", force="temperature")
+    assert not merged(turned, films.transpose("temperature", "speed", "force")).any()
+    slips = contact.expand_dims(slide_to_roll_ratio=[0.0, 0.1])  # the film has no such dimension
+    assert merged(slips, film).sum().item() == 4
+    assert merged(slips, film).dims == ("slide_to_roll_ratio", "temperature", "speed", "force")
+
+
+def test_points_are_overloaded_where_the_mean_share_is_above_one():
+    share = xr.DataArray([[0.9, 1.2, 1.0], [1.0, 0.9, 1.0]], dims=("realisation", "force"))
+    found = overloaded(xr.Dataset({"contact_load_share": share}))
+    assert found.values.tolist() == [False, True, False]
