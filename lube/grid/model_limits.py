@@ -34,24 +34,32 @@ def merged(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
     Returns
     -------
     xarray.DataArray
-        Whether at a thicker film, at the same force and so the same contact width, the
-        breakthrough probability is greater by more than both intervals, and the geometric contact
-        probability is not. False where an interval is not known.
+        Whether at a thicker film, at the same force and so the same contact width, the same lines
+        break through more often on average, by three standard errors and more, and no more
+        geometric contact. False where there is one realisation.
     """
-    lower, upper = (contact[f"breakthrough_probability_{end}"] for end in ("lower", "upper"))
+    breakthrough = contact["breakthrough_probability"]
     geometric = contact["geometric_contact_probability_mean"]
-    thickness = film["film_thickness"].broadcast_like(lower)
-    films = ["temperature", "speed"]
-    return xr.apply_ufunc(
-        _falls, *(thickness, lower, upper, geometric),
-        input_core_dims=[films] * 4, output_core_dims=[films], vectorize=True, join="exact",
-    ).transpose(*lower.dims)  # fmt: skip
+    dims = ["temperature", "speed"]
+    found = xr.apply_ufunc(
+        _falls,
+        *(film["film_thickness"].broadcast_like(geometric), breakthrough, geometric),
+        input_core_dims=[dims, ["realisation", *dims], dims],
+        output_core_dims=[dims],
+        vectorize=True,
+        join="exact",
+    )
+    return found.transpose(*geometric.dims)
 
 
-def _falls(film, lower, upper, geometric):
+def _falls(film, breakthrough, geometric):
     """Compare every point of one contact width, by rows, with every other, by columns."""
-    here, there = (np.ravel(film)[:, None], np.ravel(film))
-    thicker = there > here
-    rarer = np.ravel(upper)[:, None] < np.ravel(lower)
-    touches = np.ravel(geometric)[:, None] >= np.ravel(geometric)
-    return (thicker & rarer & touches).any(axis=1).reshape(film.shape)
+    pairs = breakthrough.reshape(len(breakthrough), -1)
+    if len(pairs) == 1:
+        return np.zeros(film.shape, bool)
+    here, there = film.ravel()[:, None], film.ravel()
+    excess = pairs[:, None, :] - pairs[:, :, None]
+    error = excess.std(axis=0, ddof=1) / len(pairs) ** 0.5
+    touches = geometric.ravel()[:, None] >= geometric.ravel()
+    falls = (there > here) & (excess.mean(axis=0) > 3.0 * error) & touches
+    return falls.any(axis=1).reshape(film.shape)

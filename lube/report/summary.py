@@ -8,6 +8,7 @@ from importlib.metadata import version
 import numpy as np
 import xarray as xr
 
+from lube.grid.model_limits import merged, overloaded
 from lube.report.pages import render
 from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
@@ -112,6 +113,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         contact=_contact(contact.sel(first)),
         trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
         spread=_spread(film, contact, first),
+        held=_held(film, contact, first),
         agreement=_agreement(comparison, first),
         gauged=_gauged(results["gauge"]) if "gauge" in results else None,
         traces=[_trace(point, film, contact, comparison) for point in study.trace_points],
@@ -217,6 +219,18 @@ def _spread(film, contact, first):
         "film": _largest_excess(films),
         "valid": _largest_excess(valid),
         "probability": [there.min().item(), there.max().item()],
+    }
+
+
+def _held(film, contact, first):
+    """Load of the line's asperities, and the points at which the model does not hold."""
+    film, contact = film.sel(first), contact.sel(first)
+    share = contact["contact_load_share"].mean("realisation")
+    return {
+        "share": share.max().item(),
+        "overloaded": int(overloaded(contact).sum()),
+        "merged": int(merged(contact, film).sum()),
+        "points": share.size,
     }
 
 

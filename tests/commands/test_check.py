@@ -1,6 +1,5 @@
 """`lube check`: what a study will compute, and the records that it cannot use."""
 
-
 import pytest
 from refusals import one_line
 from studies import CONFIG, PAPER, SMOKE

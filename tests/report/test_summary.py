@@ -116,6 +116,23 @@ def test_the_answers_are_those_of_the_datasets(study, results):
     assert text.count(" | 43.2 % to 44.2 % (2 records) |") == 1 and text.count(" | – |") == 1
 
 
+def test_points_at_which_the_model_does_not_hold_are_stated(study, results):
+    assert "outside the model" not in findings(study, results)
+    assert "merge" not in findings(study, results)
+    contact = results["contact"].copy(deep=True)
+    contact["contact_load_share"].loc[{"force": 800, "temperature": 80}] = 1.41
+    # The film is the same everywhere but at 80 degC, where it is made thinner.
+    film = results["film"].copy(deep=True)
+    film["film_thickness"].loc[{"temperature": 80}] *= 0.5
+    more = (contact["temperature"] == 40) + 0.0 * contact["breakthrough_probability"]
+    contact["breakthrough_probability"] = more.transpose("realisation", ...)
+    contact["geometric_contact_probability_mean"][:] = 1.0
+    text = findings(study, results | {"contact": contact, "film": film})
+    assert "Asperities of the line carry up to 141 % of the load" in text
+    assert "**At 4 of the 16 operating points it is more than the load: they are outside" in text
+    assert "At 8 of the 16 operating points contact is less frequent than at a thicker film" in text
+
+
 def test_measured_records_are_not_called_simulated(study, results):
     comparison = results["comparison"].assign_coords(origin="measured")
     text = findings(study, results | {"comparison": comparison})
