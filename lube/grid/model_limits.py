@@ -50,8 +50,7 @@ def merged(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
 
 def _falls(film, lower, upper, geometric):
     """Compare every point of one contact width, by rows, with every other, by columns."""
-    here, there = (np.ravel(film)[:, None], np.ravel(film))
-    thicker = there > here
+    thicker = np.ravel(film) > np.ravel(film)[:, None]
     rarer = np.ravel(upper)[:, None] < np.ravel(lower)
     touches = np.ravel(geometric)[:, None] >= np.ravel(geometric)
     return (thicker & rarer & touches).any(axis=1).reshape(film.shape)
