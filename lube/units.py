@@ -33,13 +33,10 @@ _LOOSE_UNIT = re.compile("(ohm|volt|second)s?$", re.IGNORECASE)
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _PREFIXED = {"m", "s", "Pa", "V", "Hz", "ohm", "ohm*m"}
 _CUSTOMARY = {"m^2/s": (1e6, "mm²/s"), "1/Pa": (1e9, "1/GPa")}
-SYMBOLS = {
-    **{"ohm": "Ω", "ohm*m": "Ω m", "degC": "°C", "rpm": "r/min", "Pa*s": "Pa s", "kg/m^3": "kg/m³"},
-    # In the notation of the files.
-    **{"um": "µm", "mm2 s-1": "mm²/s", "m2 s-1": "m²/s", "kg m-3": "kg/m³", "m s-1": "m/s"},
-    **{"Pa-1": "1/Pa", "GPa-1": "1/GPa"},
-}
-"""Units as readers expect them, in figures, explorer and report."""
+SYMBOLS = {"ohm": "Ω", "ohm*m": "Ω m", "degC": "°C", "rpm": "r/min", "Pa*s": "Pa s",
+           "kg/m^3": "kg/m³", "um": "µm", "mm2 s-1": "mm²/s", "m2 s-1": "m²/s", "kg m-3": "kg/m³",
+           "m s-1": "m/s", "Pa-1": "1/Pa", "GPa-1": "1/GPa"}  # fmt: skip
+"""Units as readers expect them, in figures, explorer and report, by either notation."""
 
 
 @functools.cache

@@ -77,6 +77,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     """
     contact = datasets["contact"]
     levels = {name: contact[name].values.tolist() for name in CHOICES}
+    marks = {"overloaded": overloaded(contact), "merged": merged(contact, datasets["film"])}
     load_share = contact["contact_load_share"].mean("realisation", keep_attrs=True)
     return {
         "study": contact.attrs["study"],
@@ -92,10 +93,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         | {"contact_load_share": _variable(load_share, "contact")},
         "marks": {
             name: {"dims": list(where.dims), "values": _plain(where.values.ravel())}
-            for name, where in (
-                ("overloaded", overloaded(contact)),
-                ("merged", merged(contact, datasets["film"])),
-            )
+            for name, where in marks.items()
         },
         "sampled": not datasets["tail"].attrs["remarks"],
         "regimes": datasets["film"]["regime"].attrs["flag_meanings"].split(),

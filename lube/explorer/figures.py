@@ -214,13 +214,8 @@ def _probabilities(plot, sources, x, around):
     """Probabilities with their intervals; where no contact was seen, their upper limits."""
     _whiskers(plot, sources["chosen"], x, "black", 2)
     _all_points(plot, sources, x, "mean", around)
-    for column, size, face, edge in (
-        ("outside", 8, "white", COLOURS["blue"]), ("falling", 15, None, "black"),
-    ):  # fmt: skip
-        mark = plot.scatter(
-            x, column, source=sources[around], size=size, fill_color=face, line_color=edge
-        )
-        mark.nonselection_glyph = mark.glyph
+    _points(plot, sources[around], x, "outside", fill_color="white")
+    _points(plot, sources[around], x, "falling", size=15, fill_color=None, line_color="black")
     for name, size, colour in ((around, 8, COLOURS["blue"]), ("chosen", 15, COLOURS["vermilion"])):
         limits = plot.scatter(
             x, "limit", source=sources[name], size=size, marker="inverted_triangle",

@@ -192,7 +192,7 @@ class Study(StrictModel):
     def datasets_in(self, folder: File) -> list[str]:
         """Names of the study's results, and of those made on request that a folder holds."""
         extra = [name for name, target in ON_REQUEST.items() if target != "benchmark"]
-        made = [name for name in extra if Path(folder, f"{name}.nc").is_file() and self.has(name)]
+        made = [name for name in extra if self.has(name) and Path(folder, f"{name}.nc").is_file()]
         return [*self.datasets, *made]
 
     def has(self, stage: str) -> bool:

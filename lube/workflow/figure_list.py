@@ -142,9 +142,7 @@ def made_by(target: str, figures: dict[str, Figure]) -> list[str]:
     return [name for name, figure in figures.items() if figure.target == target]
 
 
-def made_on_request(
-    figures: dict[str, Figure], folder: File, targets: Iterable[str] = ()
-) -> list[str]:
+def made_on_request(figures: dict[str, Figure], folder: File, words: Iterable[str]) -> list[str]:
     """List the figures made on request that are there, or that the same run makes.
 
     A picture stays where a job fails or is repeated, so the list is the same in every process of a
@@ -156,7 +154,7 @@ def made_on_request(
         As from `study_figures`.
     folder : str or Path
         Folder of the study's results.
-    targets : iterable of str, optional
+    words : iterable of str
         Words of the command, among them targets such as ``computed``.
 
     Returns
@@ -168,7 +166,7 @@ def made_on_request(
         name
         for name, figure in figures.items()
         if figure.target not in ("all", "benchmark")
-        and (figure.target in targets or Path(folder, f"figures/{name}.png").is_file())
+        and (figure.target in words or Path(folder, f"figures/{name}.png").is_file())
     ]
 
 

@@ -127,3 +127,16 @@ def test_an_archive_that_cannot_be_made_leaves_the_old_one(
             make_archive(study, SMOKE, results, figures, archive)
         assert (archive / "README.md").read_text() == "old"
         assert list(tmp_path.iterdir()) == [archive]
+
+
+def test_datasets_made_on_request_are_archived_and_measured_times_are_not(study, archive, tmp_path):
+    results = shutil.copytree(archive / "data", tmp_path / "results")
+    without = archive_contents(study, SMOKE, results, [])
+    for kind in ("areal", "speed", "film_profile"):
+        (results / f"{kind}.nc").touch()
+    contents = archive_contents(study, SMOKE, results, [])
+    assert contents.keys() - without.keys() == {"data/areal.nc", "data/film_profile.nc"}
+    assert {"areal", "film_profile"} < json.loads(contents[VALUES])["values"].keys()
+    assert "| `data/areal.nc` |" in contents["README.md"]
+    shaped = study.model_copy(update={"film_shape": "computed"})
+    assert "areal" not in shaped.datasets_in(results)

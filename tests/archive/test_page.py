@@ -16,7 +16,8 @@ def page_of(study, datasets):
     def write(study_file="smoke.yaml", changes=(), experiment=datasets["experiment"], **about):
         about = About.model_validate({"creators": [{"name": "A"}]} | about)
         study_of_test = study.model_copy(update={"about": about, **dict(changes)})
-        return archive_page(study_of_test, study_file, datasets | {"experiment": experiment})
+        results = datasets | {"experiment": experiment}
+        return archive_page(study_of_test, study_file, list(SMOKE_DATASETS), results)
 
     return write
 

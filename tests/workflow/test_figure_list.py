@@ -88,13 +88,13 @@ def test_every_figure_is_in_a_chapter_of_several(study):
 
 def test_figures_on_request_are_listed_where_they_are_made_or_asked_for(study, tmp_path):
     figures = study_figures(study)
-    assert made_on_request(figures, tmp_path) == []
+    assert made_on_request(figures, tmp_path, []) == []
     asked = made_on_request(figures, tmp_path, ["archive", "patch_contact", "benchmark"])
     assert asked == ["fig24_patch"]
     (tmp_path / "figures").mkdir()
     for name in ("bench01_speed", "fig02_film", "fig22_areal"):
         (tmp_path / f"figures/{name}.png").touch()
-    assert made_on_request(figures, tmp_path) == ["fig22_areal"]
+    assert made_on_request(figures, tmp_path, []) == ["fig22_areal"]
 
 
 def test_captions_do_not_speak_of_the_papers_points_or_axes(study):
