@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from lube.calculator.answers import Answer
 from lube.errors import LubeError, StudyError, shown
 from lube.schema import COORDINATES, FILES, LIMITS, REGIMES, Variable
 from lube.study.field_types import bounded
@@ -14,23 +15,31 @@ from lube.units import convert, parse_quantity
 Amount = str | Sequence[str] | tuple[Any, str] | Any
 """``"800 N"``, ``["400 N", "800 N"]``, ``([400, 800], "N")``, or a quantity of pint."""
 
+_TAIL, _WHOLE = "by importance sampling", "of the whole duty cycle"
+_PER_HOUR = [
+    f"{name}{limit}" for name in ("tail_breakthrough_rate", "whole_tail_rate") for limit in LIMITS
+]
 _MICROMETRES = (
-    *("film_thickness", "contact_half_width", "composite_rms_roughness"),
-    *("contact_length", "mean_contact_length"),
+    *("film_thickness", "contact_half_width", "composite_rms_roughness", "position"),
+    *("contact_length", "mean_contact_length", "film", "central_film", "minimum_film"),
 )
-_CUSTOMARY = dict.fromkeys(_MICROMETRES, ("um", 1e6)) | {
-    "hertz_pressure": ("MPa", 1e-6),
+_CUSTOMARY = {
+    **dict.fromkeys(_MICROMETRES, ("um", 1e6)),
+    **dict.fromkeys(("hertz_pressure", "pressure"), ("MPa", 1e-6)),
     "reduced_modulus": ("GPa", 1e-9),
-    "reduced_radius": ("mm", 1e3),
+    **dict.fromkeys(("reduced_radius", "radius", "second_radius"), ("mm", 1e3)),
     "dynamic_viscosity": ("mPa s", 1e3),
     "kinematic_viscosity": ("mm2 s-1", 1e6),
     "pressure_viscosity_coefficient": ("GPa-1", 1e9),
     "time": ("ms", 1e3),
-    "radius": ("mm", 1e3),
-    "second_radius": ("mm", 1e3),
-    **{f"tail_breakthrough_rate{limit}": ("h-1", 3600.0) for limit in LIMITS},
+    **dict.fromkeys(_PER_HOUR, ("h-1", 3600.0)),
 }
 """Customary unit of a variable, and its number of them in one SI unit."""
+_WITH_LIMITS = {
+    "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
+    "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
+    "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
+}
 _OWN = {
     "radius": ("radius of the first roller", "m"),
     "second_radius": ("radius of the second roller", "m"),
@@ -38,17 +47,18 @@ _OWN = {
     "second_surface_speed": ("surface speed of the second roller", "m s-1"),
     "share": ("share of the duty cycle", "1"),
     "roughness_factor": ("factor of the roughness of both rollers", "1"),
+    "position": ("position from the line of centres", "m"),
+    **{f"{name}{end}": words for name, words in _WITH_LIMITS.items() for end in LIMITS},
 }
 """Variables of no file: what each is, and its SI unit."""
-_VARIABLES = COORDINATES | FILES["lubricant"] | FILES["trace"] | FILES["film"] | FILES["contact"]
+_FILES = ("film_profile", "lubricant", "trace", "film", "contact")
+_VARIABLES = COORDINATES | {name: row for file in _FILES for name, row in FILES[file].items()}
 _VARIABLES |= {
     name: Variable((), units, long_name, "f", "") for name, (long_name, units) in _OWN.items()
 }
 # Those of `tail.nc` get a prefix: some of `contact.nc` have the same names.
 _VARIABLES |= {
-    f"tail_{name}": Variable(
-        (), row.units, f"{row.long_name}, by importance sampling", row.kind, ""
-    )
+    f"tail_{name}": Variable((), row.units, f"{row.long_name}, {_TAIL}", row.kind, "")
     for name, row in FILES["tail"].items()
 }
 
@@ -117,7 +127,7 @@ def _has_unit_last(value):
     return len(value) == 2 and not isinstance(value[0], str)
 
 
-def described(results: xr.Dataset) -> xr.Dataset:
+def described(results: xr.Dataset) -> Answer:
     """Convert results to customary units, and label them.
 
     Parameters
@@ -127,7 +137,7 @@ def described(results: xr.Dataset) -> xr.Dataset:
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         Films and lengths in um, pressures in MPa; each variable with ``units`` and
         ``long_name``, the regime in words.
 
@@ -136,7 +146,7 @@ def described(results: xr.Dataset) -> xr.Dataset:
     >>> described(xr.Dataset({"film_thickness": 1.07e-6})).film_thickness.attrs["units"]
     'um'
     """
-    found = results.copy()
+    found = Answer(results.data_vars, results.coords, results.attrs)
     for name in set(results.variables) & set(_VARIABLES):
         variable, values = _VARIABLES[name], results[name].values
         units, factor = _CUSTOMARY.get(name, (variable.units, None))

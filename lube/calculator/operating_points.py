@@ -9,13 +9,14 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.amounts import Amount, amount, described
+from lube.calculator.answers import Answer
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.errors import LubeError, StudyError, shown
+from lube.errors import LubeError, RangeError, StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.rig.map_curves import windows_in
-from lube.schema import COORDINATES, LIMITS, OPERATING_DIMS
+from lube.schema import COORDINATES, LIMITS, OPERATING_DIMS, POINT_DIMS
 from lube.stages.contact import contact_at
-from lube.stages.film import film_at, film_table
+from lube.stages.film import film_at, film_profile_table, film_table
 from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch
 from lube.stages.tail import tail_probabilities
@@ -410,12 +411,9 @@ def trace(
     >>> f"{found.time.values[-1]:.0f} ms"
     '120 ms'
     """
-    force = single("force", amount("force", force, "N", above=0.0))
-    speed = single("speed", rotation_speed(speed, rollers.pair.first.radius))
-    temperature = single("temperature", amount("temperature", temperature, "degC", above=-273.15))
     slip = _checked_slip(slide_to_roll_ratio)
-    properties = lubricant_table([oil.record], [temperature])
-    table = film_table(properties, rollers.pair, [force], [speed], [one_formula(film_formula)])
+    one = _one_point(rollers, oil, force, speed, temperature)
+    table = film_table(*one, [one_formula(film_formula)])
     point = {name: table[name].item() for name in OPERATING_DIMS}
     point["slide_to_roll_ratio"] = slip
     check_widths(table["contact_half_width"], rollers)
@@ -423,3 +421,49 @@ def trace(
     found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
     return described(found[names].isel(operating_point=0).drop_attrs())
+
+
+@with_parts
+def profile(rollers: Rollers, oil: Oil, force: str, speed: str, temperature: str) -> Answer:
+    """Pressure and film across the contact, from Reynolds' equation.
+
+    Parameters
+    ----------
+    rollers, oil, force, speed, temperature
+        As in `film`, one of each. The contact is fully flooded, isothermal and smooth.
+
+    Returns
+    -------
+    Answer
+        ``pressure`` (MPa) and ``film`` (um), outside the contact the gap, over ``position`` (um)
+        from the line of centres, the inlet below 0; ``central_film``, ``minimum_film``,
+        ``hertz_pressure`` and ``contact_half_width``.
+
+    Raises
+    ------
+    LubeError
+        Which argument, what came, what is needed; or that the film did not converge.
+
+    Examples
+    --------
+    >>> rollers = Rollers(radius="50 mm", rms_roughness="0.2 um")
+    >>> found = profile(rollers, Oil("mobilgear-shc-xmp-320"), "800 N", "100 rpm", "40 degC")
+    >>> f"{found.central_film.item():.2f} um, least {found.minimum_film.item():.2f} um"
+    '1.02 um, least 0.85 um'
+    """
+    table = film_profile_table(*_one_point(rollers, oil, force, speed, temperature))
+    found = table.isel(dict.fromkeys(POINT_DIMS, 0))
+    if np.isnan(found["central_film"]):
+        raise RangeError(f"the film of {force}, {speed} and {temperature} did not converge")
+    place = found["film_position"] * found["contact_half_width"]
+    found = found.assign_coords(position=place).swap_dims(film_position="position")
+    names = ["pressure", "film", "central_film", "minimum_film"]
+    return described(found[[*names, "hertz_pressure", "contact_half_width"]].drop_attrs())
+
+
+def _one_point(rollers, oil, force, speed, temperature):
+    """Oil at the temperature, pair of rollers, force in N and speed in rpm, of one point."""
+    force = single("force", amount("force", force, "N", above=0.0))
+    speed = single("speed", rotation_speed(speed, rollers.pair.first.radius))
+    temperature = single("temperature", amount("temperature", temperature, "degC", above=-273.15))
+    return lubricant_table([oil.record], [temperature]), rollers.pair, [force], [speed]

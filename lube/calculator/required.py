@@ -5,6 +5,11 @@ limits where the limits of the probability cross it. So the 95 % interval is tha
 pairs of rollers.
 """
 
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
@@ -13,8 +18,6 @@ from lube.calculator.operating_points import (
     FORMULA,
     REALISATIONS,
     SEED,
-    check_widths,
-    ensemble,
     film_in_si,
     one_formula,
     probabilities,
@@ -25,14 +28,29 @@ from lube.calculator.operating_points import (
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import LubeError, RangeError, StudyError
+from lube.grid.discretise import layer_factor_of
 from lube.schema import LIMITS
+from lube.stages.tail import PAIRS
+from lube.statistics.confidence import mean_interval
 from lube.statistics.curves import falling_curve
 from lube.statistics.sample_size import independent_windows
 from lube.study.field_types import bounded
+from lube.study.line_spec import check_width
+from lube.surfaces.rare_contact import check_gaussian, rare_contact_under
+from lube.surfaces.spectra import line_attributes
 from lube.units import parse_number
 
-LAMBDA_RATIOS = np.geomspace(0.5, 8.0, 49)
-"""Lambda ratios that are tried; of the roughness every second one."""
+LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
+"""Lambda ratios that are tried at first; even at the last, contact has a probability of 1e-37."""
+NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
+"""Lambda ratios that are tried then, over that of the share at first sight."""
+OFTEN = 10.0
+"""Independent windows with contact, in all realisations, from which contact is counted."""
+FEW_PAIRS = 2
+"""Pairs of lines of the first look."""
+_LEAST = 1e-40
+"""Probabilities that are taken for none."""
+_ENDS = ("mean", "lower", "upper")
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
 TEMPERATURES = 241
@@ -211,11 +229,9 @@ def required_temperature(
     films = _films(rollers, force, share, realisations, seed)
     thickness = table["film_thickness"].values
     if thickness[0] < films[0]:
-        coldest = ensemble(table.isel(temperature=[0]), rollers, realisations, seed)
-        found = coldest["breakthrough_probability_mean"].item()
         raise RangeError(
-            f"share: got {share:g}, no film keeps contact below it with this oil: at "
-            f"{levels[0]:g} degC it is {found:.2g}"
+            f"share: got {share:g}, which needs a film of {1e6 * films[0]:.3g} um; at "
+            f"{levels[0]:g} degC, this oil's lowest, it is {1e6 * thickness[0]:.3g} um"
         )
     ends = {"left": np.inf, "right": -np.inf}
     found = np.interp(np.log(films), np.log(thickness[::-1]), levels[::-1], **ends)
@@ -262,25 +278,10 @@ def required_roughness(
     single("speed", rotation_speed(speed, rollers.pair.first.radius))
     _temperature(temperature)
     film = _film(rollers, oil, force, speed, temperature, film_formula)
-    check_widths(film["contact_half_width"], rollers)
-    share = _checked(share, rollers, film["contact_half_width"].item(), realisations)
-    ratios = LAMBDA_RATIOS[::2]
-    factors = film["lambda_ratio"].item() / ratios
-
-    def run(lines):
-        """Probabilities of some lines, made rougher by each factor."""
-        parts = []
-        for factor in factors:
-            table = film.assign(film_thickness=film["film_thickness"] / factor)
-            strength = rollers.layer.shear_strength / factor
-            layer = rollers.layer.model_copy(update={"shear_strength": strength})
-            parts.append(probabilities(lines, table, layer))
-        joined = xr.concat(parts, "factor", coords="minimal", compat="override")
-        return joined.transpose("realisation", ...)
-
-    contact = with_limits(run_all(run, rollers, realisations, seed), film["contact_half_width"])
-    ratios = _lambda_ratios(ratios, contact, share)
-    factors = film["lambda_ratio"].item() / ratios
+    own = film["lambda_ratio"].item()
+    half_width = film["contact_half_width"].item()
+    ratios = _lambda_ratios(_Lines(rollers, half_width, seed, own), share, realisations)
+    factors = own / ratios
     sigma = rollers.pair.composite_rms_roughness * factors
     return _labelled(
         {
@@ -300,47 +301,140 @@ def _films(rollers, force, share, realisations, seed):
     """Film at which the probability, its lower and its upper limit have a share, shape (3,), m."""
     force = single("force", amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
-    share = _checked(share, rollers, half_width, realisations)
-    sigma = rollers.pair.composite_rms_roughness
-    table = xr.Dataset(
-        {
-            "film_thickness": ("film", LAMBDA_RATIOS * sigma),
-            "contact_half_width": half_width,
-            "reduced_modulus": rollers.pair.reduced_modulus,
-        }
-    )
-    contact = ensemble(table, rollers, realisations, seed)
-    return sigma * _lambda_ratios(LAMBDA_RATIOS, contact, share)
+    ratios = _lambda_ratios(_Lines(rollers, half_width, seed), share, realisations)
+    return rollers.pair.composite_rms_roughness * ratios
 
 
-def _checked(share, rollers, half_width, realisations):
-    """Share as a number that is not too rare for the realisations to show."""
-    try:
-        share = bounded(parse_number(share), None, above=0.0, below=1.0)
-    except LubeError as error:
-        raise StudyError(f"share: {error}") from None
-    lines = rollers.lines
-    travel, longest = lines.spacing * min(lines.points), 2.0 * np.pi / lines.q_min
-    windows = independent_windows(travel, 2.0 * half_width, longest)
-    if share * windows * realisations < 1.0:
-        raise RangeError(
-            f"share: got {share:g}, need at least {1.0 / (windows * realisations):.2g}: "
-            f"{realisations} realisations show no rarer contact"
+@dataclass(frozen=True)
+class _Lines:
+    """Lines of some rollers in a contact, and their breakthrough probability by lambda ratio.
+
+    The film changes, or the roughness if its own lambda ratio is given: then the lines stay, and
+    the film and the strength of the boundary layer are as of `required_roughness`.
+    """
+
+    rollers: Rollers
+    half_width: float
+    seed: int
+    own: float | None = None
+
+    def films(self, ratios):
+        return ratios * self.rollers.pair.composite_rms_roughness
+
+    def strengths(self, ratios):
+        """Strength of the boundary layer, over that of the rollers."""
+        return np.ones(ratios.size) if self.own is None else ratios / self.own
+
+    def sampled(self, ratios, pairs):
+        """Mean and limits, by importance sampling."""
+        spec, layer = self.rollers.lines, self.rollers.layer
+        lines = xr.Dataset(attrs=line_attributes(spec))
+        factor = layer_factor_of(lines, self.rollers.pair.reduced_modulus, layer)
+        factors = factor / self.strengths(ratios)
+        points = 2 * int(self.half_width / spec.spacing) + 1
+        films = [np.full(points, film) for film in self.films(ratios) / spec.height_step]
+
+        def on_one_pair(number):
+            return rare_contact_under(spec, self.seed, number, films, factors)[1]
+
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            found = np.stack(list(pool.map(on_one_pair, range(pairs))))
+        return np.minimum(mean_interval(found), 1.0)
+
+    def counted(self, ratios, realisations):
+        """Mean and limits, counted in realisations."""
+        layer = self.rollers.layer
+        table = xr.Dataset(
+            {
+                "film_thickness": ("film", self.films(ratios)),
+                "contact_half_width": self.half_width,
+                "reduced_modulus": self.rollers.pair.reduced_modulus,
+            }
         )
-    return share
+
+        def of_each(lines):
+            """Probabilities of some lines, each film with its own layer."""
+            parts = []
+            for number, strength in enumerate(layer.shear_strength * self.strengths(ratios)):
+                own = layer.model_copy(update={"shear_strength": strength})
+                parts.append(probabilities(lines, table.isel(film=[number]), own))
+            return xr.concat(parts, "film", coords="minimal", compat="override")
+
+        together = partial(probabilities, table=table, layer=layer)
+        run = together if self.own is None else of_each
+        contact = run_all(run, self.rollers, realisations, self.seed)
+        contact = with_limits(contact, table["contact_half_width"])
+        return [contact[f"breakthrough_probability_{end}"].values for end in _ENDS]
 
 
-def _lambda_ratios(levels, contact, share):
-    """Lambda ratios at which the probability, its lower and its upper limit have a share."""
-    unknown = np.full(levels.size, np.nan)
-    names = (f"breakthrough_probability_{part}" for part in ("mean", "lower", "upper"))
-    curves = (falling_curve(np.log(levels), contact[name].values, unknown, 1e-12) for name in names)
-    ratios = np.exp([curve.film_at(share) for curve in curves])
-    if not 0.0 < ratios[0] < np.inf:
+def _lambda_ratios(lines, share, realisations):
+    """Lambda ratios at which the probability, its lower and its upper limit have a share.
+
+    Where the realisations see it often enough, they are counted; else it is sampled. A first look
+    by sampling says where.
+    """
+    share = _checked_share(share)
+    check_width(lines.rollers.lines, 2.0 * lines.half_width, "force: the contact")
+    seen = share * _windows(lines) * realisations
+    try:
+        check_gaussian(lines.rollers.lines)
+    except StudyError as error:
+        if seen < 1.0:
+            raise RangeError(
+                f"share: got {share:g}, need at least {share / seen:.2g}: {realisations} "
+                f"realisations show no rarer contact; {error}"
+            ) from None
+        return _crossings(LAMBDA_RATIOS, lines.counted(LAMBDA_RATIOS, realisations), share)
+    first = lines.sampled(LAMBDA_RATIOS, FEW_PAIRS)[0]
+    ratios = _near(first, share) * NEAR
+    limits = (
+        lines.counted(ratios, realisations) if seen >= OFTEN else lines.sampled(ratios, PAIRS)
+    )
+    return _crossings(ratios, limits, share)
+
+
+def _near(probabilities, share):
+    """Lambda ratio at which a probability has a share, or that of its maximum if it is less."""
+    peak = int(np.argmax(probabilities))
+    return max(_crossing(LAMBDA_RATIOS, probabilities, share), LAMBDA_RATIOS[peak])
+
+
+def _crossings(levels, limits, share):
+    ratios = np.array([_crossing(levels, each, share) for each in limits])
+    peak = np.argmax(limits[0])
+    if not ratios[0] > 0.0:
         raise RangeError(
-            f"share: got {share:g}, which no lambda ratio from {levels[0]:g} to {levels[-1]:g} has"
+            f"share: got {share:g}, which no film has: the largest share is "
+            f"{limits[0][peak]:.3g}, at a lambda ratio of {levels[peak]:.2g}"
         )
     return ratios
+
+
+def _crossing(levels, probabilities, share):
+    """Greatest lambda ratio at which a probability has a share: 0 if it is always less.
+
+    Where contact is frequent, touching points merge to long segments whose boundary layer holds:
+    the probability rises with the film up to a maximum, and falls beyond it.
+    """
+    falling = slice(int(np.argmax(probabilities)), None)
+    unknown = np.full(levels[falling].size, np.nan)
+    # Over the square, in which the logarithm of a rare probability is nearly linear.
+    curve = falling_curve(levels[falling] ** 2, probabilities[falling], unknown, _LEAST)
+    return np.sqrt(max(curve.film_at(share), 0.0))
+
+
+def _checked_share(share):
+    try:
+        return bounded(parse_number(share), None, above=0.0, below=1.0)
+    except LubeError as error:
+        raise StudyError(f"share: {error}") from None
+
+
+def _windows(lines):
+    """Independent windows of one realisation."""
+    spec = lines.rollers.lines
+    travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
+    return independent_windows(travel, 2.0 * lines.half_width, longest)
 
 
 def _reached(table, films, tried):
@@ -350,7 +444,7 @@ def _reached(table, films, tried):
     factors = np.exp(np.interp(np.log(films), rising, np.log(FACTORS), **ends))
     if not np.isfinite(factors[0]):
         raise RangeError(
-            f"share: no {tried} gives the film of {1e6 * films[0]:.3g} um that it needs"
+            f"share: it needs a film of {1e6 * films[0]:.3g} um, which no {tried} gives"
         )
     return factors
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from lube.errors import LubeError, RangeError, RecordError, right_one, shown
 from lube.physics import ZERO_CELSIUS
@@ -23,7 +23,15 @@ from lube.physics.density import linear_density
 from lube.physics.pressure_viscosity import DEFINITIONS, FORMULA_DEFINITION, GOLD_BASES
 from lube.physics.viscosity_index import viscosity_at_100
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
-from lube.study.field_types import Slug, StrictModel, Text, pure_number, quantity, validate
+from lube.study.field_types import (
+    Slug,
+    StrictModel,
+    Text,
+    collected,
+    pure_number,
+    quantity,
+    validate,
+)
 from lube.study.text_files import read_yaml
 from lube.study.viscosity_checks import ROUNDING, check_points
 from lube.study.viscosity_points import OilTemperature, ViscosityPoint, read_viscosity_csv
@@ -93,10 +101,36 @@ class CoefficientPoint(StrictModel):
     """measured coefficient"""
 
 
+_ABBREVIATED = {"pao": "polyalphaolefin", "pag": "polyglycol"}
+
+
+def gold_base(name: object) -> str:
+    """Return the key of `GOLD_BASES` that a base oil is named by, in any case, or abbreviated.
+
+    Raises
+    ------
+    LubeError
+        If it is none of them.
+
+    Examples
+    --------
+    >>> gold_base("PAO")
+    'polyalphaolefin'
+    """
+    lower = f"{name}".lower()
+    base = _ABBREVIATED.get(lower, lower)
+    if base not in GOLD_BASES:
+        raise LubeError(f"got {shown(name)}, need one of {', '.join(GOLD_BASES)}, or PAO or PAG")
+    return base
+
+
+_BASE = BeforeValidator(collected()(gold_base))
+
+
 class PressureViscosity(Sourced):
     """Pressure-viscosity coefficient: Gold's form, measured, or from viscosities under pressure."""
 
-    gold_base: Literal[tuple(GOLD_BASES)] | None = None
+    gold_base: Annotated[Literal[tuple(GOLD_BASES)], _BASE] | None = None
     """base oil, for Gold's form alpha = s nu^t"""
     value: _COEFFICIENT | None = None
     """measured coefficient, the same at all temperatures"""
@@ -423,10 +457,13 @@ def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -
         At the first temperature outside, with the lubricant's name and its range.
     """
     lowest, highest = record.valid_temperatures
+    # A fluid of CoolProp has no properties beyond.
+    wider = "" if record.viscosity.coolprop_fluid else ", or a wider temperature_range of the oil"
     for temperature in temperatures:
         if not lowest - ROUNDING <= temperature <= highest + ROUNDING:
             raise RangeError(
                 f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC"
+                f"{wider}"
             )
 
 
