@@ -1,7 +1,6 @@
 """Duty cycles: the answer at each duty point, and the weighted whole."""
 
 import difflib
-import os
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -116,9 +115,7 @@ def duty(
         raise DataError("points: share: got 0 at all points, need a weight above 0")
     table = _film(columns, rollers, oil, film_formula)
     contact = ensemble(table, rollers, realisations, seed)
-    on_pairs = pair_probabilities(
-        rollers.lines, table, rollers.layer, seed, _slip(columns), os.cpu_count()
-    )
+    on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, _slip(columns))
     tail = pair_limits(on_pairs)
     share = share / share.sum()
     found = xr.Dataset(labels | columns).assign(table[list(FILM_VARIABLES)]).assign(share=share)

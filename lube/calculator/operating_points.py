@@ -14,12 +14,12 @@ from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import LubeError, RangeError, StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.rig.map_curves import windows_in
-from lube.schema import COORDINATES, LIMITS, OPERATING_DIMS, POINT_DIMS
+from lube.schema import OPERATING_DIMS, POINT_DIMS
 from lube.stages.contact import contact_at
 from lube.stages.film import film_at, film_profile_table, film_table
 from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch
-from lube.stages.tail import tail_probabilities
+from lube.stages.tail import pair_limits, pair_probabilities
 from lube.stages.trace import contact_trace
 from lube.statistics.confidence import probability_interval
 from lube.study.field_types import bounded
@@ -38,7 +38,6 @@ FILM_VARIABLES = (
     *("contact_half_width", "entrainment_speed", "dynamic_viscosity"),
 )
 _PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
-_OF_TAIL = (*_PROBABILITIES, "breakthrough_rate")
 
 
 @with_parts
@@ -202,8 +201,8 @@ def contact_probability(
 
     It comes in two ways. The realisations are counted, as in ``contact.nc`` of a study; where they
     see no contact, the upper limit says how rare it is at least. Importance sampling, as in
-    ``tail.nc``, knows it at any rarity, with a standard error of about 2 % (4 % for all film
-    formulas but the first): take that where contact is rare. Both agree where both see it.
+    ``tail.nc``, knows it at any rarity, with a standard error of about 2 %: take that where contact
+    is rare. Both agree where both see it.
 
     Parameters
     ----------
@@ -247,25 +246,10 @@ def contact_probability(
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
     slip = _checked_slip(slide_to_roll_ratio)
     contact = ensemble(table, rollers, realisations, seed, slip)
-    rare = _any_rarity(table, rollers, seed, slip)
-    found = table[list(FILM_VARIABLES)].assign(contact.data_vars).assign(rare.data_vars)
-    return described(found.assign_attrs(contact.attrs | {"remarks": rare.attrs["remarks"]}))
-
-
-def _any_rarity(table, rollers, seed, slip):
-    """Probabilities and rate by importance sampling, over the table's dimensions."""
-    dims = table["film_thickness"].dims
-    missing = [name for name in OPERATING_DIMS if name not in dims]
-    films = ["film_thickness", "contact_half_width", "entrainment_speed", "reduced_modulus"]
-    film = table[films].drop_vars(missing, errors="ignore").expand_dims(missing)
-    none = {"U": "", "f": 0.0}  # the coordinates of dimensions of one level
-    film = film.assign_coords({name: [none[COORDINATES[name].kind]] for name in missing})
-    found = tail_probabilities(
-        rollers.lines, film, rollers.layer, seed, [slip], threads=os.cpu_count()
-    )
-    found = found.isel(dict.fromkeys([*missing, "slide_to_roll_ratio"], 0), drop=True)
-    names = [f"{name}{limit}" for name in _OF_TAIL for limit in LIMITS]
-    return found[names].transpose(*dims).rename({name: f"tail_{name}" for name in names})
+    rare = pair_limits(pair_probabilities(rollers.lines, table, rollers.layer, seed, slip))
+    sampled = {f"tail_{name}": values for name, values in rare.items()}
+    found = table[list(FILM_VARIABLES)].assign(dict(contact.data_vars) | sampled)
+    return described(found.assign_attrs(contact.attrs | rare.attrs))
 
 
 def ensemble(

@@ -13,16 +13,11 @@ import xarray as xr
 
 from lube.calculator.amounts import Amount, amount, described
 from lube.errors import LubeError, RecordError, StudyError, right_one, shown
-from lube.physics.pressure_viscosity import FORMULA_DEFINITION
+from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.stages.lubricant import lubricant_table
 from lube.study.field_types import bounded, validate
 from lube.study.line_spec import LineSpec, line_spec
-from lube.study.lubricant_record import (
-    LubricantRecord,
-    TemperatureRange,
-    gold_base,
-    load_record,
-)
+from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_oil, load_record
 from lube.study.rollers import BoundaryLayer, Roller, RollerPair, Roughness
 from lube.study.viscosity_checks import check_points
 from lube.study.viscosity_points import read_viscosity_csv
@@ -295,32 +290,25 @@ class Oil:
                 "lubricant record or viscosity={...}"
             )
         if name is None:
-            try:
-                alpha = {"gold_base": gold_base(base or "mineral")}
-            except LubeError as error:
-                raise RecordError(f"Oil: base: {error}") from None
-            if pressure_viscosity is not None:
-                alpha = {"value": pressure_viscosity, "definition": FORMULA_DEFINITION}
-            self.record = _record(viscosity, density or "870 kg/m^3", alpha)
+            self.record = _record(viscosity, density, base, pressure_viscosity)
         else:
-            self.record = self._shipped(name, density, base, pressure_viscosity)
+            own = {"density": density, "base": base, "pressure_viscosity": pressure_viscosity}
+            for key, value in own.items():
+                if value is not None:
+                    raise RecordError(
+                        f"Oil: {key}: got {shown(value)} beside a lubricant record, which has its "
+                        "own, need one of the two"
+                    )
+            try:
+                self.record = load_record(name)
+            except RecordError as error:
+                raise RecordError(f"Oil: name: {error}") from None
         if temperature_range is not None:
-            levels = _range(temperature_range)
-            self.record = self.record.model_copy(update={"temperature_range": levels})
-
-    @staticmethod
-    def _shipped(name, density, base, pressure_viscosity):
-        more = {"density": density, "base": base, "pressure_viscosity": pressure_viscosity}
-        for key, value in more.items():
-            if value is not None:
-                raise RecordError(
-                    f"Oil: {key}: got {shown(value)} beside a lubricant record, which has its own, "
-                    "need one of the two"
-                )
-        try:
-            return load_record(name)
-        except RecordError as error:
-            raise RecordError(f"Oil: name: {error}") from None
+            levels = amount("temperature_range", temperature_range, "degC").values.ravel().tolist()
+            ends = {"lowest": f"{levels[0]!r} degC", "highest": f"{levels[-1]!r} degC"}
+            ends["source"] = _SOURCE
+            valid = validate(TemperatureRange, ends, "Oil: temperature_range", RecordError)
+            self.record = self.record.model_copy(update={"temperature_range": valid})
 
     def properties(self, temperature: Amount) -> xr.Dataset:
         """Viscosity, density and pressure-viscosity coefficient at some temperatures.
@@ -356,32 +344,21 @@ class Oil:
         return f"<Oil: {self.record.title}, valid from {lowest:g} to {highest:g} degC>"
 
 
-def _range(temperatures):
-    """Temperature range of a record."""
-    levels = amount("temperature_range", temperatures, "degC").values
-    if levels.shape != (2,):
-        raise RecordError(
-            f"Oil: temperature_range: got {shown(temperatures)}, need the lowest and the highest "
-            "temperature, such as ['20 degC', '120 degC']"
-        )
-    lowest, highest = (f"{level!r} degC" for level in levels.tolist())
-    content = {"source": _SOURCE, "lowest": lowest, "highest": highest}
-    return validate(TemperatureRange, content, "Oil: temperature_range", RecordError)
-
-
-def _record(viscosity, density, alpha):
+def _record(viscosity, density, base, pressure_viscosity):
     """Lubricant record of some viscosities."""
-    points = _points(viscosity)
+    base = base_oil(base or "mineral")
+    if base not in list(GOLD_BASES):
+        raise RecordError(f"Oil: base: got {shown(base)}, need one of {', '.join(GOLD_BASES)}")
+    alpha = {"source": _SOURCE, "gold_base": base}
+    if pressure_viscosity is not None:
+        alpha = {"source": _SOURCE, "value": pressure_viscosity, "definition": FORMULA_DEFINITION}
+    density = {"at_15_degC": density or "870 kg/m^3", "thermal_coefficient": "6.4e-4 1/K"}
     content = {
         "name": "oil",
         "title": "Oil of given viscosity",
-        "viscosity": {"source": _SOURCE, "points": points},
-        "density": {
-            "source": _SOURCE,
-            "at_15_degC": density,
-            "thermal_coefficient": "6.4e-4 1/K",
-        },
-        "pressure_viscosity": alpha | {"source": _SOURCE},
+        "viscosity": {"source": _SOURCE, "points": _points(viscosity)},
+        "density": density | {"source": _SOURCE},
+        "pressure_viscosity": alpha,
     }
     record = validate(LubricantRecord, content, "Oil", RecordError)
     check_points(record, "Oil")

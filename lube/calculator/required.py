@@ -7,8 +7,6 @@ pairs of rollers.
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -36,7 +34,7 @@ from lube.statistics.curves import falling_curve
 from lube.statistics.sample_size import independent_windows
 from lube.study.field_types import bounded
 from lube.study.line_spec import check_width
-from lube.surfaces.rare_contact import check_gaussian, rare_contact_under
+from lube.surfaces.rare_contact import rare_contact_under
 from lube.surfaces.spectra import line_attributes
 from lube.units import parse_number
 
@@ -50,7 +48,6 @@ FEW_PAIRS = 2
 """Pairs of lines of the first look."""
 _LEAST = 1e-40
 """Probabilities that are taken for none."""
-_ENDS = ("mean", "lower", "upper")
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
 TEMPERATURES = 241
@@ -278,18 +275,11 @@ def required_roughness(
     single("speed", rotation_speed(speed, rollers.pair.first.radius))
     _temperature(temperature)
     film = _film(rollers, oil, force, speed, temperature, film_formula)
-    own = film["lambda_ratio"].item()
-    half_width = film["contact_half_width"].item()
-    ratios = _lambda_ratios(_Lines(rollers, half_width, seed, own), share, realisations)
-    factors = own / ratios
-    sigma = rollers.pair.composite_rms_roughness * factors
-    return _labelled(
-        {
-            "roughness_factor": factors,
-            "composite_rms_roughness": sigma,
-            "lambda_ratio": ratios,
-        }
-    )
+    own, half_width = film["lambda_ratio"].item(), film["contact_half_width"].item()
+    ratios = _lambda_ratios(rollers, half_width, share, realisations, seed, own)
+    sigma = rollers.pair.composite_rms_roughness * own / ratios
+    found = {"roughness_factor": own / ratios, "composite_rms_roughness": sigma}
+    return _labelled(found | {"lambda_ratio": ratios})
 
 
 def _film(rollers, oil, force, speed, temperature, film_formula):
@@ -301,140 +291,95 @@ def _films(rollers, force, share, realisations, seed):
     """Film at which the probability, its lower and its upper limit have a share, shape (3,), m."""
     force = single("force", amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
-    ratios = _lambda_ratios(_Lines(rollers, half_width, seed), share, realisations)
+    ratios = _lambda_ratios(rollers, half_width, share, realisations, seed)
     return rollers.pair.composite_rms_roughness * ratios
 
 
-@dataclass(frozen=True)
-class _Lines:
-    """Lines of some rollers in a contact, and their breakthrough probability by lambda ratio.
-
-    The film changes, or the roughness if its own lambda ratio is given: then the lines stay, and
-    the film and the strength of the boundary layer are as of `required_roughness`.
-    """
-
-    rollers: Rollers
-    half_width: float
-    seed: int
-    own: float | None = None
-
-    def films(self, ratios):
-        return ratios * self.rollers.pair.composite_rms_roughness
-
-    def strengths(self, ratios):
-        """Strength of the boundary layer, over that of the rollers."""
-        return np.ones(ratios.size) if self.own is None else ratios / self.own
-
-    def sampled(self, ratios, pairs):
-        """Mean and limits, by importance sampling."""
-        spec, layer = self.rollers.lines, self.rollers.layer
-        lines = xr.Dataset(attrs=line_attributes(spec))
-        factor = layer_factor_of(lines, self.rollers.pair.reduced_modulus, layer)
-        factors = factor / self.strengths(ratios)
-        points = 2 * int(self.half_width / spec.spacing) + 1
-        films = [np.full(points, film) for film in self.films(ratios) / spec.height_step]
-
-        def on_one_pair(number):
-            return rare_contact_under(spec, self.seed, number, films, factors)[1]
-
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            found = np.stack(list(pool.map(on_one_pair, range(pairs))))
-        return np.minimum(mean_interval(found), 1.0)
-
-    def counted(self, ratios, realisations):
-        """Mean and limits, counted in realisations."""
-        layer = self.rollers.layer
-        table = xr.Dataset(
-            {
-                "film_thickness": ("film", self.films(ratios)),
-                "contact_half_width": self.half_width,
-                "reduced_modulus": self.rollers.pair.reduced_modulus,
-            }
-        )
-
-        def of_each(lines):
-            """Probabilities of some lines, each film with its own layer."""
-            parts = []
-            for number, strength in enumerate(layer.shear_strength * self.strengths(ratios)):
-                own = layer.model_copy(update={"shear_strength": strength})
-                parts.append(probabilities(lines, table.isel(film=[number]), own))
-            return xr.concat(parts, "film", coords="minimal", compat="override")
-
-        together = partial(probabilities, table=table, layer=layer)
-        run = together if self.own is None else of_each
-        contact = run_all(run, self.rollers, realisations, self.seed)
-        contact = with_limits(contact, table["contact_half_width"])
-        return [contact[f"breakthrough_probability_{end}"].values for end in _ENDS]
-
-
-def _lambda_ratios(lines, share, realisations):
+def _lambda_ratios(rollers, half_width, share, realisations, seed, own=None):
     """Lambda ratios at which the probability, its lower and its upper limit have a share.
 
-    Where the realisations see it often enough, they are counted; else it is sampled. A first look
-    by sampling says where.
+    The film changes, or the roughness if its own lambda ratio is given: then so does the layer's
+    strength in proportion, as of `required_roughness`. A first look by sampling says where to look.
     """
-    share = _checked_share(share)
-    check_width(lines.rollers.lines, 2.0 * lines.half_width, "force: the contact")
-    seen = share * _windows(lines) * realisations
     try:
-        check_gaussian(lines.rollers.lines)
-    except StudyError as error:
-        if seen < 1.0:
-            raise RangeError(
-                f"share: got {share:g}, need at least {share / seen:.2g}: {realisations} "
-                f"realisations show no rarer contact; {error}"
-            ) from None
-        return _crossings(LAMBDA_RATIOS, lines.counted(LAMBDA_RATIOS, realisations), share)
-    first = lines.sampled(LAMBDA_RATIOS, FEW_PAIRS)[0]
-    ratios = _near(first, share) * NEAR
-    limits = (
-        lines.counted(ratios, realisations) if seen >= OFTEN else lines.sampled(ratios, PAIRS)
-    )
-    return _crossings(ratios, limits, share)
-
-
-def _near(probabilities, share):
-    """Lambda ratio at which a probability has a share, or that of its maximum if it is less."""
-    peak = int(np.argmax(probabilities))
-    return max(_crossing(LAMBDA_RATIOS, probabilities, share), LAMBDA_RATIOS[peak])
-
-
-def _crossings(levels, limits, share):
-    ratios = np.array([_crossing(levels, each, share) for each in limits])
-    peak = np.argmax(limits[0])
-    if not ratios[0] > 0.0:
+        share = bounded(parse_number(share), None, above=0.0, below=1.0)
+    except LubeError as error:
+        raise StudyError(f"share: {error}") from None
+    spec, ratios = rollers.lines, LAMBDA_RATIOS
+    check_width(spec, 2.0 * half_width, "force: the contact")
+    travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
+    windows = independent_windows(travel, 2.0 * half_width, longest) * realisations
+    is_gaussian = all(line.is_gaussian for line in spec.lines)
+    if not is_gaussian and share * windows < 1.0:
         raise RangeError(
-            f"share: got {share:g}, which no film has: the largest share is "
-            f"{limits[0][peak]:.3g}, at a lambda ratio of {levels[peak]:.2g}"
+            f"share: got {share:g}, need at least {1.0 / windows:.2g}: {realisations} realisations "
+            "show no rarer contact, and importance sampling is for Gaussian heights"
         )
-    return ratios
+    if is_gaussian:
+        first = _sampled(rollers, half_width, seed, own, ratios, FEW_PAIRS)[0]
+        ratios = max(_crossing(ratios, first, share), ratios[np.argmax(first)]) * NEAR
+    is_seen = share * windows >= OFTEN or not is_gaussian
+    method, number = (_counted, realisations) if is_seen else (_sampled, PAIRS)
+    limits = method(rollers, half_width, seed, own, ratios, number)
+    found = np.array([_crossing(ratios, each, share) for each in limits])
+    if not found[0] > 0.0:
+        peak = np.argmax(limits[0])
+        raise RangeError(
+            f"share: got {share:g}, which no film has: the largest share is {limits[0][peak]:.3g}, "
+            f"at a lambda ratio of {ratios[peak]:.2g}"
+        )
+    return found
 
 
-def _crossing(levels, probabilities, share):
+def _crossing(ratios, probabilities, share):
     """Greatest lambda ratio at which a probability has a share: 0 if it is always less.
 
     Where contact is frequent, touching points merge to long segments whose boundary layer holds:
     the probability rises with the film up to a maximum, and falls beyond it.
     """
     falling = slice(int(np.argmax(probabilities)), None)
-    unknown = np.full(levels[falling].size, np.nan)
+    unknown = np.full(ratios[falling].size, np.nan)
     # Over the square, in which the logarithm of a rare probability is nearly linear.
-    curve = falling_curve(levels[falling] ** 2, probabilities[falling], unknown, _LEAST)
+    curve = falling_curve(ratios[falling] ** 2, probabilities[falling], unknown, _LEAST)
     return np.sqrt(max(curve.film_at(share), 0.0))
 
 
-def _checked_share(share):
-    try:
-        return bounded(parse_number(share), None, above=0.0, below=1.0)
-    except LubeError as error:
-        raise StudyError(f"share: {error}") from None
+def _sampled(rollers, half_width, seed, own, ratios, pairs):
+    """Mean and limits of the breakthrough probability, by importance sampling."""
+    spec, lines = rollers.lines, xr.Dataset(attrs=line_attributes(rollers.lines))
+    factor = layer_factor_of(lines, rollers.pair.reduced_modulus, rollers.layer)
+    factors = factor * (1.0 if own is None else own / ratios)
+    points = 2 * int(half_width / spec.spacing) + 1
+    steps = ratios * rollers.pair.composite_rms_roughness / spec.height_step
+    films = [np.full(points, film) for film in steps]
+
+    def on_one_pair(number):
+        return rare_contact_under(spec, seed, number, films, factors)[1]
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = np.stack(list(pool.map(on_one_pair, range(pairs))))
+    return np.minimum(mean_interval(found), 1.0)
 
 
-def _windows(lines):
-    """Independent windows of one realisation."""
-    spec = lines.rollers.lines
-    travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
-    return independent_windows(travel, 2.0 * lines.half_width, longest)
+def _counted(rollers, half_width, seed, own, ratios, realisations):
+    """Mean and limits of the breakthrough probability, counted in realisations."""
+    film = xr.DataArray(ratios * rollers.pair.composite_rms_roughness, dims="film")
+    table = xr.Dataset({"film_thickness": film, "contact_half_width": half_width})
+    table["reduced_modulus"] = rollers.pair.reduced_modulus
+    strength, parts = rollers.layer.shear_strength, [(rollers.layer, table)]
+    if own is not None:
+        layers = [{"shear_strength": strength * ratio / own} for ratio in ratios]
+        parts = [
+            (rollers.layer.model_copy(update=layer), table.isel(film=[number]))
+            for number, layer in enumerate(layers)
+        ]
+
+    def run(lines):
+        found = [probabilities(lines, part, layer) for layer, part in parts]
+        return xr.concat(found, "film", coords="minimal", compat="override")
+
+    contact = with_limits(run_all(run, rollers, realisations, seed), table["contact_half_width"])
+    return [contact[f"breakthrough_probability_{end}"].values for end in ("mean", "lower", "upper")]
 
 
 def _reached(table, films, tried):

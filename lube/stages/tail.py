@@ -127,20 +127,19 @@ def pair_probabilities(
     film: xr.Dataset,
     boundary_layer: BoundaryLayer,
     seed: int,
-    slide_to_roll_ratio: xr.DataArray,
-    threads: int = 1,
+    slide_to_roll_ratio: xr.DataArray | float,
 ) -> xr.Dataset:
-    """Compute probabilities and rate of contact on each pair of lines.
+    """Compute probabilities and rate of contact on each pair of lines, on all processors.
 
     Parameters
     ----------
-    spec, boundary_layer, seed, threads
+    spec, boundary_layer, seed
         As in `tail_probabilities`.
     film : xarray.Dataset
         ``film_thickness``, ``contact_half_width`` (m) and ``entrainment_speed`` (m/s) over any
         dimensions, and ``reduced_modulus`` (Pa).
-    slide_to_roll_ratio : xarray.DataArray
-        Over the same dimensions, or none.
+    slide_to_roll_ratio : xarray.DataArray or float
+        Over the same dimensions.
 
     Returns
     -------
@@ -155,12 +154,12 @@ def pair_probabilities(
     except StudyError as error:
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
         return xr.Dataset(dict.fromkeys(_OF_PAIRS, unknown), attrs={"remarks": str(error)})
-    film = film.expand_dims(film_formula=1)
-    windows, runs = next(_sampled(spec, film, boundary_layer, seed, threads))
+    # All in the first part, which has most pairs.
+    windows, runs = next(_sampled(spec, film.expand_dims("part"), boundary_layer, seed))
     contact, breakthrough = windows.transpose("outcome", ...)
     rate = _in_time(spec, film, runs, slide_to_roll_ratio)[1]
     values = dict(zip(_OF_PAIRS, (breakthrough, contact, rate), strict=True))
-    return xr.Dataset(values, attrs={"remarks": ""}).isel(film_formula=0)
+    return xr.Dataset(values, attrs={"remarks": ""}).isel(part=0)
 
 
 def pair_limits(values: xr.Dataset) -> xr.Dataset:
@@ -248,13 +247,12 @@ def _window_points(spec, film):
     return 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
 
 
-def _sampled(spec, film, boundary_layer, seed, threads):
+def _sampled(spec, film, boundary_layer, seed, threads=None):
     """Probabilities of windows and numbers of runs, for each of `_PARTS` of the film formulas.
 
     Over (pair, outcome, film formula, other operating dimensions).
     """
     thickness, points = xr.broadcast(film["film_thickness"], _window_points(spec, film))
-    thickness, points = (each.transpose("film_formula", ...) for each in (thickness, points))
     factor = layer_factor_of(
         xr.Dataset(attrs=line_attributes(spec)), film["reduced_modulus"].item(), boundary_layer
     )

@@ -23,15 +23,7 @@ from lube.physics.density import linear_density
 from lube.physics.pressure_viscosity import DEFINITIONS, FORMULA_DEFINITION, GOLD_BASES
 from lube.physics.viscosity_index import viscosity_at_100
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
-from lube.study.field_types import (
-    Slug,
-    StrictModel,
-    Text,
-    collected,
-    pure_number,
-    quantity,
-    validate,
-)
+from lube.study.field_types import Slug, StrictModel, Text, pure_number, quantity, validate
 from lube.study.text_files import read_yaml
 from lube.study.viscosity_checks import ROUNDING, check_points
 from lube.study.viscosity_points import OilTemperature, ViscosityPoint, read_viscosity_csv
@@ -101,36 +93,24 @@ class CoefficientPoint(StrictModel):
     """measured coefficient"""
 
 
-_ABBREVIATED = {"pao": "polyalphaolefin", "pag": "polyglycol"}
+_BASES = {name: name for name in GOLD_BASES} | {"pao": "polyalphaolefin", "pag": "polyglycol"}
 
 
-def gold_base(name: object) -> str:
-    """Return the key of `GOLD_BASES` that a base oil is named by, in any case, or abbreviated.
-
-    Raises
-    ------
-    LubeError
-        If it is none of them.
+def base_oil(name: object) -> object:
+    """Return the key of `GOLD_BASES` that means a base oil, in any case; another name as it is.
 
     Examples
     --------
-    >>> gold_base("PAO")
+    >>> base_oil("PAO")
     'polyalphaolefin'
     """
-    lower = f"{name}".lower()
-    base = _ABBREVIATED.get(lower, lower)
-    if base not in GOLD_BASES:
-        raise LubeError(f"got {shown(name)}, need one of {', '.join(GOLD_BASES)}, or PAO or PAG")
-    return base
-
-
-_BASE = BeforeValidator(collected()(gold_base))
+    return _BASES.get(f"{name}".lower(), name)
 
 
 class PressureViscosity(Sourced):
     """Pressure-viscosity coefficient: Gold's form, measured, or from viscosities under pressure."""
 
-    gold_base: Annotated[Literal[tuple(GOLD_BASES)], _BASE] | None = None
+    gold_base: Annotated[Literal[tuple(GOLD_BASES)], BeforeValidator(base_oil)] | None = None
     """base oil, for Gold's form alpha = s nu^t"""
     value: _COEFFICIENT | None = None
     """measured coefficient, the same at all temperatures"""
@@ -457,14 +437,12 @@ def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -
         At the first temperature outside, with the lubricant's name and its range.
     """
     lowest, highest = record.valid_temperatures
-    # A fluid of CoolProp has no properties beyond.
-    wider = "" if record.viscosity.coolprop_fluid else ", or a wider temperature_range of the oil"
+    needed = f"need {lowest:g} to {highest:g} degC"
+    if record.viscosity.coolprop_fluid is None:  # its liquid has no properties beyond
+        needed += ", or a wider temperature_range of the oil"
     for temperature in temperatures:
         if not lowest - ROUNDING <= temperature <= highest + ROUNDING:
-            raise RangeError(
-                f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC"
-                f"{wider}"
-            )
+            raise RangeError(f"{record.name}: got {temperature:g} degC, {needed}")
 
 
 def check_fluid(record: LubricantRecord, temperatures: Sequence[float]) -> None:
