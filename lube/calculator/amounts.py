@@ -8,38 +8,26 @@ import xarray as xr
 
 from lube.calculator.answers import Answer
 from lube.errors import LubeError, StudyError, shown
-from lube.schema import COORDINATES, FILES, LIMITS, REGIMES, Variable
+from lube.schema import COORDINATES, FILES, LIMITS, REGIMES
 from lube.study.field_types import bounded
 from lube.units import convert, parse_quantity
 
 Amount = str | Sequence[str] | tuple[Any, str] | Any
 """``"800 N"``, ``["400 N", "800 N"]``, ``([400, 800], "N")``, or a quantity of pint."""
 
-_TAIL, _WHOLE = "by importance sampling", "of the whole duty cycle"
-_PER_HOUR = [
-    f"{name}{limit}" for name in ("tail_breakthrough_rate", "whole_tail_rate") for limit in LIMITS
-]
-_MICROMETRES = (
-    *("film_thickness", "contact_half_width", "composite_rms_roughness", "position"),
-    *("contact_length", "mean_contact_length", "film", "central_film", "minimum_film"),
-)
 _CUSTOMARY = {
-    **dict.fromkeys(_MICROMETRES, ("um", 1e6)),
-    **dict.fromkeys(("hertz_pressure", "pressure"), ("MPa", 1e-6)),
+    "m": ("um", 1e6),
+    "Pa": ("MPa", 1e-6),
+    "Pa s": ("mPa s", 1e3),
+    "m2 s-1": ("mm2 s-1", 1e6),
+    "Pa-1": ("GPa-1", 1e9),
+    "s": ("ms", 1e3),
+    "s-1": ("h-1", 3600.0),
+    **dict.fromkeys(("radius", "second_radius", "reduced_radius"), ("mm", 1e3)),
     "reduced_modulus": ("GPa", 1e-9),
-    **dict.fromkeys(("reduced_radius", "radius", "second_radius"), ("mm", 1e3)),
-    "dynamic_viscosity": ("mPa s", 1e3),
-    "kinematic_viscosity": ("mm2 s-1", 1e6),
-    "pressure_viscosity_coefficient": ("GPa-1", 1e9),
-    "time": ("ms", 1e3),
-    **dict.fromkeys(_PER_HOUR, ("h-1", 3600.0)),
 }
-"""Customary unit of a variable, and its number of them in one SI unit."""
-_WITH_LIMITS = {
-    "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
-    "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
-    "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
-}
+"""Customary unit, and its number in one SI unit, of all in that unit or of a variable."""
+_TAIL, _WHOLE = "by importance sampling", "of the whole duty cycle"
 _OWN = {
     "radius": ("radius of the first roller", "m"),
     "second_radius": ("radius of the second roller", "m"),
@@ -48,18 +36,18 @@ _OWN = {
     "share": ("share of the duty cycle", "1"),
     "roughness_factor": ("factor of the roughness of both rollers", "1"),
     "position": ("position from the line of centres", "m"),
-    **{f"{name}{end}": words for name, words in _WITH_LIMITS.items() for end in LIMITS},
+    "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
+    "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
+    "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
 }
-"""Variables of no file: what each is, and its SI unit."""
-_FILES = ("film_profile", "lubricant", "trace", "film", "contact")
-_VARIABLES = COORDINATES | {name: row for file in _FILES for name, row in FILES[file].items()}
-_VARIABLES |= {
-    name: Variable((), units, long_name, "f", "") for name, (long_name, units) in _OWN.items()
-}
+"""Variables of no file, with the limits of their intervals: what each is, and its SI unit."""
+_KINDS = ("film_profile", "lubricant", "trace", "film", "contact")
+_ROWS = (COORDINATES, *(FILES[kind] for kind in _KINDS))
+_WORDS = {name: (row.long_name, row.units) for rows in _ROWS for name, row in rows.items()}
+_WORDS |= {f"{name}{end}": words for name, words in _OWN.items() for end in LIMITS}
 # Those of `tail.nc` get a prefix: some of `contact.nc` have the same names.
-_VARIABLES |= {
-    f"tail_{name}": Variable((), row.units, f"{row.long_name}, {_TAIL}", row.kind, "")
-    for name, row in FILES["tail"].items()
+_WORDS |= {
+    f"tail_{name}": (f"{row.long_name}, {_TAIL}", row.units) for name, row in FILES["tail"].items()
 }
 
 
@@ -147,13 +135,13 @@ def described(results: xr.Dataset) -> Answer:
     'um'
     """
     found = Answer(results.data_vars, results.coords, results.attrs)
-    for name in set(results.variables) & set(_VARIABLES):
-        variable, values = _VARIABLES[name], results[name].values
-        units, factor = _CUSTOMARY.get(name, (variable.units, None))
+    for name in _WORDS.keys() & results.variables.keys():
+        (long_name, si), values = _WORDS[name], results[name].values
+        units, factor = _CUSTOMARY.get(name, _CUSTOMARY.get(si, (si, None)))
         if factor is not None:
             values = factor * values
         elif name == "regime":
             values = np.array(REGIMES)[values]
-        labels = {"long_name": variable.long_name, "units": units or ""}
+        labels = {"long_name": long_name, "units": units or ""}
         found[name] = xr.Variable(results[name].dims, values, labels)
     return found

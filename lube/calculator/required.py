@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.amounts import amount, described
+from lube.calculator.answers import Answer
 from lube.calculator.operating_points import (
     FORMULA,
     REALISATIONS,
@@ -42,6 +43,8 @@ LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
 """Lambda ratios that are tried at first; even at the last, contact has a probability of 1e-37."""
 NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
 """Lambda ratios that are tried then, over that of the share at first sight."""
+FALLING = 0.9
+"""Share, over the largest there is, below which it lies well on the falling branch."""
 OFTEN = 10.0
 """Independent windows with contact, in all realisations, from which contact is counted."""
 FEW_PAIRS = 2
@@ -136,7 +139,8 @@ def required_viscosity(
     # The film depends on the product of viscosity and speed, so the speed is varied for both.
     table = _film(rollers, oil, force, (rotation * FACTORS, "rpm"), temperature, film_formula)
     films = _films(rollers, force, share, realisations, seed)
-    factors = _reached(table, films, f"viscosity within a factor of {FACTORS[-1]:g} of the oil's")
+    tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
+    factors = np.exp(_reached(films, table, np.log(FACTORS), tried))
     viscosity = properties["dynamic_viscosity"].item() * factors
     return _labelled(
         {
@@ -182,7 +186,8 @@ def required_speed(
     _temperature(temperature)
     table = _film(rollers, oil, force, (FACTORS, "m/s"), temperature, film_formula)
     films = _films(rollers, force, share, realisations, seed)
-    speeds = _reached(table, films, f"speed up to {FACTORS[-1]:g} m/s")
+    tried = f"speed up to {FACTORS[-1]:g} m/s"
+    speeds = np.exp(_reached(films, table, np.log(FACTORS), tried))
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     speeds = {"entrainment_speed": speeds, "speed": speeds * turns}
     return _labelled(speeds | _film_variables(films, rollers))
@@ -224,14 +229,7 @@ def required_temperature(
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     table = _film(rollers, oil, force, speed, (levels, "degC"), film_formula)
     films = _films(rollers, force, share, realisations, seed)
-    thickness = table["film_thickness"].values
-    if thickness[0] < films[0]:
-        raise RangeError(
-            f"share: got {share:g}, which needs a film of {1e6 * films[0]:.3g} um; at "
-            f"{levels[0]:g} degC, this oil's lowest, it is {1e6 * thickness[0]:.3g} um"
-        )
-    ends = {"left": np.inf, "right": -np.inf}
-    found = np.interp(np.log(films), np.log(thickness[::-1]), levels[::-1], **ends)
+    found = _reached(films, table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | _film_variables(films, rollers))
 
 
@@ -317,7 +315,10 @@ def _lambda_ratios(rollers, half_width, share, realisations, seed, own=None):
         )
     if is_gaussian:
         first = _sampled(rollers, half_width, seed, own, ratios, FEW_PAIRS)[0]
-        ratios = max(_crossing(ratios, first, share), ratios[np.argmax(first)]) * NEAR
+        near = max(_crossing(ratios, first, share), ratios[np.argmax(first)]) * NEAR
+        # The maximum is flat: to find it takes them all.
+        is_falling = share < FALLING * first.max()
+        ratios = near if is_falling else ratios[ratios < 2.0 * near[-1]]
     is_seen = share * windows >= OFTEN or not is_gaussian
     method, number = (_counted, realisations) if is_seen else (_sampled, PAIRS)
     limits = method(rollers, half_width, seed, own, ratios, number)
@@ -382,16 +383,19 @@ def _counted(rollers, half_width, seed, own, ratios, realisations):
     return [contact[f"breakthrough_probability_{end}"].values for end in ("mean", "lower", "upper")]
 
 
-def _reached(table, films, tried):
-    """Those of `FACTORS` at which a table has some films: 0 or infinity beyond its ends."""
-    ends = {"left": -np.inf, "right": np.inf}
-    rising = np.log(table["film_thickness"].values)
-    factors = np.exp(np.interp(np.log(films), rising, np.log(FACTORS), **ends))
-    if not np.isfinite(factors[0]):
+def _reached(films, table, levels, tried):
+    """Levels at which the film of a table has some thicknesses; infinite beyond the table."""
+    thickness = np.log(table["film_thickness"].values)
+    rising = 1 if thickness[-1] > thickness[0] else -1
+    ends = {"left": -rising * np.inf, "right": rising * np.inf}
+    with np.errstate(divide="ignore"):  # a lower limit may be 0
+        sought = np.log(films)
+    if sought[0] > thickness.max():
         raise RangeError(
-            f"share: it needs a film of {1e6 * films[0]:.3g} um, which no {tried} gives"
+            f"share: it needs a film of {1e6 * films[0]:.3g} um, which no {tried} gives: at most "
+            f"{1e6 * np.exp(thickness.max()):.3g} um"
         )
-    return factors
+    return np.interp(sought, thickness[::rising], levels[::rising], **ends)
 
 
 def _temperature(temperature):
@@ -408,7 +412,7 @@ def _labelled(found):
     """Dataset of values and their limits, the smaller one first, in customary units."""
     rows = {name: ("limit", [row[0], *np.sort(row[1:])]) for name, row in found.items()}
     rows = described(xr.Dataset(rows))
-    labelled = xr.Dataset()
+    labelled = Answer()
     for name in found:
         for number, ending in enumerate(LIMITS):
             labelled[f"{name}{ending}"] = rows[name].isel(limit=number)

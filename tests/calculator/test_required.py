@@ -12,6 +12,7 @@ from lube.calculator import required
 from lube.calculator.operating_points import ensemble
 
 RUNS = {"realisations": 32, "seed": 2}
+ONE = {"realisations": 1, "seed": 2}
 SHARE = 0.05
 POINT = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
 
@@ -89,7 +90,9 @@ def test_a_share_may_be_as_rare_as_one_likes(rollers, oil, share):
     """Put in again, it is the probability by importance sampling."""
     found = lube.required_speed(rollers, oil, "400 N", "60 degC", share=share, **RUNS)
     speed = (found["speed"].item(), "rpm")
-    back = lube.contact_probability(rollers, oil, **POINT | {"speed": speed}, realisations=1, seed=2)
+    back = lube.contact_probability(
+        rollers, oil, **POINT | {"speed": speed}, realisations=1, seed=2
+    )
     assert back["tail_breakthrough_probability"].item() == pytest.approx(share, rel=0.05)
     limits = [found[f"film_thickness{limit}"].item() for limit in ("_lower", "", "_upper")]
     assert limits == sorted(limits) and limits[2] / limits[0] < 1.02
@@ -117,43 +120,45 @@ def test_counting_and_sampling_agree_where_both_see(rollers, oil, monkeypatch):
             monkeypatch.setattr(required, "OFTEN", often)
             film = lube.required_film(rollers, "400 N", share=share, **RUNS)
             rough = lube.required_roughness(rollers, oil, **POINT, share=share, **RUNS)
-            for one in (film["lambda_ratio_lower"], rough["lambda_ratio_lower"]):
-                assert 0.0 < one.item()
             ends[name] = [
                 (each["lambda_ratio_lower"].item(), each["lambda_ratio_upper"].item())
                 for each in (film, rough)
             ]
         for counted, sampled in zip(ends["counted"], ends["sampled"], strict=True):
-            assert counted != sampled
+            assert counted != sampled and 0.0 < counted[0] < np.inf
             assert counted[0] < sampled[1] and sampled[0] < counted[1]
 
 
 @pytest.fixture(scope="module")
 def merging():
     """Rollers whose contact falls as the film thins where it is frequent."""
-    return Rollers("50 mm", "0.2 um", points=100_000, shortest_wavelength="31.4 um")
+    waves = {"longest_wavelength": "0.2 mm", "shortest_wavelength": "10.48 um"}
+    return Rollers("50 mm", "0.2 um", points=300_000, **waves)
 
 
 def test_of_two_films_of_a_share_the_thicker_is_named(merging):
-    with pytest.raises(LubeError, match="share: got 0.99, which no film has") as error:
+    with pytest.raises(LubeError, match=r"share: got 0\.99, which no film has") as error:
         lube.required_film(merging, "400 N", share=0.99, **RUNS)
-    largest, peak = map(float, re.findall(r"is (0\.\d+), at a lambda ratio of (.*)", f"{error.value}")[0])
+    words = re.search(r"is (0\.\d+), at a lambda ratio of (.*)", f"{error.value}")
+    largest, peak = map(float, words.groups())
     sigma = merging.pair.composite_rms_roughness
-    for share in (0.95 * largest, 0.8 * largest):
+    assert peak > 0.2
+    for share in (0.998 * largest, 0.8 * largest):
         found = lube.required_film(merging, "400 N", share=share, **RUNS)
         ratio = found["lambda_ratio"].item()
         assert ratio > peak
         films = xr.Dataset(
             {
-                "film_thickness": ("film", sigma * np.array([0.1 * peak, peak, ratio, 1.1 * ratio])),
+                "film_thickness": ("film", sigma * np.array([0.1, peak, ratio, 1.3 * ratio])),
                 "contact_half_width": merging.pair.contact_half_width(400.0),
                 "reduced_modulus": merging.pair.reduced_modulus,
             }
         )
         contact = ensemble(films, merging, *RUNS.values())["breakthrough_probability_mean"].values
         thin, most, there, beyond = contact
-        assert thin < share < most and beyond < share
-        assert there == pytest.approx(share, rel=0.02)
+        assert beyond < share < most
+        assert thin < 0.995 * largest
+        assert there == pytest.approx(share, rel=0.01)
 
 
 def test_lines_that_are_not_gaussian_are_counted_only(oil):
@@ -179,13 +184,13 @@ def test_lines_that_are_not_gaussian_are_counted_only(oil):
         ),
         (
             lambda rollers, oil: lube.required_film(rollers, "400 N", share=0.9999, **RUNS),
-            "share: got 0.9999, which no film has: the largest share is 0.9",
+            "share: got 0.9999, which no film has: the largest share is 0.3",
         ),
         (
             lambda rollers, oil: lube.required_temperature(
                 rollers, oil, "400 N", "1 rpm", share=0.01, **RUNS
             ),
-            "which needs a film of 0.825 um; at 40 degC, this oil's lowest, it is 0.0",
+            "needs a film of 0.825 um, which no temperature of this oil gives: at most 0.0",
         ),
         (
             lambda rollers, oil: lube.required_viscosity(
