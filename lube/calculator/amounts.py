@@ -8,7 +8,7 @@ import xarray as xr
 
 from lube.calculator.answers import Answer
 from lube.errors import LubeError, StudyError, shown
-from lube.schema import COORDINATES, FILES, LIMITS, REGIMES
+from lube.schema import COORDINATES, FILES, REGIMES
 from lube.study.field_types import bounded
 from lube.units import convert, parse_quantity
 
@@ -40,11 +40,11 @@ _OWN = {
     "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
     "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
 }
-"""Variables of no file, with the limits of their intervals: what each is, and its SI unit."""
+"""Variables of no file: what each is, and its SI unit."""
 _KINDS = ("film_profile", "lubricant", "trace", "film", "contact")
 _ROWS = (COORDINATES, *(FILES[kind] for kind in _KINDS))
 _WORDS = {name: (row.long_name, row.units) for rows in _ROWS for name, row in rows.items()}
-_WORDS |= {f"{name}{end}": words for name, words in _OWN.items() for end in LIMITS}
+_WORDS |= _OWN
 # Those of `tail.nc` get a prefix: some of `contact.nc` have the same names.
 _WORDS |= {
     f"tail_{name}": (f"{row.long_name}, {_TAIL}", row.units) for name, row in FILES["tail"].items()
@@ -135,9 +135,13 @@ def described(results: xr.Dataset) -> Answer:
     'um'
     """
     found = Answer(results.data_vars, results.coords, results.attrs)
-    for name in _WORDS.keys() & results.variables.keys():
-        (long_name, si), values = _WORDS[name], results[name].values
-        units, factor = _CUSTOMARY.get(name, _CUSTOMARY.get(si, (si, None)))
+    for name in results.variables:
+        # A limit has the words of its variable where it has none of its own.
+        known = name if name in _WORDS else name.removesuffix("_lower").removesuffix("_upper")
+        if known not in _WORDS:
+            continue
+        (long_name, si), values = _WORDS[known], results[name].values
+        units, factor = _CUSTOMARY.get(known, _CUSTOMARY.get(si, (si, None)))
         if factor is not None:
             values = factor * values
         elif name == "regime":

@@ -17,7 +17,7 @@ class _Plots(xr.Dataset.plot):
 
 
 class Answer(xr.Dataset):
-    """An answer: an `xarray.Dataset` that is also a table and a plot.
+    """An answer: a dataset of xarray that is also a table and a plot.
 
     Selections, copies and pickles of it are answers, too. A file gives a plain dataset back, which
     ``Answer(dataset.data_vars, dataset.coords, dataset.attrs)`` makes an answer again.

@@ -12,6 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from lube.calculator.amounts import amount, described
+from lube.calculator.answers import Answer
 from lube.calculator.operating_points import (
     FILM_VARIABLES,
     FORMULA,
@@ -59,7 +60,7 @@ def duty(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Film and probability of contact along a duty cycle, and over the whole of it.
 
     The model's probability depends on film thickness and contact width. So each duty point has
@@ -127,10 +128,9 @@ def duty(
 
 def _slip(columns):
     """Slide-to-roll ratio of each point."""
-    if "surface_speed" not in columns:
-        return xr.zeros_like(columns["force"])
-    first, second = columns["surface_speed"], columns["second_surface_speed"]
-    return (first - second) / (0.5 * (first + second))
+    names = ("surface_speed", "second_surface_speed")
+    first, second = (columns.get(name, xr.ones_like(columns["force"])) for name in names)
+    return 2.0 * (first - second) / (first + second)
 
 
 def _whole(contact, on_pairs, share, width):

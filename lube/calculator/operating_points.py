@@ -49,7 +49,7 @@ def film(
     temperature: Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
-) -> xr.Dataset:
+) -> Answer:
     """Film thickness, lambda ratio and regime.
 
     Parameters
@@ -71,7 +71,7 @@ def film(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         Over those of film_formula, temperature, speed and force of which several are given, in
         customary units.
 
@@ -193,7 +193,7 @@ def contact_probability(
     slide_to_roll_ratio: float = 0.0,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Probability of metal contact, with its 95 % interval, and the film.
 
     The probability is that of a line, and the mean over pairs of rollers: one pair, and rollers
@@ -218,7 +218,7 @@ def contact_probability(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         The variables of `film`; ``breakthrough_probability`` and
         ``geometric_contact_probability`` of each realisation, and ``_mean``, ``_lower`` and
         ``_upper`` of both. By importance sampling ``tail_breakthrough_probability`` and
@@ -367,7 +367,7 @@ def trace(
     film_formula: str = FORMULA,
     slide_to_roll_ratio: float = 0.0,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Contact length and electrical resistance over one revolution.
 
     Parameters
@@ -379,7 +379,7 @@ def trace(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``contact_length`` (um) and ``contact_resistance`` (ohm) over time (ms). The resistance
         is infinite without contact.
 

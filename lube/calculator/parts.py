@@ -12,6 +12,7 @@ import scipy.fft
 import xarray as xr
 
 from lube.calculator.amounts import Amount, amount, described
+from lube.calculator.answers import Answer
 from lube.errors import LubeError, RecordError, StudyError, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.stages.lubricant import lubricant_table
@@ -310,7 +311,7 @@ class Oil:
             valid = validate(TemperatureRange, ends, "Oil: temperature_range", RecordError)
             self.record = self.record.model_copy(update={"temperature_range": valid})
 
-    def properties(self, temperature: Amount) -> xr.Dataset:
+    def properties(self, temperature: Amount) -> Answer:
         """Viscosity, density and pressure-viscosity coefficient at some temperatures.
 
         Parameters
@@ -320,7 +321,7 @@ class Oil:
 
         Returns
         -------
-        xarray.Dataset
+        Answer
             In customary units, over temperature if there are several.
 
         Raises

@@ -28,7 +28,7 @@ from lube.calculator.operating_points import (
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import LubeError, RangeError, StudyError
 from lube.grid.discretise import layer_factor_of
-from lube.schema import LIMITS
+from lube.schema import values_with_limits
 from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval
 from lube.statistics.curves import falling_curve
@@ -65,7 +65,7 @@ def required_film(
     share: float = 0.01,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Film thickness that keeps metal contact below a share of time.
 
     Parameters
@@ -81,7 +81,7 @@ def required_film(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``film_thickness`` (um) and ``lambda_ratio``, each with ``_lower`` and ``_upper``.
 
     Raises
@@ -112,7 +112,7 @@ def required_viscosity(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Viscosity that keeps metal contact below a share of time.
 
     Parameters
@@ -125,7 +125,7 @@ def required_viscosity(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``dynamic_viscosity`` (mPa s) and ``kinematic_viscosity`` (mm2/s) at the temperature, and
         the variables of `required_film`, each with ``_lower`` and ``_upper``.
 
@@ -135,9 +135,10 @@ def required_viscosity(
         Which argument, what came, what is needed; or that no viscosity is enough.
     """
     rotation = single("speed", rotation_speed(speed, rollers.pair.first.radius))
-    properties = oil.at(_temperature(temperature))
     # The film depends on the product of viscosity and speed, so the speed is varied for both.
-    table = _film(rollers, oil, force, (rotation * FACTORS, "rpm"), temperature, film_formula)
+    speeds = rotation * FACTORS, "rpm"
+    table = _film(rollers, oil, force, speeds, temperature, film_formula, "speed")
+    properties = oil.at(table["temperature"])
     films = _films(rollers, force, share, realisations, seed)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     factors = np.exp(_reached(films, table, np.log(FACTORS), tried))
@@ -162,7 +163,7 @@ def required_speed(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Speed that keeps metal contact below a share of time.
 
     Parameters
@@ -174,7 +175,7 @@ def required_speed(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``speed`` (rpm, of the first roller in pure rolling), ``entrainment_speed`` (m/s), and the
         variables of `required_film`, each with ``_lower`` and ``_upper``.
 
@@ -183,8 +184,7 @@ def required_speed(
     LubeError
         Which argument, what came, what is needed; or that no speed is enough.
     """
-    _temperature(temperature)
-    table = _film(rollers, oil, force, (FACTORS, "m/s"), temperature, film_formula)
+    table = _film(rollers, oil, force, (FACTORS, "m/s"), temperature, film_formula, "speed")
     films = _films(rollers, force, share, realisations, seed)
     tried = f"speed up to {FACTORS[-1]:g} m/s"
     speeds = np.exp(_reached(films, table, np.log(FACTORS), tried))
@@ -204,7 +204,7 @@ def required_temperature(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Highest temperature at which metal contact stays below a share of time.
 
     Parameters
@@ -216,7 +216,7 @@ def required_temperature(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``temperature`` (degC) and the variables of `required_film`, each with ``_lower`` and
         ``_upper``. Infinite if the film is still thick enough at the oil's highest temperature.
 
@@ -225,9 +225,8 @@ def required_temperature(
     LubeError
         Which argument, what came, what is needed; or that no temperature is low enough.
     """
-    single("speed", rotation_speed(speed, rollers.pair.first.radius))
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
-    table = _film(rollers, oil, force, speed, (levels, "degC"), film_formula)
+    table = _film(rollers, oil, force, speed, (levels, "degC"), film_formula, "temperature")
     films = _films(rollers, force, share, realisations, seed)
     found = _reached(films, table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | _film_variables(films, rollers))
@@ -245,7 +244,7 @@ def required_roughness(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     r"""Roughness that keeps metal contact below a share of time.
 
     The heights of both rollers are multiplied by the same factor. Overlaps and the forces on
@@ -261,7 +260,7 @@ def required_roughness(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``composite_rms_roughness`` (um), ``lambda_ratio`` and ``roughness_factor``, that of both
         rollers' roughness, each with ``_lower`` and ``_upper``.
 
@@ -270,8 +269,6 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    single("speed", rotation_speed(speed, rollers.pair.first.radius))
-    _temperature(temperature)
     film = _film(rollers, oil, force, speed, temperature, film_formula)
     own, half_width = film["lambda_ratio"].item(), film["contact_half_width"].item()
     ratios = _lambda_ratios(rollers, half_width, share, realisations, seed, own)
@@ -280,9 +277,13 @@ def required_roughness(
     return _labelled(found | {"lambda_ratio": ratios})
 
 
-def _film(rollers, oil, force, speed, temperature, film_formula):
-    """Film table in SI units by one formula."""
-    return film_in_si(rollers, oil, force, speed, temperature, one_formula(film_formula))
+def _film(rollers, oil, force, speed, temperature, film_formula, varied=None):
+    """Film table in SI units by one formula, over `varied`."""
+    table = film_in_si(rollers, oil, force, speed, temperature, one_formula(film_formula))
+    for name, size in table["film_thickness"].sizes.items():
+        if name != varied:
+            raise StudyError(f"{name}: got {size} values, need one")
+    return table
 
 
 def _films(rollers, force, share, realisations, seed):
@@ -398,22 +399,13 @@ def _reached(films, table, levels, tried):
     return np.interp(sought, thickness[::rising], levels[::rising], **ends)
 
 
-def _temperature(temperature):
-    degrees = amount("temperature", temperature, "degC", above=-273.15)
-    single("temperature", degrees)
-    return degrees
-
-
 def _film_variables(films, rollers):
     return {"film_thickness": films, "lambda_ratio": films / rollers.pair.composite_rms_roughness}
 
 
 def _labelled(found):
-    """Dataset of values and their limits, the smaller one first, in customary units."""
-    rows = {name: ("limit", [row[0], *np.sort(row[1:])]) for name, row in found.items()}
-    rows = described(xr.Dataset(rows))
-    labelled = Answer()
-    for name in found:
-        for number, ending in enumerate(LIMITS):
-            labelled[f"{name}{ending}"] = rows[name].isel(limit=number)
-    return labelled
+    """Values and their limits, the smaller one first, in customary units."""
+    rows = {}
+    for name, (value, *limits) in found.items():
+        rows |= values_with_limits(name, [value, *np.sort(limits)])
+    return described(xr.Dataset(rows))

@@ -159,7 +159,8 @@ def pair_probabilities(
     contact, breakthrough = windows.transpose("outcome", ...)
     rate = _in_time(spec, film, runs, slide_to_roll_ratio)[1]
     values = dict(zip(_OF_PAIRS, (breakthrough, contact, rate), strict=True))
-    return xr.Dataset(values, attrs={"remarks": ""}).isel(part=0)
+    table = xr.Dataset(values, attrs={"remarks": ""}).isel(part=0)
+    return table.transpose("pair", *film["film_thickness"].dims)
 
 
 def pair_limits(values: xr.Dataset) -> xr.Dataset:

@@ -54,7 +54,10 @@ def test_rare_contact_is_that_of_the_tail_stage(rollers, oil, busy):
         for ending in ("", "_lower", "_upper"):
             variable = found[f"tail_{name}{ending}"]
             of_stage = factor * expected[f"{name}{ending}"].transpose(*variable.dims)
+            # Of the other film formulas the stage has fewer pairs of lines.
+            assert variable.dims == found["film_thickness"].dims
             np.testing.assert_array_equal(variable[0], of_stage[0])
+            np.testing.assert_allclose(variable[1], of_stage[1], rtol=0.3)
     point = {"force": 400.0, "speed": 100.0, "temperature": 60.0, "film_formula": "paper"}
     one = lube.contact_probability(rollers, oil, **POINT, **values, film_formula="paper")
     there = found["tail_breakthrough_rate"].sel(point)
@@ -128,7 +131,7 @@ def test_a_profile_is_that_of_the_film_profile_stage(rollers, oil, busy):
     # It carries the load, and the film is thinnest before the end of the contact.
     load = np.trapezoid(found["pressure"], place) * 1e6 * 1e-6 * rollers.pair.length
     assert 380.0 < load < 401.0  # the rest is farther in the inlet
-    thinnest = place[found["film"].argmin().item()].item()
+    thinnest = place[np.argmin(found["film"].values)].item()
     assert 0.0 < thinnest < 1.2 * found["contact_half_width"].item()
 
 
