@@ -119,11 +119,12 @@ def duty(
     on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, _slip(columns))
     tail = pair_limits(on_pairs)
     share = share / share.sum()
-    found = xr.Dataset(labels | columns).assign(table[list(FILM_VARIABLES)]).assign(share=share)
+    found = xr.Dataset(columns).assign(table[list(FILM_VARIABLES)]).assign(share=share)
     whole = _whole(contact, on_pairs, share, 2.0 * table["contact_half_width"].max().item())
     sampled = {f"tail_{name}": values for name, values in tail.items()}
     found = found.assign(dict(contact.data_vars) | sampled | whole)
-    return described(found.assign_attrs(contact.attrs | tail.attrs))
+    found = described(found.assign_attrs(contact.attrs | tail.attrs))
+    return Answer(labels | dict(found.data_vars), found.coords, found.attrs)
 
 
 def _slip(columns):

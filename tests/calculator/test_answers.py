@@ -22,7 +22,7 @@ def found(rollers, oil):
 @pytest.fixture(scope="module")
 def cycle(rollers, oil):
     points = {
-        "gear": ["low", "high"],
+        "phase": ["low", "high"],
         "force": ["1600 N", "100 N"],
         "speed": ["60 rpm", "500 rpm"],
         "temperature": ["80 degC", "40 degC"],
@@ -50,7 +50,7 @@ def test_a_single_value_is_a_table_of_one_row(found, rollers):
 
 def test_the_table_of_a_duty_cycle_has_its_labels(cycle, tmp_path):
     table = cycle.table()
-    assert table["gear"].tolist() == ["low", "high"]
+    assert table["phase"].tolist() == ["low", "high"]
     assert not any(name.startswith("whole_") for name in table.columns)
     table.to_csv(tmp_path / "cycle.csv")
 
@@ -116,10 +116,10 @@ def test_without_sampling_an_unseen_contact_has_the_arrow_of_its_limit(found):
 def test_a_duty_cycle_is_drawn_along_its_points(cycle):
     axes = cycle.plot()
     assert [text.get_text() for text in axes.get_xticklabels()] == ["low", "high"]
-    assert axes.get_xlabel() == "gear"
+    assert axes.get_xlabel() == "phase"
     whole = cycle["whole_tail_probability"].item()
     assert any((line[:, 1] == whole).all() for line in drawn(axes))
-    numbered = cycle.drop_vars("gear").plot()
+    numbered = cycle.drop_vars("phase").plot()
     assert [text.get_text() for text in numbered.get_xticklabels()] == ["1", "2"]
 
 
