@@ -10,8 +10,9 @@ __version__ = "0.2.0"
 
 _HOMES = {
     "lube.archive.explain": ("explain",),
+    "lube.calculator.answers": ("Answer",),
     "lube.calculator.duty_cycle": ("duty",),
-    "lube.calculator.operating_points": ("contact_probability", "film", "trace"),
+    "lube.calculator.operating_points": ("contact_probability", "film", "profile", "trace"),
     "lube.calculator.parts": ("Oil", "Rollers"),
     "lube.calculator.required": (
         "required_film",

@@ -1,9 +1,11 @@
 """The public names of `lube`, for editors and type checkers."""
 
 from lube.archive.explain import explain as explain
+from lube.calculator.answers import Answer as Answer
 from lube.calculator.duty_cycle import duty as duty
 from lube.calculator.operating_points import contact_probability as contact_probability
 from lube.calculator.operating_points import film as film
+from lube.calculator.operating_points import profile as profile
 from lube.calculator.operating_points import trace as trace
 from lube.calculator.parts import Oil as Oil
 from lube.calculator.parts import Rollers as Rollers

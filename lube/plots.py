@@ -14,8 +14,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
-from IPython import get_ipython
-from IPython.display import Image, display
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -527,6 +525,10 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     DataError
         As from `lube.workflow.stamps.stamp`, or if a file cannot be written.
     """
+    # Here, as only notebooks need it: the plots of answers work without.
+    from IPython import get_ipython
+    from IPython.display import Image, display
+
     line = stamp(shown)
     _write_below(figure, line)
     _fold_labels(figure)

@@ -28,9 +28,10 @@ FLOORS = [
     {"rig", "storage"},
     {"recordings"},
     {"stages"},
-    {"report", "calculator"},
+    {"report"},
     {"workflow"},
     {"archive", "plots"},
+    {"calculator"},
     {"commands", "explorer"},
     {"cli"},
 ]

@@ -6,31 +6,28 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from lube.calculator.answers import Answer
 from lube.errors import LubeError, StudyError, shown
-from lube.schema import COORDINATES, FILES, LIMITS, REGIMES, Variable
+from lube.schema import COORDINATES, FILES, REGIMES
 from lube.study.field_types import bounded
 from lube.units import convert, parse_quantity
 
 Amount = str | Sequence[str] | tuple[Any, str] | Any
 """``"800 N"``, ``["400 N", "800 N"]``, ``([400, 800], "N")``, or a quantity of pint."""
 
-_MICROMETRES = (
-    *("film_thickness", "contact_half_width", "composite_rms_roughness"),
-    *("contact_length", "mean_contact_length"),
-)
-_CUSTOMARY = dict.fromkeys(_MICROMETRES, ("um", 1e6)) | {
-    "hertz_pressure": ("MPa", 1e-6),
+_CUSTOMARY = {
+    "m": ("um", 1e6),
+    "Pa": ("MPa", 1e-6),
+    "Pa s": ("mPa s", 1e3),
+    "m2 s-1": ("mm2 s-1", 1e6),
+    "Pa-1": ("GPa-1", 1e9),
+    "s": ("ms", 1e3),
+    "s-1": ("h-1", 3600.0),
+    **dict.fromkeys(("radius", "second_radius", "reduced_radius"), ("mm", 1e3)),
     "reduced_modulus": ("GPa", 1e-9),
-    "reduced_radius": ("mm", 1e3),
-    "dynamic_viscosity": ("mPa s", 1e3),
-    "kinematic_viscosity": ("mm2 s-1", 1e6),
-    "pressure_viscosity_coefficient": ("GPa-1", 1e9),
-    "time": ("ms", 1e3),
-    "radius": ("mm", 1e3),
-    "second_radius": ("mm", 1e3),
-    **{f"tail_breakthrough_rate{limit}": ("h-1", 3600.0) for limit in LIMITS},
 }
-"""Customary unit of a variable, and its number of them in one SI unit."""
+"""Customary unit, and its number in one SI unit, of all in that unit or of a variable."""
+_TAIL, _WHOLE = "by importance sampling", "of the whole duty cycle"
 _OWN = {
     "radius": ("radius of the first roller", "m"),
     "second_radius": ("radius of the second roller", "m"),
@@ -38,18 +35,19 @@ _OWN = {
     "second_surface_speed": ("surface speed of the second roller", "m s-1"),
     "share": ("share of the duty cycle", "1"),
     "roughness_factor": ("factor of the roughness of both rollers", "1"),
+    "position": ("position from the line of centres", "m"),
+    "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
+    "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
+    "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
 }
 """Variables of no file: what each is, and its SI unit."""
-_VARIABLES = COORDINATES | FILES["lubricant"] | FILES["trace"] | FILES["film"] | FILES["contact"]
-_VARIABLES |= {
-    name: Variable((), units, long_name, "f", "") for name, (long_name, units) in _OWN.items()
-}
+_KINDS = ("film_profile", "lubricant", "trace", "film", "contact")
+_ROWS = (COORDINATES, *(FILES[kind] for kind in _KINDS))
+_WORDS = {name: (row.long_name, row.units) for rows in _ROWS for name, row in rows.items()}
+_WORDS |= _OWN
 # Those of `tail.nc` get a prefix: some of `contact.nc` have the same names.
-_VARIABLES |= {
-    f"tail_{name}": Variable(
-        (), row.units, f"{row.long_name}, by importance sampling", row.kind, ""
-    )
-    for name, row in FILES["tail"].items()
+_WORDS |= {
+    f"tail_{name}": (f"{row.long_name}, {_TAIL}", row.units) for name, row in FILES["tail"].items()
 }
 
 
@@ -117,7 +115,7 @@ def _has_unit_last(value):
     return len(value) == 2 and not isinstance(value[0], str)
 
 
-def described(results: xr.Dataset) -> xr.Dataset:
+def described(results: xr.Dataset) -> Answer:
     """Convert results to customary units, and label them.
 
     Parameters
@@ -127,7 +125,7 @@ def described(results: xr.Dataset) -> xr.Dataset:
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         Films and lengths in um, pressures in MPa; each variable with ``units`` and
         ``long_name``, the regime in words.
 
@@ -136,14 +134,18 @@ def described(results: xr.Dataset) -> xr.Dataset:
     >>> described(xr.Dataset({"film_thickness": 1.07e-6})).film_thickness.attrs["units"]
     'um'
     """
-    found = results.copy()
-    for name in set(results.variables) & set(_VARIABLES):
-        variable, values = _VARIABLES[name], results[name].values
-        units, factor = _CUSTOMARY.get(name, (variable.units, None))
+    found = Answer(results.data_vars, results.coords, results.attrs)
+    for name in results.variables:
+        # A limit has the words of its variable where it has none of its own.
+        known = name if name in _WORDS else name.removesuffix("_lower").removesuffix("_upper")
+        if known not in _WORDS:
+            continue
+        (long_name, si), values = _WORDS[known], results[name].values
+        units, factor = _CUSTOMARY.get(known, _CUSTOMARY.get(si, (si, None)))
         if factor is not None:
             values = factor * values
         elif name == "regime":
             values = np.array(REGIMES)[values]
-        labels = {"long_name": variable.long_name, "units": units or ""}
+        labels = {"long_name": long_name, "units": units or ""}
         found[name] = xr.Variable(results[name].dims, values, labels)
     return found

@@ -1,5 +1,7 @@
 """Duty cycles: the answer at each duty point, and the weighted whole."""
 
+import difflib
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,6 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from lube.calculator.amounts import amount, described
+from lube.calculator.answers import Answer
 from lube.calculator.operating_points import (
     FILM_VARIABLES,
     FORMULA,
@@ -22,8 +25,9 @@ from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import DataError, LubeError, right_one, shown
 from lube.physics.hertz import reduced_radius
 from lube.rig.map_curves import windows_in
-from lube.schema import LIMITS
+from lube.schema import LIMITS, values_with_limits
 from lube.stages.film import film_at
+from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
 from lube.types import File
@@ -40,6 +44,10 @@ _COLUMNS = {
     "second_surface_speed": "m/s",
 }
 """Columns of a table of duty points, each with the unit that it is converted to."""
+_NUMBER = re.compile(r"\s*[-+]?[\d.]+\s*([ %]|$)")
+"""Beginning of a number with or without unit, but not of a name such as ``2nd gear``."""
+_NEAR = 0.75
+"""Likeness to the name of a column from which a name is taken for a slip."""
 _SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed")
 
 
@@ -52,7 +60,7 @@ def duty(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Film and probability of contact along a duty cycle, and over the whole of it.
 
     The model's probability depends on film thickness and contact width. So each duty point has
@@ -66,7 +74,8 @@ def duty(
         and one of ``speed`` (rotation of the first roller in pure rolling, such as rpm),
         ``entrainment_speed``, or the two of ``surface_speed`` and ``second_surface_speed``.
         Optional are ``radius`` and ``second_radius``, by default those of `rollers`, and
-        ``share``, the weight of the point, by default equal weights.
+        ``share``, the point's part of the time, by default equal parts. Other columns of text,
+        such as names of the points, are kept.
     rollers : Rollers
         Material, roughness and, where the points have none, radii.
     oil : Oil
@@ -76,10 +85,13 @@ def duty(
 
     Returns
     -------
-    xarray.Dataset
-        The variables of `lube.contact_probability` over ``point``, ``share`` (normalised), and
-        ``whole_probability`` with ``_lower`` and ``_upper``: the share of the whole time with
-        metal contact. The intervals are those of the mean over pairs of rollers.
+    Answer
+        The variables of `lube.contact_probability` over ``point``, the columns of `points`, and
+        ``share`` (normalised). Of the whole time: ``whole_probability``, the share with metal
+        contact, counted; ``whole_tail_probability``, the same by importance sampling; and
+        ``whole_tail_rate``, breakthroughs per hour; each with ``_lower`` and ``_upper``. The
+        intervals are those of the mean over pairs of rollers. All points share these pairs, so
+        the whole is computed on each pair first.
 
     Raises
     ------
@@ -98,21 +110,41 @@ def duty(
     >>> bool(low < found.whole_probability < high)
     True
     """
-    columns = _columns(points)
+    columns, labels = _columns(points)
     share = columns.get("share", xr.ones_like(columns["force"]))
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a weight above 0")
     table = _film(columns, rollers, oil, film_formula)
     contact = ensemble(table, rollers, realisations, seed)
+    on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, _slip(columns))
+    tail = pair_limits(on_pairs)
     share = share / share.sum()
-    found = table[list(FILM_VARIABLES)].assign(columns | dict(contact.data_vars) | {"share": share})
-    found = described(found).assign_attrs(contact.attrs)
-    whole = (contact["breakthrough_probability"] * share).sum("point")
-    windows = windows_in(contact, 2.0 * table["contact_half_width"].max().item())
-    for ending, value in zip(LIMITS, probability_interval(whole.values, windows), strict=True):
-        labels = {"long_name": "breakthrough probability of the whole duty cycle", "units": "1"}
-        found[f"whole_probability{ending}"] = (), value, labels
-    return found
+    found = xr.Dataset(columns).assign(table[list(FILM_VARIABLES)]).assign(share=share)
+    whole = _whole(contact, on_pairs, share, 2.0 * table["contact_half_width"].max().item())
+    sampled = {f"tail_{name}": values for name, values in tail.items()}
+    found = found.assign(dict(contact.data_vars) | sampled | whole)
+    found = described(found.assign_attrs(contact.attrs | tail.attrs))
+    return Answer(labels | dict(found.data_vars), found.coords, found.attrs)
+
+
+def _slip(columns):
+    """Slide-to-roll ratio of each point."""
+    names = ("surface_speed", "second_surface_speed")
+    first, second = (columns.get(name, xr.ones_like(columns["force"])) for name in names)
+    return 2.0 * (first - second) / (first + second)
+
+
+def _whole(contact, on_pairs, share, width):
+    """Probabilities and rate of the whole cycle, with their intervals."""
+    counted = (contact["breakthrough_probability"] * share).sum("point")
+    limits = probability_interval(counted.values, windows_in(contact, width))
+    # On each pair of lines first: at all points the lines are the same.
+    sampled = pair_limits((on_pairs * share).sum("point", skipna=False))
+    whole = values_with_limits("whole_probability", limits)
+    for end in LIMITS:
+        whole[f"whole_tail_probability{end}"] = sampled[f"breakthrough_probability{end}"]
+        whole[f"whole_tail_rate{end}"] = sampled[f"breakthrough_rate{end}"]
+    return whole
 
 
 def _film(columns, rollers, oil, film_formula):
@@ -140,7 +172,7 @@ def _film(columns, rollers, oil, film_formula):
 
 
 def _columns(points):
-    """Columns of a table by name, each over ``point`` in the units of `_COLUMNS`."""
+    """Columns of a table by name, over ``point`` in the units of `_COLUMNS`; columns of labels."""
     try:
         is_file = isinstance(points, str | Path)
         frame = pd.read_csv(points, skipinitialspace=True) if is_file else pd.DataFrame(points)
@@ -148,9 +180,13 @@ def _columns(points):
         raise DataError(f"points: got {shown(points)}, need a table: {error}") from None
     if frame.empty:
         raise DataError("points: got no rows, need one for each duty point")
-    columns = {}
+    columns, labels = {}, {}
     for header, values in frame.items():
-        name, numbers = _column(f"{header}".strip(), values.tolist())
+        header, values = f"{header}".strip(), values.tolist()
+        if _is_label(header, values):
+            labels[header] = "point", np.array(values, object)
+            continue
+        name, numbers = _column(header, values)
         if name in columns:
             raise DataError(f"points: got the column {name!r} twice, need it once")
         columns[name] = numbers
@@ -160,7 +196,13 @@ def _columns(points):
     given = [names for names in _SPEEDS if set(names.split(" and ")) & set(columns)]
     if len(given) != 1 or not set(given[0].split(" and ")) <= set(columns):
         raise DataError(f"points: need one kind of speed: {', '.join(_SPEEDS)}")
-    return columns
+    return columns, labels
+
+
+def _is_label(header, values):
+    """Whether a column holds texts, not numbers, under a name that is not one of `_COLUMNS`."""
+    words = all(isinstance(value, str) and not _NUMBER.match(value) for value in values)
+    return words and not difflib.get_close_matches(header.lower(), _COLUMNS, cutoff=_NEAR)
 
 
 def _column(header, values):

@@ -9,16 +9,17 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.amounts import Amount, amount, described
+from lube.calculator.answers import Answer
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.errors import LubeError, StudyError, shown
+from lube.errors import LubeError, RangeError, StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.rig.map_curves import windows_in
-from lube.schema import COORDINATES, LIMITS, OPERATING_DIMS
+from lube.schema import OPERATING_DIMS, POINT_DIMS
 from lube.stages.contact import contact_at
-from lube.stages.film import film_at, film_table
+from lube.stages.film import film_at, film_profile_table, film_table
 from lube.stages.lubricant import lubricant_table
 from lube.stages.roughness import roughness_batch
-from lube.stages.tail import tail_probabilities
+from lube.stages.tail import pair_limits, pair_probabilities
 from lube.stages.trace import contact_trace
 from lube.statistics.confidence import probability_interval
 from lube.study.field_types import bounded
@@ -37,7 +38,6 @@ FILM_VARIABLES = (
     *("contact_half_width", "entrainment_speed", "dynamic_viscosity"),
 )
 _PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
-_OF_TAIL = (*_PROBABILITIES, "breakthrough_rate")
 
 
 @with_parts
@@ -49,7 +49,7 @@ def film(
     temperature: Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
-) -> xr.Dataset:
+) -> Answer:
     """Film thickness, lambda ratio and regime.
 
     Parameters
@@ -71,7 +71,7 @@ def film(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         Over those of film_formula, temperature, speed and force of which several are given, in
         customary units.
 
@@ -193,7 +193,7 @@ def contact_probability(
     slide_to_roll_ratio: float = 0.0,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Probability of metal contact, with its 95 % interval, and the film.
 
     The probability is that of a line, and the mean over pairs of rollers: one pair, and rollers
@@ -201,8 +201,8 @@ def contact_probability(
 
     It comes in two ways. The realisations are counted, as in ``contact.nc`` of a study; where they
     see no contact, the upper limit says how rare it is at least. Importance sampling, as in
-    ``tail.nc``, knows it at any rarity, with a standard error of about 2 % (4 % for all film
-    formulas but the first): take that where contact is rare. Both agree where both see it.
+    ``tail.nc``, knows it at any rarity, with a standard error of about 2 %: take that where contact
+    is rare. Both agree where both see it.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def contact_probability(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         The variables of `film`; ``breakthrough_probability`` and
         ``geometric_contact_probability`` of each realisation, and ``_mean``, ``_lower`` and
         ``_upper`` of both. By importance sampling ``tail_breakthrough_probability`` and
@@ -246,25 +246,10 @@ def contact_probability(
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
     slip = _checked_slip(slide_to_roll_ratio)
     contact = ensemble(table, rollers, realisations, seed, slip)
-    rare = _any_rarity(table, rollers, seed, slip)
-    found = table[list(FILM_VARIABLES)].assign(contact.data_vars).assign(rare.data_vars)
-    return described(found.assign_attrs(contact.attrs | {"remarks": rare.attrs["remarks"]}))
-
-
-def _any_rarity(table, rollers, seed, slip):
-    """Probabilities and rate by importance sampling, over the table's dimensions."""
-    dims = table["film_thickness"].dims
-    missing = [name for name in OPERATING_DIMS if name not in dims]
-    films = ["film_thickness", "contact_half_width", "entrainment_speed", "reduced_modulus"]
-    film = table[films].drop_vars(missing, errors="ignore").expand_dims(missing)
-    none = {"U": "", "f": 0.0}  # the coordinates of dimensions of one level
-    film = film.assign_coords({name: [none[COORDINATES[name].kind]] for name in missing})
-    found = tail_probabilities(
-        rollers.lines, film, rollers.layer, seed, [slip], threads=os.cpu_count()
-    )
-    found = found.isel(dict.fromkeys([*missing, "slide_to_roll_ratio"], 0), drop=True)
-    names = [f"{name}{limit}" for name in _OF_TAIL for limit in LIMITS]
-    return found[names].transpose(*dims).rename({name: f"tail_{name}" for name in names})
+    rare = pair_limits(pair_probabilities(rollers.lines, table, rollers.layer, seed, slip))
+    sampled = {f"tail_{name}": values for name, values in rare.items()}
+    found = table[list(FILM_VARIABLES)].assign(dict(contact.data_vars) | sampled)
+    return described(found.assign_attrs(contact.attrs | rare.attrs))
 
 
 def ensemble(
@@ -382,7 +367,7 @@ def trace(
     film_formula: str = FORMULA,
     slide_to_roll_ratio: float = 0.0,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Contact length and electrical resistance over one revolution.
 
     Parameters
@@ -394,7 +379,7 @@ def trace(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``contact_length`` (um) and ``contact_resistance`` (ohm) over time (ms). The resistance
         is infinite without contact.
 
@@ -410,12 +395,9 @@ def trace(
     >>> f"{found.time.values[-1]:.0f} ms"
     '120 ms'
     """
-    force = single("force", amount("force", force, "N", above=0.0))
-    speed = single("speed", rotation_speed(speed, rollers.pair.first.radius))
-    temperature = single("temperature", amount("temperature", temperature, "degC", above=-273.15))
     slip = _checked_slip(slide_to_roll_ratio)
-    properties = lubricant_table([oil.record], [temperature])
-    table = film_table(properties, rollers.pair, [force], [speed], [one_formula(film_formula)])
+    one = _one_point(rollers, oil, force, speed, temperature)
+    table = film_table(*one, [one_formula(film_formula)])
     point = {name: table[name].item() for name in OPERATING_DIMS}
     point["slide_to_roll_ratio"] = slip
     check_widths(table["contact_half_width"], rollers)
@@ -423,3 +405,49 @@ def trace(
     found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
     return described(found[names].isel(operating_point=0).drop_attrs())
+
+
+@with_parts
+def profile(rollers: Rollers, oil: Oil, force: str, speed: str, temperature: str) -> Answer:
+    """Pressure and film across the contact, from Reynolds' equation.
+
+    Parameters
+    ----------
+    rollers, oil, force, speed, temperature
+        As in `film`, one of each. The contact is fully flooded, isothermal and smooth.
+
+    Returns
+    -------
+    Answer
+        ``pressure`` (MPa) and ``film`` (um), outside the contact the gap, over ``position`` (um)
+        from the line of centres, the inlet below 0; ``central_film``, ``minimum_film``,
+        ``hertz_pressure`` and ``contact_half_width``.
+
+    Raises
+    ------
+    LubeError
+        Which argument, what came, what is needed; or that the film did not converge.
+
+    Examples
+    --------
+    >>> rollers = Rollers(radius="50 mm", rms_roughness="0.2 um")
+    >>> found = profile(rollers, Oil("mobilgear-shc-xmp-320"), "800 N", "100 rpm", "40 degC")
+    >>> f"{found.central_film.item():.2f} um, least {found.minimum_film.item():.2f} um"
+    '1.02 um, least 0.85 um'
+    """
+    table = film_profile_table(*_one_point(rollers, oil, force, speed, temperature))
+    found = table.isel(dict.fromkeys(POINT_DIMS, 0))
+    if np.isnan(found["central_film"]):
+        raise RangeError(f"the film of {force}, {speed} and {temperature} did not converge")
+    place = found["film_position"] * found["contact_half_width"]
+    found = found.assign_coords(position=place).swap_dims(film_position="position")
+    names = ["pressure", "film", "central_film", "minimum_film"]
+    return described(found[[*names, "hertz_pressure", "contact_half_width"]].drop_attrs())
+
+
+def _one_point(rollers, oil, force, speed, temperature):
+    """Oil at the temperature, pair of rollers, force in N and speed in rpm, of one point."""
+    force = single("force", amount("force", force, "N", above=0.0))
+    speed = single("speed", rotation_speed(speed, rollers.pair.first.radius))
+    temperature = single("temperature", amount("temperature", temperature, "degC", above=-273.15))
+    return lubricant_table([oil.record], [temperature]), rollers.pair, [force], [speed]

@@ -12,12 +12,13 @@ import scipy.fft
 import xarray as xr
 
 from lube.calculator.amounts import Amount, amount, described
-from lube.errors import LubeError, RecordError, StudyError, shown
+from lube.calculator.answers import Answer
+from lube.errors import LubeError, RecordError, StudyError, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.stages.lubricant import lubricant_table
 from lube.study.field_types import bounded, validate
 from lube.study.line_spec import LineSpec, line_spec
-from lube.study.lubricant_record import LubricantRecord, load_record
+from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_oil, load_record
 from lube.study.rollers import BoundaryLayer, Roller, RollerPair, Roughness
 from lube.study.viscosity_checks import check_points
 from lube.study.viscosity_points import read_viscosity_csv
@@ -33,7 +34,37 @@ _POINTS_PER_WAVE = 10
 _HEIGHT_STEP = "1 pm"
 _ROUGHNESS = {"least": 1e-9, "most": 1e-5}
 """Rms roughness that suits this step, m."""
+_SOURCE = "assumed: given in Python"
 _Function = TypeVar("_Function", bound=Callable)
+
+
+def with_parts(function: _Function) -> _Function:
+    """Make a function refuse unknown arguments, and other `rollers` and `oil` than such objects."""
+    signature, owner = inspect.signature(function), function.__qualname__.split(".")[0]
+
+    @functools.wraps(function)
+    def checked(*args, **kwargs):
+        for name in kwargs.keys() - signature.parameters.keys():
+            raise StudyError(f"{owner}: {name}: unknown argument, {_meant(name, signature)}")
+        try:
+            given = signature.bind(*args, **kwargs).arguments
+        except TypeError as error:
+            raise StudyError(f"{owner}: {error}") from None
+        for name, kind in (("rollers", Rollers), ("oil", Oil)):
+            if name in given and not isinstance(given[name], kind):
+                raise StudyError(
+                    f"{name}: got {shown(given[name])}, need lube.{kind.__name__}(...)"
+                )
+        return function(*args, **kwargs)
+
+    return checked
+
+
+def _meant(name, signature):
+    """Name the arguments that were probably meant: all that contain the name, or the nearest."""
+    names = [each for each in signature.parameters if each != "self"]
+    longer = [each for each in names if name in each]
+    return f"did you mean {' or '.join(longer)}?" if longer else right_one(name, names)
 
 
 class Rollers:
@@ -105,6 +136,7 @@ class Rollers:
     layer: BoundaryLayer
     resistivity: float
 
+    @with_parts
     def __init__(
         self,
         radius: str,
@@ -213,10 +245,15 @@ class Oil:
         Without a record: at 15 degC, by default 870 kg/m^3.
     base : str, optional
         Without a record: base oil, for the pressure-viscosity coefficient by Gold's form:
-        ``mineral`` (by default), ``polyalphaolefin``, ``ester`` or ``polyglycol``.
+        ``mineral`` (by default), ``polyalphaolefin`` or ``PAO``, ``ester``, ``polyglycol`` or
+        ``PAG``.
     pressure_viscosity : str, optional
         Without a record: pressure-viscosity coefficient such as ``"18 1/GPa"``, the slope at
         atmospheric pressure, in place of that of the base oil.
+    temperature_range : sequence of str or tuple, optional
+        Lowest and highest temperature at which the oil may be used, such as
+        ``["20 degC", "120 degC"]``; by default those of its data. Beyond these the viscosity
+        follows its law.
 
     Attributes
     ----------
@@ -237,6 +274,7 @@ class Oil:
 
     record: LubricantRecord
 
+    @with_parts
     def __init__(
         self,
         name: File | None = None,
@@ -245,6 +283,7 @@ class Oil:
         density: str | None = None,
         base: str | None = None,
         pressure_viscosity: str | None = None,
+        temperature_range: Amount | None = None,
     ) -> None:
         if (name is None) == (viscosity is None):
             raise RecordError(
@@ -252,23 +291,27 @@ class Oil:
                 "lubricant record or viscosity={...}"
             )
         if name is None:
-            self.record = _record(
-                viscosity, density or "870 kg/m^3", base or "mineral", pressure_viscosity
-            )
-            return
-        more = {"density": density, "base": base, "pressure_viscosity": pressure_viscosity}
-        for key, value in more.items():
-            if value is not None:
-                raise RecordError(
-                    f"Oil: {key}: got {shown(value)} beside a lubricant record, which has its own, "
-                    "need one of the two"
-                )
-        try:
-            self.record = load_record(name)
-        except RecordError as error:
-            raise RecordError(f"Oil: name: {error}") from None
+            self.record = _record(viscosity, density, base, pressure_viscosity)
+        else:
+            own = {"density": density, "base": base, "pressure_viscosity": pressure_viscosity}
+            for key, value in own.items():
+                if value is not None:
+                    raise RecordError(
+                        f"Oil: {key}: got {shown(value)} beside a lubricant record, which has its "
+                        "own, need one of the two"
+                    )
+            try:
+                self.record = load_record(name)
+            except RecordError as error:
+                raise RecordError(f"Oil: name: {error}") from None
+        if temperature_range is not None:
+            levels = amount("temperature_range", temperature_range, "degC").values.ravel().tolist()
+            ends = {"lowest": f"{levels[0]!r} degC", "highest": f"{levels[-1]!r} degC"}
+            ends["source"] = _SOURCE
+            valid = validate(TemperatureRange, ends, "Oil: temperature_range", RecordError)
+            self.record = self.record.model_copy(update={"temperature_range": valid})
 
-    def properties(self, temperature: Amount) -> xr.Dataset:
+    def properties(self, temperature: Amount) -> Answer:
         """Viscosity, density and pressure-viscosity coefficient at some temperatures.
 
         Parameters
@@ -278,7 +321,7 @@ class Oil:
 
         Returns
         -------
-        xarray.Dataset
+        Answer
             In customary units, over temperature if there are several.
 
         Raises
@@ -302,41 +345,20 @@ class Oil:
         return f"<Oil: {self.record.title}, valid from {lowest:g} to {highest:g} degC>"
 
 
-def with_parts(function: _Function) -> _Function:
-    """Make a function refuse other things than `Rollers` and `Oil` as ``rollers`` and ``oil``."""
-    signature = inspect.signature(function)
-
-    @functools.wraps(function)
-    def checked(*args, **kwargs):
-        given = signature.bind_partial(*args, **kwargs).arguments
-        for name, kind in (("rollers", Rollers), ("oil", Oil)):
-            if name in given and not isinstance(given[name], kind):
-                raise StudyError(
-                    f"{name}: got {shown(given[name])}, need lube.{kind.__name__}(...)"
-                )
-        return function(*args, **kwargs)
-
-    return checked
-
-
 def _record(viscosity, density, base, pressure_viscosity):
     """Lubricant record of some viscosities."""
-    if base not in GOLD_BASES:
+    base = base_oil(base or "mineral")
+    if base not in list(GOLD_BASES):
         raise RecordError(f"Oil: base: got {shown(base)}, need one of {', '.join(GOLD_BASES)}")
-    source = "assumed: given in Python"
-    alpha = {"source": source, "gold_base": base}
+    alpha = {"source": _SOURCE, "gold_base": base}
     if pressure_viscosity is not None:
-        alpha = {"source": source, "value": pressure_viscosity, "definition": FORMULA_DEFINITION}
-    points = _points(viscosity)
+        alpha = {"source": _SOURCE, "value": pressure_viscosity, "definition": FORMULA_DEFINITION}
+    density = {"at_15_degC": density or "870 kg/m^3", "thermal_coefficient": "6.4e-4 1/K"}
     content = {
         "name": "oil",
         "title": "Oil of given viscosity",
-        "viscosity": {"source": source, "points": points},
-        "density": {
-            "source": source,
-            "at_15_degC": density,
-            "thermal_coefficient": "6.4e-4 1/K",
-        },
+        "viscosity": {"source": _SOURCE, "points": _points(viscosity)},
+        "density": density | {"source": _SOURCE},
         "pressure_viscosity": alpha,
     }
     record = validate(LubricantRecord, content, "Oil", RecordError)

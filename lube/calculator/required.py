@@ -5,16 +5,18 @@ limits where the limits of the probability cross it. So the 95 % interval is tha
 pairs of rollers.
 """
 
+import os
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import xarray as xr
 
 from lube.calculator.amounts import amount, described
+from lube.calculator.answers import Answer
 from lube.calculator.operating_points import (
     FORMULA,
     REALISATIONS,
     SEED,
-    check_widths,
-    ensemble,
     film_in_si,
     one_formula,
     probabilities,
@@ -25,14 +27,30 @@ from lube.calculator.operating_points import (
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import LubeError, RangeError, StudyError
-from lube.schema import LIMITS
+from lube.grid.discretise import layer_factor_of
+from lube.schema import values_with_limits
+from lube.stages.tail import PAIRS
+from lube.statistics.confidence import mean_interval
 from lube.statistics.curves import falling_curve
 from lube.statistics.sample_size import independent_windows
 from lube.study.field_types import bounded
+from lube.study.line_spec import check_width
+from lube.surfaces.rare_contact import rare_contact_under
+from lube.surfaces.spectra import line_attributes
 from lube.units import parse_number
 
-LAMBDA_RATIOS = np.geomspace(0.5, 8.0, 49)
-"""Lambda ratios that are tried; of the roughness every second one."""
+LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
+"""Lambda ratios that are tried at first; even at the last, contact has a probability of 1e-37."""
+NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
+"""Lambda ratios that are tried then, over that of the share at first sight."""
+FALLING = 0.9
+"""Share, over the largest there is, below which it lies well on the falling branch."""
+OFTEN = 10.0
+"""Independent windows with contact, in all realisations, from which contact is counted."""
+FEW_PAIRS = 2
+"""Pairs of lines of the first look."""
+_LEAST = 1e-40
+"""Probabilities that are taken for none."""
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
 TEMPERATURES = 241
@@ -47,7 +65,7 @@ def required_film(
     share: float = 0.01,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Film thickness that keeps metal contact below a share of time.
 
     Parameters
@@ -63,7 +81,7 @@ def required_film(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``film_thickness`` (um) and ``lambda_ratio``, each with ``_lower`` and ``_upper``.
 
     Raises
@@ -94,7 +112,7 @@ def required_viscosity(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Viscosity that keeps metal contact below a share of time.
 
     Parameters
@@ -107,7 +125,7 @@ def required_viscosity(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``dynamic_viscosity`` (mPa s) and ``kinematic_viscosity`` (mm2/s) at the temperature, and
         the variables of `required_film`, each with ``_lower`` and ``_upper``.
 
@@ -117,11 +135,13 @@ def required_viscosity(
         Which argument, what came, what is needed; or that no viscosity is enough.
     """
     rotation = single("speed", rotation_speed(speed, rollers.pair.first.radius))
-    properties = oil.at(_temperature(temperature))
     # The film depends on the product of viscosity and speed, so the speed is varied for both.
-    table = _film(rollers, oil, force, (rotation * FACTORS, "rpm"), temperature, film_formula)
+    speeds = rotation * FACTORS, "rpm"
+    table = _film(rollers, oil, force, speeds, temperature, film_formula, "speed")
+    properties = oil.at(table["temperature"])
     films = _films(rollers, force, share, realisations, seed)
-    factors = _reached(table, films, f"viscosity within a factor of {FACTORS[-1]:g} of the oil's")
+    tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
+    factors = np.exp(_reached(films, table, np.log(FACTORS), tried))
     viscosity = properties["dynamic_viscosity"].item() * factors
     return _labelled(
         {
@@ -143,7 +163,7 @@ def required_speed(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Speed that keeps metal contact below a share of time.
 
     Parameters
@@ -155,7 +175,7 @@ def required_speed(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``speed`` (rpm, of the first roller in pure rolling), ``entrainment_speed`` (m/s), and the
         variables of `required_film`, each with ``_lower`` and ``_upper``.
 
@@ -164,10 +184,10 @@ def required_speed(
     LubeError
         Which argument, what came, what is needed; or that no speed is enough.
     """
-    _temperature(temperature)
-    table = _film(rollers, oil, force, (FACTORS, "m/s"), temperature, film_formula)
+    table = _film(rollers, oil, force, (FACTORS, "m/s"), temperature, film_formula, "speed")
     films = _films(rollers, force, share, realisations, seed)
-    speeds = _reached(table, films, f"speed up to {FACTORS[-1]:g} m/s")
+    tried = f"speed up to {FACTORS[-1]:g} m/s"
+    speeds = np.exp(_reached(films, table, np.log(FACTORS), tried))
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     speeds = {"entrainment_speed": speeds, "speed": speeds * turns}
     return _labelled(speeds | _film_variables(films, rollers))
@@ -184,7 +204,7 @@ def required_temperature(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     """Highest temperature at which metal contact stays below a share of time.
 
     Parameters
@@ -196,7 +216,7 @@ def required_temperature(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``temperature`` (degC) and the variables of `required_film`, each with ``_lower`` and
         ``_upper``. Infinite if the film is still thick enough at the oil's highest temperature.
 
@@ -205,20 +225,10 @@ def required_temperature(
     LubeError
         Which argument, what came, what is needed; or that no temperature is low enough.
     """
-    single("speed", rotation_speed(speed, rollers.pair.first.radius))
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
-    table = _film(rollers, oil, force, speed, (levels, "degC"), film_formula)
+    table = _film(rollers, oil, force, speed, (levels, "degC"), film_formula, "temperature")
     films = _films(rollers, force, share, realisations, seed)
-    thickness = table["film_thickness"].values
-    if thickness[0] < films[0]:
-        coldest = ensemble(table.isel(temperature=[0]), rollers, realisations, seed)
-        found = coldest["breakthrough_probability_mean"].item()
-        raise RangeError(
-            f"share: got {share:g}, no film keeps contact below it with this oil: at "
-            f"{levels[0]:g} degC it is {found:.2g}"
-        )
-    ends = {"left": np.inf, "right": -np.inf}
-    found = np.interp(np.log(films), np.log(thickness[::-1]), levels[::-1], **ends)
+    found = _reached(films, table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | _film_variables(films, rollers))
 
 
@@ -234,7 +244,7 @@ def required_roughness(
     film_formula: str = FORMULA,
     realisations: int = REALISATIONS,
     seed: int = SEED,
-) -> xr.Dataset:
+) -> Answer:
     r"""Roughness that keeps metal contact below a share of time.
 
     The heights of both rollers are multiplied by the same factor. Overlaps and the forces on
@@ -250,7 +260,7 @@ def required_roughness(
 
     Returns
     -------
-    xarray.Dataset
+    Answer
         ``composite_rms_roughness`` (um), ``lambda_ratio`` and ``roughness_factor``, that of both
         rollers' roughness, each with ``_lower`` and ``_upper``.
 
@@ -259,106 +269,134 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    single("speed", rotation_speed(speed, rollers.pair.first.radius))
-    _temperature(temperature)
     film = _film(rollers, oil, force, speed, temperature, film_formula)
-    check_widths(film["contact_half_width"], rollers)
-    share = _checked(share, rollers, film["contact_half_width"].item(), realisations)
-    ratios = LAMBDA_RATIOS[::2]
-    factors = film["lambda_ratio"].item() / ratios
-
-    def run(lines):
-        """Probabilities of some lines, made rougher by each factor."""
-        parts = []
-        for factor in factors:
-            table = film.assign(film_thickness=film["film_thickness"] / factor)
-            strength = rollers.layer.shear_strength / factor
-            layer = rollers.layer.model_copy(update={"shear_strength": strength})
-            parts.append(probabilities(lines, table, layer))
-        joined = xr.concat(parts, "factor", coords="minimal", compat="override")
-        return joined.transpose("realisation", ...)
-
-    contact = with_limits(run_all(run, rollers, realisations, seed), film["contact_half_width"])
-    ratios = _lambda_ratios(ratios, contact, share)
-    factors = film["lambda_ratio"].item() / ratios
-    sigma = rollers.pair.composite_rms_roughness * factors
-    return _labelled(
-        {
-            "roughness_factor": factors,
-            "composite_rms_roughness": sigma,
-            "lambda_ratio": ratios,
-        }
-    )
+    own, half_width = film["lambda_ratio"].item(), film["contact_half_width"].item()
+    ratios = _lambda_ratios(rollers, half_width, share, realisations, seed, own)
+    sigma = rollers.pair.composite_rms_roughness * own / ratios
+    found = {"roughness_factor": own / ratios, "composite_rms_roughness": sigma}
+    return _labelled(found | {"lambda_ratio": ratios})
 
 
-def _film(rollers, oil, force, speed, temperature, film_formula):
-    """Film table in SI units by one formula."""
-    return film_in_si(rollers, oil, force, speed, temperature, one_formula(film_formula))
+def _film(rollers, oil, force, speed, temperature, film_formula, varied=None):
+    """Film table in SI units by one formula, over `varied`."""
+    table = film_in_si(rollers, oil, force, speed, temperature, one_formula(film_formula))
+    for name, size in table["film_thickness"].sizes.items():
+        if name != varied:
+            raise StudyError(f"{name}: got {size} values, need one")
+    return table
 
 
 def _films(rollers, force, share, realisations, seed):
     """Film at which the probability, its lower and its upper limit have a share, shape (3,), m."""
     force = single("force", amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
-    share = _checked(share, rollers, half_width, realisations)
-    sigma = rollers.pair.composite_rms_roughness
-    table = xr.Dataset(
-        {
-            "film_thickness": ("film", LAMBDA_RATIOS * sigma),
-            "contact_half_width": half_width,
-            "reduced_modulus": rollers.pair.reduced_modulus,
-        }
-    )
-    contact = ensemble(table, rollers, realisations, seed)
-    return sigma * _lambda_ratios(LAMBDA_RATIOS, contact, share)
+    ratios = _lambda_ratios(rollers, half_width, share, realisations, seed)
+    return rollers.pair.composite_rms_roughness * ratios
 
 
-def _checked(share, rollers, half_width, realisations):
-    """Share as a number that is not too rare for the realisations to show."""
+def _lambda_ratios(rollers, half_width, share, realisations, seed, own=None):
+    """Lambda ratios at which the probability, its lower and its upper limit have a share.
+
+    The film changes, or the roughness if its own lambda ratio is given: then so does the layer's
+    strength in proportion, as of `required_roughness`. A first look by sampling says where to look.
+    """
     try:
         share = bounded(parse_number(share), None, above=0.0, below=1.0)
     except LubeError as error:
         raise StudyError(f"share: {error}") from None
-    lines = rollers.lines
-    travel, longest = lines.spacing * min(lines.points), 2.0 * np.pi / lines.q_min
-    windows = independent_windows(travel, 2.0 * half_width, longest)
-    if share * windows * realisations < 1.0:
+    spec, ratios = rollers.lines, LAMBDA_RATIOS
+    check_width(spec, 2.0 * half_width, "force: the contact")
+    travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
+    windows = independent_windows(travel, 2.0 * half_width, longest) * realisations
+    is_gaussian = all(line.is_gaussian for line in spec.lines)
+    if not is_gaussian and share * windows < 1.0:
         raise RangeError(
-            f"share: got {share:g}, need at least {1.0 / (windows * realisations):.2g}: "
-            f"{realisations} realisations show no rarer contact"
+            f"share: got {share:g}, need at least {1.0 / windows:.2g}: {realisations} realisations "
+            "show no rarer contact, and importance sampling is for Gaussian heights"
         )
-    return share
-
-
-def _lambda_ratios(levels, contact, share):
-    """Lambda ratios at which the probability, its lower and its upper limit have a share."""
-    unknown = np.full(levels.size, np.nan)
-    names = (f"breakthrough_probability_{part}" for part in ("mean", "lower", "upper"))
-    curves = (falling_curve(np.log(levels), contact[name].values, unknown, 1e-12) for name in names)
-    ratios = np.exp([curve.film_at(share) for curve in curves])
-    if not 0.0 < ratios[0] < np.inf:
+    if is_gaussian:
+        first = _sampled(rollers, half_width, seed, own, ratios, FEW_PAIRS)[0]
+        near = max(_crossing(ratios, first, share), ratios[np.argmax(first)]) * NEAR
+        # The maximum is flat: to find it takes them all.
+        is_falling = share < FALLING * first.max()
+        ratios = near if is_falling else ratios[ratios < 2.0 * near[-1]]
+    is_seen = share * windows >= OFTEN or not is_gaussian
+    method, number = (_counted, realisations) if is_seen else (_sampled, PAIRS)
+    limits = method(rollers, half_width, seed, own, ratios, number)
+    found = np.array([_crossing(ratios, each, share) for each in limits])
+    if not found[0] > 0.0:
+        peak = np.argmax(limits[0])
         raise RangeError(
-            f"share: got {share:g}, which no lambda ratio from {levels[0]:g} to {levels[-1]:g} has"
+            f"share: got {share:g}, which no film has: the largest share is {limits[0][peak]:.3g}, "
+            f"at a lambda ratio of {ratios[peak]:.2g}"
         )
-    return ratios
+    return found
 
 
-def _reached(table, films, tried):
-    """Those of `FACTORS` at which a table has some films: 0 or infinity beyond its ends."""
-    ends = {"left": -np.inf, "right": np.inf}
-    rising = np.log(table["film_thickness"].values)
-    factors = np.exp(np.interp(np.log(films), rising, np.log(FACTORS), **ends))
-    if not np.isfinite(factors[0]):
+def _crossing(ratios, probabilities, share):
+    """Greatest lambda ratio at which a probability has a share: 0 if it is always less.
+
+    Where contact is frequent, touching points merge to long segments whose boundary layer holds:
+    the probability rises with the film up to a maximum, and falls beyond it.
+    """
+    falling = slice(int(np.argmax(probabilities)), None)
+    unknown = np.full(ratios[falling].size, np.nan)
+    # Over the square, in which the logarithm of a rare probability is nearly linear.
+    curve = falling_curve(ratios[falling] ** 2, probabilities[falling], unknown, _LEAST)
+    return np.sqrt(max(curve.film_at(share), 0.0))
+
+
+def _sampled(rollers, half_width, seed, own, ratios, pairs):
+    """Mean and limits of the breakthrough probability, by importance sampling."""
+    spec, lines = rollers.lines, xr.Dataset(attrs=line_attributes(rollers.lines))
+    factor = layer_factor_of(lines, rollers.pair.reduced_modulus, rollers.layer)
+    factors = factor * (1.0 if own is None else own / ratios)
+    points = 2 * int(half_width / spec.spacing) + 1
+    steps = ratios * rollers.pair.composite_rms_roughness / spec.height_step
+    films = [np.full(points, film) for film in steps]
+
+    def on_one_pair(number):
+        return rare_contact_under(spec, seed, number, films, factors)[1]
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = np.stack(list(pool.map(on_one_pair, range(pairs))))
+    return np.minimum(mean_interval(found), 1.0)
+
+
+def _counted(rollers, half_width, seed, own, ratios, realisations):
+    """Mean and limits of the breakthrough probability, counted in realisations."""
+    film = xr.DataArray(ratios * rollers.pair.composite_rms_roughness, dims="film")
+    table = xr.Dataset({"film_thickness": film, "contact_half_width": half_width})
+    table["reduced_modulus"] = rollers.pair.reduced_modulus
+    strength, parts = rollers.layer.shear_strength, [(rollers.layer, table)]
+    if own is not None:
+        layers = [{"shear_strength": strength * ratio / own} for ratio in ratios]
+        parts = [
+            (rollers.layer.model_copy(update=layer), table.isel(film=[number]))
+            for number, layer in enumerate(layers)
+        ]
+
+    def run(lines):
+        found = [probabilities(lines, part, layer) for layer, part in parts]
+        return xr.concat(found, "film", coords="minimal", compat="override")
+
+    contact = with_limits(run_all(run, rollers, realisations, seed), table["contact_half_width"])
+    return [contact[f"breakthrough_probability_{end}"].values for end in ("mean", "lower", "upper")]
+
+
+def _reached(films, table, levels, tried):
+    """Levels at which the film of a table has some thicknesses; infinite beyond the table."""
+    thickness = np.log(table["film_thickness"].values)
+    rising = 1 if thickness[-1] > thickness[0] else -1
+    ends = {"left": -rising * np.inf, "right": rising * np.inf}
+    with np.errstate(divide="ignore"):  # a lower limit may be 0
+        sought = np.log(films)
+    if sought[0] > thickness.max():
         raise RangeError(
-            f"share: no {tried} gives the film of {1e6 * films[0]:.3g} um that it needs"
+            f"share: it needs a film of {1e6 * films[0]:.3g} um, which no {tried} gives: at most "
+            f"{1e6 * np.exp(thickness.max()):.3g} um"
         )
-    return factors
-
-
-def _temperature(temperature):
-    degrees = amount("temperature", temperature, "degC", above=-273.15)
-    single("temperature", degrees)
-    return degrees
+    return np.interp(sought, thickness[::rising], levels[::rising], **ends)
 
 
 def _film_variables(films, rollers):
@@ -366,11 +404,8 @@ def _film_variables(films, rollers):
 
 
 def _labelled(found):
-    """Dataset of values and their limits, the smaller one first, in customary units."""
-    rows = {name: ("limit", [row[0], *np.sort(row[1:])]) for name, row in found.items()}
-    rows = described(xr.Dataset(rows))
-    labelled = xr.Dataset()
-    for name in found:
-        for number, ending in enumerate(LIMITS):
-            labelled[f"{name}{ending}"] = rows[name].isel(limit=number)
-    return labelled
+    """Values and their limits, the smaller one first, in customary units."""
+    rows = {}
+    for name, (value, *limits) in found.items():
+        rows |= values_with_limits(name, [value, *np.sort(limits)])
+    return described(xr.Dataset(rows))

@@ -31,6 +31,7 @@ _AS_DRAWN = (
     "roughness_deformation: got lines that the oil flattens, need none: importance sampling is for "
     "lines that are the same at all operating points"
 )
+_OF_PAIRS = "breakthrough_probability", "geometric_contact_probability", "breakthrough_rate"
 _PARTS = slice(0, 1), slice(1, None)
 """The first film formula, and the others."""
 
@@ -121,6 +122,66 @@ def tail_probabilities(
     return label(table.assign_attrs(remarks=""), "tail")
 
 
+def pair_probabilities(
+    spec: LineSpec,
+    film: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    seed: int,
+    slide_to_roll_ratio: xr.DataArray | float,
+) -> xr.Dataset:
+    """Compute probabilities and rate of contact on each pair of lines, on all processors.
+
+    Parameters
+    ----------
+    spec, boundary_layer, seed
+        As in `tail_probabilities`.
+    film : xarray.Dataset
+        ``film_thickness``, ``contact_half_width`` (m) and ``entrainment_speed`` (m/s) over any
+        dimensions, and ``reduced_modulus`` (Pa).
+    slide_to_roll_ratio : xarray.DataArray or float
+        Over the same dimensions.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``breakthrough_probability``, ``geometric_contact_probability`` and ``breakthrough_rate``
+        (1/s) over pair and those dimensions. All operating points share the pairs, so a quantity
+        of several points is first computed on each pair. With the attribute ``remarks``, as
+        `tail_probabilities`.
+    """
+    try:
+        check_gaussian(spec)
+    except StudyError as error:
+        unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
+        return xr.Dataset(dict.fromkeys(_OF_PAIRS, unknown), attrs={"remarks": str(error)})
+    # All in the first part, which has most pairs.
+    windows, runs = next(_sampled(spec, film.expand_dims("part"), boundary_layer, seed))
+    contact, breakthrough = windows.transpose("outcome", ...)
+    rate = _in_time(spec, film, runs, slide_to_roll_ratio)[1]
+    values = dict(zip(_OF_PAIRS, (breakthrough, contact, rate), strict=True))
+    table = xr.Dataset(values, attrs={"remarks": ""}).isel(part=0)
+    return table.transpose("pair", *film["film_thickness"].dims)
+
+
+def pair_limits(values: xr.Dataset) -> xr.Dataset:
+    """Mean over pairs of lines and its 95 % interval.
+
+    Parameters
+    ----------
+    values : xarray.Dataset
+        Variables of `pair_probabilities`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Each variable without pair, and its ``_lower`` and ``_upper``.
+    """
+    limited = {}
+    for name, of_pairs in values.items():
+        limited |= _limited(name, of_pairs, most=1.0 if name.endswith("probability") else np.inf)
+    return xr.Dataset(limited, attrs=values.attrs)
+
+
 def _unknown(film, slide_to_roll_ratio, remark):
     """Table without any value."""
     coordinates = {name: film[name] for name in OPERATING_DIMS}
@@ -136,22 +197,18 @@ def _unknown(film, slide_to_roll_ratio, remark):
 def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
     """Variables of some film formulas, unlabelled."""
     slip = xr.DataArray(slide_to_roll_ratio, dims=_SLIP).assign_coords({_SLIP: slide_to_roll_ratio})
-    points = _window_points(spec, film)
     in_windows, runs = outcomes
     contact, breakthrough = in_windows.transpose("outcome", ...)
-    _, broken, groups, new, broken_points, new_points, *_ = runs.transpose("outcome", ...)
+    groups = runs.isel(outcome=2)
     everywhere = xr.ones_like(slip)
     speed = film["entrainment_speed"]
-    # A run is in the window if any of its points is.
-    in_window, new_in_window = (
-        number * (points - 1.0) + their_points
-        for number, their_points in ((broken, broken_points), (new, new_points))
-    )
-    rate = speed / spec.spacing * (broken + abs(slip) * new_in_window)
+    in_window, rate = _in_time(spec, film, runs, slip)
     perimeter = spec.points[0] * spec.spacing
     turn = perimeter / surface_speeds(speed, slip)[0]
     width, longest = 2.0 * film["contact_half_width"], 2.0 * np.pi / spec.q_min
     windows = independent_windows(perimeter, width, longest)
+    runs = _in_pure_rolling(runs).mean("pair")
+    steps = _first_breakthrough(runs, _window_points(spec, film), spec.points[0])
     table = {
         **_limited("geometric_contact_probability", contact * everywhere, most=1.0),
         **_limited("breakthrough_probability", breakthrough * everywhere, most=1.0),
@@ -161,12 +218,23 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
         **_touching_pairs(
             _in_pure_rolling(groups) * spec.points[0], _in_pure_rolling(breakthrough), windows
         ),
-        "first_breakthrough_time": spec.spacing
-        / speed
-        * _first_breakthrough(_in_pure_rolling(runs).mean("pair"), points, spec.points[0]),
+        "first_breakthrough_time": spec.spacing / speed * steps,
         **_asymptotes(spec, film, boundary_layer),
     }
     return xr.Dataset(table)
+
+
+def _in_time(spec, film, runs, slip):
+    """Broken runs in the window at a time, and new ones per second."""
+    points = _window_points(spec, film)
+    _, broken, _, new, broken_points, new_points, *_ = runs.transpose("outcome", ...)
+    # A run is in the window if any of its points is.
+    in_window, new_in_window = (
+        number * (points - 1.0) + their_points
+        for number, their_points in ((broken, broken_points), (new, new_points))
+    )
+    speed = film["entrainment_speed"]
+    return in_window, speed / spec.spacing * (broken + abs(slip) * new_in_window)
 
 
 def _in_pure_rolling(values):
@@ -180,13 +248,12 @@ def _window_points(spec, film):
     return 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
 
 
-def _sampled(spec, film, boundary_layer, seed, threads):
+def _sampled(spec, film, boundary_layer, seed, threads=None):
     """Probabilities of windows and numbers of runs, for each of `_PARTS` of the film formulas.
 
     Over (pair, outcome, film formula, other operating dimensions).
     """
     thickness, points = xr.broadcast(film["film_thickness"], _window_points(spec, film))
-    thickness, points = (each.transpose("film_formula", ...) for each in (thickness, points))
     factor = layer_factor_of(
         xr.Dataset(attrs=line_attributes(spec)), film["reduced_modulus"].item(), boundary_layer
     )

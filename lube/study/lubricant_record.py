@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from lube.errors import LubeError, RangeError, RecordError, right_one, shown
 from lube.physics import ZERO_CELSIUS
@@ -93,10 +93,24 @@ class CoefficientPoint(StrictModel):
     """measured coefficient"""
 
 
+_BASES = {name: name for name in GOLD_BASES} | {"pao": "polyalphaolefin", "pag": "polyglycol"}
+
+
+def base_oil(name: object) -> object:
+    """Return the key of `GOLD_BASES` that means a base oil, in any case; another name as it is.
+
+    Examples
+    --------
+    >>> base_oil("PAO")
+    'polyalphaolefin'
+    """
+    return _BASES.get(f"{name}".lower(), name)
+
+
 class PressureViscosity(Sourced):
     """Pressure-viscosity coefficient: Gold's form, measured, or from viscosities under pressure."""
 
-    gold_base: Literal[tuple(GOLD_BASES)] | None = None
+    gold_base: Annotated[Literal[tuple(GOLD_BASES)], BeforeValidator(base_oil)] | None = None
     """base oil, for Gold's form alpha = s nu^t"""
     value: _COEFFICIENT | None = None
     """measured coefficient, the same at all temperatures"""
@@ -423,11 +437,12 @@ def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -
         At the first temperature outside, with the lubricant's name and its range.
     """
     lowest, highest = record.valid_temperatures
+    needed = f"need {lowest:g} to {highest:g} degC"
+    if record.viscosity.coolprop_fluid is None:  # its liquid has no properties beyond
+        needed += ", or a wider temperature_range of the oil"
     for temperature in temperatures:
         if not lowest - ROUNDING <= temperature <= highest + ROUNDING:
-            raise RangeError(
-                f"{record.name}: got {temperature:g} degC, need {lowest:g} to {highest:g} degC"
-            )
+            raise RangeError(f"{record.name}: got {temperature:g} degC, {needed}")
 
 
 def check_fluid(record: LubricantRecord, temperatures: Sequence[float]) -> None:

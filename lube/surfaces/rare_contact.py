@@ -32,7 +32,7 @@ from lube.errors import StudyError
 from lube.kernels.tail import touching_runs, touching_windows
 from lube.surfaces.spectra import autocovariance
 from lube.surfaces.synthetic import ROLLERS, LineSpecLike, draw_gaussian_line
-from lube.types import Array, Pair
+from lube.types import Array, Pair, Values
 
 WINDOWS = 800
 """Windows along each pair of lines."""
@@ -202,17 +202,19 @@ def rare_contact(
 
 
 def rare_contact_under(
-    spec: LineSpecLike, seed: int, number: int, films: Sequence[Array], factor: float
+    spec: LineSpecLike, seed: int, number: int, films: Sequence[Array], factor: Values
 ) -> Array:
     """Estimate probabilities of contact under films that are not flat, from one pair of lines.
 
     Parameters
     ----------
-    spec, seed, number, factor
+    spec, seed, number
         As in `rare_contact`. The lines are the same, and so are the random choices.
     films : sequence of numpy.ndarray
         Film thickness at each point of a window, height steps, above zero: one array for each
         operating point.
+    factor : float or numpy.ndarray
+        As in `rare_contact`, or one for each operating point.
 
     Returns
     -------
@@ -231,7 +233,7 @@ def rare_contact_under(
     """
     drawn = _Drawn(spec, seed, number, max(film.size for film in films))
     probabilities = np.empty((2, len(films)))
-    for i, film in enumerate(films):
+    for i, (film, own) in enumerate(zip(films, np.broadcast_to(factor, len(films)), strict=True)):
         log_tails = scipy.special.log_ndtr(-film / drawn.both.rms)
         likely = np.flatnonzero(log_tails > log_tails.max() + np.log(NEGLIGIBLE))
         part = slice(likely[0], likely[-1] + 1)
@@ -242,7 +244,7 @@ def rare_contact_under(
         touching = known, drawn.heights(log_tails[known])
         expected = share[-1] * np.exp(log_tails.max())
         shape = film[part].astype(np.float32)
-        probabilities[:, i] = drawn.windows(shape, touching, factor) * expected
+        probabilities[:, i] = drawn.windows(shape, touching, own) * expected
     return probabilities
 
 

@@ -44,6 +44,75 @@ def test_the_whole_of_one_point_is_that_point(rollers, oil):
         assert found[f"whole_probability{ending}"].item() == pytest.approx(expected, rel=1e-12)
 
 
+TAIL = [f"{name}{end}" for name in ("probability", "rate") for end in ("", "_lower", "_upper")]
+
+
+def test_contact_of_each_point_is_known_at_any_rarity(rollers, oil):
+    cold = POINTS | {"temperature [degC]": [40.0, 80.0, 80.0], "speed [rpm]": [500.0, 60.0, 100.0]}
+    found = lube.duty(cold, rollers, oil, **RUNS)
+    assert found["breakthrough_probability_mean"][0] == 0.0
+    alone = lube.contact_probability(rollers, oil, "400 N", "500 rpm", "40 degC", **RUNS)
+    for name in TAIL:
+        here = found[f"tail_breakthrough_{name}"]
+        np.testing.assert_array_equal(here[0], alone[f"tail_breakthrough_{name}"])
+    assert 0.0 < found["tail_breakthrough_probability"][0] < 1e-6
+    assert found.attrs["remarks"] == ""
+
+
+def test_the_whole_is_sampled_on_each_pair_of_lines(rollers, oil):
+    found = lube.duty(POINTS, rollers, oil, **RUNS)
+    share = found["share"]
+    for name in ("probability", "rate"):
+        each, whole = found[f"tail_breakthrough_{name}"], found[f"whole_tail_{name}"]
+        assert whole.item() == pytest.approx((each * share).sum().item(), rel=1e-12)
+        assert whole.attrs["units"] == each.attrs["units"]
+        # Errors of points add up at most, as the lines are the same.
+        widths = found[f"tail_breakthrough_{name}_upper"] - found[f"tail_breakthrough_{name}_lower"]
+        width = found[f"whole_tail_{name}_upper"] - found[f"whole_tail_{name}_lower"]
+        assert 0.0 < width <= (widths * share).sum() * (1.0 + 1e-9)
+    twice = {name: [values[0]] * 2 for name, values in POINTS.items()}
+    both = lube.duty(twice, rollers, oil, **RUNS)
+    for name in TAIL:
+        of_point = both[f"tail_breakthrough_{name}"][0].item()
+        assert both[f"whole_tail_{name}"].item() == pytest.approx(of_point, rel=1e-12)
+
+
+def test_rates_are_those_of_the_points_own_slip(rollers, oil):
+    table = {
+        "force [N]": [400.0],
+        "temperature [degC]": [60.0],
+        "surface_speed [m/s]": [0.6],
+        "second_surface_speed [m/s]": [0.4],
+    }
+    found = lube.duty(table, rollers, oil, **RUNS)
+    point = {"force": "400 N", "speed": "0.5 m/s", "temperature": "60 degC"}
+    slipping = lube.contact_probability(rollers, oil, **point, slide_to_roll_ratio=0.4, **RUNS)
+    rate = slipping["tail_breakthrough_rate"].item()
+    assert found["tail_breakthrough_rate"].item() == pytest.approx(rate, rel=1e-9)
+    rolling = lube.contact_probability(rollers, oil, **point, **RUNS)
+    assert rate > rolling["tail_breakthrough_rate"].item()
+
+
+def test_heights_that_are_not_gaussian_are_counted_only(oil):
+    worn = Rollers(
+        "50 mm", "0.2 um", points=50_000, shortest_wavelength="60 um", skewness=-1.0, kurtosis=5.0
+    )
+    found = lube.duty(POINTS, worn, oil, realisations=1)
+    assert np.isnan(found["tail_breakthrough_probability"]).all()
+    assert np.isnan(found["whole_tail_rate"]) and not np.isnan(found["whole_probability"])
+    assert found.attrs["remarks"].startswith("roughness: got a skewness of -1")
+
+
+def test_columns_of_labels_are_kept(rollers, oil, tmp_path):
+    names = ["run-up", "2nd gear", "stage 3"]
+    pd.DataFrame({"phase": names} | POINTS).to_csv(tmp_path / "duty.csv", index=False)
+    for table in ({"phase": names} | POINTS, tmp_path / "duty.csv"):
+        found = lube.duty(table, rollers, oil, realisations=1)
+        assert found["phase"].values.tolist() == names
+        assert found.table()["phase"].tolist() == names
+        assert found["whole_probability"] > 0.0
+
+
 def test_tables_of_every_kind_are_the_same(rollers, oil, tmp_path):
     frame = pd.DataFrame(POINTS)
     frame.to_csv(tmp_path / "duty.csv", index=False)
@@ -82,6 +151,11 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
     ("change", "message"),
     [
         ({"forse [N]": [1.0] * 3}, "points: unknown column 'forse [N]', did you mean 'force'?"),
+        ({"shares": ["90 %", "5 %", "5 %"]}, "unknown column 'shares', did you mean 'share'?"),
+        ({"Radii": ["50 mm", "5 mm", "5 mm"]}, "points: unknown column 'Radii', need one of"),
+        ({"weight": ["90 %", "5 %", "5 %"]}, "points: unknown column 'weight', need one of"),
+        ({"radus": ["a", "b", "c"]}, "points: unknown column 'radus', did you mean 'radius'?"),
+        ({"note": ["a", "b", np.nan]}, "points: unknown column 'note', need one of"),
         ({"share": [1.0, -1.0, 1.0]}, "points: share: got -1, need a value at least 0"),
         ({"share": [0.0] * 3}, "points: share: got 0 at all points, need a weight above 0"),
         ({"speed [rpm]": None}, "points: need one kind of speed: speed, entrainment_speed, surf"),

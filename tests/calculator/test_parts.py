@@ -74,6 +74,21 @@ def test_an_oil_of_numbers_is_that_of_a_record():
     assert record.record == load_record(OIL)
 
 
+@pytest.mark.parametrize("name", ["PAO", "pao", "Polyalphaolefin"])
+def test_a_base_oil_may_be_abbreviated_in_any_case(name):
+    assert Oil(viscosity=TWO, base=name).record.pressure_viscosity.gold_base == "polyalphaolefin"
+
+
+def test_a_temperature_range_extends_the_law_of_the_viscosity():
+    law = Oil(viscosity=TWO, temperature_range=["20 degC", "120 degC"])
+    assert repr(law).endswith("valid from 20 to 120 degC>")
+    wide = law.properties(["60 degC", "110 degC"])["dynamic_viscosity"]
+    assert wide[0] == Oil(viscosity=TWO).properties("60 degC")["dynamic_viscosity"]
+    assert 0.0 < wide[1] < wide[0]
+    shipped = Oil(OIL, temperature_range=([20.0, 120.0], "degC"))
+    assert shipped.properties("110 degC")["dynamic_viscosity"] > 0.0
+
+
 def test_an_oil_of_a_table_of_dynamic_viscosities(tmp_path):
     path = tmp_path / "oil.csv"
     path.write_text("temperature [degC], dynamic_viscosity [mPa*s]\n40, 100\n80, 20\n")
@@ -137,7 +152,30 @@ def test_both_show_themselves_and_travel_between_processes():
         ),
         (lambda: Oil(viscosity="30 mm^2/s"), "30 mm^2/s: cannot be read"),
         (lambda: Oil(viscosity=30.0), "viscosity: got 30.0, need viscosities by temperature"),
-        (lambda: Oil(viscosity=TWO, base="PAO"), "Oil: base: got 'PAO', need one of mineral"),
+        (lambda: Oil(viscosity=TWO, base="olive"), "Oil: base: got 'olive', need one of mineral"),
+        (lambda: Oil(viscosity=TWO, base=["PAO"]), "Oil: base: got ['PAO'], need one of mineral"),
+        (
+            lambda: Rollers("50 mm", roughness="0.2 um"),
+            "Rollers: roughness: unknown argument, did you mean rms_roughness or ra_roughness",
+        ),
+        (
+            lambda: Rollers("50 mm", "0.2 um", longest_wavelenght="1 mm"),
+            "Rollers: longest_wavelenght: unknown argument, did you mean 'longest_wavelength'?",
+        ),
+        (lambda: Rollers(rms_roughness="1 um"), "Rollers: missing a required argument: 'radius'"),
+        (lambda: Oil(OIL, temp_range=1), "Oil: temp_range: unknown argument, did you mean"),
+        (
+            lambda: Oil(OIL, temperature_range=["120 degC", "20 degC"]),
+            "Oil: temperature_range: got 120 to 20 degC, need the lowest first",
+        ),
+        (
+            lambda: Oil(OIL, temperature_range=120),
+            "temperature_range: got 120, need a number with its unit",
+        ),
+        (
+            lambda: Oil(OIL).properties("110 degC"),
+            f"{OIL}: got 110 degC, need 40 to 100 degC, or a wider temperature_range of the oil",
+        ),
         (lambda: Oil(OIL).properties("20 degC"), f"{OIL}: got 20 degC, need 40 to 100 degC"),
     ],
 )

@@ -93,6 +93,12 @@ def test_xmp_320_has_the_values_of_physics_section_2_in_si():
     assert record.valid_temperatures == (40.0, 100.0)
 
 
+@pytest.mark.parametrize("name", ["PAO", "Polyalphaolefin"])
+def test_a_base_oil_may_be_abbreviated_in_any_case(write, name):
+    record = load_record(write(OIL.replace("gold_base: mineral", f"gold_base: {name}")))
+    assert record.pressure_viscosity.gold_base == "polyalphaolefin"
+
+
 def test_gear_oils_of_four_bases_are_shipped_in_all_grades():
     grades = [32, 46, 68, 100, 150, 220, 320, 460, 680]
     for base in ("mineral", "pao", "ester", "polyglycol"):

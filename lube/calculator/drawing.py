@@ -1,0 +1,139 @@
+"""Plots of the answers: probabilities with their intervals, duty cycles, profiles."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from lube import plots
+from lube.errors import LubeError
+
+_COUNTED, _SAMPLED = "breakthrough_probability", "tail_breakthrough_probability"
+_SHOWN = (f"{_COUNTED}_mean", "pressure", "contact_length", "film_thickness")
+"""Variables to show where none is named: the first of these that the answer has."""
+_ALONG = ("temperature", "speed", "force")
+"""Dimensions along which an answer is drawn rather than along others."""
+_DECADE = 0.1
+"""Least probability over the greatest, below which the axis is logarithmic."""
+_BORNE = 0.02
+"""Pressure over its maximum, from which a profile is drawn."""
+_MOST_FILM = 4.0
+"""Greatest gap in a profile, over the central film."""
+
+
+def draw(found: xr.Dataset, x: str | None = None, y: str | None = None) -> Axes:
+    """Draw an answer.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        The answer.
+    x, y : str, optional
+        Dimension along the axis, and variable, as of `lube.Answer.plot`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The panel, of a figure of its own.
+
+    Raises
+    ------
+    LubeError
+        If it has no such dimension or variable, or a single value only.
+    """
+    y = y or next(name for name in (*_SHOWN, *found.data_vars) if name in found)
+    dims = found[y].dims if y in found else ()
+    dims = sorted(dims, key=lambda name: (name not in _ALONG, -found.sizes[name]))
+    if not dims or x not in (None, *dims):
+        raise LubeError(f"plot: got x={x}, y={y}, need a variable and one of its dimensions")
+    x = x or dims[0]
+    with plt.rc_context():
+        plots.use_style()
+        axes = plt.figure(figsize=(5.6, 3.6)).add_subplot()
+        axes.set_xlabel(plots.axis_label(found[x]) if x in found.coords else x.capitalize())
+        axes.set_ylabel(plots.axis_label(found[y]))
+        _draw_lines(axes, found, x, y)
+        if x == "point":
+            _label_points(axes, found, y)
+        if y == "pressure":
+            _draw_film(axes, found)
+        if axes.get_legend_handles_labels()[1]:
+            plots.legend_above(axes.figure, axes.figure.axes)
+    return axes
+
+
+def _draw_lines(axes, found, x, y):
+    """Draw a line for each level of the other dimensions."""
+    others = [name for name in found[y].dims if name != x]
+    sizes = [found.sizes[name] for name in others]
+    shades = plots.level_colours(range(np.prod(sizes, dtype=int)))
+    if y == _SHOWN[0]:
+        _scale(axes, found)
+    for number, index in enumerate(np.ndindex(*sizes)):
+        one = found.isel(dict(zip(others, index, strict=True)))
+        name = ", ".join(_level(one[other]) for other in others)
+        color = shades[number] if others else plots.COLOURS["blue"]
+        if y == _SHOWN[0]:
+            _draw_probability(axes, one, x, color, name)
+        else:
+            axes.plot(one[x], one[y], color=color, label=name)
+
+
+def _level(value):
+    units = value.attrs.get("units")
+    return plots.level_name(value.item(), units) if units else f"{value.item()}"
+
+
+def _scale(axes, found):
+    """Name, scale and limits of the axis of probabilities."""
+    names = (f"{_COUNTED}_mean", f"{_COUNTED}_upper", _SAMPLED)
+    values = np.concatenate([found[name].values.ravel() for name in names if name in found])
+    least, most = values[values > 0.0].min(), np.nanmax(values)
+    axes.set_ylabel("Breakthrough probability")
+    if least < _DECADE * most:
+        axes.set(yscale="log", ylim=(0.3 * least, min(1.0, 2.0 * most)))
+        plots.log_ticks(axes.yaxis)
+    else:
+        axes.set_ylim(0.0, min(1.0, 1.1 * most))
+
+
+def _draw_probability(axes, one, x, color, name):
+    """Draw counted probabilities where any is seen, and the curve of the sampled ones."""
+    mean, lower, upper = (one[f"{_COUNTED}{end}"].values for end in ("_mean", "_lower", "_upper"))
+    known = _SAMPLED in one and bool(one[_SAMPLED].notnull().all())
+    seen = (mean > 0.0) | (not known)
+    limits = mean, np.minimum(np.maximum(lower, axes.get_ylim()[0]), mean), upper
+    style = {"fmt": "o", "color": color, "label": name or "counted, 95 %", "clip_on": False}
+    plots.interval_bars(axes, one[x].values[seen], *(each[seen] for each in limits), **style)
+    if known:
+        limits = (one[f"{_SAMPLED}{end}"].values for end in ("_lower", "_upper"))
+        axes.fill_between(one[x].values, *limits, color=color, alpha=0.25, linewidth=0)
+        style = {"marker": ".", "color": color, "clip_on": False}
+        axes.plot(one[x].values, one[_SAMPLED].values, label="importance sampling", **style)
+
+
+def _label_points(axes, found, y):
+    """Name the points of a duty cycle, and mark the probability of the whole of it."""
+    # Labels are the only columns without a unit.
+    texts = [n for n, one in found.items() if one.dims == ("point",) and "units" not in one.attrs]
+    numbers = found["point"].values
+    axes.set_xticks(numbers, found[texts[0]].values if texts else numbers + 1)
+    if texts:
+        axes.set_xlabel(texts[0])
+        axes.tick_params(axis="x", labelrotation=20)
+    if y == _SHOWN[0]:
+        whole = found["whole_tail_probability"].fillna(found["whole_probability"]).item()
+        axes.axhline(whole, color=plots.COLOURS["grey"], linestyle="--", label="whole cycle")
+
+
+def _draw_film(axes, found):
+    """Draw the film of a profile, on an axis of its own."""
+    axes.lines[0].set_label("pressure")
+    borne = found["position"].values[found["pressure"] > _BORNE * found["pressure"].max()]
+    axes.set(xlim=1.3 * borne[[0, -1]], ylim=(0.0, None))
+    film, color = axes.twinx(), plots.COLOURS["vermilion"]
+    film.plot(found["position"], found["film"], color=color, label="film, gap outside")
+    film.set(ylim=(0.0, _MOST_FILM * found["central_film"].item()))
+    film.set_ylabel(plots.axis_label(found["film"].assign_attrs(long_name="film")))
+    film.grid(False)
+    film.spines["right"].set_visible(True)
