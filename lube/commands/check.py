@@ -49,6 +49,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     lines = {
         "study": f"{study.name}: valid",
         "operating points": " = ".join([f"{points:,}", *filter(None, [" × ".join(factors)])]),
+        "band": study.band,
         "contact runs": " × ".join([f"{runs:,} = {points:,}", *more]),
         "records": records,
         "results": folder,

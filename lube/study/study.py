@@ -29,7 +29,7 @@ from lube.study.field_types import (
     quantity,
     validate,
 )
-from lube.study.line_spec import LineSpec, check_width, line_spec
+from lube.study.line_spec import LineSpec, band_in_words, check_width, line_spec
 from lube.study.lubricant_record import (
     LubricantRecord,
     check_temperatures,
@@ -137,8 +137,13 @@ class Study(StrictModel):
         return line_spec(self.rollers, self.roughness, max(self.operating_grid.force))
 
     @property
+    def band(self) -> str:
+        """From which to which wave the roughness reaches, in words."""
+        return band_in_words(self.rollers, self.roughness, self.line_spec)
+
+    @property
     def rough_rollers(self) -> RollerPair:
-        """The rollers, each measured one with the rms height of its line."""
+        """The rollers with the rms heights of their lines."""
         return self.rollers.with_rms_heights(self.line_spec.rms_height)
 
     @property
