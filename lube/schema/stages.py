@@ -84,7 +84,11 @@ _ROWS = (
     Stage("roughness", values=_LINES),
     Stage(
         "surface",
-        values={"surfaces": "measured_surfaces", "lines": "line_spec"},
+        values={
+            "surfaces": "measured_surfaces",
+            "lines": "line_spec",
+            "hurst_exponent": "roughness.hurst_exponent",
+        },
         only_with=("topographies",),
     ),
     Stage(
