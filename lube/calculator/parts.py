@@ -18,6 +18,7 @@ from lube.study.field_types import bounded, validate
 from lube.study.line_spec import LineSpec, band_in_words, line_spec
 from lube.study.lubricant_record import LubricantRecord, load_record
 from lube.study.rollers import (
+    INSULATOR,
     LONGEST_WAVELENGTH,
     SHORTEST_WAVELENGTH,
     BoundaryLayer,
@@ -85,7 +86,8 @@ class Rollers:
     critical_thickness, shear_strength : str, optional
         Of the boundary layer; the paper's.
     resistivity : str, optional
-        Of the rollers' material; hardened bearing steel.
+        Of the rollers' material; by default hardened bearing steel. ``"insulator"`` if either does
+        not conduct: contact then has no resistance.
 
     Attributes
     ----------
@@ -98,7 +100,7 @@ class Rollers:
     layer : BoundaryLayer
         The boundary layer.
     resistivity : float
-        In ohm m.
+        In ohm m; NaN if either roller does not conduct.
 
     Raises
     ------
@@ -174,7 +176,9 @@ class Rollers:
                 raise StudyError(f"Rollers: rms_roughness: {error}") from None
         layer = {"critical_thickness": critical_thickness, "shear_strength": shear_strength}
         self.layer = validate(BoundaryLayer, layer, "Rollers", StudyError)
-        self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
+        self.resistivity = math.nan
+        if resistivity != INSULATOR:
+            self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
         if points is None:
             shortest = amount("shortest_wavelength", shortest_wavelength, "m", above=0.0).item()
             points = grid_points(self.pair.first.radius, shortest)

@@ -66,6 +66,8 @@ def _many(count, name):
 
 def _records(study):
     """Say where the records come from; and one line for each that cannot be used."""
+    if not study.conducts:
+        return "none: rollers that do not conduct", []
     manifest = study.experiment.manifest
     if manifest is None:
         return f"simulated, {_many(study.rig.pairs, 'pair')} of rollers", []

@@ -90,6 +90,11 @@ class LineSpec(StrictModel):
         return all(line.is_gaussian for line in self.lines)
 
     @property
+    def is_isotropic(self) -> bool:
+        """Whether both lines stand for isotropic surfaces."""
+        return all(line.isotropic for line in self.lines)
+
+    @property
     def is_drawn(self) -> bool:
         """Whether both lines are drawn."""
         return all(line.heights is None for line in self.lines)

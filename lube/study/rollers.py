@@ -16,8 +16,8 @@ from lube.study.field_types import (
     Pressure,
     StrictModel,
     bounded,
-    length_or_words,
     pure_number,
+    quantity_or_words,
 )
 from lube.study.roller_topography import RollerTopography
 from lube.study.size_limits import MOST_POINTS
@@ -25,6 +25,9 @@ from lube.units import parse_number
 
 ROLLERS = ("first", "second")
 """Keys of the two rollers."""
+INSULATOR = "insulator"
+"""In place of the resistivity of rollers of which one does not conduct."""
+
 AUTOMATIC_WAVELENGTH = "contact width at the largest force"
 
 LONGEST_WAVELENGTH = "0.8 mm"
@@ -71,13 +74,14 @@ def _points_of(wavelength):
     return bounded(number, "points", least=2.0, most=MOST_POINTS)
 
 
-_LongestWavelength = length_or_words(
+_LongestWavelength = quantity_or_words(
+    "m",
     lambda text: text == AUTOMATIC_WAVELENGTH,
     f"the words `{AUTOMATIC_WAVELENGTH}`",
     f"^{AUTOMATIC_WAVELENGTH}$",
 )
-_ShortestWavelength = length_or_words(
-    _is_points, "a number of grid points such as `10 points`", " points$"
+_ShortestWavelength = quantity_or_words(
+    "m", _is_points, "a number of grid points such as `10 points`", " points$"
 )
 _Hurst = pure_number(above=0.0, below=1.0)
 _Skewness = pure_number(least=-3.0, most=3.0)
