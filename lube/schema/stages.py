@@ -188,7 +188,7 @@ _ROWS = (
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),
         target="benchmark",
-        only_with=_GAUGED,
+        only_with=("conducts",),
     ),
     Stage("speed", same_values=("contact",), target="benchmark"),
     Stage("reading", target="benchmark"),

@@ -109,6 +109,14 @@ def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
     np.testing.assert_allclose(found["time"][-1] / 600.0, 1.0, rtol=1e-3)  # ms in a revolution
 
 
+def test_the_trace_of_an_insulator_has_no_resistance(oil):
+    insulator = lube.Rollers("2 mm", "0.2 um", resistivity="insulator")
+    point = {"force": "5 N", "speed": "100 rpm", "temperature": "60 degC"}
+    found = lube.trace(insulator, oil, **point)
+    assert np.isnan(found["contact_resistance"]).all() and (found["contact_length"] > 0.0).any()
+    assert np.isnan(insulator.resistivity)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

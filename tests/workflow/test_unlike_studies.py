@@ -1,4 +1,4 @@
-"""All figures of nine unlike studies: what a reader would complain about."""
+"""All figures of unlike studies: what a reader would complain about."""
 
 from pathlib import Path
 
