@@ -129,3 +129,10 @@ def test_every_public_name_resolves_and_explains_itself():
 def test_every_module_explains_itself():
     for path in PACKAGE.rglob("*.py"):
         assert ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))), path
+
+
+def test_the_architecture_names_every_room():
+    page = (PACKAGE.parent / "docs/architecture.md").read_text(encoding="utf-8")
+    rooms = {line.split("`")[1].strip("/") for line in page.splitlines() if line.startswith("| `")}
+    folders = {path.name for path in PACKAGE.iterdir() if (path / "__init__.py").exists()}
+    assert folders <= rooms

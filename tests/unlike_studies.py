@@ -177,7 +177,36 @@ STUDIES = {
         operating_grid=_grid([60, 120], [600, 2000], [50, 80]),
         traces=[_trace(120, 600, 80)],
     ),
+    # A ground insulator on steel: no rig, and no isotropic surface.
+    "insulator": _small(
+        "insulator",
+        film_formulas=["paper", "moes"],
+        resistivity="insulator",
+        rollers={
+            "length": "5 mm",
+            "first": _SILICON_NITRIDE | {"radius": "8 mm"},
+            "second": _STEEL
+            | {"radius": "8 mm", "topography": _MAP | {"texture": "along rolling"}}
+            | {"roughness": _BAND},
+        },
+        roughness=PAPER_CONTENT["roughness"] | {"points": 40_000, "shortest_wavelength": "7 um"},
+        operating_grid=_grid([60, 120], [600, 2000], [50, 80]),
+        traces=[_trace(120, 600, 80)],
+    ),
 }
+
+
+def write_study(content, folder):
+    """Write a study and the files that it names, and return its path."""
+    folder.mkdir()
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    _write_scan(folder / _SCAN["file"])
+    manifest = content["experiment"].get("manifest")
+    if manifest:
+        (folder / manifest).touch()  # a study must name a file that exists
+        _write_records(load_study(path), folder / manifest)
+    return path
 
 
 def write_datasets(content, folder):
@@ -188,16 +217,7 @@ def write_datasets(content, folder):
     dict
         From the kind of each dataset to its path.
     """
-    folder.mkdir()
-    path = folder / "study.yaml"
-    path.write_text(yaml.safe_dump(content), encoding="utf-8")
-    _write_scan(folder / _SCAN["file"])
-    manifest = content["experiment"].get("manifest")
-    if manifest:
-        (folder / manifest).touch()  # a study must name a file that exists
-        _write_records(load_study(path), folder / manifest)
-    study = load_study(path)
-    paths = {}
+    study, paths = load_study(write_study(content, folder)), {}
     for kind, dataset in _datasets(study).items():
         paths[kind] = folder / f"{kind}.nc"
         save(dataset, paths[kind], kind, study)
@@ -216,27 +236,25 @@ def _datasets(study):
     batch = roughness_batch(study.line_spec, study.seed, range(study.realisations))
     run = contact_statistics(batch, film, layer, study.slips, study.revolutions, flattened)
     contact = gather([run], film)
-    rig_lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
-    if study.experiment.manifest:
-        experiment = measured_experiment(read_manifest(study.experiment.manifest), study)
-    else:
-        experiment = simulated_experiment(rig_lines, film, study)
-    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    at_records = film_at_records(experiment, oils, rough, formulas, **films)
-    model = model_at_records(at_records, experiment, film, contact, study)
-    comparison = compare(model, experiment, contact)
     profile = film_profile_table(oil, rough, *levels, films["inlet_meniscus"])
     spec, rollers, some = study.line_spec, study.rollers, {}
+    if study.has("comparison"):
+        some |= _records(study, film, contact)
     if study.has("master"):
-        master = gather_map([contact_map(batch, film, layer)])
-        gauge = gauge_records(master, contact, comparison)
-        some |= {"master": master, "gauge": gauge, "constant": constant_effect(oil, film, master)}
-    if spec.is_gaussian:
+        some["master"] = gather_map([contact_map(batch, film, layer)])
+        some["constant"] = constant_effect(oil, film, some["master"])
+    if study.has("gauge"):
+        some["gauge"] = gauge_records(some["master"], contact, some["comparison"])
+    if study.has("patch"):
         some["patch"] = patch_contact(spec, rollers.reduced_modulus, study.seed)
+    if study.has("film_shape"):
         some["film_shape"] = film_shape_probabilities(spec, film, profile, layer, study.seed, 2)
     if study.has("areal"):
         areal = strip_contacts(spec, film, layer, rollers.length, study.seed, study.slips)
-        some |= {"areal": areal, "areal_gauge": gauge_by_surface(film, areal, comparison, gauge)}
+        some["areal"] = areal
+    if study.has("areal_gauge"):
+        read = some["comparison"], some["gauge"]
+        some["areal_gauge"] = gauge_by_surface(film, some["areal"], *read)
     if study.has("height_distribution"):
         some["height_distribution"] = height_distributions(spec, film, layer, study.seed)
     if not spec.is_one_pair:
@@ -244,7 +262,8 @@ def _datasets(study):
         some["flattening"] = flattened_contact(spec, film, layer, study.seed, realisations, 2)
     if study.topographies:
         some["surface"] = measured_surfaces(study.topographies, spec, 0.7)
-    tracing = study.trace_points, layer, study.resistivity, flattened
+    resistivity = study.resistivity if study.conducts else np.nan
+    tracing = study.trace_points, layer, resistivity, flattened
     return some | {
         "lubricant": oil,
         "film": film,
@@ -253,10 +272,27 @@ def _datasets(study):
         "contact": contact,
         "tail": tail_probabilities(spec, film, layer, study.seed, study.slips, 1, flattened),
         "trace": contact_trace(lines, film, *tracing),
+        "film_plane": film_plane(oil, rollers.reduced_modulus),
+    }
+
+
+def _records(study, film, contact):
+    """Simulated or measured records, compared with the simulation."""
+    rig_lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
+    if study.experiment.manifest:
+        experiment = measured_experiment(read_manifest(study.experiment.manifest), study)
+    else:
+        experiment = simulated_experiment(rig_lines, film, study)
+    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+    at_records = film_at_records(
+        experiment, oils, study.rough_rollers, study.film_formulas, **study.film_model
+    )
+    model = model_at_records(at_records, experiment, film, contact, study)
+    comparison = compare(model, experiment, contact)
+    return {
         "rig": rig_records(rig_lines, film, study),
         "experiment": experiment,
         "comparison": comparison,
-        "film_plane": film_plane(oil, rollers.reduced_modulus),
     }
 
 

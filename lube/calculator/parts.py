@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-import scipy.fft
 import xarray as xr
 
 from lube.calculator.amounts import Amount, amount, described
@@ -17,9 +16,18 @@ from lube.errors import LubeError, RecordError, StudyError, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.stages.lubricant import lubricant_table
 from lube.study.field_types import bounded, validate
-from lube.study.line_spec import LineSpec, line_spec
+from lube.study.line_spec import LineSpec, band_in_words, line_spec
 from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_oil, load_record
-from lube.study.rollers import BoundaryLayer, Roller, RollerPair, Roughness
+from lube.study.rollers import (
+    INSULATOR,
+    LONGEST_WAVELENGTH,
+    SHORTEST_WAVELENGTH,
+    BoundaryLayer,
+    Roller,
+    RollerPair,
+    Roughness,
+    grid_points,
+)
 from lube.study.viscosity_checks import check_points
 from lube.study.viscosity_points import read_viscosity_csv
 from lube.types import File
@@ -29,8 +37,6 @@ _PROPERTIES = (
     *("kinematic_viscosity", "dynamic_viscosity", "density", "pressure_viscosity_coefficient"),
     *("thermal_conductivity", "temperature_viscosity_coefficient"),
 )
-_POINTS_PER_WAVE = 10
-"""Grid points in the shortest wavelength, as in the paper."""
 _HEIGHT_STEP = "1 pm"
 _ROUGHNESS = {"least": 1e-9, "most": 1e-5}
 """Rms roughness that suits this step, m."""
@@ -85,8 +91,13 @@ class Rollers:
         What differs of the second roller, such as ``{"radius": "30 mm"}`` or
         ``{"roughness": {"hurst_exponent": 0.8}}``. Without it the rollers are equal.
     longest_wavelength, shortest_wavelength : str, optional
-        Of the roughness; the defaults are the paper's. The longest is customarily the width of
-        the contact, the shortest what a profilometer resolves.
+        Of the roughness: `lube.study.rollers.LONGEST_WAVELENGTH`, the cutoff with which an Ra
+        from 0.1 to 2 um is customarily measured, and the paper's shortest. The answer depends on
+        them more than on anything else.
+    long_cutoff, short_cutoff : str, optional
+        Cutoffs lambda_c and lambda_s that the roughness was measured with: its height is that of
+        the waves within them, and waves beyond add to it. By default the longest and the
+        shortest wavelength.
     hurst_exponent : float, optional
         Hurst exponent of the roughness, from 0 to 1.
     ra_roughness : str, optional
@@ -106,18 +117,21 @@ class Rollers:
     critical_thickness, shear_strength : str, optional
         Of the boundary layer; the paper's.
     resistivity : str, optional
-        Of the rollers' material; hardened bearing steel.
+        Of the rollers' material; by default hardened bearing steel. ``"insulator"`` if either does
+        not conduct: contact then has no resistance.
 
     Attributes
     ----------
     pair : RollerPair
-        Geometry, material and roughness.
+        Geometry, material and roughness: the rms heights are those of the lines.
     lines : LineSpec
         What determines the roughness lines.
+    band : str
+        From which to which wave the roughness reaches.
     layer : BoundaryLayer
         The boundary layer.
     resistivity : float
-        In ohm m.
+        In ohm m; NaN if either roller does not conduct.
 
     Raises
     ------
@@ -133,6 +147,7 @@ class Rollers:
 
     pair: RollerPair
     lines: LineSpec
+    band: str
     layer: BoundaryLayer
     resistivity: float
 
@@ -146,8 +161,10 @@ class Rollers:
         young_modulus: str = "210 GPa",
         poisson_ratio: float = 0.3,
         second: Mapping[str, object] | None = None,
-        longest_wavelength: str = "0.42 mm",
-        shortest_wavelength: str = "3.1416 um",
+        longest_wavelength: str = LONGEST_WAVELENGTH,
+        shortest_wavelength: str = SHORTEST_WAVELENGTH,
+        long_cutoff: str | None = None,
+        short_cutoff: str | None = None,
         hurst_exponent: float = 0.7,
         ra_roughness: str | None = None,
         composite_rms_roughness: str | None = None,
@@ -191,17 +208,20 @@ class Rollers:
                 raise StudyError(f"Rollers: rms_roughness: {error}") from None
         layer = {"critical_thickness": critical_thickness, "shear_strength": shear_strength}
         self.layer = validate(BoundaryLayer, layer, "Rollers", StudyError)
-        self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
+        self.resistivity = math.nan
+        if resistivity != INSULATOR:
+            self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
         if points is None:
             shortest = amount("shortest_wavelength", shortest_wavelength, "m", above=0.0).item()
-            turn = 2.0 * math.pi * self.pair.first.radius
-            points = scipy.fft.next_fast_len(math.ceil(turn / shortest * _POINTS_PER_WAVE), True)
+            points = grid_points(self.pair.first.radius, shortest)
         roughness = {
             "points": points,
             "hurst_exponent": hurst_exponent,
             # Lengths only: the other choices of a study depend on its grid.
             "longest_wavelength": _metres("longest_wavelength", longest_wavelength),
             "shortest_wavelength": _metres("shortest_wavelength", shortest_wavelength),
+            "long_cutoff": long_cutoff,
+            "short_cutoff": short_cutoff,
             "roll_off_wavelength": roll_off_wavelength,
             "skewness": skewness,
             "kurtosis": kurtosis,
@@ -209,6 +229,7 @@ class Rollers:
         }
         shared = validate(Roughness, roughness, "Rollers", StudyError)
         self.lines = line_spec(self.pair, shared, largest_force=math.nan)
+        self.band = band_in_words(self.pair, shared, self.lines)
         self.pair = self.pair.with_rms_heights(self.lines.rms_height)
         if not self.lines.is_drawn:
             raise StudyError(
@@ -221,7 +242,8 @@ class Rollers:
         radii = " and ".join(f"{1e3 * one.radius:.4g}" for one in (pair.first, pair.second))
         rms = " and ".join(f"{1e6 * height:.4g}" for height in pair.rms_heights)
         return (
-            f"<Rollers: radii {radii} mm, rms roughness {rms} um, {1e3 * pair.length:.4g} mm long>"
+            f"<Rollers: radii {radii} mm, rms roughness {rms} um, {1e3 * pair.length:.4g} mm long, "
+            f"{self.band}>"
         )
 
 

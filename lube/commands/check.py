@@ -61,6 +61,7 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     lines = {
         "study": f"{study.name}: valid{', see the remarks below' if notes else ''}",
         "operating points": " = ".join([f"{points:,}", *filter(None, [" × ".join(factors)])]),
+        "band": study.band,
         "contact runs": " × ".join([f"{runs:,} = {points:,}", *more]),
         **overview(*question),
         "records": records,
@@ -98,6 +99,8 @@ def _many(count, name):
 
 def _records(study):
     """Say where the records come from; and one line for each that cannot be used."""
+    if not study.conducts:
+        return "none: rollers that do not conduct", []
     manifest = study.experiment.manifest
     if manifest is None:
         return f"simulated, {_many(study.rig.pairs, 'pair')} of rollers", []

@@ -11,6 +11,7 @@ from lube.errors import DataError, LubeError, shown
 from lube.report.pages import render
 from lube.storage.files import why_not
 from lube.study.lubricant_record import is_record_path
+from lube.study.rollers import LONGEST_WAVELENGTH, SHORTEST_WAVELENGTH, grid_points
 from lube.study.schema_files import schema_line
 from lube.study.study import load_study
 from lube.types import File
@@ -24,7 +25,7 @@ OF_GRID = {"force": "N", "speed": "rpm", "temperature": "degC"}
 """Options for levels with a unit, and the kind of unit."""
 
 _THINNEST = {"force": "1600 N", "speed": "600/7 rpm", "temperature": "80 degC"}  # of the paper
-_SPACING = 0.05 / 1_000_000  # radius over points in the paper's study, m
+_RADIUS = "50 mm"  # of the paper's rollers
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+)?"
 _NUMBERS = re.compile(rf"((?:{_NUMBER}[\s,]+)*{_NUMBER})\s*(1/\w+|[^\d\s/,.].*)")
@@ -108,15 +109,17 @@ def _numbers(option, text):
 def _values(numbers):
     """Values of the template that follow from the options with units."""
     keys = {"radius": "radius", "roughness": "rms_roughness"}
-    found = {"rollers": {}, "points": None, "thinnest": {}}
+    found = {"rollers": {}, "thinnest": {}}
     if given := {keys[name]: numbers[name] for name in OF_ROLLERS if name in numbers}:
         for roller, side in (("first", 0), ("second", -1)):
             found["rollers"][roller] = {
                 key: f"{values[side]} {units}" for key, (values, units) in given.items()
             }
-    if "radius" in numbers:
-        radius = parse_quantity(found["rollers"]["first"]["radius"], "m")
-        found["points"] = round(radius / _SPACING)
+    radius = found["rollers"].get("first", {}).get("radius", _RADIUS)
+    found |= {"longest": LONGEST_WAVELENGTH, "shortest": SHORTEST_WAVELENGTH}
+    found["points"] = grid_points(
+        parse_quantity(radius, "m"), parse_quantity(SHORTEST_WAVELENGTH, "m")
+    )
     levels = {name: numbers[name] for name in OF_GRID if name in numbers}
     for name, (values, units) in levels.items():
         found["thinnest"][name] = f"{values[0 if name == 'speed' else -1]} {units}"

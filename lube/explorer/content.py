@@ -44,6 +44,7 @@ SHOWN = {
 """Variables that the page holds of each dataset, all of them over some of `CHOICES`."""
 TRACES = {"contact_length": np.maximum, "contact_resistance": np.minimum}
 """Variables of a trace, each with what stays of several neighbouring steps."""
+NO_RECORDS = {"origin": "", "rows": []}
 TRACE_PIECES = 1000
 """Greatest number of pieces that a trace is drawn of: about one for each pixel."""
 CLOSE_UP = 3.0
@@ -56,8 +57,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     Parameters
     ----------
     datasets : dict of str to xarray.Dataset
-        The study's ``lubricant``, ``film``, ``contact``, ``tail``, ``trace`` and ``comparison``,
-        and its ``master`` if it has one.
+        The study's ``lubricant``, ``film``, ``contact``, ``tail`` and ``trace``, and its
+        ``master`` and ``comparison`` if it has them.
 
     Returns
     -------
@@ -73,6 +74,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         - ``validity``: limits of the Moes numbers within which each film formula was validated;
         - ``master``: the master map, or None;
         - ``records``: conditions and contact shares of the rig's records;
+        - ``conducts``: whether contact has a resistance;
         - ``traces``: the traces, each with its place in the levels.
     """
     contact = datasets["contact"]
@@ -99,7 +101,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         "regimes": datasets["film"]["regime"].attrs["flag_meanings"].split(),
         "validity": {name: _validity(FORMULAS[name]) for name in levels["film_formula"]},
         "master": _master(datasets["master"]) if "master" in datasets else None,
-        "records": _records(datasets["comparison"]),
+        "records": _records(datasets["comparison"]) if "comparison" in datasets else NO_RECORDS,
+        "conducts": bool(datasets["trace"]["contact_resistance"].notnull().any()),
         "traces": [_trace(point, levels) for point in _points(datasets["trace"])],
     }
 

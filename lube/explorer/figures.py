@@ -109,6 +109,8 @@ def draw(
         figures["map"] = _master_map(content["master"], ratios, sources)
     for part in ("whole", "close"):
         figures |= _trace(part, sources[part], _resistance_range(datasets["trace"]))
+        if not content["conducts"]:
+            del figures[f"{part}_resistance"]
     return figures
 
 

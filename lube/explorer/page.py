@@ -37,13 +37,15 @@ _NAMES = {
 """Names of the choices on the page."""
 
 
-def explorer_page(datasets: dict[str, xr.Dataset]) -> str:
+def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
     """Make the explorer of a study.
 
     Parameters
     ----------
     datasets : dict of str to xarray.Dataset
         As of `lube.explorer.content.page_content`, as loaded.
+    band : str
+        `Study.band` of the study.
 
     Returns
     -------
@@ -63,7 +65,7 @@ def explorer_page(datasets: dict[str, xr.Dataset]) -> str:
         for name, columns in COLUMNS.items()
     }
     figures = draw(content, datasets, sources)
-    return _filled(content, datasets, controls, sources, figures)
+    return _filled(content | {"band": band}, datasets, controls, sources, figures)
 
 
 # Controls

@@ -18,7 +18,7 @@ from lube.units import with_unit
 _FREQUENT, _RARE = 0.1, 0.001
 """Shares of time above and below which contact is called frequent and rare."""
 _AGREEMENT = (
-    *("bias", "rms_difference", "overlap_share", "compared_records", "pairs", "origin"),
+    *("bias", "rms_difference", "overlap_share", "compared_records", "pairs"),
     *("overlap_share_expected_lower", "overlap_share_expected_upper"),
 )
 """Measures of agreement between simulation and rig that the summary states."""
@@ -104,7 +104,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         Markdown: what was found, with the film formula that the study names first; tables of the
         means over each operating variable and of the points of the traces; the refused records.
     """
-    film, contact, comparison = (results[kind] for kind in ("film", "contact", "comparison"))
+    film, contact, comparison = map(results.get, ("film", "contact", "comparison"))
     first = {"film_formula": study.film_formulas[0]}
     return render(
         "findings.md",
@@ -114,7 +114,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
         spread=_spread(film, contact, first),
         held=_held(film, contact, first),
-        agreement=_agreement(comparison, first),
+        agreement=_agreement(comparison, first) if comparison else None,
         gauged=_gauged(results["gauge"]) if "gauge" in results else None,
         traces=[_trace(point, film, contact, comparison) for point in study.trace_points],
         notes={
@@ -263,7 +263,7 @@ def _at(variable, point):
 
 def _trace(point, film, contact, comparison):
     """Values at one operating point."""
-    shares = _measured_near(comparison, point)
+    shares = _measured_near(comparison, point) if comparison else np.array([])
     return {
         **_probability(contact.sel(point)),
         "film": _at(film["film_thickness"], point).item(),
@@ -286,5 +286,6 @@ def _measured_near(comparison, point):
 
 def _lines(results, attribute):
     """Lines about records, of the experiment and of what is made from it."""
-    texts = [results[kind].attrs.get(attribute, "") for kind in ("experiment", "comparison")]
+    kinds = [kind for kind in ("experiment", "comparison") if kind in results]
+    texts = [results[kind].attrs.get(attribute, "") for kind in kinds]
     return [line for text in texts for line in text.splitlines()]

@@ -48,6 +48,8 @@ def _cylinder(roller):
 
 
 _MAPPED = {"only_with": ("follows_master_map",)}
+_SURFACE = ("line_spec.is_gaussian", "line_spec.is_isotropic")
+_GAUGED = ("follows_master_map", "conducts")
 _LINES = {"seed": "seed", "lines": "line_spec"}
 _LAYER = {"reduced_modulus": "rollers.reduced_modulus", "boundary_layer": "boundary_layer"}
 _CONTACT = _LAYER | {
@@ -84,7 +86,11 @@ _ROWS = (
     Stage("roughness", values=_LINES),
     Stage(
         "surface",
-        values={"surfaces": "measured_surfaces", "lines": "line_spec"},
+        values={
+            "surfaces": "measured_surfaces",
+            "lines": "line_spec",
+            "hurst_exponent": "roughness.hurst_exponent",
+        },
         only_with=("topographies",),
     ),
     Stage(
@@ -126,28 +132,35 @@ _ROWS = (
             },
         },
         same_values=("roughness",),  # it draws the lines of the simulated rig's rollers
+        only_with=("conducts",),
     ),
-    Stage("rig", inputs=("film",), values={"traces": "traces"}, same_values=("experiment",)),
-    Stage("comparison", inputs=("film", "contact", "experiment")),
-    Stage("gauge", inputs=("master", "contact", "comparison"), **_MAPPED),
+    Stage(
+        "rig",
+        inputs=("film",),
+        values={"traces": "traces"},
+        same_values=("experiment",),
+        only_with=("conducts",),
+    ),
+    Stage("comparison", inputs=("film", "contact", "experiment"), only_with=("conducts",)),
+    Stage("gauge", inputs=("master", "contact", "comparison"), only_with=_GAUGED),
     Stage(
         "areal",
         inputs=("film",),
         values=_LINES | _CONTACT | {"length": "rollers.length"},
         target="areal_contact",
-        only_with=("line_spec.is_gaussian", "follows_master_map"),
+        only_with=(*_SURFACE, "follows_master_map"),
     ),
     Stage(
         "areal_gauge",
         inputs=("film", "areal", "comparison", "gauge"),
         target="areal_contact",
-        only_with=("line_spec.is_gaussian", "follows_master_map"),
+        only_with=(*_SURFACE, *_GAUGED),
     ),
     Stage(
         "patch",
         values=_LINES | {"reduced_modulus": "rollers.reduced_modulus"},
         target="patch_contact",
-        only_with=("line_spec.is_gaussian",),
+        only_with=_SURFACE,
     ),
     Stage("film_profile", inputs=("lubricant",), same_values=("film",), target="computed"),
     Stage(
@@ -175,6 +188,7 @@ _ROWS = (
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),
         target="benchmark",
+        only_with=("conducts",),
     ),
     Stage("speed", same_values=("contact",), target="benchmark"),
     Stage("reading", target="benchmark"),

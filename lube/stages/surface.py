@@ -1,11 +1,13 @@
 """The surface stage: measured topographies by their spectra, roll-offs and heights."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 
 import numpy as np
 import scipy.special
 import xarray as xr
 
+from lube.errors import DataError
 from lube.schema import label, values_with_limits
 from lube.study.line_spec import LineSpec
 from lube.study.roller_topography import RollerTopography
@@ -13,7 +15,12 @@ from lube.study.rollers import ROLLERS as NAMES
 from lube.study.topography_lines import preparation, prepared
 from lube.surfaces.measured_spectrum import line_spectrum
 from lube.surfaces.spectrum_table import LineSpectrum
-from lube.surfaces.surface_statistics import height_distribution, hurst_exponent, roll_off
+from lube.surfaces.surface_statistics import (
+    height_distribution,
+    hurst_exponent,
+    roll_off,
+    waves_of_surface,
+)
 from lube.surfaces.synthetic import ROLLERS
 
 STANDARD_HEIGHTS = np.linspace(-6.0, 6.0, 61)
@@ -23,7 +30,7 @@ _UNKNOWN = (np.nan, np.nan, np.nan)
 
 
 def measured_surfaces(
-    topographies: Mapping[str, RollerTopography], spec: LineSpec, hurst: float
+    topographies: Mapping[str, RollerTopography], spec: LineSpec, hurst: float | None
 ) -> xr.Dataset:
     """Describe the measured topographies of a study.
 
@@ -33,26 +40,28 @@ def measured_surfaces(
         By roller; `Study.topographies` of a study.
     spec : LineSpec
         Parameters of the lines; `Study.line_spec` of a study.
-    hurst : float
+    hurst : float or None
         Hurst exponent of the study's section `roughness`, for comparison.
 
     Returns
     -------
     xarray.Dataset
-        The ``surface`` file of `lube.schema`.
+        The ``surface`` file of `lube.schema`. Its attribute ``remarks`` names waves that show the
+        instrument, and fits that are those of no self-affine surface.
 
     Raises
     ------
     DataError
         If a file cannot be read.
     """
-    # Both rollers may have the same one.
-    distinct = {topography.key: topography for topography in topographies.values()}
-    described = {key: _described(topography) for key, topography in distinct.items()}
-    parts = [
-        _surface(topography, described[topography.key], spec.lines[NAMES.index(name)], hurst)
-        for name, topography in topographies.items()
-    ]
+    parts, remarks, described = [], [], {}
+    for name, topography in topographies.items():
+        line = spec.lines[NAMES.index(name)]
+        key = topography.key, line.q_min, line.q_max  # both rollers may have the same one
+        if key not in described:
+            described[key] = _described(topography, line)
+        parts.append(_surface(topography, described[key], line, hurst))
+        remarks += [f"{name} roller: {text}" for text in _remarks(described[key][-1], line)]
     rollers = [ROLLERS[NAMES.index(name)] for name in topographies]
     waves = max(part.sizes["wave"] for part in parts)
     parts = [part.pad(wave=(0, waves - part.sizes["wave"])) for part in parts]
@@ -62,21 +71,42 @@ def measured_surfaces(
         "wave": np.arange(waves),
         "standard_height": STANDARD_HEIGHTS,
     }
-    return label(table.assign_coords(coordinates), "surface")
+    remarks = "\n".join(remarks)
+    return label(table.assign_coords(coordinates).assign_attrs(remarks=remarks), "surface")
 
 
-def _described(topography):
-    """Spectrum of a topography, density of its heights, and its numbers with their limits."""
+def _described(topography, line):
+    """Spectrum of a topography, density of its heights, and its numbers with their limits.
+
+    The fits are of the waves in the band of the roller's line.
+    """
     surface = prepared(topography)
     spectrum = line_spectrum(surface, preparation(topography))
-    bend = roll_off(spectrum)
-    longest = 2.0 * np.pi / spectrum.wave_vector[0] if bend is None else bend.value
-    shortest = 2.0 * np.pi / spectrum.wave_vector[-1]
+    waves = waves_of_surface(spectrum, 2.0 * np.pi / line.q_min, 2.0 * np.pi / line.q_max)
+    bend = roll_off(spectrum, waves)
     numbers = values_with_limits("roll_off_wavelength", bend or _UNKNOWN)
-    numbers |= values_with_limits("hurst_exponent", hurst_exponent(spectrum, longest, shortest))
+    numbers["resolved_wavelength"] = waves.resolution
+    waves = waves if bend is None else waves._replace(longest=bend.value)
+    hurst = _UNKNOWN
+    with suppress(DataError):  # the band is too narrow
+        hurst = hurst_exponent(spectrum, waves)
+    numbers |= values_with_limits("hurst_exponent", hurst)
     for name, estimate in height_distribution(surface.heights).items():
         numbers |= values_with_limits(name, estimate)
     return spectrum, _histogram(surface.heights), numbers
+
+
+def _remarks(numbers, line):
+    """Yield what a reader must know of the fits."""
+    resolved, shortest = numbers["resolved_wavelength"], 2.0 * np.pi / line.q_max
+    if resolved > shortest:
+        yield (
+            f"waves shorter than {resolved:.2g} m show the instrument and not the surface, and the "
+            f"line has waves down to {shortest:.2g} m: give such a shortest_wavelength"
+        )
+    hurst = numbers["hurst_exponent"]
+    if hurst <= 0.0 or hurst >= 1.0:
+        yield f"its Hurst exponent, {hurst:.2g}, is not between 0 and 1: it is not self-affine"
 
 
 def _surface(topography, described, line, hurst):
@@ -103,6 +133,8 @@ def _density(spectrum: LineSpectrum):
 
 def _self_affine(wave_vector, line, hurst):
     """Density of the self-affine line of the same band and rms height, else NaN."""
+    if hurst is None:
+        return np.full_like(wave_vector, np.nan)
     exponent = -2.0 * hurst
     whole = (line.q_min**exponent - line.q_max**exponent) / -exponent
     inside = (line.q_min <= wave_vector) & (wave_vector <= line.q_max)

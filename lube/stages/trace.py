@@ -46,7 +46,7 @@ def contact_trace(
     boundary_layer : BoundaryLayer
         With attributes ``critical_thickness`` (m) and ``shear_strength`` (Pa).
     resistivity : float
-        Resistivity of the rollers' material, ohm m.
+        Resistivity of the rollers' material, ohm m; NaN if either does not conduct.
     flattened : bool, optional
         Whether the oil flattens the lines (`lube.physics.flattening`).
 

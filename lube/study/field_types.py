@@ -188,11 +188,13 @@ def checked_text(check: Callable[[str], object], kind: str) -> Any:
     return _field(str, parse, lambda: {"type": "string", "format": kind})
 
 
-def length_or_words(accepts: Callable[..., bool], words: str, pattern: str) -> Any:
-    """Make a field type for a length or, in its place, certain words, which are kept as written.
+def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, pattern: str) -> Any:
+    """Make a field type for a quantity or, in its place, certain words, which are kept as written.
 
     Parameters
     ----------
+    units : str
+        Unit of the kept number, which is above 0.
     accepts : callable
         Takes the value and says whether it is such words; may raise LubeError.
     words : str
@@ -203,17 +205,17 @@ def length_or_words(accepts: Callable[..., bool], words: str, pattern: str) -> A
     Returns
     -------
     type
-        An annotated float, m, or str.
+        An annotated float or str.
     """
 
     def parse(value):
-        return value if accepts(value) else bounded(parse_quantity(value, "m"), "m", above=0.0)
+        return value if accepts(value) else bounded(parse_quantity(value, units), units, above=0.0)
 
-    needed = f"quantity in m, or {words}"
+    needed = f"quantity in {units}, or {words}"
 
     def written():
-        length = written_quantity("m", needed, {"above": 0.0})
-        return {"type": "string", "format": needed, "anyOf": [{"pattern": pattern}, length]}
+        number = written_quantity(units, needed, {"above": 0.0})
+        return {"type": "string", "format": needed, "anyOf": [{"pattern": pattern}, number]}
 
     return _field(float | str, parse, written, hint=f", or {words}")
 

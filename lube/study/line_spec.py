@@ -8,7 +8,8 @@ from pydantic import Field, PlainSerializer
 from lube.errors import LubeError, StudyError
 from lube.study.field_types import StrictModel
 from lube.study.roller_topography import MeasuredHeights
-from lube.study.rollers import ROLLERS, RollerPair, Roughness
+from lube.study.rollers import AUTOMATIC_WAVELENGTH, ROLLERS, RollerPair, Roughness
+from lube.units import with_unit
 
 _Heights = Annotated[MeasuredHeights, PlainSerializer(lambda heights: heights.sha256)]
 
@@ -89,6 +90,11 @@ class LineSpec(StrictModel):
         return all(line.is_gaussian for line in self.lines)
 
     @property
+    def is_isotropic(self) -> bool:
+        """Whether both lines stand for isotropic surfaces."""
+        return all(line.isotropic for line in self.lines)
+
+    @property
     def is_drawn(self) -> bool:
         """Whether both lines are drawn."""
         return all(line.heights is None for line in self.lines)
@@ -135,11 +141,51 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     """
     spacing = 2.0 * math.pi * rollers.first.radius / roughness.points
     width = 2.0 * float(rollers.contact_half_width(largest_force))
+    for name in ("long_cutoff", "short_cutoff"):
+        measured = all(getattr(rollers, roller).topography for roller in ROLLERS)
+        if measured and (cutoff := getattr(roughness, name)):
+            raise StudyError(
+                f"roughness.{name}: got {cutoff:g} m beside two topographies, which have their own"
+            )
     lines = tuple(
         _rough_line(rollers, roughness, name, rms, (spacing, width))
         for name, rms in zip(ROLLERS, rollers.rms_heights, strict=True)
     )
     return LineSpec(lines=lines, spacing=spacing, height_step=roughness.height_step)
+
+
+def band_in_words(rollers: RollerPair, roughness: Roughness, spec: LineSpec) -> str:
+    """Say from which to which wave the roughness reaches.
+
+    Parameters
+    ----------
+    rollers, roughness
+        As in `line_spec`.
+    spec : LineSpec
+        Their lines.
+
+    Returns
+    -------
+    str
+        Such as ``waves 0.8 mm to 3.14 µm, heights stated for 0.8 mm to 2.5 µm``, or, where they
+        differ, of both rollers.
+    """
+    bands = []
+    for name, line in zip(ROLLERS, spec.lines, strict=True):
+        own = roughness.of(getattr(rollers, name).roughness)
+        longest, shortest = 2.0 * math.pi / line.q_min, 2.0 * math.pi / line.q_max
+        automatic = line.heights is None and own.longest_wavelength == AUTOMATIC_WAVELENGTH
+        why = f" ({AUTOMATIC_WAVELENGTH})" if automatic else ""
+        band = f"waves {_length(longest)}{why} to {_length(shortest)}"
+        if line.hurst_exponent is not None and (own.long_cutoff or own.short_cutoff):
+            cutoffs = own.long_cutoff or longest, own.short_cutoff or shortest
+            band += f", heights stated for {' to '.join(map(_length, cutoffs))}"
+        bands.append(band)
+    return bands[0] if bands[0] == bands[1] else f"first: {bands[0]}; second: {bands[1]}"
+
+
+def _length(value):
+    return with_unit(float(f"{value:.3g}"), "m")
 
 
 def _rough_line(rollers, roughness, name, rms, lengths):
@@ -165,7 +211,10 @@ def _rough_line(rollers, roughness, name, rms, lengths):
             shape["isotropic"] = roller.topography.texture == "isotropic"
         except LubeError as error:
             raise StudyError(f"rollers.{name}.topography: {error}") from None
+    elif own.hurst_exponent is None:
+        raise StudyError(f"{key('hurst_exponent')}: missing, need it for the {name} roller")
     else:
+        rms *= _beyond_cutoffs(own, longest, shortest, key)
         shape = {"rms_height": rms, "hurst_exponent": own.hurst_exponent}
     _check_height_step(shape["rms_height"], roughness.height_step)
     return RoughLine(
@@ -213,6 +262,31 @@ class _Keys:
     def __call__(self, name):
         own = self._own.get(name) is not None
         return f"rollers.{self._roller}.roughness.{name}" if own else f"roughness.{name}"
+
+
+def _beyond_cutoffs(own, longest, shortest, key):
+    r"""Rms height of all waves of a line over that of the waves within the cutoffs.
+
+    The integrals of :math:`C \propto q^{-2H-1}`, below the roll-off :math:`C \propto q`.
+    """
+    if own.long_cutoff is None and own.short_cutoff is None:
+        return 1.0
+    stated = own.long_cutoff or longest, own.short_cutoff or shortest
+    if stated[0] <= stated[1]:
+        name = "long_cutoff" if own.long_cutoff else "short_cutoff"
+        raise StudyError(
+            f"{key(name)}: got a height stated for waves of {stated[0]:.3g} to {stated[1]:.3g} m, "
+            "need a long cutoff above the short one; by default they are the ends of the band"
+        )
+    roll_off = own.roll_off_wavelength or max(longest, stated[0])
+    exponent = 2.0 * own.hurst_exponent
+
+    def power(wavelength):  # of all waves from the roll-off to this one
+        ratio = wavelength / roll_off
+        return (1.0 - ratio**exponent) / exponent if ratio < 1.0 else 0.5 * (ratio**-2.0 - 1.0)
+
+    whole, within = (power(short) - power(long) for long, short in ((longest, shortest), stated))
+    return math.sqrt(whole / within)
 
 
 def _check_band(longest, shortest, points, spacing, key):

@@ -16,8 +16,8 @@ from lube.study.field_types import (
     Pressure,
     StrictModel,
     bounded,
-    length_or_words,
     pure_number,
+    quantity_or_words,
 )
 from lube.study.roller_topography import RollerTopography
 from lube.study.size_limits import MOST_POINTS
@@ -25,7 +25,43 @@ from lube.units import parse_number
 
 ROLLERS = ("first", "second")
 """Keys of the two rollers."""
+INSULATOR = "insulator"
+"""In place of the resistivity of rollers of which one does not conduct."""
+
 AUTOMATIC_WAVELENGTH = "contact width at the largest force"
+
+LONGEST_WAVELENGTH = "0.8 mm"
+"""Longest wave of the roughness where nothing else is said: the default cutoff of ISO 4288 and
+ISO 21920-3 for an Ra from 0.1 to 2 um, so that a customary Ra or Rq is that of the lines."""
+
+SHORTEST_WAVELENGTH = "3.1416 um"
+"""Shortest wave where nothing else is said: the paper's."""
+
+_POINTS_PER_WAVE = 10  # of the shortest waves, as in the paper
+
+
+def grid_points(radius: float, shortest: float) -> int:
+    """Return the points around a roller of which ten lie in the shortest wavelength, at least.
+
+    Parameters
+    ----------
+    radius, shortest : float
+        Radius of the roller and shortest wavelength, m.
+
+    Returns
+    -------
+    int
+        A number with small factors, which Fourier transforms are fast for.
+
+    Examples
+    --------
+    >>> grid_points(0.05, 3.1416e-6)
+    1000000
+    """
+    import scipy.fft  # not needed to load a study
+
+    points = math.ceil(2.0 * math.pi * radius / shortest * _POINTS_PER_WAVE)
+    return scipy.fft.next_fast_len(points, real=True)
 
 
 def _is_points(value):
@@ -38,20 +74,32 @@ def _points_of(wavelength):
     return bounded(number, "points", least=2.0, most=MOST_POINTS)
 
 
-_LongestWavelength = length_or_words(
+_LongestWavelength = quantity_or_words(
+    "m",
     lambda text: text == AUTOMATIC_WAVELENGTH,
     f"the words `{AUTOMATIC_WAVELENGTH}`",
     f"^{AUTOMATIC_WAVELENGTH}$",
 )
-_ShortestWavelength = length_or_words(
-    _is_points, "a number of grid points such as `10 points`", " points$"
+_ShortestWavelength = quantity_or_words(
+    "m", _is_points, "a number of grid points such as `10 points`", " points$"
 )
 _Hurst = pure_number(above=0.0, below=1.0)
 _Skewness = pure_number(least=-3.0, most=3.0)
 _Kurtosis = pure_number(above=1.0, most=20.0)
 
 
-class OwnRoughness(StrictModel):
+class _Cutoffs(StrictModel):
+    long_cutoff: Length | None = None
+    """lambda_c that the stated height was measured with: it is the rms height of the waves up to
+    this one, and longer ones add to it; by default the longest wavelength
+    """
+    short_cutoff: Length | None = None
+    """lambda_s that the stated height was measured with: it is the rms height of the waves down to
+    this one, and shorter ones add to it; by default the shortest wavelength
+    """
+
+
+class OwnRoughness(_Cutoffs):
     """What one roller has in place of the values of the study's section `roughness`."""
 
     hurst_exponent: _Hurst | None = None
@@ -108,7 +156,7 @@ class Roller(StrictModel):
                 f"topography: got {self.topography.file} beside a roughness of "
                 f"{self.rms_height:.3g} m rms, need one of the two"
             )
-        for name in ("hurst_exponent", "roll_off_wavelength"):
+        for name in ("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff"):
             if self.topography and self.roughness and getattr(self.roughness, name):
                 raise ValueError(
                     f"roughness.{name}: got {getattr(self.roughness, name):g} beside a topography, "
@@ -150,13 +198,13 @@ class RollerPair(StrictModel):
         return self.composite / math.sqrt(2.0), self.composite / math.sqrt(2.0)
 
     def with_rms_heights(self, rms_heights: tuple[float, float]) -> "RollerPair":
-        """Return the same rollers, each measured one with the rms height, m, of its line."""
-        changed = {}
+        """Return the same rollers with the rms heights, m, of their lines."""
+        if rms_heights == self.rms_heights:
+            return self
+        changed = {"composite": None}
         for name, rms in zip(ROLLERS, rms_heights, strict=True):
-            roller = getattr(self, name)
-            if roller.topography:
-                known = {"topography": None, "rms_roughness": rms}
-                changed[name] = roller.model_copy(update=known)
+            known = {"topography": None, "ra_roughness": None, "rms_roughness": rms}
+            changed[name] = getattr(self, name).model_copy(update=known)
         return self.model_copy(update=changed)
 
     @property
@@ -191,13 +239,13 @@ class RollerPair(StrictModel):
         return self
 
 
-class Roughness(StrictModel):
+class Roughness(_Cutoffs):
     """Statistics and grid of the random roughness lines of both rollers."""
 
     points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
     """points N around the first roller"""
-    hurst_exponent: _Hurst
-    """Hurst exponent H"""
+    hurst_exponent: _Hurst | None = None
+    """Hurst exponent H; not needed where both rollers have a measured surface"""
     longest_wavelength: _LongestWavelength
     """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
     the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to

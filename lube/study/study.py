@@ -25,11 +25,10 @@ from lube.study.field_types import (
     StrictModel,
     collected,
     each_once,
-    length_or_words,
-    quantity,
+    quantity_or_words,
     validate,
 )
-from lube.study.line_spec import LineSpec, check_width, line_spec
+from lube.study.line_spec import LineSpec, band_in_words, check_width, line_spec
 from lube.study.lubricant_record import (
     LubricantRecord,
     check_temperatures,
@@ -41,7 +40,7 @@ from lube.study.operating_grid import TRACED, OperatingGrid, TracePoint
 from lube.study.resolve import resolved_content, with_topographies
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.roller_topography import RollerTopography
-from lube.study.rollers import ROLLERS, BoundaryLayer, RollerPair, Roughness
+from lube.study.rollers import INSULATOR, ROLLERS, BoundaryLayer, RollerPair, Roughness
 from lube.study.size_limits import check_sizes
 from lube.study.written_forms import Written
 from lube.types import File
@@ -67,7 +66,10 @@ def _names_of_records():
     return {"type": "array", "items": one, "minItems": 1, "format": "list of names or paths"}
 
 
-_Meniscus = length_or_words(lambda value: value == "none", "none", "^none$")
+_Meniscus = quantity_or_words("m", lambda value: value == "none", "none", "^none$")
+_Resistivity = quantity_or_words(
+    "ohm*m", lambda value: value == INSULATOR, INSULATOR, f"^{INSULATOR}$"
+)
 
 
 class Study(StrictModel):
@@ -115,8 +117,10 @@ class Study(StrictModel):
     (1997), which is for pure rolling
     """
     boundary_layer: BoundaryLayer
-    resistivity: quantity("ohm*m", above=0.0)
-    """resistivity of the rollers' material (Eq. 1)"""
+    resistivity: _Resistivity
+    """resistivity of the rollers' material (Eq. 1); insulator, if either does not conduct, so that
+    there is neither a resistance nor a rig
+    """
     traces: tuple[TracePoint, ...] = Field(min_length=1)
     """operating points recorded over one revolution"""
     rig: Rig = Field(default_factory=Rig)
@@ -137,8 +141,13 @@ class Study(StrictModel):
         return line_spec(self.rollers, self.roughness, max(self.operating_grid.force))
 
     @property
+    def band(self) -> str:
+        """From which to which wave the roughness reaches, in words."""
+        return band_in_words(self.rollers, self.roughness, self.line_spec)
+
+    @property
     def rough_rollers(self) -> RollerPair:
-        """The rollers, each measured one with the rms height of its line."""
+        """The rollers with the rms heights of their lines."""
         return self.rollers.with_rms_heights(self.line_spec.rms_height)
 
     @property
@@ -160,6 +169,11 @@ class Study(StrictModel):
     def measured_surfaces(self) -> dict[str, dict]:
         """What each topography is and how it is used, by roller."""
         return {name: one.content for name, one in self.topographies.items()}
+
+    @property
+    def conducts(self) -> bool:
+        """Whether contact of the rollers has an electrical resistance."""
+        return self.resistivity != INSULATOR
 
     @property
     def is_flattened(self) -> bool:
@@ -363,6 +377,11 @@ class Study(StrictModel):
                 f"experiment.thresholds: {shown(self.experiment.thresholds)} ohm"
             )
         simulated = self.experiment.manifest is None
+        if not (self.conducts or simulated):
+            raise ValueError(
+                f"resistivity: got {INSULATOR} beside experiment.manifest, need a resistivity: "
+                "records show contact by its resistance"
+            )
         if simulated and self.rig.drift > 0.0 and not self.line_spec.is_gaussian:
             raise ValueError(
                 f"rig.drift: got {self.rig.drift:g}, need 0 for a simulated rig with roughness "

@@ -5,6 +5,9 @@ logarithm, which allows for the scatter and the bias of the logarithm of a mean 
 exponentially distributed powers, :math:`\psi'(n)` and :math:`\psi(n) - \ln n`. If the residuals
 are larger than that, so are the intervals.
 
+An instrument blurs or cuts off the shortest waves. `waves_of_surface` finds them, so that the fits
+are of the surface.
+
 Moments of the heights have intervals by the jackknife over blocks of the surface, which are longer
 than its waves and so nearly independent.
 """
@@ -25,6 +28,17 @@ LEAST_TRANSFER = 0.25
 """Waves of which the Gaussian filters leave less of the power, those beyond the cutoffs, take no
 part in fits; the others are divided by what is left."""
 
+TOLERANCE = 0.05
+"""Relative deviation from a self-affine spectrum that shows nothing of the instrument, added to the
+standard errors of the densities."""
+
+PRICE = 9.0
+"""Squared deviation, in standard errors, that a density must save to be left out of the fits; so
+must a blur."""
+
+LEAST_DENSITIES = 6
+"""Fewest densities that the search for the instrument's resolution keeps."""
+
 LEAST_CHANGE = 2.0
 """A roll-off nearer than this factor to either end of the spectrum cannot be told from none."""
 
@@ -37,20 +51,92 @@ class Estimate(NamedTuple):
     upper: float
 
 
-def hurst_exponent(spectrum: LineSpectrum, longest: float, shortest: float) -> Estimate:
-    r"""Fit the Hurst exponent, :math:`C \propto q^{-2H-1}`, to a range of wavelengths.
+class Waves(NamedTuple):
+    """Waves of a spectrum that show the surface.
+
+    Attributes
+    ----------
+    longest, shortest : float
+        Limits of the waves to fit, m.
+    blurred : bool
+        Whether the instrument blurs them: their power falls as :math:`e^{-b q^2}`.
+    resolution : float
+        Shortest wave that shows the surface rather than the instrument, m: NaN if all do. Of a
+        blur `LEAST_TRANSFER` of the power is left there.
+    """
+
+    longest: float
+    shortest: float
+    blurred: bool = False
+    resolution: float = np.nan
+
+
+def waves_of_surface(spectrum: LineSpectrum, longest: float, shortest: float) -> Waves:
+    r"""Find the waves of a spectrum that show the surface rather than the instrument.
+
+    Of all spectra with a roll-off and a power law, up to some wave vector and with a blur
+    :math:`e^{-b q^2}` or without, the one is chosen whose misfit and price are least. An optical
+    instrument blurs; a digital filter may cut all waves from one on.
 
     Parameters
     ----------
     spectrum : LineSpectrum
         The spectrum of the line.
     longest, shortest : float
-        Limits of the range, m.
+        Limits of the search, m.
+
+    Returns
+    -------
+    Waves
+        The waves.
+
+    Examples
+    --------
+    >>> q = np.geomspace(1e4, 1e6, 40)
+    >>> seen = q**-2.4 * np.exp(-((q / 5e5) ** 2))
+    >>> blurred = LineSpectrum("a", q, seen, np.full(40, 1e4), np.ones(40), False)
+    >>> found = waves_of_surface(blurred, 1e-3, 1e-6)
+    >>> found.blurred, f"{found.resolution:.3g}"
+    (True, '1.07e-05')
+    """
+    wave_vector, logarithm, error = _logarithms(spectrum, Waves(longest, shortest))
+    places, error = np.log(wave_vector), np.hypot(error, TOLERANCE)
+
+    def tried():
+        """Price, number of densities, and strength of the blur at the last of them."""
+        for count in range(min(LEAST_DENSITIES, places.size), places.size + 1):
+            for blurred in (False, True):
+                for bend in places[: max(count - LEAST_DENSITIES + 2, 1)]:
+                    basis = _basis(places[:count], bend, blurred)
+                    fit, _, misfit = _least_squares(basis, logarithm[:count], error[:count])
+                    blur = fit[2] if blurred else 0.0
+                    if blur >= 0.0:
+                        yield misfit + PRICE * (places.size - count + blurred), count, blur
+
+    _, count, blur = min(tried(), default=(0.0, 0, 0.0))
+    if count == 0:
+        return Waves(longest, shortest)
+    end = wave_vector[count - 1]
+    seen = end * np.sqrt(-np.log(LEAST_TRANSFER) / blur) if blur else np.inf
+    seen = min(seen, end if count < places.size else np.inf)
+    resolution = 2.0 * np.pi / seen if seen <= wave_vector[-1] else np.nan
+    return Waves(longest, 2.0 * np.pi / end, bool(blur > 0.0), resolution)
+
+
+def hurst_exponent(spectrum: LineSpectrum, waves: Waves) -> Estimate:
+    r"""Fit the Hurst exponent, :math:`C \propto q^{-2H-1}`, to a range of wavelengths.
+
+    Parameters
+    ----------
+    spectrum : LineSpectrum
+        The spectrum of the line.
+    waves : Waves
+        The range.
 
     Returns
     -------
     Estimate
-        The exponent.
+        The exponent; one outside 0 to 1 is that of no self-affine surface.
 
     Raises
     ------
@@ -62,24 +148,23 @@ def hurst_exponent(spectrum: LineSpectrum, longest: float, shortest: float) -> E
     >>> q = np.geomspace(1e4, 1e6, 40)
     >>> many = np.full(40, 1e4)
     >>> exact = LineSpectrum("a", q, q**-2.4, many, np.ones(40), True)
-    >>> f"{hurst_exponent(exact, 1e-4, 1e-5).value:.4f}"
+    >>> f"{hurst_exponent(exact, Waves(1e-4, 1e-5)).value:.4f}"
     '0.7000'
     """
-    wave_vector, logarithm, error = _logarithms(spectrum)
-    wavelength = 2.0 * np.pi / wave_vector
-    used = (wavelength <= longest * (1 + 1e-9)) & (wavelength >= shortest * (1 - 1e-9))
-    if np.count_nonzero(used) < 3:
+    wave_vector, logarithm, error = _logarithms(spectrum, waves)
+    if wave_vector.size < 3:
         raise DataError(
-            f"{spectrum.name}: got {np.count_nonzero(used)} densities between {shortest:.3g} and "
-            f"{longest:.3g} m, need three or more for the Hurst exponent"
+            f"{spectrum.name}: got {wave_vector.size} densities between {waves.shortest:.3g} and "
+            f"{waves.longest:.3g} m, need three or more for the Hurst exponent"
         )
-    basis = np.stack([np.ones(used.sum()), np.log(wave_vector[used])], axis=1)
-    fit, covariance = _least_squares(basis, logarithm[used], error[used])
-    exponent, half = -0.5 * float(fit[1] + 1.0), 0.98 * float(np.sqrt(covariance[1, 1]))
+    basis = _basis(np.log(wave_vector), -np.inf, waves.blurred)
+    fit, covariance, _ = _least_squares(basis, logarithm, error)
+    exponent = 0.5 * float(fit[1] - 1.0 - spectrum.isotropic)
+    half = 0.98 * float(np.sqrt(covariance[1, 1]))
     return Estimate(exponent, exponent - half, exponent + half)
 
 
-def roll_off(spectrum: LineSpectrum) -> Estimate | None:
+def roll_off(spectrum: LineSpectrum, waves: Waves) -> Estimate | None:
     r"""Fit the wavelength above which the spectrum rises no more.
 
     The model is a constant below the wave vector of the roll-off and a power law above, of the
@@ -89,32 +174,29 @@ def roll_off(spectrum: LineSpectrum) -> Estimate | None:
     ----------
     spectrum : LineSpectrum
         The spectrum of the line.
+    waves : Waves
+        The range.
 
     Returns
     -------
     Estimate or None
-        The wavelength, m; None if the best fit is too near to an end of the spectrum.
+        The wavelength, m; None if the best fit is too near to an end of the range.
 
     Examples
     --------
     >>> q = np.geomspace(1e4, 1e6, 40)
     >>> density = q * np.where(q < 5e4, 1.0, (q / 5e4) ** -3.6)
     >>> exact = LineSpectrum("a", q, density, np.full(40, 1e4), np.ones(40), True)
-    >>> f"{2 * np.pi / roll_off(exact).value:.3g}"
+    >>> f"{2 * np.pi / roll_off(exact, Waves(1e-3, 1e-6)).value:.3g}"
     '4.97e+04'
     """
-    wave_vector, logarithm, error = _logarithms(spectrum)
+    wave_vector, logarithm, error = _logarithms(spectrum, waves)
     places = np.log(wave_vector)
-    if spectrum.isotropic:
-        logarithm = logarithm - places
-
-    def fitted(place):
-        basis = np.stack([np.ones(places.size), np.maximum(places - place, 0.0)], axis=1)
-        fit, _ = _least_squares(basis, logarithm, error)
-        return np.sum(((logarithm - basis @ fit) / error) ** 2)
-
+    if places.size < 3:
+        return None
     tried = np.linspace(places[0], places[-1], 400)
-    misfit = np.array([fitted(place) for place in tried])
+    bases = (_basis(places, place, waves.blurred) for place in tried)
+    misfit = np.array([_least_squares(basis, logarithm, error)[2] for basis in bases])
     best = int(np.argmin(misfit))
     margin = np.log(LEAST_CHANGE)
     if not places[0] + margin <= tried[best] <= places[-1] - margin:
@@ -199,20 +281,34 @@ def _moments(sums):
     return np.array([np.sqrt(variance), deviation, skew / variance**1.5, kurt / variance**2])
 
 
-def _logarithms(spectrum):
-    """Wave vectors, logarithms of the unfiltered density without bias, and their errors."""
-    used = spectrum.transfer >= LEAST_TRANSFER
+def _logarithms(spectrum, waves):
+    """Wave vectors, logarithms of the unfiltered density without bias, and their errors.
+
+    The density is that of the surface if it is isotropic and else of the profile.
+    """
+    wavelength = 2.0 * np.pi / spectrum.wave_vector
+    used = (wavelength <= waves.longest * (1 + 1e-9)) & (wavelength >= waves.shortest * (1 - 1e-9))
+    used &= spectrum.transfer >= LEAST_TRANSFER
     estimates = spectrum.estimates[used]
     bias = scipy.special.digamma(estimates) - np.log(estimates)
     logarithm = np.log(spectrum.density[used] / spectrum.transfer[used]) - bias
+    if spectrum.isotropic:
+        logarithm = logarithm - np.log(spectrum.wave_vector[used])
     error = np.sqrt(scipy.special.polygamma(1, estimates))
     return spectrum.wave_vector[used], logarithm, error
 
 
+def _basis(places, bend, blurred):
+    """Functions of ln q that a spectrum's logarithm consists of: level, fall from a bend, blur."""
+    fall = -np.maximum(places - max(bend, places[0]), 0.0)
+    terms = [np.ones(places.size), fall, -np.exp(2.0 * (places - places[-1]))]
+    return np.stack(terms[: 2 + blurred], axis=1)
+
+
 def _least_squares(basis, values, error):
-    """Coefficients of a weighted linear fit and their covariance."""
+    """Coefficients of a weighted linear fit, their covariance, and the sum of squares left."""
     weighted = basis / error[:, None]
     fit, *_ = np.linalg.lstsq(weighted, values / error, rcond=None)
     freedom = max(values.size - basis.shape[1], 1)
-    misfit = np.sum(((values - basis @ fit) / error) ** 2) / freedom
-    return fit, np.linalg.pinv(weighted.T @ weighted) * max(misfit, 1.0)
+    misfit = np.sum(((values - basis @ fit) / error) ** 2)
+    return fit, np.linalg.pinv(weighted.T @ weighted) * max(misfit / freedom, 1.0), misfit

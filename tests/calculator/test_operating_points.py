@@ -140,6 +140,14 @@ def test_a_profile_is_of_one_point(rollers, oil):
         lube.profile(rollers, oil, **POINT | {"force": ["1 N", "2 N"]})
 
 
+def test_the_trace_of_an_insulator_has_no_resistance(oil):
+    insulator = lube.Rollers("2 mm", "0.2 um", resistivity="insulator")
+    point = {"force": "5 N", "speed": "100 rpm", "temperature": "60 degC"}
+    found = lube.trace(insulator, oil, **point)
+    assert np.isnan(found["contact_resistance"]).all() and (found["contact_length"] > 0.0).any()
+    assert np.isnan(insulator.resistivity)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -65,6 +65,17 @@ def test_rollers_take_ra_a_composite_or_a_roughness_of_each():
         assert 2.0 * np.pi / line.q_roll_off == pytest.approx(1e-4)
 
 
+def test_a_height_measured_within_cutoffs_is_that_of_the_waves_within_them():
+    whole = Rollers("50 mm", "0.2 um")
+    assert whole.lines == Rollers("50 mm", "0.2 um", long_cutoff="0.8 mm").lines
+    part = Rollers("50 mm", "0.2 um", longest_wavelength="0.2 mm", long_cutoff="0.8 mm")
+    assert part.pair.composite_rms_roughness < 0.4 * whole.pair.composite_rms_roughness
+    assert part.pair.rms_heights == part.lines.rms_height
+    assert part.band == "waves 200 µm to 3.14 µm, heights stated for 800 µm to 3.14 µm"
+    own = Rollers("50 mm", "0.2 um", second={"roughness": {"short_cutoff": "8 um"}})
+    assert own.pair.rms_heights[0] == 2e-7 < own.pair.rms_heights[1]
+
+
 def test_an_oil_of_numbers_is_that_of_a_record():
     record, given = Oil(OIL), Oil(viscosity=TWO, density="860 kg/m^3", base="polyalphaolefin")
     temperatures = ["40 degC", "57 degC", "100 degC"]
@@ -102,7 +113,8 @@ def test_an_oil_of_a_table_of_dynamic_viscosities(tmp_path):
 def test_both_show_themselves_and_travel_between_processes():
     rollers, oil = Rollers("50 mm", "0.2 um"), Oil(OIL)
     assert repr(rollers) == (
-        "<Rollers: radii 50 and 50 mm, rms roughness 0.2 and 0.2 um, 10 mm long>"
+        "<Rollers: radii 50 and 50 mm, rms roughness 0.2 and 0.2 um, 10 mm long, "
+        "waves 800 µm to 3.14 µm>"
     )
     assert repr(oil) == "<Oil: Mobilgear SHC XMP 320, valid from 40 to 100 degC>"
     assert pickle.loads(pickle.dumps(rollers)).lines == rollers.lines

@@ -81,7 +81,10 @@ def test_a_last_run_gives_its_time(tmp_path):
 
 def test_changes_are_those_of_snakemake():
     changes = ["name=mine", "realisations=8", "rollers={first: {radius: 30 mm}}"]
-    assert "× 8 realisations" in check_study(PAPER, changes)[0][2]
+    summary = check_study(PAPER, changes)[0]
+    assert any("× 8 realisations" in line for line in summary)
+    band = "band              waves 364 µm (contact width at the largest force) to 1.88 µm"
+    assert band in summary
     for change, expected in (
         ("realisations=8", "--config: name: missing"),
         ("realisations", "need key=value"),

@@ -6,6 +6,16 @@ import pytest
 from editors import complaints
 from studies import PAPER_CONTENT
 
+from lube import (
+    Oil,
+    Rollers,
+    contact_probability,
+    contact_statistics,
+    film_table,
+    lubricant_table,
+    roughness_lines,
+    with_intervals,
+)
 from lube.cli import main
 from lube.errors import LubeError
 from lube.recordings.manifest import read_manifest
@@ -26,10 +36,34 @@ def new(tmp_path, monkeypatch, capsys):
     return call
 
 
-def test_without_options_it_is_the_papers_study_under_a_new_name(new):
+def test_without_options_it_is_the_papers_study_with_waves_up_to_the_usual_cutoff(new):
     assert new("mine.yaml") == (0, "Written: mine.yaml\nNext: lube check mine.yaml\n")
     own = {"name": "mine", "about": {"title": "mine", "creators": [], "date": None}}
-    assert resolved_content("mine.yaml") | own == PAPER_CONTENT | own
+    waves = {"longest_wavelength": "0.8 mm", "shortest_wavelength": "3.1416 um"}
+    own["roughness"] = PAPER_CONTENT["roughness"] | waves
+    content = resolved_content("mine.yaml")
+    assert content | {"name": "mine"} == PAPER_CONTENT | own
+    assert load_study("mine.yaml").band == "waves 800 µm to 3.14 µm"
+
+
+def test_it_has_the_numbers_of_the_rollers_of_a_notebook_to_the_last_bit(new):
+    options = ("--radius", "2 1.5 mm", "--roughness", "0.1 um", "--force", "5 9 N")
+    new("mine.yaml", *options, "--speed", "100 rpm", "--temperature", "60 degC")
+    study = load_study("mine.yaml")
+    rollers = Rollers("2 mm", "0.1 um", second={"radius": "1.5 mm"})
+    assert rollers.lines == study.line_spec
+    assert (rollers.pair, rollers.layer) == (study.rollers, study.boundary_layer)
+    oil = lubricant_table(study.lubricants, [60.0])
+    film = film_table(oil, study.rough_rollers, [5.0, 9.0], [100.0], ["moes"])
+    lines = roughness_lines(study.line_spec, study.seed, range(4))
+    contact = with_intervals(contact_statistics(lines, film, study.boundary_layer), film)
+    found = contact_probability(
+        rollers, Oil(study.lubricants[0].name), force=["5 N", "9 N"], speed="100 rpm",
+        temperature="60 degC", film_formula="moes", realisations=4, seed=study.seed,
+    )  # fmt: skip
+    wanted = contact["breakthrough_probability_mean"].squeeze().values
+    assert found["breakthrough_probability_mean"].values.tolist() == wanted.tolist()
+    assert 0.0 < wanted[0] < wanted[1]
 
 
 def test_with_all_options_each_value_arrives_in_its_place(new, tmp_path):

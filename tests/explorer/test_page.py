@@ -18,6 +18,7 @@ from lube.storage.netcdf import load
 EXPLORED = ("lubricant", "film", "contact", "tail", "master", "trace", "comparison")
 FLAGS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run")
 FLAGS += ("--disable-background-networking", "--disable-component-update", "--disable-sync")
+BAND = "waves 800 µm to 3.14 µm"
 
 
 @pytest.fixture(scope="module")
@@ -51,14 +52,14 @@ def counted(explored):
 @pytest.fixture(scope="module")
 def page_file(explored, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "explorer.html"
-    path.write_text(explorer_page(explored), encoding="utf-8")
+    path.write_text(explorer_page(explored, BAND), encoding="utf-8")
     return path
 
 
 @pytest.fixture(scope="module")
 def counted_file(counted, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "counted.html"
-    path.write_text(explorer_page(counted), encoding="utf-8")
+    path.write_text(explorer_page(counted, BAND), encoding="utf-8")
     return path
 
 
@@ -327,7 +328,7 @@ def two_oils(explored):
 
 def test_a_study_of_one_point_has_no_control_and_no_map(visit, explored, tmp_path):
     path = tmp_path / "one.html"
-    path.write_text(explorer_page(one_point(explored)), encoding="utf-8")
+    path.write_text(explorer_page(one_point(explored), BAND), encoding="utf-8")
     page = visit(path)
     assert page.inner_text("h1") == TITLE
     assert page.locator("[id^=control-]").count() == 0
@@ -342,7 +343,7 @@ def test_a_study_of_one_point_has_no_control_and_no_map(visit, explored, tmp_pat
 
 def test_of_several_oils_one_is_chosen(visit, explored, tmp_path):
     path = tmp_path / "two.html"
-    path.write_text(explorer_page(two_oils(explored)), encoding="utf-8")
+    path.write_text(explorer_page(two_oils(explored), BAND), encoding="utf-8")
     page = visit(path)
     before = float(said(page)["digits"]["film_thickness"])
     page.locator("#control-lubricant select").select_option("second")

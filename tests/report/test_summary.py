@@ -52,8 +52,9 @@ def test_rollers_with_a_roughness_of_their_own_are_stated(study, datasets):
     rollers = study.rollers.model_copy(update={"second": second})
     text = facts(study.model_copy(update={"rollers": rollers}), datasets["lubricant"])
     assert "rms roughness 0.201 µm (from Ra 0.16 µm)" in text
-    assert "first: Hurst exponent 0.7, wavelengths 157 µm to 420 µm; second: Hurst exp" in text
-    assert "roll-off at 200 µm, skewness 0 and kurtosis 4 |" in text
+    assert "first: Hurst exponent 0.7; second: Hurst exponent 0.9, roll-off at 200 µm, skew" in text
+    band = "waves 420 µm (contact width at the largest force) to 157 µm"
+    assert f"skewness 0 and kurtosis 4; {band} |" in text
 
 
 @pytest.fixture

@@ -2,9 +2,15 @@
 
 import json
 
+import pytest
 from studies import ROOT, SMOKE
+from unlike_studies import STUDIES, write_study
 
+from lube.errors import LubeError
 from lube.schema import DATASETS, FILES, ON_REQUEST, STAGES, SUMMARIES, forerunners
+from lube.stages.areal import strip_contacts
+from lube.stages.film_shape import film_shape_probabilities
+from lube.stages.patch import patch_contact
 from lube.study.study import load_study
 
 
@@ -35,3 +41,31 @@ def test_every_value_of_a_row_is_one_of_the_study_and_plain():
         assert list(inputs) == list(stage.values)
         assert set(study.origin(name)) == {*forerunners(name), name}
         json.dumps(inputs, allow_nan=False)
+
+
+def refuses(stage, *arguments):
+    """Whether a stage refuses the lines before it needs a film, which is missing here."""
+    try:
+        stage(*arguments)
+    except LubeError:
+        return True
+    except (TypeError, AttributeError):
+        return False
+    return False
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_what_the_registry_promises_is_what_the_stages_can_make(name, tmp_path):
+    study = load_study(write_study(STUDIES[name], tmp_path / name))
+    spec, layer = study.line_spec, study.boundary_layer
+    areal = refuses(strip_contacts, spec, None, layer, 0.01, 1)
+    assert study.has("areal") == (not areal and study.follows_master_map)
+    assert study.has("areal_gauge") == (study.has("areal") and study.has("gauge"))
+    assert study.has("patch") == (not refuses(patch_contact, spec, None, None))
+    shaped = refuses(film_shape_probabilities, spec, None, None, layer, 1)
+    assert study.has("film_shape") == (not shaped)
+    assert study.has("surface") == bool(study.topographies)
+    for stage in ("rig", "experiment", "comparison"):
+        assert study.has(stage) == (study.resistivity != "insulator")
+    for stage, row in STAGES.items():  # a file cannot be made without those it reads
+        assert not study.has(stage) or all(study.has(one) for one in row.inputs)

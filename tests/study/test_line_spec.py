@@ -3,12 +3,15 @@
 import math
 from functools import partial
 
+import numpy as np
 import pytest
 from refusals import NEEDED, one_line
-from studies import PAPER
+from studies import PAPER, REMOVED
 
 from lube.errors import LubeError
 from lube.study.study import load_study
+from lube.surfaces.spectra import power_spectrum
+from lube.surfaces.synthetic import draw_line
 
 refusal = partial(one_line, LubeError, load_study)
 
@@ -49,10 +52,80 @@ def test_a_rollers_own_roughness_is_an_input_of_its_lines_but_not_of_the_film(st
     assert before.stage_inputs("roughness") != after.stage_inputs("roughness")
 
 
+CUTOFFS = {"long_cutoff": "0.4 mm", "short_cutoff": "10 um"}
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {"roll_off_wavelength": "0.2 mm"}, {"hurst_exponent": 0.9}]
+)
+@pytest.mark.parametrize("longest", ["0.8 mm", "0.25 mm"])
+def test_a_height_stated_within_cutoffs_is_that_of_the_drawn_waves_within_them(
+    study_with, changes, longest
+):
+    pairs = CUTOFFS | changes | {"longest_wavelength": longest}
+    study = study_with(*((f"roughness.{name}", value) for name, value in pairs.items()))
+    spec = study.line_spec
+    heights = spec.height_step * draw_line(spec, 0, np.random.SeedSequence(1))
+    rms = spec.rms_height[0]
+    assert np.std(heights) == pytest.approx(rms, rel=1e-6)
+    assert study.rough_rollers.rms_heights == spec.rms_height
+    q, density = power_spectrum(heights, spec.spacing)
+
+    def within(shortest, longest):
+        inside = (q >= 2.0 * math.pi / longest) & (q <= 2.0 * math.pi / shortest)
+        return math.sqrt(np.sum(density[inside]) * q[0])
+
+    if longest == "0.8 mm":  # the stated waves are drawn, and others
+        assert within(10e-6, 0.4e-3) == pytest.approx(2e-7, rel=0.01)
+        assert rms > 2.01e-7
+    # The whole spectrum by quadrature, also of the waves that are not drawn.
+    roll_off = 2.0 * math.pi / (2e-4 if "roll_off_wavelength" in changes else 1e-2)
+    hurst = spec.lines[0].hurst_exponent
+
+    def power(longest, shortest):
+        q = np.geomspace(2.0 * math.pi / longest, 2.0 * math.pi / shortest, 200_001)
+        rising, falling = q / roll_off, (q / roll_off) ** (-2.0 * hurst - 1.0)
+        return np.trapezoid(np.where(q < roll_off, rising, falling), q)
+
+    whole = power(2.0 * math.pi / spec.q_min, 2.0 * math.pi / spec.q_max)
+    assert rms / 2e-7 == pytest.approx(math.sqrt(whole / power(4e-4, 1e-5)), rel=1e-6)
+
+
+def test_a_height_without_cutoffs_is_that_of_the_line_to_the_last_bit(study_with):
+    study = load_study(PAPER)
+    assert study.rough_rollers == study.rollers
+    of_ra = study_with(("rollers.second", {**STEEL, "ra_roughness": "0.16 um"}))
+    assert of_ra.line_spec.rms_height == of_ra.rollers.rms_heights
+    both = study_with(("roughness.long_cutoff", "0.8 mm"), ("rollers.first.rms_roughness", REMOVED),
+                      ("rollers.second.rms_roughness", REMOVED),
+                      ("rollers.composite_rms_roughness", "0.3 um"))  # fmt: skip
+    assert both.rough_rollers.composite_rms_roughness == pytest.approx(
+        math.hypot(*both.line_spec.rms_height), rel=1e-15
+    )
+    assert both.rough_rollers.composite_rms_roughness < 0.3e-6
+    inputs = both.stage_inputs("film")["composite_rms_roughness"]
+    assert inputs == both.rough_rollers.composite_rms_roughness
+
+
+def test_the_band_is_said(study_with):
+    assert load_study(PAPER).band == (
+        "waves 420 µm (contact width at the largest force) to 3.14 µm"
+    )
+    own = {"longest_wavelength": "0.8 mm", "short_cutoff": "2.5 um"}
+    assert study_with((OWN, own)).band == (
+        "first: waves 420 µm (contact width at the largest force) to 3.14 µm; second: waves 800 µm "
+        "to 3.14 µm, heights stated for 800 µm to 2.5 µm"
+    )
+
+
 # Mistakes
 
 OWN = "rollers.second.roughness"
+STEEL = {"radius": "50 mm", "young_modulus": "210 GPa", "poisson_ratio": 0.3}
 REFUSED = [
+    ("roughness.long_cutoff", "2 um", "roughness.long_cutoff: got a height stated for waves of 2e"),
+    ("roughness.short_cutoff", "1 mm", "roughness.short_cutoff: got a height stated for waves of"),
+    (OWN, {"long_cutoff": "1 um", "short_cutoff": "2 um"}, f"{OWN}.long_cutoff: got a height"),
     ("roughness.roll_off_wavelength", "1 mm", "roughness.roll_off_wavelength: got 0.001 m, need"),
     ("roughness.roll_off_wavelength", "3 um", "from the shortest to the longest wavelength, 3.14"),
     (OWN, {"roll_off_wavelength": "1 mm"}, f"{OWN}.roll_off_wavelength: got 0.001 m, need one"),

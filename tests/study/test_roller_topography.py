@@ -264,3 +264,26 @@ def test_a_topography_beside_another_roughness_is_refused(study_file):
     content["rollers"]["first"]["rms_roughness"] = "0.2 um"
     path.write_text(yaml.safe_dump(content))
     assert "beside a roughness of 2e-07 m rms, need one of the two" in refusal(path)
+
+
+def test_two_measured_surfaces_need_no_hurst_exponent_and_one_does(study_file):
+    missing = {"points": 20_000, "shortest_wavelength": "6.25 um", "hurst_exponent": None}
+    path = study_file(MAP)
+    content = yaml.safe_load(path.read_text("utf-8")) | {"roughness": missing}
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    assert load_study(path).line_spec.lines[0].hurst_exponent is None
+    content["rollers"]["second"] = {"topography": None, "rms_roughness": "0.2 um"}
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    expected = "roughness.hurst_exponent: missing, need it for the second roller"
+    assert expected in refusal(path)
+
+
+def test_cutoffs_beside_a_topography_are_refused(study_file):
+    own = BAND | {"long_cutoff": "0.8 mm"}
+    message = refusal(study_file(MAP, roughness=own))
+    assert "roughness.long_cutoff: got 0.0008 beside a topography" in message
+    both = {"points": 20_000, "shortest_wavelength": "6.25 um", "short_cutoff": "7 um"}
+    path = study_file(MAP)
+    content = yaml.safe_load(path.read_text("utf-8")) | {"roughness": both}
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    assert "roughness.short_cutoff: got 7e-06 m beside two topographies" in refusal(path)

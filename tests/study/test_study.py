@@ -5,10 +5,11 @@ import math
 import pytest
 from studies import OIL, PAPER
 
-from lube.errors import StudyError
+from lube.errors import LubeError, StudyError
 from lube.schema import STAGES
 from lube.study.rig_settings import Experiment, Rig
 from lube.study.study import load_study
+from lube.workflow.figure_list import study_figures
 
 # What the paper says
 
@@ -182,3 +183,21 @@ def test_the_same_value_in_another_unit_changes_nothing(changed_stages):
 
 def test_a_lubricants_values_are_inputs_of_the_lubricant_stage_alone(changed_stages):
     assert changed_stages(("lubricants", [OIL, "n-dodecane"])) == {"lubricant"}
+
+
+def test_rollers_that_do_not_conduct_have_no_rig(paper_with):
+    insulator, paper = load_study(paper_with(("resistivity", "insulator"))), load_study(PAPER)
+    assert paper.conducts and not insulator.conducts
+    rigs = {"rig", "experiment", "comparison", "gauge", "areal_gauge", "coverage"}
+    assert {stage for stage in STAGES if paper.has(stage) and not insulator.has(stage)} == rigs
+    figures = set(study_figures(paper)) - set(study_figures(insulator))
+    assert {name[:5] for name in figures} >= {"fig13", "fig14", "fig15", "fig16", "fig17", "fig18"}
+    assert "fig05_contact_length" not in figures
+
+
+def test_measured_records_of_insulators_are_refused(paper_with):
+    changes = ("resistivity", "insulator"), ("experiment.manifest", "records.csv")
+    with pytest.raises(LubeError, match="resistivity: got insulator beside"):
+        load_study(paper_with(*changes))
+    with pytest.raises(LubeError, match=r"got 'wood', need a number .*, or insulator"):
+        load_study(paper_with(("resistivity", "wood")))

@@ -72,6 +72,12 @@ def test_studies_are_valid(page, folder):
             load_study(folder / "my-study.yaml")
 
 
+def test_every_shipped_study_is_listed():
+    page = (ROOT / "docs/studies.md").read_text(encoding="utf-8")
+    for path in (ROOT / "workflow/config").glob("*.yaml"):
+        assert f"| `{path.name}` |" in page
+
+
 def test_the_site_is_built_without_warnings_and_shows_everything(smoke, tmp_path):
     command = [sys.executable, "-m", "sphinx", "-qW", "--keep-going", smoke / "docs", tmp_path]
     built = subprocess.run(command, capture_output=True, text=True, check=False)

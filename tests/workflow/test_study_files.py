@@ -2,6 +2,7 @@
 
 import pytest
 from studies import SMOKE
+from unlike_studies import STUDIES, write_study
 
 from lube.study.metadata import About
 from lube.study.study import load_study
@@ -22,6 +23,17 @@ def test_a_target_that_the_study_lacks_is_refused_in_one_line(paper_with):
             files.check_targets(["--cores", "2", target])
     with pytest.raises(SystemExit, match="need a measured topography of a roller"):
         files.check_targets(["results/mine/surface.nc"])
+
+
+def test_a_surface_along_rolling_has_no_isotropic_surface_to_press_or_to_count(tmp_path):
+    path = write_study(STUDIES["insulator"], tmp_path / "mine")
+    files = StudyFiles(load_study(path), path, {})
+    for target in ("areal_contact", "patch_contact", "results/insulator/areal.nc"):
+        with pytest.raises(SystemExit, match=f"the target {target}, need .*isotropic surfaces"):
+            files.check_targets([target])
+    for target in ("rig", "results/insulator/experiment.nc", "comparison", "gauge"):
+        with pytest.raises(SystemExit, match=f"the target {target}, need .*that conduct"):
+            files.check_targets([target])
 
 
 def test_inputs_are_named_from_the_working_folder_each_once(tmp_path, monkeypatch):

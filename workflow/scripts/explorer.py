@@ -9,6 +9,6 @@ from lube.workflow.jobs import begin_job
 begin_job(snakemake.log[0])
 study = load_study(**snakemake.config["study"])
 datasets = {kind: load(snakemake.input[kind], kind, study) for kind in snakemake.params.kinds}
-page = explorer_page(datasets)
+page = explorer_page(datasets, study.band)
 with written_whole(snakemake.output[0]) as part:
     part.write_text(page, encoding="utf-8")

@@ -255,8 +255,8 @@ function showTrace(point, sources, figures) {
     const close = trace.close.steps > 1 ? `within every ${trace.close.steps}` : "in every step";
     element("trace-text").textContent =
         `One realisation of the roughness, in contact ${percent(trace.share)} of this revolution. An asperity takes ` +
-        `${rounded(1e3 * trace.crossing)} ms to cross the contact. Drawn: the longest contact and the lowest ` +
-        `resistance within every ${trace.whole.steps} time steps, and around the peak ${close}.`;
+        `${rounded(1e3 * trace.crossing)} ms to cross the contact. Drawn: the longest contact${content.conducts ? " and the lowest resistance" : ""} ` +
+        `within every ${trace.whole.steps} time steps, and around the peak ${close}.`;
     const { time, contact_length } = trace.close;
     const peak = time[contact_length.indexOf(Math.max(...contact_length))];
     for (const [part, scale, zero] of [["whole", 1, 0], ["close", 1e3, peak]]) {
@@ -267,7 +267,7 @@ function showTrace(point, sources, figures) {
             resistance: contact_resistance[i],
         }));
         fill(sources[part], rows);
-        for (const name of [`${part}_length`, `${part}_resistance`]) {
+        for (const name of [`${part}_length`, `${part}_resistance`].filter((name) => name in figures)) {
             setRange(figures[name].x_range, rows.map((one) => one.time), 0.01);
         }
         figures[`${part}_length`].y_range.setv({ start: 0, end: 1.08 * Math.max(...rows.map((one) => one.length)) || 1 });
