@@ -139,7 +139,8 @@ def _variables(one, other, name):
     there = there.transpose(*here.dims)
     numbers = here.dtype.kind in "fiu" and there.dtype.kind in "fiu"
     lacking = here.isnull().values & there.isnull().values
-    differ = np.asarray((here.values != there.values) & ~lacking)  # of a scalar NumPy makes no array
+    # Of scalars NumPy makes a number, into which nothing can be written.
+    differ = np.asarray((here.values != there.values) & ~lacking)
     if not differ.any():
         return ""
     gap = differ.astype(float)

@@ -53,11 +53,11 @@ def test_a_rollers_own_roughness_is_an_input_of_its_lines_but_not_of_the_film(st
 
 OWN = "rollers.second.roughness"
 REFUSED = [
-    ("roughness.roll_off_wavelength", "1 mm", "roughness.roll_off_wavelength: got 0.001 m, need"),
+    ("roughness.roll_off_wavelength", "1 mm", "roughness.roll_off_wavelength: got 1 mm, need"),
     ("roughness.roll_off_wavelength", "3 um", "from the shortest to the longest wavelength, 3.14"),
-    (OWN, {"roll_off_wavelength": "1 mm"}, f"{OWN}.roll_off_wavelength: got 0.001 m, need one"),
-    (OWN, {"longest_wavelength": "3 um"}, "got 3.14e-06 m, need less than the longest, 3e-06 m"),
-    (OWN, {"shortest_wavelength": "1 mm"}, f"{OWN}.shortest_wavelength: got 0.001 m, need less"),
+    (OWN, {"roll_off_wavelength": "1 mm"}, f"{OWN}.roll_off_wavelength: got 1 mm, need one"),
+    (OWN, {"longest_wavelength": "3 um"}, "got 10 points, need less than the longest, 3e-06 m"),
+    (OWN, {"shortest_wavelength": "1 mm"}, f"{OWN}.shortest_wavelength: got 1 mm, need less"),
     (OWN, {"shortest_wavelength": "0.1 um"}, "too coarse a grid: its spacing is 3.14e-07 m"),
     (OWN, {"longest_wavelength": "1 m"}, "rollers.second.radius: the perimeter, 0.314 m, is too"),
     (OWN, {"kurtosis": 1.2}, f"{OWN}.kurtosis: got 1.2 with a skewness of 0, need at least 1.5"),

@@ -11,7 +11,7 @@ from pathlib import Path
 from snakemake.api import SnakemakeApi
 from snakemake.settings import types
 
-TARGETS = "all areal_contact patch_contact computed benchmark archive report".split()
+TARGETS = ["all", "areal_contact", "patch_contact", "computed", "benchmark", "archive", "report"]
 
 
 def followers(study):
