@@ -18,6 +18,8 @@ from lube.errors import DataError, shown
 from lube.recordings.signals import Channel, Signal, find_signals, header_cell
 from lube.study.small_csv import delimiter_of, split_cells
 
+_NUMBER = re.compile(r"[+-]?([.,]?\d|nan\b|inf\b)", re.IGNORECASE)  # as it begins
+
 HEAD_BYTES = 2**20
 """Bytes read first, to find the decimal separator and the sampling interval."""
 
@@ -92,12 +94,7 @@ class TextSignal:
         """Whether a line has as many cells as there are columns, with numbers in those read."""
         cells = split_cells(row, self.delimiter)
         read = [signal.index for signal in (self.time, self.measured) if signal is not None]
-        if len(cells) != self.width:
-            return False
-        try:
-            return bool([float(cells[index].replace(",", ".")) for index in read])
-        except ValueError:
-            return False
+        return len(cells) == self.width and all(_NUMBER.match(cells[index]) for index in read)
 
     def _pieces(self):
         """Text of the rows, in pieces of whole lines; the first is small, for `head`."""

@@ -347,10 +347,7 @@ def _as_written(line, content):
     message = re.match(r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)? [^\s,]+)", line)
     value = content
     for part in message[1].split(".") if message else ():
-        if isinstance(value, list) and part.isdigit():
-            value = value[int(part)]
-        else:
-            value = value.get(part) if isinstance(value, dict) else None
+        value = value.get(part) if isinstance(value, dict) else None
     return line.replace(message[2], value, 1) if message and isinstance(value, str) else line
 
 

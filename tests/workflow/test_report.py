@@ -137,12 +137,15 @@ def test_on_a_narrow_screen_the_menu_is_a_bar_that_opens(report, tmp_path):
         browser = driver.chromium.launch(executable_path=program, args=["--no-sandbox"])
         shown = browser.new_page(viewport={"width": 400, "height": 800})
         shown.goto((tmp_path / "report.html").as_uri())
-        menu, chapter = shown.locator("#app > div > nav"), shown.get_by_text("2 Contact")
+        menu, chapter = (
+            shown.locator("#app > div > nav"),
+            shown.get_by_role("link", name="2 Contact"),
+        )
         chapter.wait_for(state="attached")
         shown.wait_for_function("document.querySelector('#app > div > nav').clientHeight < 40")
         assert shown.locator("h1.title").bounding_box()["width"] > 300
         menu.locator("> h1").hover()
         shown.wait_for_function("document.querySelector('#app > div > nav').clientHeight > 200")
         chapter.click()
-        shown.get_by_text("The contact model").wait_for()
+        shown.get_by_role("cell", name="The contact model").wait_for()
         browser.close()
