@@ -4,7 +4,10 @@ Every message says which input is meant, what came and what is needed.
 """
 
 import difflib
+import re
 from collections.abc import Iterable
+
+_WORD = re.compile(r"[^\W_]+")
 
 LONGEST_VALUE = 60
 """Longest representation of a value in a message, in characters."""
@@ -53,8 +56,34 @@ def right_one(wrong: str, names: Iterable[str]) -> str:
     "did you mean 'moes'?"
     """
     names = list(names)
-    near = difflib.get_close_matches(wrong, names, n=1)
-    return f"did you mean {near[0]!r}?" if near else f"need one of {', '.join(names)}"
+    near = nearest(wrong, names)
+    return f"did you mean {near!r}?" if near else f"need one of {', '.join(names)}"
+
+
+def nearest(wrong: str, names: Iterable[str]) -> str | None:
+    """Find the known name that was probably meant: one of the same words, or else of like letters.
+
+    Parameters
+    ----------
+    wrong : str
+        The unknown name.
+    names : iterable of str
+        The known ones.
+
+    Returns
+    -------
+    str or None
+        The name, None if none is near.
+
+    Examples
+    --------
+    >>> nearest("roughness_ra", ["rms_roughness", "ra_roughness"])
+    'ra_roughness'
+    """
+    by_words = {" ".join(sorted(_WORD.findall(name.casefold()))): name for name in names}
+    words = " ".join(sorted(_WORD.findall(wrong.casefold())))
+    near = difflib.get_close_matches(wrong, by_words.values(), n=1)
+    return by_words.get(words) or next(iter(near), None)
 
 
 class LubeError(Exception):

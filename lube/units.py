@@ -75,7 +75,7 @@ def parse_number(value: object) -> float:
     except (TypeError, ValueError, ZeroDivisionError, OverflowError):
         number = math.nan
     if isinstance(value, bool | bytes) or not math.isfinite(number):
-        raise LubeError(f"got {shown(value)}, need a finite number")
+        raise LubeError(f"got {shown(value)}, need a finite number{_decimal_point(value)}")
     return number
 
 
@@ -243,8 +243,15 @@ def _parts(value, needed):
     """Split a text into its number and its unit."""
     match = _QUANTITY.fullmatch(value.strip()) if isinstance(value, str) else None
     if match is None or match[2] is None:
-        raise LubeError(f"got {shown(value)}, need {needed}")
+        raise LubeError(f"got {shown(value)}, need {needed}{_decimal_point(value)}")
     return parse_number(match[1]), match[2]
+
+
+def _decimal_point(value):
+    """Say that a decimal comma should be a point, if there is one."""
+    if not isinstance(value, str) or not re.match(r"\s*[+-]?\d*,\d", value):
+        return ""
+    return f", with a decimal point: {shown(value.replace(',', '.', 1))}"
 
 
 def with_unit(value: float, unit: str) -> str:

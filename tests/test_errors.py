@@ -1,6 +1,6 @@
 """Errors are one line for any content of a file."""
 
-from lube.errors import LONGEST_VALUE, LubeError, StudyError, shown
+from lube.errors import LONGEST_VALUE, LubeError, StudyError, right_one, shown
 
 
 def test_what_does_not_print_is_replaced_by_its_escape():
@@ -20,3 +20,10 @@ def test_a_small_value_is_shown_as_python_writes_it_and_a_large_one_is_cut_off()
     for value in ["x" * 10**6, list(range(10**4)), {"a": "µ" * 999}]:
         assert len(shown(value)) == LONGEST_VALUE
         assert shown(value).endswith("...")
+
+
+def test_a_name_of_the_same_words_in_another_order_is_the_one_that_was_meant():
+    names = ["rms_roughness", "ra_roughness", "roughness"]
+    assert right_one("roughness_ra", names) == "did you mean 'ra_roughness'?"
+    assert right_one("Roughness-RMS", names) == "did you mean 'rms_roughness'?"
+    assert right_one("roughnes", names) == "did you mean 'roughness'?"

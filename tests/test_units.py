@@ -95,9 +95,13 @@ def test_a_voltage_or_resistance_says_which_it_is():
 
 
 def test_what_is_no_number_with_a_unit_is_refused_with_the_unit_that_is_needed():
-    for value in [50, 50.0, True, None, [1], {"a": 1}, "", "50", "mm", "fifty mm", "50,5 mm"]:
+    for value in [50, 50.0, True, None, [1], {"a": 1}, "", "50", "mm", "fifty mm"]:
         needed = f"got {value!r}, need a number with its unit, such as '1 m'"
         assert refusal(parse_quantity, value, "m") == needed
+    comma = "got '50,5 mm', need a number with its unit, such as '1 m', with a decimal point: "
+    assert refusal(parse_quantity, "50,5 mm", "m") == comma + "'50.5 mm'"
+    comma = "got '0,3', need a finite number, with a decimal point: '0.3'"
+    assert refusal(parse_number, "0,3") == comma
     assert refusal(parse_quantity, "1e999 mm", "m") == "got '1e999', need a finite number"
 
 

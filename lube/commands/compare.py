@@ -127,7 +127,8 @@ def _at_common_labels(one, other, dim):
 
 
 def _short(value):
-    return f"{value:.6g}" if isinstance(value, int | float | np.number) else str(value)
+    is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    return f"{value:.6g}" if is_number else str(value)
 
 
 def _variables(one, other, name):
@@ -137,7 +138,9 @@ def _variables(one, other, name):
         return f"{_sizes(here)} against {_sizes(there)}"
     there = there.transpose(*here.dims)
     numbers = here.dtype.kind in "fiu" and there.dtype.kind in "fiu"
-    differ = (here.values != there.values) & ~(here.isnull().values & there.isnull().values)
+    lacking = here.isnull().values & there.isnull().values
+    # Of scalars NumPy makes a number, into which nothing can be written.
+    differ = np.asarray((here.values != there.values) & ~lacking)
     if not differ.any():
         return ""
     gap = differ.astype(float)

@@ -5,8 +5,9 @@ import re
 from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,13 @@ from lube.errors import DataError, shown
 from lube.recordings.signals import Channel, Signal, find_signals, header_cell
 from lube.study.small_csv import delimiter_of, split_cells
 
+_NUMBER = re.compile(r"[+-]?([.,]?\d|nan\b|inf\b)", re.IGNORECASE)  # as it begins
+
 HEAD_BYTES = 2**20
 """Bytes read first, to find the decimal separator and the sampling interval."""
+
+MOST_LINES = 200
+"""Lines among which the line of column names is looked for."""
 
 PIECE_BYTES = 2**22
 """Bytes parsed at a time on each core."""
@@ -83,6 +89,12 @@ class TextSignal:
         """Line of a sample, counted from 0, in the file."""
         number, _ = self._row(sample)
         return f"line {number}"
+
+    def may_begin_with(self, row: str) -> bool:
+        """Whether a line has as many cells as there are columns, with numbers in those read."""
+        cells = split_cells(row, self.delimiter)
+        read = [signal.index for signal in (self.time, self.measured) if signal is not None]
+        return len(cells) == self.width and all(_NUMBER.match(cells[index]) for index in read)
 
     def _pieces(self):
         """Text of the rows, in pieces of whole lines; the first is small, for `head`."""
@@ -159,21 +171,26 @@ def _column(table, signal):
     return signal.converted(table[str(signal.index)].to_numpy())
 
 
-def open_text(path: Path, channel: str | None = None, unit: str | None = None) -> TextSignal:
+def open_text(
+    path: Path, channel: str | None = None, unit: str | None = None, skip: int | None = None
+) -> TextSignal:
     """Find the recording in a CSV file.
 
-    Empty lines and lines that begin with ``#`` may precede the line of column names. Columns are
-    separated by tabs, semicolons or commas; with tabs or semicolons, numbers may have decimal
-    commas.
+    Empty lines and lines that begin with ``#`` may precede the line of column names. Other lines
+    may too: it is then the first one that names a voltage or resistance with its unit and stands
+    right above a row of as many values. Columns are separated by tabs, semicolons or commas; with
+    tabs or semicolons, numbers may have decimal commas.
 
     Parameters
     ----------
     path : Path
-        The file, UTF-8 text.
+        The file, text in UTF-8 or, where it is not that, in Windows-1252 (or Latin-1).
     channel : str, optional
         Name of the column to read, or its whole header.
     unit : str, optional
         Its unit; overrides the one in the file.
+    skip : int, optional
+        Number of lines before the line of column names, which is not looked for then.
 
     Returns
     -------
@@ -185,26 +202,40 @@ def open_text(path: Path, channel: str | None = None, unit: str | None = None) -
     DataError
         If there is no line of column names, or `lube.recordings.signals.find_signals` refuses it.
     """
+    lines = _first_lines(path, skip or 0)
+    for line, (_, row, _) in pairwise(lines) if skip is None else ():
+        with suppress(DataError):
+            table = _table(path, *line, channel, unit)
+            if table.may_begin_with(row):
+                return table
+    return _table(path, *lines[0], channel, unit)
+
+
+def _first_lines(path, skip):
+    """List number, text and end of the first lines that are neither empty nor comments."""
+    found, end = [], 0
     with open(path, "rb") as file:
-        number, header = _header_line(file, path)
-        begin = file.tell()
-        rows = file.read(HEAD_BYTES)
+        for number, line in enumerate(islice(file, skip + MOST_LINES), start=1):
+            end += len(line)
+            try:
+                text = line.decode("utf-8-sig").strip()
+            except UnicodeDecodeError:
+                text = line.decode("cp1252", "replace").strip()
+            if number > skip and text and not text.startswith("#"):
+                found.append((number, text, end))
+    if not found:
+        raise DataError(f"{path}: empty, need a line of column names and rows of numbers")
+    return found
+
+
+def _table(path, number, header, begin, channel, unit):
+    """Find the recording below a line of column names."""
     # In a single column, a comma can only be a decimal comma.
     delimiter = delimiter_of(header) if "," in header else delimiter_of(header + ";")
     cells = split_cells(header, delimiter)
     columns = [Channel(*header_cell(cell), full_name=cell) for cell in cells]
     time, measured = find_signals(columns, f"{path}: line {number}", channel, unit)
-    point = "," if delimiter != "," and b"," in rows else "."
+    with open(path, "rb") as file:
+        file.seek(begin)
+        point = "," if delimiter != "," and b"," in file.read(HEAD_BYTES) else "."
     return TextSignal(path, number, begin, delimiter, point, len(cells), time, measured)
-
-
-def _header_line(file, path):
-    """Find the first line that is neither empty nor a comment; return its number and text."""
-    for number, line in enumerate(file, start=1):
-        try:
-            text = line.decode("utf-8-sig").strip()
-        except UnicodeDecodeError:
-            raise DataError(f"{path}: line {number}: need UTF-8 text") from None
-        if text and not text.startswith("#"):
-            return number, text
-    raise DataError(f"{path}: empty, need a line of column names and rows of numbers")

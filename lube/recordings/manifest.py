@@ -8,13 +8,12 @@ refused in one line; the others are still read.
 import os
 import re
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Literal
 
-from pydantic import model_validator
+from pydantic import NonNegativeInt, model_validator
 
-from lube.errors import DataError, LubeError, shown
+from lube.errors import DataError, LubeError, nearest, shown
 from lube.recordings.signals import header_cell
 from lube.schema import ORIGINS
 from lube.study.field_types import StrictModel, Text, checked_text, pure_number, quantity, validate
@@ -33,7 +32,7 @@ _UNITS = (
 """Columns whose header needs a unit, with an example; an offset may also be in ohm."""
 
 _TEXTS = ("file", "channel", "unit", "lubricant", "pair", "origin")
-_OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval")
+_OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval", "skip")
 _OF_SHARES = ("lower", "upper")
 
 
@@ -60,6 +59,8 @@ class Row(StrictModel):
     """
     sampling_interval: quantity("s", above=0.0) | None = None
     """time between samples, for a file that does not state it"""
+    skip: NonNegativeInt | None = None
+    """number of lines of a CSV file before its column names, where they are not found"""
     probability: Share | None = None
     """contact share that you evaluated yourself, in place of `file`"""
     lower: Share | None = None
@@ -213,8 +214,8 @@ def _columns(cells, where):
     for cell in cells:
         name, units = header_cell(cell)
         if name not in Row.model_fields:
-            nearest = get_close_matches(name, Row.model_fields, n=1)
-            hint = f"did you mean {nearest[0]!r}? need" if nearest else "need"
+            near = nearest(name, Row.model_fields)
+            hint = f"did you mean {near!r}? need" if near else "need"
             raise DataError(
                 f"{where}: unknown column {shown(cell)}, {hint} some of "
                 f"{', '.join(Row.model_fields)}, with units such as 'force [N]'"

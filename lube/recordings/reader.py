@@ -107,6 +107,7 @@ def open_recording(
     unit: str | None = None,
     gain: float = 1.0,
     offset: float | str = 0.0,
+    skip: int | None = None,
 ) -> Recording:
     """Open a measured recording, whose samples are read later.
 
@@ -128,6 +129,8 @@ def open_recording(
         Gain of the amplifier, not 0; negative if it inverts.
     offset : float or str, optional
         Recorded value when the true value is 0: in V or ohm, or a text with its unit.
+    skip : int, optional
+        Number of lines of a CSV file before its column names, where they are not found.
 
     Returns
     -------
@@ -144,7 +147,11 @@ def open_recording(
         the file.
     """
     path = Path(path)
-    signal = _OPENERS[_kind(path)](path, channel, unit)
+    kind = _kind(path)
+    if skip is not None and kind != "text":
+        raise DataError(f"{path}: skip: got {skip} lines of a {kind} file, need none but of text")
+    lines = () if skip is None else (skip,)
+    signal = _OPENERS[kind](path, channel, unit, *lines)
     signal = replace(signal, measured=_before_amplifier(path, signal.measured, gain, offset))
     head = signal.head()
     if head is None:

@@ -54,7 +54,8 @@ def lubricant_of(entry: Entry, study: Study) -> str:
 def open_entry(entry: Entry) -> Recording:
     """Open the recording of a row of the manifest; errors are those of `open_recording`."""
     return open_recording(
-        entry.file, entry.sampling_interval, entry.channel, entry.unit, entry.gain, entry.offset
+        *(entry.file, entry.sampling_interval, entry.channel, entry.unit, entry.gain, entry.offset),
+        entry.skip,
     )
 
 

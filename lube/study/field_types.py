@@ -75,7 +75,7 @@ def _in_words(limits):
     return " and ".join(f"{_LIMITS[name][1]} {limit:g}" for name, limit in limits.items())
 
 
-def bounded(number: float, units: str | None, **limits: float) -> float:
+def bounded(number: float, units: str | None, came: object = None, **limits: float) -> float:
     """Return the number if it lies within its limits.
 
     Unless it is 0, its magnitude must be from 1e-30 to 1e30, so that no power of it overflows.
@@ -86,6 +86,8 @@ def bounded(number: float, units: str | None, **limits: float) -> float:
         The value.
     units : str or None
         Its unit, for the message; None for a pure number.
+    came : object, optional
+        What the user wrote, for the message; by default the number.
     **limits : float
         Any of ``above``, ``below``, ``least``, ``most`` and ``other_than``.
 
@@ -109,7 +111,8 @@ def bounded(number: float, units: str | None, **limits: float) -> float:
     if within and (number == 0.0 or 1e-30 <= abs(number) <= 1e30):
         return number
     needed = f"value {_in_words(limits)}" if not within else "magnitude from 1e-30 to 1e+30"
-    raise LubeError(f"got {number:g}, need a {needed} {units or ''}".rstrip())
+    came = f"{number:g}" if came is None else came
+    raise LubeError(f"got {came}, need a {needed} {units or ''}".rstrip())
 
 
 def _field(kept, parse, written, hint=""):
@@ -139,7 +142,7 @@ def quantity(units: str, **limits: float) -> Any:
     """
 
     def parse(value):
-        return bounded(parse_quantity(value, units), units, **limits)
+        return bounded(parse_quantity(value, units), units, value, **limits)
 
     needed = _needed(f"quantity in {units}", limits)
     return _field(float, parse, lambda: written_quantity(units, needed, limits))
@@ -160,7 +163,7 @@ def pure_number(**limits: float) -> Any:
     """
 
     def parse(value):
-        return bounded(parse_number(value), None, **limits)
+        return bounded(parse_number(value), None, value, **limits)
 
     return _field(float, parse, lambda: written_number(_needed("number", limits), limits))
 
@@ -209,7 +212,8 @@ def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, patt
     """
 
     def parse(value):
-        return value if accepts(value) else bounded(parse_quantity(value, units), units, above=0.0)
+        number = None if accepts(value) else parse_quantity(value, units)
+        return value if number is None else bounded(number, units, value, above=0.0)
 
     needed = f"quantity in {units}, or {words}"
 
@@ -239,10 +243,12 @@ def levels(units: str | None, **limits: float) -> Any:
     """
 
     def parse(value):
-        numbers = tuple(bounded(one, units, **limits) for one in _level_list(value, units))
-        for lower, upper in pairwise(numbers):
+        numbers, typed = _level_list(value, units)
+        for number, came in zip(numbers, typed, strict=True):
+            bounded(number, units, came, **limits)
+        for (lower, before), (upper, came) in pairwise(zip(numbers, typed, strict=True)):
             if upper <= lower:
-                raise LubeError(f"got {upper:g} after {lower:g}, need rising levels, each once")
+                raise LubeError(f"got {came} after {before}, need rising levels, each once")
         return numbers
 
     needed = _needed("list of numbers" if units is None else f"values and units in {units}", limits)
@@ -250,11 +256,13 @@ def levels(units: str | None, **limits: float) -> Any:
 
 
 def _level_list(value, target):
+    """Levels in the target unit, and as they are written."""
     match value:
         case [_, *_] if target is None:
-            return map(parse_number, value)
+            return tuple(map(parse_number, value)), value
         case {"values": [_, *_] as values, "units": str(units), **rest} if target and not rest:
-            return [float(convert(parse_number(one), units, target)) for one in values]
+            numbers = tuple(float(convert(parse_number(one), units, target)) for one in values)
+            return numbers, [f"{one} {units}" for one in values]
     needed = f"values and their unit, such as {{values: [1, 2], units: {target}}}"
     raise LubeError(f"got {shown(value)}, need {needed if target else 'a list such as [0, 0.1]'}")
 
@@ -332,7 +340,17 @@ def validate(
         # A misspelt key comes first: that the right one is missing only follows from it.
         mistakes = sorted(error.errors(), key=lambda mistake: mistake["type"] not in _UNKNOWN)
         more = f" (and {len(mistakes) - 1} more)" if len(mistakes) > 1 else ""
-        raise error_type(f"{where}: {_in_one_line(mistakes[0], model)}{more}") from None
+        line = _as_written(_in_one_line(mistakes[0], model), content)
+        raise error_type(f"{where}: {line}{more}") from None
+
+
+def _as_written(line, content):
+    """Quote in an error message the value as it is written, not as it is understood, in SI."""
+    message = re.match(r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)? [^\s,]+)", line)
+    value = content
+    for part in message[1].split(".") if message else ():
+        value = value.get(part) if isinstance(value, dict) else None
+    return line.replace(message[2], value, 1) if message and isinstance(value, str) else line
 
 
 _UNKNOWN = ("extra_forbidden", "invalid_key")
@@ -358,6 +376,8 @@ def _in_one_line(mistake, model):
     if kind in _UNKNOWN:
         # For YAML {name: Somebody, Else} has two keys, the second without a value.
         hint = "; a text with a comma needs quotes" if mistake["input"] is None else ""
+        if hint and key.rpartition(".")[2][:1].isdigit():  # {length: 0,2 um}
+            hint = "; a number needs a decimal point, not a comma"
         return f"{key}: unknown key, {_right_key(mistake['loc'], model)}{hint}"
     if kind == "missing":
         return f"{key}: missing, and it has no default"

@@ -216,7 +216,7 @@ def _rough_line(rollers, roughness, name, rms, lengths):
     else:
         rms *= _beyond_cutoffs(own, longest, shortest, key)
         shape = {"rms_height": rms, "hurst_exponent": own.hurst_exponent}
-    _check_height_step(shape["rms_height"], roughness.height_step)
+    _check_height_step(shape["rms_height"], roughness.height_step, name, roller)
     return RoughLine(
         points=points,
         q_min=2.0 * math.pi / longest,
@@ -319,13 +319,18 @@ def _check_perimeter(perimeter, longest, shortest, roller):
         )
 
 
-def _check_height_step(rms, step):
+def _check_height_step(rms, step, name, roller):
     """Rms heights must be many height steps, and peaks must fit a 32-bit integer."""
-    if not 1e3 <= rms / step <= 1e7:
+    if 1e3 <= rms / step <= 1e7:
+        return
+    if 1e-9 <= rms <= 1e-5:
         raise StudyError(
             f"roughness.height_step: got {step:.3g} m, need {rms / 1e7:.3g} "
             f"to {rms / 1e3:.3g} m for a roughness of {rms:.3g} m"
         )
+    own = [key for key in ("ra_roughness", "rms_roughness", "topography") if getattr(roller, key)]
+    key = f"rollers.{name}.{own[0]}" if own else "rollers.composite_rms_roughness"
+    raise StudyError(f"{key}: got {rms:.3g} m, need an rms height of 1e-09 to 1e-05 m")
 
 
 def _check_distribution(own, key):

@@ -23,7 +23,7 @@ from repository import SMOKE, copy_of_the_repository, environment
 # The Slurm plugin of Snakemake drops SLURM_CONF, so the file must stand in its default place.
 CONF = Path("/etc/slurm/slurm.conf")
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "setpriv")
-START_SECONDS, RUN_SECONDS = 60.0, 900.0
+START_SECONDS, RUN_SECONDS = 60.0, 3600.0
 
 # More cores and memory are declared than the machine has, so that the profile runs as it is.
 TEMPLATE = """# Written for a test by tests/cluster/run_slurm.py.
@@ -41,6 +41,7 @@ SelectTypeParameters=CR_Core
 SlurmdParameters=config_overrides
 StateSaveLocation={folder}/state
 SlurmdSpoolDir={folder}/spool
+MinJobAge=86400
 SlurmctldPidFile={folder}/slurmctld.pid
 SlurmdPidFile={folder}/slurmd.pid
 NodeName={host} NodeAddr=127.0.0.1 CPUs=8 RealMemory=16000

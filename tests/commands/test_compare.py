@@ -2,12 +2,14 @@
 
 import json
 import shutil
+from itertools import permutations
 
 import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.image import imread, imsave
 from refusals import one_line
+from unlike_studies import STUDIES, write_datasets
 
 from lube import plots
 from lube.cli import main
@@ -93,6 +95,53 @@ def test_texts_and_sizes_differ_too_and_the_studies_say_why(compared):
         "shares: 2 pair against 3 pair",
         "the studies differ in seed: 1 against 2",
     ]
+
+
+def test_a_scalar_that_differs_is_shown_with_both_values(compared):
+    one = xr.Dataset({"number": 2.0, "count": 3, "flag": True, "word": "x", "lacking": np.nan})
+    other = xr.Dataset({"number": 2.5, "count": 4, "flag": False, "word": "y", "lacking": 1.0})
+    assert compared(one, other) == [
+        "count: 1 of 1 differ, most: 3 against 4, 25 %",
+        "flag: 1 of 1 differ, first: True against False",
+        "lacking: 1 of 1 differ, most: nan against 1",
+        "number: 1 of 1 differ, most: 2 against 2.5, 20 %",
+        "word: 1 of 1 differ, first: 'x' against 'y'",
+    ]
+    assert compared(one, one) == []
+
+
+def altered(dataset):
+    """A dataset that differs in the labels and in every value."""
+    changed = dataset.copy(deep=True)
+    for name, variable in dataset.variables.items():
+        match variable.dtype.kind:
+            case "f" | "i" | "u":
+                values = variable.values * 2 + 1
+            case "b":
+                values = ~variable.values
+            case _:
+                values = np.array(np.char.add(variable.values.astype(str), "!"), object)
+        changed[name] = (variable.dims, values, variable.attrs)
+    return changed
+
+
+def test_datasets_of_every_kind_that_differ_in_everything_are_compared(datasets, compared):
+    for kind, dataset in datasets.items():
+        named = {line.split(":")[0] for line in compared(dataset, altered(dataset))}
+        scalars = {name for name, variable in dataset.data_vars.items() if variable.ndim == 0}
+        assert named, kind
+        # Limits are beside their value.
+        assert {name for name in scalars if not name.endswith(("_lower", "_upper"))} <= named, kind
+
+
+@pytest.mark.slow
+def test_every_pair_of_unlike_studies_is_compared(tmp_path):
+    for name, content in STUDIES.items():
+        write_datasets(content, tmp_path / name)
+    for one, other in permutations(STUDIES, 2):
+        lines = list(compare_results(tmp_path / one, tmp_path / other))
+        assert lines and all(line.isprintable() for line in lines), (one, other)
+        assert any("the studies differ in" in line for line in lines), (one, other)
 
 
 @pytest.fixture(scope="module")

@@ -174,11 +174,11 @@ ENTRIES = [
     ({"force": "800 N"}, "speed: missing"),
     (SHARE | {"forse": "8 N"}, "forse: unknown key, did you mean 'force'?"),
     (OPERATING_POINT | {"file": 7}, "file: got 7, need text"),
-    (RECORDING | {"gain": "0/3"}, "gain: got 0, need a value other than 0"),
+    (RECORDING | {"gain": "0/3"}, "gain: got 0/3, need a value other than 0"),
     (RECORDING | {"offset": "3"}, f"offset: got '3', {NEEDS_OFFSET}"),
     (RECORDING | {"unit": "N"}, "unit: got the unit 'N', need one of voltage or resistance"),
     (RECORDING | {"channel": ""}, "channel: got '', need some text"),
-    (RECORDING | {"force_tolerance": "0 N"}, "force_tolerance: got 0, need a value above 0 N"),
+    (RECORDING | {"force_tolerance": "0 N"}, "force_tolerance: got 0 N, need a value above 0 N"),
     (SHARE | {"channel": "U"}, "channel: not allowed with probability"),
 ]
 

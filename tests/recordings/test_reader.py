@@ -101,6 +101,34 @@ def test_byte_mark_comments_and_carriage_returns_are_skipped(tmp_path):
     np.testing.assert_allclose(read(path), VOLTS, rtol=1e-8)
 
 
+BEFORE = """Gerät;Prüfstand 3
+Datum;03.02.2026
+Abtastrate [Hz];20000
+U max [V];3
+
+"""
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1252", "latin-1"])
+def test_lines_before_the_column_names_and_their_encoding_are_found(tmp_path, encoding):
+    header = "Zeit [s];Temperatur [°C];Übergangsspannung [µV]"
+    columns = [TIMES[:99], np.full(99, 40.0), VOLTS[:99] * 1e6]
+    path = write_csv(tmp_path / "r.csv", columns, header, ";", ",", "\r\n", BEFORE)
+    path.write_bytes(path.read_text("utf-8").encode(encoding))
+    recording = open_recording(path)
+    assert recording.sampling_interval == pytest.approx(INTERVAL)
+    np.testing.assert_allclose(read(path), VOLTS[:99], rtol=1e-8)
+    (tmp_path / "r.csv").write_bytes(path.read_bytes() + "x;1;é".encode(encoding))
+    assert refusal(path).startswith("line 106: got 'x;1;")
+
+
+def test_column_names_after_what_looks_like_some_are_found_by_the_number_of_lines(tmp_path):
+    before = "t [s];U [V]\n0;7\n"
+    path = write_csv(tmp_path / "r.csv", [TIMES, VOLTS], "t [s];U [V]", ";", before=before)
+    assert "need" in refusal(path)
+    np.testing.assert_allclose(read(path, skip=2), VOLTS, rtol=1e-8)
+
+
 def test_a_single_column_needs_the_sampling_interval(tmp_path):
     path = write_csv(tmp_path / "r.csv", [VOLTS], "voltage [V]", decimal=",")
     assert open_recording(path, INTERVAL).sampling_interval == INTERVAL

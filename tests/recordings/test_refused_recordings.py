@@ -68,8 +68,6 @@ def test_a_file_that_is_not_what_its_suffix_says(tmp_path):
     ):
         (tmp_path / name).write_bytes(content)
         assert f"the content is {found}" in refusal(tmp_path / name)
-    (tmp_path / "r.csv").write_bytes("t [s],U [µV]\n0,1\n".encode("latin-1"))
-    assert refusal(tmp_path / "r.csv") == "line 1: need UTF-8 text"
     (tmp_path / "r.tdms").write_bytes(b"TDSm" + bytes(range(256)) * 20)
     assert "got nothing, need a voltage" in refusal(tmp_path / "r.tdms")
 
@@ -287,3 +285,8 @@ def test_the_line_of_a_fault_is_named_wherever_pieces_end(tmp_path_factory, row,
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(csv_signals, "PIECE_BYTES", size)
             assert refusal(path).startswith(f"line {row + 3}: {reason}, need ")
+
+
+def test_lines_are_skipped_in_text_alone(tmp_path):
+    path = write_tdms(tmp_path / "r.tdms", VOLTS)
+    assert refusal(path, skip=2) == "skip: got 2 lines of a TDMS file, need none but of text"

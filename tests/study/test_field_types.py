@@ -54,11 +54,11 @@ def test_a_field_keeps_the_number_in_its_own_unit():
 
 def test_a_refused_number_is_shown_with_its_limits_and_unit():
     cold = refusal(quantity("degC", above=-273.15), "0 K")
-    assert "got -273.15, need a value above -273.15 degC" in cold
+    assert "got 0 K, need a value above -273.15 degC" in cold
     for zero in (0, 0.0, "-0.0", "0/7"):
         assert "need a value other than 0" in refusal(pure_number(other_than=0.0), zero)
     message = refusal(quantity("mm", above=0.0, most=2.0), "3 mm")
-    assert message == "file.yaml: field: got 3, need a value above 0 and at most 2 mm"
+    assert message == "file.yaml: field: got 3 mm, need a value above 0 and at most 2 mm"
 
 
 def test_limits_that_may_be_reached_and_that_may_not():
@@ -90,7 +90,7 @@ def test_levels_are_kept_in_order_and_in_their_own_unit():
 def test_levels_are_refused():
     for written, needed in [
         ({"values": [], "units": "N"}, "need values and their unit"),
-        ({"values": [1, 1], "units": "N"}, "got 1 after 1, need rising levels"),
+        ({"values": [1, 1], "units": "N"}, "got 1 N after 1 N, need rising levels"),
         ({"values": [0, 1], "units": "N"}, "need a value above 0"),
         ({"values": [1, "two"], "units": "N"}, "got 'two', need a finite number"),
         ({"values": [1], "units": "mm"}, "need a unit of the kind 'N'"),

@@ -24,10 +24,10 @@ PURE_NUMBERS = [
     ("rollers.first.poisson_ratio", -0.1, "got -0.1, need a value at least 0 and at most 0.5"),
     ("roughness.hurst_exponent", 0, "got 0, need a value above 0 and below 1"),
     ("rig.oil_permittivity", 0.5, "got 0.5, need a value at least 1"),
-    ("rig.noise", "-1 uV", "got -1e-06, need a value at least 0 V"),
-    ("rig.amplifier_range", "20 mV", "got 0.02 V, need more than the 0.0455 V"),
+    ("rig.noise", "-1 uV", "got -1 uV, need a value at least 0 V"),
+    ("rig.amplifier_range", "20 mV", "got 20 mV, need more than the 0.0455 V"),
     ("experiment.release_ratio", 0.9, "got 0.9, need a value at least 1"),
-    ("experiment.debounce", "-1 s", "got -1, need a value at least 0 s"),
+    ("experiment.debounce", "-1 s", "got -1 s, need a value at least 0 s"),
     ("experiment.threshold", "50 ohm", "got 50 ohm, need one of experiment.thresholds: (10.0, "),
     ("experiment.manifest", "none.csv", "need a file that exists"),
     ("roughness.shortest_wavelength", "1.9 points", "got 1.9, need a value at least 2 and at most"),
@@ -60,12 +60,19 @@ COUNTS = [
 GRIDS = [
     ("roughness.points", 5000, "need 7478 roughness.points or more"),
     ("roughness.longest_wavelength", "1 um", "need less than the longest, 1e-06 m; if it is"),
-    ("roughness.shortest_wavelength", "1 mm", "got 0.001 m, need less than the longest"),
+    ("roughness.shortest_wavelength", "1 mm", "got 1 mm, need less than the longest"),
     ("roughness.shortest_wavelength", "1e308 points", "got 1e+308, need a value at least 2 and at"),
     ("roughness.longest_wavelength", "long", f", or the words `{AUTOMATIC_WAVELENGTH}`"),
     ("roughness.longest_wavelength", "1 m", "the perimeter, 0.314 m, is too short"),
     ("operating_grid.temperature", {"values": [101], "units": "degC"}, f"{OIL}: got 101 degC"),
-    ("roughness.height_step", "1 nm", "got 1e-09 m, need 2e-14 to 2e-10 m"),
+    (
+        "rollers.first.rms_roughness",
+        "0.4 mm",
+        "got 0.4 mm, need an rms height of 1e-09",
+    ),
+    ("rollers.first.rms_roughness", "0,2 um", "with a decimal point: '0.2 um'"),
+    ("operating_grid.force", {"values": [-5], "units": "kN"}, "got -5 kN, need a value above 0 N"),
+    ("roughness.height_step", "1 nm", "got 1 nm, need 2e-14 to 2e-10 m"),
 ]
 
 NAMES = [
@@ -129,7 +136,7 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
         assert f"mine.yaml: {key}: wrong dimension or unit 'kg', need a unit of the kind" in wrong
         if positive:
             negative = refusal(paper_with((key, f"-0.5 {units}")))
-            assert f"mine.yaml: {key}: got -0.5, need a value above 0" in negative
+            assert f"mine.yaml: {key}: got -0.5 {units}, need a value above 0" in negative
     assert tested >= 20
 
 

@@ -125,3 +125,27 @@ def test_the_documentation_makes_the_pages_and_nothing_else(spare):
                      "assumptions")
     }  # fmt: skip
     assert spare.planned() == set()
+
+
+def test_on_a_narrow_screen_the_menu_is_a_bar_that_opens(report, tmp_path):
+    sync_api = pytest.importorskip("playwright.sync_api", reason="needs the package playwright")
+    program = shutil.which("chromium") or shutil.which("google-chrome")
+    if program is None:
+        pytest.skip("needs Chromium")
+    (tmp_path / "report.html").write_text(report, encoding="utf-8")
+    with sync_api.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        shown = browser.new_page(viewport={"width": 400, "height": 800})
+        shown.goto((tmp_path / "report.html").as_uri())
+        menu, chapter = (
+            shown.locator("#app > div > nav"),
+            shown.get_by_role("link", name="2 Contact"),
+        )
+        chapter.wait_for(state="attached")
+        shown.wait_for_function("document.querySelector('#app > div > nav').clientHeight < 40")
+        assert shown.locator("h1.title").bounding_box()["width"] > 300
+        menu.locator("> h1").hover()
+        shown.wait_for_function("document.querySelector('#app > div > nav').clientHeight > 200")
+        chapter.click()
+        shown.get_by_role("cell", name="The contact model").wait_for()
+        browser.close()

@@ -1,0 +1,32 @@
+"""Records stand at their own conditions in the figures that show them."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from figure_checks import draw
+from repository import ROOT
+
+from lube.plots import NOT_POINTS
+
+
+@pytest.fixture
+def beside(files, tmp_path):
+    """Records of several forces, beside the levels of temperature."""
+    experiment = xr.load_dataset(files / "experiment.nc")
+    experiment["temperature"] = experiment.temperature + np.linspace(
+        -0.6, 0.6, experiment.sizes["record"]
+    )
+    experiment.to_netcdf(tmp_path / "experiment.nc")
+    return tmp_path / "experiment.nc"
+
+
+def test_figure_14_draws_each_record_at_its_own_temperature(beside):
+    with xr.open_dataset(beside) as experiment:
+        temperatures = experiment.temperature.values
+        assert np.unique(experiment.force_level).size > 1
+    figure = draw(ROOT / "notebooks/fig14_experiment.ipynb", {"experiment": beside})
+    lines = [line for axes in figure.axes for line in axes.lines]
+    drawn = [line.get_xdata() for line in lines if line.get_marker() not in NOT_POINTS]
+    drawn = np.concatenate([np.asarray(x, float) for x in drawn])
+    assert drawn.size
+    assert np.abs(drawn[:, None] - temperatures).min(axis=1).max() < 1e-9
