@@ -164,3 +164,8 @@ def test_refused_records_and_remarks_are_listed_with_their_reasons(study, result
     text = findings(study, results | {"experiment": experiment, "comparison": comparison})
     assert "in no result:\n\n- a.csv: line 3: \\<no> number\n- b.csv: no such file\n" in text
     assert "Remarks on records:\n\n- c is short\n- c and d contradict each other" in text
+
+
+def test_a_study_without_named_authors_says_so(study):
+    nobody = study.model_copy(update={"about": study.about.model_copy(update={"creators": ()})})
+    assert made(nobody).startswith("No author is named in the study. Made with the code of commit")

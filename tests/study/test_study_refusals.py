@@ -36,10 +36,10 @@ PURE_NUMBERS = [
 ]
 
 CORRECTIONS = [
-    ("inlet_meniscus", "0.2 mm", "got 200 µm, need more than 210.093 µm, the half-width of"),
+    ("inlet_meniscus", "0.2 mm", "got 0.2 mm, need more than 210.093 µm, the half-width of"),
     ("inlet_meniscus", "0.4", "got '0.4', need a number with its unit, such as '1 m', or none"),
     ("inlet_meniscus", "far", "or none"),
-    ("inlet_meniscus", "-1 mm", "got -0.001, need a value above 0 m, or none"),
+    ("inlet_meniscus", "-1 mm", "got -1 mm, need a value above 0 m, or none"),
     ("inlet_shear_heating", "gupta", "need 'none' or 'gupta-1992'"),
 ]
 
