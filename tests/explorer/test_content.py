@@ -101,3 +101,13 @@ def test_records_without_a_share_are_left_out_and_conditions_near_no_level_are_n
     assert rows[0]["force_level"] is None and rows[0]["force"] == one["force"].item()
     assert rows[0]["measured_share"] == one["measured_share"].item()
     assert rows[0]["lambda_ratio"] == one["lambda_ratio"].values.tolist()
+
+
+def test_points_outside_the_model_are_marked_and_the_load_share_is_there(explored):
+    contact = explored["contact"]
+    heavy = contact.assign(contact_load_share=2.0 * xr.ones_like(contact["contact_load_share"]))
+    content = read_back(explored | {"contact": heavy})
+    marked = content["marks"]["overloaded"]
+    assert set(marked["dims"]) == set(CHOICES) and all(marked["values"])
+    assert set(content["variables"]["contact_load_share"]["values"]) == {2.0}
+    assert not any(read_back(explored)["marks"]["overloaded"]["values"])
