@@ -41,6 +41,9 @@ def test_without_options_it_is_the_papers_study_with_waves_up_to_the_usual_cutof
     own = {"name": "mine", "about": {"title": "mine", "creators": [], "date": None}}
     waves = {"longest_wavelength": "0.8 mm", "shortest_wavelength": "3.1416 um"}
     own["roughness"] = PAPER_CONTENT["roughness"] | waves
+    own["film_formulas"] = sorted(
+        set(PAPER_CONTENT["film_formulas"]) - {"paper"}, key=PAPER_CONTENT["film_formulas"].index
+    )
     content = resolved_content("mine.yaml")
     assert content | {"name": "mine"} == PAPER_CONTENT | own
     assert load_study("mine.yaml").band == "waves 800 µm to 3.14 µm"

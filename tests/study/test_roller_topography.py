@@ -231,7 +231,7 @@ REFUSED = {
     "negative": (
         MAP | {"long_cutoff": "-80 um"},
         BAND,
-        "topography.long_cutoff: got -8e-05, need a value above 0",
+        "topography.long_cutoff: got -80 um, need a value above 0",
     ),
     "two roughnesses": (MAP, BAND | {"hurst_exponent": 0.8}, "roughness.hurst_exponent: got 0.8"),
 }
@@ -281,9 +281,9 @@ def test_two_measured_surfaces_need_no_hurst_exponent_and_one_does(study_file):
 def test_cutoffs_beside_a_topography_are_refused(study_file):
     own = BAND | {"long_cutoff": "0.8 mm"}
     message = refusal(study_file(MAP, roughness=own))
-    assert "roughness.long_cutoff: got 0.0008 beside a topography" in message
+    assert "roughness.long_cutoff: got 0.8 mm beside a topography" in message
     both = {"points": 20_000, "shortest_wavelength": "6.25 um", "short_cutoff": "7 um"}
     path = study_file(MAP)
     content = yaml.safe_load(path.read_text("utf-8")) | {"roughness": both}
     path.write_text(yaml.safe_dump(content), encoding="utf-8")
-    assert "roughness.short_cutoff: got 7e-06 m beside two topographies" in refusal(path)
+    assert "roughness.short_cutoff: got 7 um beside two topographies" in refusal(path)

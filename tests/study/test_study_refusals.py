@@ -30,7 +30,11 @@ PURE_NUMBERS = [
     ("experiment.debounce", "-1 s", "got -1 s, need a value at least 0 s"),
     ("experiment.threshold", "50 ohm", "got 50 ohm, need one of experiment.thresholds: (10.0, "),
     ("experiment.manifest", "none.csv", "need a file that exists"),
-    ("roughness.shortest_wavelength", "1.9 points", "got 1.9, need a value at least 2 and at most"),
+    (
+        "roughness.shortest_wavelength",
+        "1.9 points",
+        "got 1.9 points, need a value at least 2 and at most",
+    ),
     ("operating_grid.slide_to_roll_ratio", [2.5], "got 2.5, need a value at least -2 and at most"),
     ("operating_grid.slide_to_roll_ratio", [], "need a list such as [0, 0.1]"),
 ]

@@ -11,7 +11,7 @@ from lube.errors import DataError
 from lube.recordings.example_surface import example_heights, write_example
 from lube.study.topography_files import read_topography
 from lube.surfaces.measured_spectrum import line_spectrum
-from lube.surfaces.surface_statistics import height_distribution, hurst_exponent, roll_off
+from lube.surfaces.surface_statistics import Waves, height_distribution, hurst_exponent, roll_off
 from lube.surfaces.topography import Preparation, prepare
 
 EXAMPLE = Path(__file__).parents[2] / "workflow" / "config" / "surfaces" / "example.x3p"
@@ -82,8 +82,8 @@ def test_the_example_is_what_it_says_and_is_made_again(tmp_path):
     surface = prepare(found, settings)
     spectrum = line_spectrum(surface, settings)
     for fit, truth in (
-        (hurst_exponent(spectrum, 4e-5, 7e-6), 0.8),
-        (roll_off(spectrum), 5e-5),
+        (hurst_exponent(spectrum, Waves(4e-5, 7e-6)), 0.8),
+        (roll_off(spectrum, Waves(4e-4, 7e-6)), 5e-5),
         (height_distribution(surface.heights)["rms_height"], 2e-7),
     ):
         assert fit.lower <= truth <= fit.upper
