@@ -65,7 +65,7 @@ GRIDS = [
     ("roughness.points", 5000, "need 7478 roughness.points or more"),
     ("roughness.longest_wavelength", "1 um", "need less than the longest, 1e-06 m; if it is"),
     ("roughness.shortest_wavelength", "1 mm", "got 1 mm, need less than the longest"),
-    ("roughness.shortest_wavelength", "1e308 points", "got 1e+308, need a value at least 2 and at"),
+    ("roughness.shortest_wavelength", "1e308 points", "got 1e308 points, need a value at least 2"),
     ("roughness.longest_wavelength", "long", f", or the words `{AUTOMATIC_WAVELENGTH}`"),
     ("roughness.longest_wavelength", "1 m", "the perimeter, 0.314 m, is too short"),
     ("operating_grid.temperature", {"values": [101], "units": "degC"}, f"{OIL}: got 101 degC"),
