@@ -24,7 +24,7 @@ log = logging.getLogger(__name__)
 TOLERANCE = 0.15
 """Relative error against a numerical solution up to which a formula counts as valid.
 
-The film is not flat: at the outlet it is 15 to 18 % thinner than at the centre (for instance at
+The film is not flat: at the outlet it is some 16 % thinner than at the centre (for instance at
 800 N, 100 r/min, 40 degC), but the contact model takes it as flat. A formula with a smaller error
 than that is as accurate as the model needs.
 
