@@ -264,7 +264,7 @@ def strip_statistics(
 ) -> Array:
     """Compute the contact statistics of many operating points at any slip.
 
-    Equal to `lube.kernels.scan.scan_statistics` to the last bit.
+    Equal to the literal scan, `lube.kernels.scan`, to the last bit.
 
     Parameters
     ----------

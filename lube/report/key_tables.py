@@ -1,12 +1,8 @@
 """Tables of the documentation that follow from the code: files, variables, keys, film formulas.
 
-``python -m lube.report.key_tables docs/*.md`` rewrites them between their markers; a test
-compares the documentation with the code.
+``docs/tools/generated_tables.py`` rewrites them between their markers; a test compares the
+documentation with the code.
 """
-
-import re
-import sys
-from pathlib import Path
 
 from lube.ehl.film_formulas import FORMULAS, TOLERANCE
 from lube.recordings.manifest import manifest_schema
@@ -77,27 +73,6 @@ def record_keys() -> list[tuple[str, str, str]]:
         As of `study_keys`.
     """
     return _keys(LubricantRecord.model_json_schema())
-
-
-def with_tables(text: str) -> str:
-    """Rewrite the tables of a text.
-
-    Parameters
-    ----------
-    text : str
-        Markdown with pairs of lines ``<!-- table: NAME -->`` and ``<!-- end -->``.
-
-    Returns
-    -------
-    str
-        The text with the present tables between the markers.
-    """
-    return re.sub(
-        r"(<!-- table: (\w+) -->\n).*?(?=<!-- end -->)",
-        lambda match: f"{match[1]}{table(match[2])}\n",
-        text,
-        flags=re.DOTALL,
-    )
 
 
 def _table(head, rows):
@@ -172,9 +147,3 @@ def _default(field):
     # A summary of several lines would fill the table.
     shown = default not in (None, "") and len(str(default)) <= 60
     return f" (by default {default})" if shown else " (optional)"
-
-
-if __name__ == "__main__":
-    for name in sys.argv[1:]:
-        page = Path(name)
-        page.write_text(with_tables(page.read_text(encoding="utf-8")), encoding="utf-8")

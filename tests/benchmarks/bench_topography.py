@@ -14,14 +14,14 @@ import time
 from pathlib import Path
 
 import numpy as np
+from example_surface import isotropic_surface
 
-from lube.recordings.example_surface import isotropic_surface
 from lube.study.topography_files import read_topography
-from lube.surfaces.abel import profile_of_line
 from lube.surfaces.measured_spectrum import line_spectrum
 from lube.surfaces.spectrum_table import power_law_integral
 from lube.surfaces.surface_statistics import height_distribution
 from lube.surfaces.topography import Preparation, Topography, prepare
+from profiles import profile_of_line
 
 SPACING = 0.2e-6
 PROFILES = 40

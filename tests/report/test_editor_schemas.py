@@ -4,11 +4,11 @@ import copy
 
 import pytest
 import yaml
+from editor_schemas import written
 from editors import complaints
 from studies import CONFIG, PAPER_CONTENT, REMOVED, with_value
 
 from lube.errors import LubeError
-from lube.report.editor_schemas import written
 from lube.study.lubricant_record import SHIPPED_FOLDER
 from lube.study.schema_files import KINDS, schema_file, schema_line
 from lube.study.text_files import read_yaml
@@ -22,7 +22,7 @@ ROW = {"file": "run.csv", "force": "800 N", "speed": "100 1/min", "temperature":
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_files_follow_from_the_models(kind):
     assert schema_file(kind).read_text(encoding="utf-8") == written(kind), (
-        "run python -m lube.report.editor_schemas"
+        "run python docs/tools/editor_schemas.py"
     )
 
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from experiments import experiment_at, experiment_of, model_of_records
+from literal_scan import scan_statistics
 from studies import OIL
 
 from lube import contact_statistics, film_table
 from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
-from lube.kernels.scan import scan_statistics
 from lube.rig.ensemble_runs import EnsembleRuns
 from lube.rig.record_scatter import combined_deviations
 from lube.stages.lubricant import lubricant_table

@@ -5,13 +5,12 @@ import warnings
 
 import numpy as np
 import pytest
-from experiments import experiment_at, experiment_of
+from experiments import experiment_at, experiment_of, over_grid
 
 from lube.rig.study_shares import (
     at_comparison_threshold,
     levels_named,
     log_lines,
-    over_grid,
     refused_in_one_line,
 )
 from lube.schema import EXPERIMENT_DIMS

@@ -8,11 +8,11 @@ from functools import partial
 import numpy as np
 import pytest
 import yaml
+from example_surface import isotropic_surface
 from refusals import one_line
 from studies import CONFIG, PAPER
 
 from lube.errors import LubeError
-from lube.recordings.example_surface import isotropic_surface
 from lube.study.study import load_study
 from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.spectra import spectrum_moments

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import SurfaceTopography
 import xarray as xr
+from example_surface import example_heights, write_example
 
 from lube.errors import DataError
-from lube.recordings.example_surface import example_heights, write_example
 from lube.study.topography_files import read_topography
 from lube.surfaces.measured_spectrum import line_spectrum
 from lube.surfaces.surface_statistics import Waves, height_distribution, hurst_exponent, roll_off

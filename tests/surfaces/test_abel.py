@@ -5,7 +5,8 @@ import pytest
 import scipy.integrate
 import scipy.special
 
-from lube.surfaces.abel import line_of_profile, line_over_profile, monotone, profile_of_line
+from lube.surfaces.abel import line_of_profile, monotone
+from profiles import line_over_profile, profile_of_line
 
 
 @pytest.mark.parametrize("hurst", [0.5, 0.7, 0.9])

@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.fft
+from example_surface import isotropic_surface
 
 from lube.errors import DataError
-from lube.recordings.example_surface import isotropic_surface
-from lube.surfaces.abel import line_over_profile, profile_of_line
 from lube.surfaces.measured_spectrum import (
     MOST_ANISOTROPY,
     anisotropy,
@@ -20,6 +19,7 @@ from lube.surfaces.measured_spectrum import (
 from lube.surfaces.spectra import power_spectrum
 from lube.surfaces.spectrum_table import band_table, power_law_integral
 from lube.surfaces.topography import Preparation, Topography, prepare
+from profiles import line_over_profile, profile_of_line
 
 ISOTROPIC, ALONG = Preparation("isotropic"), Preparation("along rolling")
 LENGTH, ROLL_OFF, RMS = 1e-3, 1e-4, 0.2e-6

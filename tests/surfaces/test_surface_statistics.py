@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import scipy.fft
 import scipy.stats
+from example_surface import isotropic_surface
 
 from lube.errors import DataError
-from lube.recordings.example_surface import isotropic_surface
 from lube.surfaces.measured_spectrum import line_spectrum
 from lube.surfaces.spectrum_table import LineSpectrum
 from lube.surfaces.surface_statistics import (

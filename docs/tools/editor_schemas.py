@@ -1,7 +1,7 @@
 """JSON Schemas of the files that people write, by which editors complete and check them.
 
 They follow from the models and lie in ``lube/study/json``, for editors and ``lube schema``.
-``python -m lube.report.editor_schemas`` writes them; a test compares them with the models.
+``python docs/tools/editor_schemas.py`` writes them; a test compares them with the models.
 """
 
 import json

@@ -4,7 +4,7 @@ It is not measured: an isotropic self-affine surface of 256 x 256 points, 1.5625
 :math:`H = 0.8`, a roll-off at 50 um and an rms height of 0.2 um, tilted by 3 um along x and 1 um
 along y, with a few holes. X3P is the open format of ISO 25178-72. It is made again by
 
-    python -m lube.recordings.example_surface workflow/config/surfaces/example.x3p
+    python tests/example_surface.py workflow/config/surfaces/example.x3p
 """
 
 import datetime
