@@ -5,7 +5,6 @@ a text to a float in the unit that the study computes in, and says in one line w
 when it cannot.
 """
 
-import contextlib
 import functools
 import math
 import re
@@ -122,6 +121,21 @@ def convert(number: float | np.ndarray, units: str, target: str) -> float | np.n
         raise LubeError(f"{reason} {shown(units)}, need a unit of the kind {target!r}") from None
 
 
+def converts(units: str, target: str) -> bool:
+    """Whether `convert` knows a unit and can convert it to the target.
+
+    Examples
+    --------
+    >>> converts("mV", "V"), converts("mV", "ohm")
+    (True, False)
+    """
+    try:
+        convert(1.0, units, target)
+    except LubeError:
+        return False
+    return True
+
+
 def _in_turns(units):
     """Write a speed of rotation such as ``1/min``, ``Hz`` or ``U/min`` in turns, as pint needs."""
     units = _INVERSE.sub("^-1", _TURN.sub("turn", units))
@@ -174,8 +188,7 @@ def electrical_quantity(units: object) -> str:
     'resistance'
     """
     for quantity, target in ELECTRICAL.items() if isinstance(units, str) else ():
-        with contextlib.suppress(LubeError):
-            convert(1.0, usual_spelling(units), target)
+        if converts(usual_spelling(units), target):
             return quantity
     raise LubeError(f"got the unit {shown(units)}, need one of voltage or resistance")
 

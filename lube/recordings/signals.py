@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from lube.errors import DataError, LubeError, shown
-from lube.units import ELECTRICAL, convert, electrical_quantity, usual_spelling
+from lube.units import ELECTRICAL, convert, converts, electrical_quantity, usual_spelling
 
 UNITS = {"time": "s"} | ELECTRICAL
 """Quantities of a recording, and the unit each is converted to."""
@@ -219,13 +219,8 @@ def _quantity_of_name(channel):
 
 
 def _quantity_of_unit(channel):
-    for quantity, target in UNITS.items():
-        try:
-            convert(1.0, usual_spelling(channel.units or ""), target)
-        except LubeError:
-            continue
-        return quantity
-    return None
+    units = usual_spelling(channel.units or "")
+    return next((quantity for quantity, one in UNITS.items() if converts(units, one)), None)
 
 
 def _signal(index, channel, quantity, where):

@@ -155,6 +155,7 @@ AT_RECORDS = (
 """Variables that describe each record: its conditions, and the study's levels assigned to it."""
 
 LIMITS = ("", "_lower", "_upper")
+MEAN_LIMITS = ("_mean", "_lower", "_upper")
 """Suffixes of the variables that hold an estimate and the limits of its 95 % interval."""
 
 ORIGINS = ("measured", "simulated")
@@ -164,7 +165,12 @@ REGIMES = tuple(FILES["film"]["regime"].attributes["flag_meanings"].split())
 """Regimes of lubrication, in the order of their flags."""
 
 
-def values_with_limits(name: str, values: Iterable[Any]) -> dict[str, Any]:
+def values_with_limits(
+    name: str,
+    values: Iterable[Any],
+    dims: str | tuple[str, ...] | None = None,
+    names: tuple[str, str, str] = LIMITS,
+) -> dict[str, Any]:
     """Name a value and the limits of its interval.
 
     Parameters
@@ -173,6 +179,10 @@ def values_with_limits(name: str, values: Iterable[Any]) -> dict[str, Any]:
         Name of the value.
     values : iterable
         Value, lower limit and upper limit.
+    dims : str or tuple of str, optional
+        Dimensions of each, to make variables of a dataset of them.
+    names : tuple of str, optional
+        Ends of the three names: `LIMITS`, or `MEAN_LIMITS` for a mean.
 
     Returns
     -------
@@ -184,4 +194,5 @@ def values_with_limits(name: str, values: Iterable[Any]) -> dict[str, Any]:
     >>> values_with_limits("share", [0.5, 0.4, 0.6])
     {'share': 0.5, 'share_lower': 0.4, 'share_upper': 0.6}
     """
-    return {f"{name}{limit}": value for limit, value in zip(LIMITS, values, strict=True)}
+    given = values if dims is None else ((dims, value) for value in values)
+    return {f"{name}{end}": value for end, value in zip(names, given, strict=True)}

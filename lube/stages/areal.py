@@ -133,7 +133,7 @@ def strip_contacts(
 def _sampled(spec, surface, points, sharp, length, seed, threads=1):
     """Probabilities and numbers of contacts, with their intervals, shape (points,) each."""
     _, widths, _ = points
-    longest = math.ceil(2.0 * np.pi / spec.q_min / surface.spacing)
+    longest = math.ceil(spec.longest_wavelength / surface.spacing)
     reach = longest, min(AROUND, longest)
     columns = np.maximum(np.floor(widths / surface.spacing).astype(np.int64), 1)
     covariances = tuple(surface.covariances(sum(reach) + 1, columns.max()))

@@ -93,8 +93,7 @@ def _side_by_side(model, experiment):
         "predicted_share_upper": upper,
         "within_prediction": (shares[0] >= lower) & (shares[0] <= upper),
     }
-    measured = values_with_limits("measured_share", shares)
-    table = table.assign({name: ("record", values) for name, values in measured.items()})
+    table = table.assign(values_with_limits("measured_share", shares, "record"))
     dims = ("film_formula", "record")
     return table.assign({name: (dims, values) for name, values in by_formula.items()})
 

@@ -8,11 +8,7 @@ import scipy.special
 import xarray as xr
 
 from lube.ehl.film_formulas import formula
-from lube.physics.dimensionless import (
-    dimensionless_load,
-    dimensionless_material,
-    dimensionless_speed,
-)
+from lube.physics import dimensionless
 from lube.rig.map_curves import curve_at
 from lube.schema import OPERATING_DIMS, label
 
@@ -57,11 +53,11 @@ def _films(lubricant, points):
     film_modulus = 2.0 * points["reduced_modulus"]
     scale = film_modulus, points["reduced_radius"]
     load = 0.5 * np.pi * points["hertz_pressure"] * points["contact_half_width"]  # per length
-    viscosity = lubricant["dynamic_viscosity"]
+    viscosity, alpha = lubricant["dynamic_viscosity"], lubricant["pressure_viscosity_coefficient"]
     groups = (
-        dimensionless_load(load, *scale),
-        dimensionless_speed(viscosity, points["entrainment_speed"], *scale),
-        dimensionless_material(lubricant["pressure_viscosity_coefficient"], film_modulus),
+        dimensionless.dimensionless_load(load, *scale),
+        dimensionless.dimensionless_speed(viscosity, points["entrainment_speed"], *scale),
+        dimensionless.dimensionless_material(alpha, film_modulus),
         *(viscosity, film_modulus),
     )
     films = [xr.apply_ufunc(formula(name).film, *groups, join="exact") for name in FILMS]

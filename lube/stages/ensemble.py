@@ -18,7 +18,7 @@ import xarray as xr
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
 from lube.rig.map_curves import windows_in
-from lube.schema import label
+from lube.schema import MEAN_LIMITS, label, values_with_limits
 from lube.statistics import sample_size
 from lube.statistics.confidence import probability_interval
 
@@ -154,11 +154,9 @@ def _join(batches):
 
 
 def _add_intervals(dataset, windows, kind):
-    dataset = dataset.copy()
     for name in PROBABILITIES:
         dims = dataset[name].dims[1:]
         windows_here = windows.broadcast_like(dataset[name][0]).transpose(*dims)
         interval = probability_interval(dataset[name].values, windows_here.values)
-        for suffix, values in zip(("mean", "lower", "upper"), interval, strict=True):
-            dataset[f"{name}_{suffix}"] = (dims, values)
+        dataset = dataset.assign(values_with_limits(name, interval, dims, MEAN_LIMITS))
     return label(dataset, kind)

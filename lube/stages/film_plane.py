@@ -1,16 +1,12 @@
 """The film_plane stage: the computed film over Moes' numbers, and how far off each formula is."""
 
-import logging
-
 import numpy as np
 import xarray as xr
 
 from lube.ehl.film_formulas import FORMULAS
-from lube.ehl.line_contact import ConvergenceError, LineContact, solve
+from lube.grid.film_profiles import profiles_of, six_digits
 from lube.physics.dimensionless import dimensionless_material
 from lube.schema import label
-
-log = logging.getLogger(__name__)
 
 MOES_LOADS = np.geomspace(0.1, 100.0, 25)
 MOES_MATERIALS = np.arange(2.0, 16.0)
@@ -82,21 +78,12 @@ def film_plane(lubricant: xr.Dataset, reduced_modulus: float) -> xr.Dataset:
 def _plane(viscosity, alpha, film_modulus):
     """Films over R* by place, and W, U and G, shape (materials, loads, 3) each."""
     material = dimensionless_material(alpha, film_modulus)
-    films, groups = [], []
+    groups = []
     for moes_material in MOES_MATERIALS:
         speed = 0.5 * (moes_material / material) ** 4
         for load in MOES_LOADS * np.sqrt(2.0 * speed):
             groups.append((load, speed, material))
-            films.append(_films(LineContact(*groups[-1], viscosity, film_modulus)))
+    solved = profiles_of(*np.transpose(groups), viscosity, film_modulus)
+    films = [[getattr(one, f"{name}_film", np.nan) for name in PLACES] for one in solved]
     shape = (MOES_MATERIALS.size, MOES_LOADS.size, 3)
-    return np.reshape(films, shape), np.reshape(groups, shape)
-
-
-def _films(contact):
-    try:
-        profile = solve(contact)
-    except ConvergenceError as error:
-        log.warning("%s", error)
-        return [np.nan] * len(PLACES)
-    # To six digits, so that the last bits of a processor do not matter.
-    return [float(f"{getattr(profile, f'{name}_film'):.6g}") for name in PLACES]
+    return six_digits(np.reshape(films, shape)), np.reshape(groups, shape)

@@ -14,7 +14,6 @@ from lube.kernels.whole_runs import whole_run_steps
 from lube.physics.hertz import hertz_gap
 from lube.schema import POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval, probability_interval, ratio_interval
-from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.rare_contact import check_gaussian, rare_contact_under
@@ -74,31 +73,22 @@ def film_shape_probabilities(
         central = (factor * profile["central_film"]).transpose(*POINT_DIMS)
         profile = profile.assign(film=heated, central_film=central)
     central = profile["central_film"]
-    film_of = {"formula": thickness, "flat": central, "open": central, "computed": central}
-    sampled = _sampled(spec, film, profile, thickness, boundary_layer, (seed, threads))
-    contact, breakthrough = (
-        xr.DataArray(each, central.coords, _DIMS).assign_coords(film_model=list(FILM_MODELS))
-        for each in sampled
-    )
-    models = {"film_model": list(FILM_MODELS)}
-    thicknesses = xr.concat(list(film_of.values()), "film_model", join="exact", coords="minimal")
+    work = seed, threads
+    contact, breakthrough = _sampled(spec, film, profile, thickness, boundary_layer, work)
+    films = [thickness, central, central, central]  # of the models in this order
+    thicknesses = xr.concat(films, "film_model", join="exact", coords="minimal")
+    ratio = ratio_interval(breakthrough, breakthrough[:, :1])
     table = xr.Dataset(
         {
             **_limited("geometric_contact_probability", contact),
             **_limited("breakthrough_probability", breakthrough),
             # From the same lines, over the formula's flat film.
-            **values_with_limits(
-                "probability_ratio",
-                [
-                    (_DIMS[1:], each)
-                    for each in ratio_interval(breakthrough.values, breakthrough.values[:, :1])
-                ],
-            ),
-            **_edges(spec, film, thickness, boundary_layer, (seed, threads)),
+            **values_with_limits("probability_ratio", ratio, _DIMS[1:]),
+            **_edges(spec, film, thickness, boundary_layer, work),
             "lambda_ratio": thicknesses.drop_attrs() / film["composite_rms_roughness"].item(),
             "film_formula": ((), name),
         },
-        {dim: film[dim] for dim in POINT_DIMS} | models,
+        {dim: film[dim] for dim in POINT_DIMS} | {"film_model": list(FILM_MODELS)},
     )
     return label(table.transpose("film_model", *POINT_DIMS), "film_shape")
 
@@ -126,16 +116,10 @@ def _edges(spec, film, thickness, boundary_layer, work):
         found = np.stack(list(pool.map(on_one_pair, range(PAIRS))))
     found[:, :, np.isnan(thickness.values.ravel())] = np.nan
     whole, pieces = (found[:, each].reshape(-1, *thickness.shape) for each in (0, 1))
-    travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
-    windows = independent_windows(travel, 2.0 * widths.values, longest)
-    judged = {
-        "whole_run_probability": probability_interval(whole, windows),
-        "edge_ratio": ratio_interval(pieces, whole),
-    }
-    table = {}
-    for name, limits in judged.items():
-        table |= values_with_limits(name, [(POINT_DIMS, each) for each in limits])
-    return table
+    seen = probability_interval(whole, spec.independent_windows(2.0 * widths.values))
+    return values_with_limits("whole_run_probability", seen, POINT_DIMS) | values_with_limits(
+        "edge_ratio", ratio_interval(pieces, whole), POINT_DIMS
+    )
 
 
 _DIMS = ("pair", "film_model", *POINT_DIMS)
@@ -211,6 +195,4 @@ def window_models(
 
 
 def _limited(name, values):
-    limits = mean_interval(values.values)
-    dims = values.dims[1:]
-    return values_with_limits(name, [(dims, np.minimum(limit, 1.0)) for limit in limits])
+    return values_with_limits(name, np.minimum(mean_interval(values), 1.0), _DIMS[1:])

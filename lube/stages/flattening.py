@@ -10,9 +10,8 @@ from lube.grid.contact_runs import ContactRuns
 from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.operating_points import at_slip
 from lube.physics.flattening import amplitude_ratio
-from lube.schema import POINT_DIMS, label, values_with_limits
+from lube.schema import MEAN_LIMITS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import probability_interval, ratio_interval
-from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.spectra import line_attributes
@@ -68,16 +67,16 @@ def flattened_contact(
         probability = np.array(list(pool.map(run, realisations)))
     dims = ("realisation", "roughness_model", *POINT_DIMS)
     probability = probability.reshape(*probability.shape[:2], *film["film_thickness"].shape)
+    width = 2.0 * film["contact_half_width"].broadcast_like(film["film_thickness"])
+    windows = spec.independent_windows(width.transpose(*POINT_DIMS).values)
+    means = probability_interval(probability, windows)
     # From the same lines; NaN where no contact was seen.
     ratio = ratio_interval(probability[:, 1], probability[:, 0])
     table = xr.Dataset(
         {
             "breakthrough_probability": (dims, probability),
-            **_limited(probability, dims[1:], _windows(spec, film)),
-            **values_with_limits(
-                "probability_ratio",
-                [(POINT_DIMS, each) for each in ratio],
-            ),
+            **values_with_limits("breakthrough_probability", means, dims[1:], MEAN_LIMITS),
+            **values_with_limits("probability_ratio", ratio, POINT_DIMS),
             "roughness_ratio": _roughness_ratio(spec, film),
             "lambda_ratio": film["lambda_ratio"].drop_attrs(),
         },
@@ -108,20 +107,3 @@ def _roughness_ratio(spec, film):
     names = ("contact_half_width", "moes_load", "moes_material")
     contact = (film[name].drop_attrs() for name in names)
     return xr.apply_ufunc(ratio, *contact, vectorize=True).transpose(*POINT_DIMS)
-
-
-def _windows(spec, film):
-    """Independent windows of each operating point in one realisation."""
-    travel = spec.spacing * min(spec.points)
-    width = 2.0 * film["contact_half_width"].broadcast_like(film["film_thickness"])
-    width = width.transpose(*POINT_DIMS).values
-    return independent_windows(travel, width, 2.0 * np.pi / spec.q_min)
-
-
-def _limited(probability, dims, windows):
-    limits = probability_interval(probability, windows)
-    names = ("mean", "lower", "upper")
-    return {
-        f"breakthrough_probability_{name}": (dims, values)
-        for name, values in zip(names, limits, strict=True)
-    }

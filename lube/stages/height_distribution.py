@@ -8,9 +8,8 @@ import xarray as xr
 from lube.grid.discretise import layer_factor_of, whole_numbers
 from lube.kernels.strips import strip_statistics
 from lube.kernels.synthesis import mean_powers
-from lube.schema import label
+from lube.schema import MEAN_LIMITS, label, values_with_limits
 from lube.statistics.confidence import probability_interval
-from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.surfaces.spectra import line_attributes
@@ -60,8 +59,7 @@ def height_distributions(
     factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
     levels = [(skewness, kurtosis) for skewness in SKEWNESS for kurtosis in KURTOSIS]
     # Both rollers turn as one, so a revolution of the smaller one shows all of its line.
-    travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
-    windows = np.full(films.size, independent_windows(travel, 2.0 * half_width, longest))
+    windows = np.full(films.size, spec.independent_windows(2.0 * half_width))
 
     def row(level):
         return _row(_with_heights(spec, *level), seed, points, factor, windows)
@@ -78,7 +76,7 @@ def height_distributions(
         table[name] = along, values.reshape(shape + values.shape[1:])
     coordinates = dict(zip(dims, (list(SKEWNESS), list(KURTOSIS)), strict=True))
     coordinates |= {"lambda_ratio": LAMBDA_RATIOS, "revolutions": 1}
-    attributes = {"travel": travel, "longest_wavelength": longest}
+    attributes = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
     return label(xr.Dataset(table, coordinates, attributes), "height_distribution")
 
 
@@ -105,8 +103,7 @@ def _row(spec, seed, points, factor, windows):
         ("geometric_contact_probability", contact),
     ):
         interval = probability_interval(values, windows)
-        for suffix, limits in zip(("mean", "lower", "upper"), interval, strict=True):
-            row[f"{name}_{suffix}"] = limits
+        row |= values_with_limits(name, interval, names=MEAN_LIMITS)
     return row
 
 

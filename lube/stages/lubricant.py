@@ -241,12 +241,8 @@ def _for_formulas(section, stated, dynamic_viscosity):
     """Coefficients by the definition that film formulas take; those of Gold's form as they are."""
     if section.definition is None:
         return stated
-    return np.array(
-        [
-            roelands_slope(coefficient, viscosity, section.definition, section.span)
-            for coefficient, viscosity in zip(stated, dynamic_viscosity, strict=True)
-        ]
-    )
+    pairs = zip(stated, dynamic_viscosity, strict=True)
+    return np.array([roelands_slope(*pair, section.definition, section.span) for pair in pairs])
 
 
 def _temperature_viscosity(substance, temperature):

@@ -58,8 +58,8 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
     """
     find_tamaas()
     check_isotropic(spec)
-    longest = 2.0 * np.pi / spec.q_min
-    surface = isotropic_surface(spec, contact=4.0 * longest / LEAST_POINTS, waves=1)
+    smallest = 4.0 * spec.longest_wavelength / LEAST_POINTS
+    surface = isotropic_surface(spec, contact=smallest, waves=1)
     gradient = np.sqrt(sum(_moments(spec, "rms_slope") ** 2))
     values = {
         "pressure": reduced_modulus * gradient * np.array(PRESSURES),

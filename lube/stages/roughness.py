@@ -39,18 +39,9 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
     steps = dataset["height"]
     heights = steps.where(steps != PADDING) * spec.height_step
     dataset = dataset.assign(height=heights)
-    moments = [
-        [
-            line_moments(line[:size], spec.spacing)
-            for line, size in zip(pair, spec.points, strict=True)
-        ]
-        for pair in heights.values
-    ]
+    dims, moments = ("realisation", "roller"), [_moments(pair, spec) for pair in heights.values]
     for name in moments[0][0]:
-        dataset[name] = (
-            ("realisation", "roller"),
-            [[line[name] for line in pair] for pair in moments],
-        )
+        dataset[name] = dims, [[line[name] for line in pair] for pair in moments]
     expected = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
     for name in expected[0]:
         dataset[f"spectrum_{name}"] = "roller", [line[name] for line in expected]
@@ -63,6 +54,11 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
     dataset["seed"] = "realisation", np.full(len(realisations), seed, np.int64)
     dataset["position"] = spec.spacing * np.arange(max(spec.points))
     return label(dataset, "roughness")
+
+
+def _moments(pair, spec):
+    lines = (line[:size] for line, size in zip(pair, spec.points, strict=True))
+    return [line_moments(line, spec.spacing) for line in lines]
 
 
 def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> xr.Dataset:

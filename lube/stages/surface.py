@@ -63,16 +63,9 @@ def measured_surfaces(
         parts.append(_surface(topography, described[key], line, hurst))
         remarks += [f"{name} roller: {text}" for text in _remarks(described[key][-1], line)]
     rollers = [ROLLERS[NAMES.index(name)] for name in topographies]
-    waves = max(part.sizes["wave"] for part in parts)
-    parts = [part.pad(wave=(0, waves - part.sizes["wave"])) for part in parts]
-    table = xr.concat(parts, "roller", join="exact")
-    coordinates = {
-        "roller": np.asarray(rollers, np.int64),
-        "wave": np.arange(waves),
-        "standard_height": STANDARD_HEIGHTS,
-    }
-    remarks = "\n".join(remarks)
-    return label(table.assign_coords(coordinates).assign_attrs(remarks=remarks), "surface")
+    # Spectra have different numbers of waves; NaN stands for the missing ones.
+    table = xr.concat(parts, xr.Variable("roller", rollers), join="outer")
+    return label(table.assign_attrs(remarks="\n".join(remarks)), "surface")
 
 
 def _described(topography, line):
@@ -82,7 +75,7 @@ def _described(topography, line):
     """
     surface = prepared(topography)
     spectrum = line_spectrum(surface, preparation(topography))
-    waves = waves_of_surface(spectrum, 2.0 * np.pi / line.q_min, 2.0 * np.pi / line.q_max)
+    waves = waves_of_surface(spectrum, line.longest_wavelength, line.shortest_wavelength)
     bend = roll_off(spectrum, waves)
     numbers = values_with_limits("roll_off_wavelength", bend or _UNKNOWN)
     numbers["resolved_wavelength"] = waves.resolution
@@ -98,7 +91,7 @@ def _described(topography, line):
 
 def _remarks(numbers, line):
     """Yield what a reader must know of the fits."""
-    resolved, shortest = numbers["resolved_wavelength"], 2.0 * np.pi / line.q_max
+    resolved, shortest = numbers["resolved_wavelength"], line.shortest_wavelength
     if resolved > shortest:
         yield (
             f"waves shorter than {resolved:.2g} m show the instrument and not the surface, and the "
@@ -120,7 +113,8 @@ def _surface(topography, described, line, hurst):
         **values_with_limits("density", _density(spectrum)),
     }
     words = {"texture": topography.texture, "use": topography.use}
-    return xr.Dataset(table | numbers | words)
+    levels = {"wave": np.arange(spectrum.wave_vector.size), "standard_height": STANDARD_HEIGHTS}
+    return xr.Dataset(table | numbers | words, levels)
 
 
 def _density(spectrum: LineSpectrum):

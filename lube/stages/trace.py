@@ -178,21 +178,20 @@ def contact_window(
 
 def _segments(overlap, point, lines):
     """Maximal runs of positive overlap, and the state of their boundary layer."""
-    edges = np.diff(np.concatenate([[0], (overlap > 0).astype(np.int8), [0]]))
-    first, last = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
+    edges = np.flatnonzero(np.diff(overlap > 0, prepend=False, append=False))
+    first, last = edges[::2], edges[1::2] - 1
     points = last - first + 1
     sums = np.array([overlap[i : i + n].sum() for i, n in zip(first, points, strict=True)])
     stiffness = point["reduced_modulus"].item() * lines.attrs["spacing"]
     length = points * lines.attrs["spacing"]
     force = stiffness * sums * lines.attrs["height_step"]
     factor = layer_factor_of(lines, point["reduced_modulus"], point).item()
+    broken = [layer_breaks(*each, factor) for each in zip(points, sums, strict=True)]
     return {
         "first": first,
         "last": last,
         "contact_length": length,
         "force": force,
         "layer_thickness": np.pi * point["shear_strength"].item() / 12.0 * length**3 / force,
-        "broken": np.array(
-            [layer_breaks(*each, factor) for each in zip(points, sums, strict=True)], bool
-        ),
+        "broken": np.array(broken, bool),
     }

@@ -1,14 +1,17 @@
 """What determines the roughness lines of a pair of rollers, checked against the grid."""
 
 import math
+from functools import partial
 from typing import Annotated
 
 from pydantic import Field, PlainSerializer
 
 from lube.errors import LubeError, StudyError
+from lube.statistics.sample_size import independent_windows
 from lube.study.field_types import StrictModel
 from lube.study.roller_topography import MeasuredHeights
 from lube.study.rollers import AUTOMATIC_WAVELENGTH, ROLLERS, RollerPair, Roughness
+from lube.types import Values
 from lube.units import with_unit
 
 _Heights = Annotated[MeasuredHeights, PlainSerializer(lambda heights: heights.sha256)]
@@ -50,6 +53,16 @@ class RoughLine(StrictModel, arbitrary_types_allowed=True):
     spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None = None
     heights: _Heights | None = None
     isotropic: bool = True
+
+    @property
+    def longest_wavelength(self) -> float:
+        """Of its waves, m."""
+        return 2.0 * math.pi / self.q_min
+
+    @property
+    def shortest_wavelength(self) -> float:
+        """Of its waves, m."""
+        return 2.0 * math.pi / self.q_max
 
     @property
     def is_gaussian(self) -> bool:
@@ -114,6 +127,23 @@ class LineSpec(StrictModel):
         """Largest wave number of both lines, rad/m."""
         return max(line.q_max for line in self.lines)
 
+    @property
+    def longest_wavelength(self) -> float:
+        """Of the waves of both lines, m."""
+        return 2.0 * math.pi / self.q_min
+
+    @property
+    def travel(self) -> float:
+        """Perimeter of the smaller roller, m."""
+        return self.spacing * min(self.points)
+
+    def independent_windows(self, width: Values) -> Values:
+        """Count the windows of a contact width, m, in a turn of the smaller roller.
+
+        As in `lube.statistics.sample_size.independent_windows`.
+        """
+        return independent_windows(self.travel, width, self.longest_wavelength)
+
 
 def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -> LineSpec:
     """Determine the roughness lines of a pair of rollers.
@@ -173,7 +203,7 @@ def band_in_words(rollers: RollerPair, roughness: Roughness, spec: LineSpec) -> 
     bands = []
     for name, line in zip(ROLLERS, spec.lines, strict=True):
         own = roughness.of(getattr(rollers, name).roughness)
-        longest, shortest = 2.0 * math.pi / line.q_min, 2.0 * math.pi / line.q_max
+        longest, shortest = line.longest_wavelength, line.shortest_wavelength
         automatic = line.heights is None and own.longest_wavelength == AUTOMATIC_WAVELENGTH
         why = f" ({AUTOMATIC_WAVELENGTH})" if automatic else ""
         band = f"waves {_length(longest)}{why} to {_length(shortest)}"
@@ -192,7 +222,7 @@ def _rough_line(rollers, roughness, name, rms, lengths):
     """Line of one roller, at a grid spacing and the largest contact width."""
     spacing, width = lengths
     roller = getattr(rollers, name)
-    own, key = roughness.of(roller.roughness), _Keys(name, roller.roughness)
+    own, key = roughness.of(roller.roughness), partial(_key, name, roller.roughness)
     longest, shortest = own.wavelengths(width, spacing)
     points = round(roughness.points * roller.radius / rollers.first.radius)
     if roller.topography and roller.topography.is_line:
@@ -245,7 +275,7 @@ def check_width(spec: LineSpec, width: float, what: str) -> None:
     StudyError
         With the contact width, and what is needed.
     """
-    least, most = 2.0 * spec.spacing, min(spec.points) * spec.spacing
+    least, most = 2.0 * spec.spacing, spec.travel
     if not least <= width < most:
         raise StudyError(
             f"{what} is {width:.3g} m wide, need at least two grid spacings of {least:.3g} m, and "
@@ -253,15 +283,10 @@ def check_width(spec: LineSpec, width: float, what: str) -> None:
         )
 
 
-class _Keys:
+def _key(roller, own, name):
     """Key of a value of a roller's roughness: its own, or else that of the study."""
-
-    def __init__(self, roller, own):
-        self._roller, self._own = roller, dict(own or ())
-
-    def __call__(self, name):
-        own = self._own.get(name) is not None
-        return f"rollers.{self._roller}.roughness.{name}" if own else f"roughness.{name}"
+    is_own = getattr(own, name, None) is not None
+    return f"rollers.{roller}.roughness.{name}" if is_own else f"roughness.{name}"
 
 
 def _beyond_cutoffs(own, longest, shortest, key):

@@ -178,9 +178,7 @@ def _with_paths_from(content, here, there):
         case {"lubricants": list(names)}:
             moved_names = [moved(name) if is_record_path(name) else name for name in names]
             content = content | {"lubricants": moved_names}
-    match content:
-        case {"experiment": {"manifest": str(manifest)} as experiment}:
-            content = content | {"experiment": experiment | {"manifest": moved(manifest)}}
+    content = _with_path(content, ("experiment", "manifest"), moved)
     return with_topographies(content, moved)
 
 
@@ -200,11 +198,14 @@ def with_topographies(content: dict, moved: Callable[[str], str]) -> dict:
         The same content with other paths.
     """
     for name in ("first", "second"):
-        match content:
-            case {"rollers": {**rollers}} if isinstance(rollers.get(name), dict):
-                match rollers[name]:
-                    case {"topography": {"file": str(file), **others}}:
-                        topography = {"file": moved(file)} | others
-                        roller = rollers[name] | {"topography": topography}
-                        content = content | {"rollers": rollers | {name: roller}}
+        content = _with_path(content, ("rollers", name, "topography", "file"), moved)
     return content
+
+
+def _with_path(content, keys, moved):
+    """Rewrite the path under a chain of keys, if there is one."""
+    if not keys:
+        return moved(content) if isinstance(content, str) else content
+    if not isinstance(content, dict) or keys[0] not in content:
+        return content
+    return content | {keys[0]: _with_path(content[keys[0]], keys[1:], moved)}

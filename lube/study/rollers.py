@@ -226,15 +226,11 @@ class RollerPair(StrictModel):
                     f"{name}.rms_roughness: missing, need it, or ra_roughness, or a topography, or "
                     "composite_rms_roughness of both rollers"
                 )
-            if roller.topography and self.composite is not None:
+            if self.composite is not None and (roller.topography or rms):
+                kind, height = ("roughness", f", {rms:.3g} m rms") if rms else ("topography", "")
                 raise ValueError(
-                    f"composite_rms_roughness: got {self.composite:g} m beside a topography of the "
-                    f"{name} roller, need one of the two"
-                )
-            if rms is not None and self.composite is not None:
-                raise ValueError(
-                    f"composite_rms_roughness: got {self.composite:g} m beside a roughness of the "
-                    f"{name} roller, {rms:.3g} m rms, need one of the two"
+                    f"composite_rms_roughness: got {self.composite:g} m beside a {kind} of the "
+                    f"{name} roller{height}, need one of the two"
                 )
         return self
 

@@ -41,6 +41,17 @@ def read_cells(path: File, error_type: type) -> list[tuple[int, list[str]]]:
     return [(number, split_cells(line, delimiter)) for number, line in lines]
 
 
+def units_of(header: list[str]) -> dict[str, str]:
+    """Return the units by the columns' names, of those that have a unit.
+
+    Examples
+    --------
+    >>> units_of(["position [mm]", "height [um]", "remark"])
+    {'position': 'mm', 'height': 'um'}
+    """
+    return dict(cell.groups() for cell in map(HEADER_CELL.fullmatch, header) if cell)
+
+
 def delimiter_of(header: str) -> str:
     """Return the delimiter of the columns: a tab, a semicolon or else a comma, the first found.
 

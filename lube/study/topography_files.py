@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import DataError, LubeError, shown
-from lube.study.small_csv import HEADER_CELL, read_cells
+from lube.study.small_csv import read_cells, units_of
 from lube.surfaces.topography import Topography
 from lube.types import File
 from lube.units import convert, parse_number
@@ -53,10 +53,7 @@ def read_topography(path: File) -> Topography:
 
 def _read_csv(path):
     (number, header), *rows = read_cells(path, DataError)
-    units = {}
-    for cell in header:
-        if match := HEADER_CELL.fullmatch(cell):
-            units[match[1]] = match[2]
+    units = units_of(header)
     if len(header) != 2 or list(units) != ["position", "height"]:
         raise DataError(
             f"{path}: line {number}: got {shown(','.join(header))}, need the columns "

@@ -6,7 +6,7 @@ from lube.errors import RecordError, shown
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE
 from lube.study.field_types import StrictModel, quantity, validate
-from lube.study.small_csv import HEADER_CELL, read_cells
+from lube.study.small_csv import read_cells, units_of
 from lube.types import File
 
 # Pressure up to which a viscosity counts as that at atmospheric pressure, Pa. It changes a
@@ -95,7 +95,7 @@ def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
 
 def _csv_columns(cells, where):
     """Units of the columns by name, in the order of the columns."""
-    columns = dict(cell.groups() for cell in map(HEADER_CELL.fullmatch, cells) if cell)
+    columns = units_of(cells)
     viscosities = set(columns) - {"temperature", "pressure"}
     known = viscosities <= {"kinematic_viscosity", "dynamic_viscosity"}
     if len(columns) != len(cells) or "temperature" not in columns or not viscosities or not known:

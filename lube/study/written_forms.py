@@ -10,8 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lube.errors import LubeError
-from lube.units import convert
+from lube.units import converts
 
 _EXAMPLES = {
     **{"m": "50 mm", "N": "800 N", "Pa": "210 GPa", "rpm": "100 rpm", "degC": "40 degC"},
@@ -48,15 +47,7 @@ class Written:
 
 @functools.cache
 def _of_other_dimension(target):
-    return [unit for unit in _UNITS if not _converts(unit, target)]
-
-
-def _converts(unit, target):
-    try:
-        convert(1.0, unit, target)
-    except LubeError:
-        return False
-    return True
+    return [unit for unit in _UNITS if not converts(unit, target)]
 
 
 def _escaped(unit):

@@ -223,13 +223,11 @@ def anisotropy(power: Array, lengths: Pair, q_max: float) -> tuple[float, float]
     """
     along, across = _wave_vectors(power, lengths)
     edges = _bin_edges(min(lengths), q_max)
-    ring = np.digitize(np.hypot(along, across).ravel(), edges)
-    total, cosine, sine = (
-        np.bincount(ring, weights.ravel(), edges.size + 1)[1:-1]
-        for weights in _double_angle(power, along, across)
-    )
+    ring = np.digitize(np.hypot(along, across), edges)
+    weights = _double_angle(power, along, across)
+    total, cosine, sine = (_binned(ring, each, edges) for each in weights)
     # Rings of few waves are left out: their scatter alone looks like a direction.
-    many = (np.bincount(ring, minlength=edges.size + 1)[1:-1] >= LEAST_WAVES_OF_RING) & (total > 0)
+    many = (_binned(ring, None, edges) >= LEAST_WAVES_OF_RING) & (total > 0)
     if not many.any():
         return 0.0, 0.0
     cosine, sine = (np.mean(part[many] / total[many]) for part in (cosine, sine))

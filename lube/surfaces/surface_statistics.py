@@ -260,16 +260,8 @@ def _blocks(heights):
 def _power_sums(block):
     """Return the number of points and the sums of z, |z|, z^2, z^3 and z^4."""
     square = block * block
-    return np.array(
-        [
-            block.size,
-            block.sum(),
-            np.abs(block).sum(),
-            square.sum(),
-            np.vdot(square, block),
-            np.vdot(square, square),
-        ]
-    )
+    sums = block.sum(), np.abs(block).sum(), square.sum()
+    return np.array([block.size, *sums, np.vdot(square, block), np.vdot(square, square)])
 
 
 def _moments(sums):
