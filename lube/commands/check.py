@@ -46,11 +46,9 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     counts["lubricant"] = len(study.lubricants)
     points = math.prod(counts.values())
     factors = [_many(count, name) for name, count in counts.items() if count > 1]
-    more = [
-        _many(len(study.film_formulas), "film_formula"),
-        _many(study.realisations, "realisation"),
-    ]
-    runs = points * len(study.film_formulas) * study.realisations
+    formulas, realisations = len(study.film_formulas), study.realisations
+    more = _many(formulas, "film_formula"), _many(realisations, "realisation")
+    runs = points * formulas * realisations
     records, refused = _records(study)
     oil = lubricant_table(study.lubricants, study.operating_grid.temperature)
     grid, model = study.operating_grid, study.film_model | {"with_shape": False}
