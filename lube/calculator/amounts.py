@@ -92,8 +92,8 @@ def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArra
     return xr.DataArray(numbers, {name: numbers} if numbers.ndim else None, [name] * numbers.ndim)
 
 
-def pure_number(name: str, value: object, **limits: float) -> float:
-    """Check an argument without unit, such as a share; `limits` as of `amount`.
+def bare_number(name: str, value: object, units: str | None = None, **limits: float) -> float:
+    """Check a number that is given without unit, such as a share; `limits` as of `amount`.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def pure_number(name: str, value: object, **limits: float) -> float:
         Which argument, what came, what is needed.
     """
     try:
-        return bounded(parse_number(value), None, **limits)
+        return bounded(parse_number(value), units, **limits)
     except LubeError as error:
         raise StudyError(f"{name}: {error}") from None
 

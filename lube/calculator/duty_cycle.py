@@ -193,8 +193,8 @@ def _columns(points):
     for name in ("force", "temperature"):
         if name not in columns:
             raise DataError(f"points: no column {name!r}, need one, as '{name} [{_COLUMNS[name]}]'")
-    given = [names for names in _SPEEDS if set(names.split(" and ")) & set(columns)]
-    if len(given) != 1 or not set(given[0].split(" and ")) <= set(columns):
+    given = {name for name in columns if name.endswith("speed")}
+    if given not in [set(names.split(" and ")) for names in _SPEEDS]:
         raise DataError(f"points: need one kind of speed: {', '.join(_SPEEDS)}")
     return columns, labels
 

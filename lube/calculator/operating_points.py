@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from lube.calculator.amounts import Amount, amount, described, pure_number
+from lube.calculator.amounts import Amount, amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import LubeError, RangeError, StudyError, shown
@@ -259,7 +259,7 @@ def contact_probability(
     True
     """
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
-    slip = pure_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
+    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     contact = ensemble(table, rollers, realisations, seed, slip)
     on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip)
     return with_remarks(joined(table, contact, on_pairs), table, rollers)
@@ -407,7 +407,7 @@ def trace(
     >>> f"{found.time.values[-1]:.0f} ms"
     '120 ms'
     """
-    slip = pure_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
+    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     one = _one_point(rollers, oil, force, speed, temperature)
     table = film_table(*one, [one_formula(film_formula)])
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}

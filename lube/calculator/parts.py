@@ -10,12 +10,12 @@ from typing import TypeVar
 import numpy as np
 import xarray as xr
 
-from lube.calculator.amounts import Amount, amount, described
+from lube.calculator.amounts import Amount, amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.errors import LubeError, RecordError, StudyError, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.stages.lubricant import lubricant_table
-from lube.study.field_types import bounded, validate
+from lube.study.field_types import validate
 from lube.study.line_spec import LineSpec, band_in_words, line_spec
 from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_oil, load_record
 from lube.study.rollers import (
@@ -200,10 +200,7 @@ class Rollers:
         }
         self.pair = validate(RollerPair, pair, "Rollers", StudyError)
         for rms in filter(None, self.pair.rms_heights):
-            try:
-                bounded(rms, "m", **_ROUGHNESS)
-            except LubeError as error:
-                raise StudyError(f"Rollers: rms_roughness: {error}") from None
+            bare_number("Rollers: rms_roughness", rms, "m", **_ROUGHNESS)
         layer = {"critical_thickness": critical_thickness, "shear_strength": shear_strength}
         self.layer = validate(BoundaryLayer, layer, "Rollers", StudyError)
         self.resistivity = math.nan
@@ -297,20 +294,17 @@ class Oil:
         temperature_range: Amount | None = None,
     ) -> None:
         if (name is None) == (viscosity is None):
-            raise RecordError(
-                f"Oil: got {'neither' if name is None else 'both'}, need either the name of a "
-                "lubricant record or viscosity={...}"
-            )
+            came = "neither" if name is None else "both"
+            needed = "need either the name of a lubricant record or viscosity={...}"
+            raise RecordError(f"Oil: got {came}, {needed}")
         own = {"density": density, "base": base, "pressure_viscosity": pressure_viscosity}
         if name is None:
             self.record = _record(viscosity, **own)
         else:
+            needed = "beside a lubricant record, which has its own, need one of the two"
             for key, value in own.items():
                 if value is not None:
-                    raise RecordError(
-                        f"Oil: {key}: got {shown(value)} beside a lubricant record, which has its "
-                        "own, need one of the two"
-                    )
+                    raise RecordError(f"Oil: {key}: got {shown(value)} {needed}")
             try:
                 self.record = load_record(name)
             except RecordError as error:

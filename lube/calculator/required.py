@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import xarray as xr
 
-from lube.calculator.amounts import amount, described, pure_number
+from lube.calculator.amounts import amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.calculator.operating_points import (
     FORMULA,
@@ -291,7 +291,7 @@ def _lambda_ratios(rollers, half_width, share, realisations, seed, own=None):
     The film changes, or the roughness if its own lambda ratio is given: then so does the layer's
     strength in proportion, as of `required_roughness`. A first look by sampling says where to look.
     """
-    share = pure_number("share", share, above=0.0, below=1.0)
+    share = bare_number("share", share, above=0.0, below=1.0)
     spec, ratios = rollers.lines, LAMBDA_RATIOS
     check_width(spec, 2.0 * half_width, "force: the contact")
     travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
@@ -375,12 +375,13 @@ def _reached(films, table, levels, tried):
     """Levels at which the film of a table has some thicknesses; infinite beyond the table."""
     thickness = np.log(table["film_thickness"].values)
     rising = 1 if thickness[-1] > thickness[0] else -1
-    ends, films = {"left": -rising * np.inf, "right": rising * np.inf}, films["film_thickness"]
+    ends = {"left": -rising * np.inf, "right": rising * np.inf}
+    needed = films["film_thickness"]
     with np.errstate(divide="ignore"):  # a lower limit may be 0
-        sought = np.log(films)
+        sought = np.log(needed)
     if sought[0] > thickness.max():
         raise RangeError(
-            f"share: it needs a film of {1e6 * films[0]:.3g} um, which no {tried} gives: at most "
+            f"share: it needs a film of {1e6 * needed[0]:.3g} um, which no {tried} gives: at most "
             f"{1e6 * np.exp(thickness.max()):.3g} um"
         )
     return np.interp(sought, thickness[::rising], levels[::rising], **ends)
