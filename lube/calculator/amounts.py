@@ -10,7 +10,7 @@ from lube.calculator.answers import Answer
 from lube.errors import LubeError, StudyError, shown
 from lube.schema import COORDINATES, FILES, REGIMES
 from lube.study.field_types import bounded
-from lube.units import convert, parse_quantity
+from lube.units import convert, parse_number, parse_quantity
 
 Amount = str | Sequence[str] | tuple[Any, str] | Any
 """``"800 N"``, ``["400 N", "800 N"]``, ``([400, 800], "N")``, or a quantity of pint."""
@@ -90,6 +90,20 @@ def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArra
     except LubeError as error:
         raise StudyError(f"{name}: {error}") from None
     return xr.DataArray(numbers, {name: numbers} if numbers.ndim else None, [name] * numbers.ndim)
+
+
+def bare_number(name: str, value: object, units: str | None = None, **limits: float) -> float:
+    """Check a number that is given without unit, such as a share; `limits` as of `amount`.
+
+    Raises
+    ------
+    StudyError
+        Which argument, what came, what is needed.
+    """
+    try:
+        return bounded(parse_number(value), units, **limits)
+    except LubeError as error:
+        raise StudyError(f"{name}: {error}") from None
 
 
 def _numbers(value, units):

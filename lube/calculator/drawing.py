@@ -65,14 +65,15 @@ def draw(found: xr.Dataset, x: str | None = None, y: str | None = None) -> Axes:
 def _draw_lines(axes, found, x, y):
     """Draw a line for each level of the other dimensions."""
     others = [name for name in found[y].dims if name != x]
-    sizes = [found.sizes[name] for name in others]
-    shades = plots.level_colours(range(np.prod(sizes, dtype=int)))
+    indices = list(np.ndindex(*(found.sizes[name] for name in others)))
+    shades = (
+        plots.level_colours(range(len(indices))).values() if others else (plots.COLOURS["blue"],)
+    )
     if y == _SHOWN[0]:
         _scale(axes, found)
-    for number, index in enumerate(np.ndindex(*sizes)):
+    for index, color in zip(indices, shades, strict=True):
         one = found.isel(dict(zip(others, index, strict=True)))
         name = ", ".join(_level(one[other]) for other in others)
-        color = shades[number] if others else plots.COLOURS["blue"]
         if y == _SHOWN[0]:
             _draw_probability(axes, one, x, color, name)
         else:

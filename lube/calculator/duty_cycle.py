@@ -11,22 +11,23 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from lube.calculator.amounts import amount, described
+from lube.calculator.amounts import amount
 from lube.calculator.answers import Answer
 from lube.calculator.operating_points import (
-    FILM_VARIABLES,
     FORMULA,
     REALISATIONS,
     SEED,
     ensemble,
+    film_of_oil,
+    joined,
     one_formula,
+    with_remarks,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import DataError, LubeError, right_one, shown
 from lube.physics.hertz import reduced_radius
 from lube.rig.map_curves import windows_in
 from lube.schema import LIMITS, values_with_limits
-from lube.stages.film import film_at
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
 from lube.study.small_csv import HEADER_CELL
@@ -91,7 +92,8 @@ def duty(
         contact, counted; ``whole_tail_probability``, the same by importance sampling; and
         ``whole_tail_rate``, breakthroughs per hour; each with ``_lower`` and ``_upper``. The
         intervals are those of the mean over pairs of rollers. All points share these pairs, so
-        the whole is computed on each pair first.
+        the whole is computed on each pair first. Its attribute ``remarks`` is that of
+        `lube.contact_probability`.
 
     Raises
     ------
@@ -117,13 +119,13 @@ def duty(
     table = _film(columns, rollers, oil, film_formula)
     contact = ensemble(table, rollers, realisations, seed)
     on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, _slip(columns))
-    tail = pair_limits(on_pairs)
     share = share / share.sum()
-    found = xr.Dataset(columns).assign(table[list(FILM_VARIABLES)]).assign(share=share)
     whole = _whole(contact, on_pairs, share, 2.0 * table["contact_half_width"].max().item())
-    sampled = {f"tail_{name}": values for name, values in tail.items()}
-    found = found.assign(dict(contact.data_vars) | sampled | whole)
-    found = described(found.assign_attrs(contact.attrs | tail.attrs))
+    parts = joined(table, contact, on_pairs)
+    found = xr.Dataset(
+        columns | {"share": share} | dict(parts.data_vars) | whole, attrs=parts.attrs
+    )
+    found = with_remarks(found, table, rollers)
     return Answer(labels | dict(found.data_vars), found.coords, found.attrs)
 
 
@@ -159,16 +161,14 @@ def _film(columns, rollers, oil, film_formula):
         reduced_modulus=pair.reduced_modulus,
         composite_rms_roughness=pair.composite_rms_roughness,
     )
-    properties = oil.at(columns["temperature"])
-    rotation = columns.get("speed")
-    if rotation is None:
-        entrainment = columns.get("entrainment_speed")
-        if entrainment is None:
+    if (rotation := columns.get("speed")) is None:
+        if (entrainment := columns.get("entrainment_speed")) is None:
             entrainment = 0.5 * (columns["surface_speed"] + columns["second_surface_speed"])
         rotation = entrainment * 60.0 / (2.0 * np.pi * first)
-    table = film_at(properties, own, columns["force"], rotation, [one_formula(film_formula)])
-    table = table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
-    return table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
+    formulas = [one_formula(film_formula)]
+    table = film_of_oil(oil, own, columns["force"], rotation, columns["temperature"], formulas)
+    table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
+    return table.assign(force=columns["force"])
 
 
 def _columns(points):
@@ -193,8 +193,8 @@ def _columns(points):
     for name in ("force", "temperature"):
         if name not in columns:
             raise DataError(f"points: no column {name!r}, need one, as '{name} [{_COLUMNS[name]}]'")
-    given = [names for names in _SPEEDS if set(names.split(" and ")) & set(columns)]
-    if len(given) != 1 or not set(given[0].split(" and ")) <= set(columns):
+    given = {name for name in columns if name.endswith("speed")}
+    if given not in [set(names.split(" and ")) for names in _SPEEDS]:
         raise DataError(f"points: need one kind of speed: {', '.join(_SPEEDS)}")
     return columns, labels
 
@@ -214,10 +214,9 @@ def _column(header, values):
     limits = {"temperature": {"above": -273.15}, "share": {"least": 0.0}}.get(name, {"above": 0.0})
     if name == "share" and units is None and not isinstance(values[0], str):
         units = "1"
+    given = values if units is None else (values, units)
     try:
-        numbers = amount(
-            name, values if units is None else (values, units), _COLUMNS[name], **limits
-        )
+        numbers = amount(name, given, _COLUMNS[name], **limits)
     except LubeError as error:
         raise DataError(f"points: {error}") from None
     return name, xr.DataArray(numbers.values, dims="point")

@@ -8,11 +8,12 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from lube.calculator.amounts import Amount, amount, described
+from lube.calculator.amounts import Amount, amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import LubeError, RangeError, StudyError, shown
 from lube.grid.discretise import speed_ratios
+from lube.grid.plausibility import remarks
 from lube.rig.map_curves import windows_in
 from lube.schema import OPERATING_DIMS, POINT_DIMS
 from lube.stages.contact import contact_at
@@ -22,11 +23,9 @@ from lube.stages.roughness import roughness_batch
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.stages.trace import contact_trace
 from lube.statistics.confidence import probability_interval
-from lube.study.field_types import bounded
 from lube.study.line_spec import check_width
 from lube.study.rig_settings import RIG_REALISATIONS
 from lube.study.rollers import BoundaryLayer
-from lube.units import parse_number
 
 FORMULA = "pan-hamrock"
 """Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
@@ -73,7 +72,9 @@ def film(
     -------
     Answer
         Over those of film_formula, temperature, speed and force of which several are given, in
-        customary units.
+        customary units. Its attribute ``remarks`` says, a line each, what is unlikely to be meant
+        and what the model cannot hold, as ``lube check`` does; of several film formulas the first
+        counts.
 
     Raises
     ------
@@ -88,7 +89,7 @@ def film(
     '1.05 um, lambda ratio 3.7'
     """
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
-    return described(table[list(FILM_VARIABLES)])
+    return with_remarks(table[list(FILM_VARIABLES)], table, rollers)
 
 
 def film_in_si(
@@ -100,21 +101,54 @@ def film_in_si(
     film_formula: str | Sequence[str],
 ) -> xr.Dataset:
     """All variables of the film table in SI units, and the oil's; arguments as in `film`."""
-    force = amount("force", force, "N", above=0.0)
-    speed = rotation_speed(speed, rollers.pair.first.radius)
-    temperature = amount("temperature", temperature, "degC", above=-273.15)
+    force, speed, temperature = _conditions(rollers, force, speed, temperature)
     if not temperature.dims:
         temperature = temperature.assign_coords(temperature=temperature)
-    properties = oil.at(temperature)
     several = not isinstance(film_formula, str) and np.iterable(film_formula)
     formulas = list(film_formula) if several else [film_formula]
     if not formulas or not all(isinstance(one, str) for one in formulas):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    table = film_at(properties, rollers.pair, force, speed, formulas)
-    table = table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
+    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas)
     table = table.assign_coords(force=force, speed=speed)
     table = table.transpose("film_formula", "temperature", "speed", "force", missing_dims="ignore")
-    return table.isel(film_formula=0) if isinstance(film_formula, str) else table
+    return table if several else table.isel(film_formula=0)
+
+
+def film_of_oil(oil, pair, force, speed, temperature, formulas) -> xr.Dataset:
+    """Film table with the oil's viscosity; numbers in N, rpm and degC, over any dimensions."""
+    properties = oil.at(temperature)
+    table = film_at(properties, pair, force, speed, formulas)
+    return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
+
+
+def _conditions(rollers, force, speed, temperature):
+    """Force in N, speed in rpm and temperature in degC."""
+    return (
+        amount("force", force, "N", above=0.0),
+        rotation_speed(speed, rollers.pair.first.radius),
+        amount("temperature", temperature, "degC", above=-273.15),
+    )
+
+
+def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answer:
+    """Answer in customary units, with the remarks of `lube check` after its own.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        What was found, in SI units.
+    table : xarray.Dataset
+        The film table that it comes from.
+    rollers : Rollers
+        The two rollers.
+
+    Returns
+    -------
+    Answer
+        With the attribute ``remarks``, a line each.
+    """
+    notes = [found.attrs.get("remarks"), *remarks(table, rollers.lines, rollers.pair)]
+    return described(found.assign_attrs(remarks="\n".join(filter(None, notes))))
 
 
 def rotation_speed(speed: Amount, radius: float | xr.DataArray) -> xr.DataArray:
@@ -162,25 +196,6 @@ def one_formula(name: str) -> str:
     return name
 
 
-def check_widths(half_widths: xr.DataArray, rollers: Rollers) -> None:
-    """Refuse a contact that is finer than the grid or wider than a roller's perimeter.
-
-    Raises
-    ------
-    StudyError
-        With the contact width, and what is needed.
-    """
-    for half_width in half_widths.values.ravel():
-        check_width(rollers.lines, 2.0 * half_width, "force: the contact")
-
-
-def _checked_slip(slip):
-    try:
-        return bounded(parse_number(slip), None, least=-2.0, most=2.0)
-    except LubeError as error:
-        raise StudyError(f"slide_to_roll_ratio: {error}") from None
-
-
 @with_parts
 def contact_probability(
     rollers: Rollers,
@@ -224,7 +239,7 @@ def contact_probability(
         ``_upper`` of both. By importance sampling ``tail_breakthrough_probability`` and
         ``tail_geometric_contact_probability``, and ``tail_breakthrough_rate``, breakthroughs per
         hour, with ``_lower`` and ``_upper``. These are NaN where the heights are not Gaussian;
-        then the attribute ``remarks`` says so.
+        then the attribute ``remarks`` says so, before the remarks of `film`.
 
     Raises
     ------
@@ -244,12 +259,18 @@ def contact_probability(
     True
     """
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
-    slip = _checked_slip(slide_to_roll_ratio)
+    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     contact = ensemble(table, rollers, realisations, seed, slip)
-    rare = pair_limits(pair_probabilities(rollers.lines, table, rollers.layer, seed, slip))
-    sampled = {f"tail_{name}": values for name, values in rare.items()}
-    found = table[list(FILM_VARIABLES)].assign(dict(contact.data_vars) | sampled)
-    return described(found.assign_attrs(contact.attrs | rare.attrs))
+    on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip)
+    return with_remarks(joined(table, contact, on_pairs), table, rollers)
+
+
+def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.Dataset:
+    """Film, probabilities as counted, and by importance sampling under names with ``tail_``."""
+    sampled = pair_limits(on_pairs)
+    tail = {f"tail_{name}": values for name, values in sampled.items()}
+    found = table[list(FILM_VARIABLES)].assign(dict(contact.data_vars) | tail)
+    return found.assign_attrs(contact.attrs | sampled.attrs)
 
 
 def ensemble(
@@ -272,11 +293,13 @@ def ensemble(
     Returns
     -------
     xarray.Dataset
-        From `with_limits`.
+        From `run_all`.
     """
-    check_widths(table["contact_half_width"], rollers)
+    half_width = table["contact_half_width"]
+    for width in (2.0 * half_width.min().item(), 2.0 * half_width.max().item()):
+        check_width(rollers.lines, width, "force: the contact")
     run = partial(probabilities, table=table, layer=rollers.layer, slip=slip)
-    return with_limits(run_all(run, rollers, realisations, seed), table["contact_half_width"], slip)
+    return run_all(run, rollers, realisations, seed, half_width, slip)
 
 
 def probabilities(
@@ -288,24 +311,32 @@ def probabilities(
 
 
 def run_all(
-    run: Callable[[xr.Dataset], xr.Dataset], rollers: Rollers, realisations: int, seed: int
+    run: Callable[[xr.Dataset], xr.Dataset],
+    rollers: Rollers,
+    realisations: int,
+    seed: int,
+    half_width: xr.DataArray,
+    slip: float = 0.0,
 ) -> xr.Dataset:
-    """Apply a function to the roughness lines of every realisation, and join the results.
+    """Both probabilities on the lines of every realisation, with the limits of their mean.
 
     Parameters
     ----------
     run : callable
-        From lines, as `lube.stages.roughness.roughness_batch` gives them, to results over
-        realisation and other dimensions.
+        From lines, as `lube.stages.roughness.roughness_batch` gives them, to `probabilities`.
     rollers : Rollers
         Their lines are drawn.
     realisations, seed : int
         As in `contact_probability`.
+    half_width : xarray.DataArray
+        Contact half-width, m.
+    slip : float, optional
+        Slide-to-roll ratio.
 
     Returns
     -------
     xarray.Dataset
-        The results over all realisations.
+        Both probabilities over all realisations, and their ``_mean``, ``_lower`` and ``_upper``.
 
     Raises
     ------
@@ -324,27 +355,8 @@ def run_all(
     # Drawing and running release Python's lock, so threads share the work.
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         parts = list(pool.map(of_realisation, range(realisations)))
-    joined = xr.concat(parts, "realisation", coords="minimal", compat="override", join="exact")
-    return joined.assign_attrs(seed=seed)
-
-
-def with_limits(contact: xr.Dataset, half_width: xr.DataArray, slip: float = 0.0) -> xr.Dataset:
-    """Add the mean over the realisations and its 95 % limits to both probabilities.
-
-    Parameters
-    ----------
-    contact : xarray.Dataset
-        From `run_all` with `probabilities`.
-    half_width : xarray.DataArray
-        Contact half-width, m.
-    slip : float, optional
-        Slide-to-roll ratio.
-
-    Returns
-    -------
-    xarray.Dataset
-        Also with ``_mean``, ``_lower`` and ``_upper`` of both probabilities.
-    """
+    contact = xr.concat(parts, "realisation", coords="minimal", compat="override", join="exact")
+    contact.attrs["seed"] = seed
     moved = contact.attrs["travel"] * min(speed_ratios(slip))
     windows = windows_in(contact.assign_attrs(travel=moved), 2.0 * half_width)
     windows = windows.broadcast_like(contact[_PROBABILITIES[0]][0])
@@ -395,12 +407,11 @@ def trace(
     >>> f"{found.time.values[-1]:.0f} ms"
     '120 ms'
     """
-    slip = _checked_slip(slide_to_roll_ratio)
+    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     one = _one_point(rollers, oil, force, speed, temperature)
     table = film_table(*one, [one_formula(film_formula)])
-    point = {name: table[name].item() for name in OPERATING_DIMS}
-    point["slide_to_roll_ratio"] = slip
-    check_widths(table["contact_half_width"], rollers)
+    point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
+    check_width(rollers.lines, 2.0 * table["contact_half_width"].item(), "force: the contact")
     lines = roughness_batch(rollers.lines, seed, [0])
     found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]
@@ -447,7 +458,7 @@ def profile(rollers: Rollers, oil: Oil, force: str, speed: str, temperature: str
 
 def _one_point(rollers, oil, force, speed, temperature):
     """Oil at the temperature, pair of rollers, force in N and speed in rpm, of one point."""
-    force = single("force", amount("force", force, "N", above=0.0))
-    speed = single("speed", rotation_speed(speed, rollers.pair.first.radius))
-    temperature = single("temperature", amount("temperature", temperature, "degC", above=-273.15))
-    return lubricant_table([oil.record], [temperature]), rollers.pair, [force], [speed]
+    given = _conditions(rollers, force, speed, temperature)
+    names = ("force", "speed", "temperature")
+    force, speed, temperature = ([single(*one)] for one in zip(names, given, strict=True))
+    return lubricant_table([oil.record], temperature), rollers.pair, force, speed

@@ -10,12 +10,12 @@ from typing import TypeVar
 import numpy as np
 import xarray as xr
 
-from lube.calculator.amounts import Amount, amount, described
+from lube.calculator.amounts import Amount, amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.errors import LubeError, RecordError, StudyError, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.stages.lubricant import lubricant_table
-from lube.study.field_types import bounded, validate
+from lube.study.field_types import validate
 from lube.study.line_spec import LineSpec, band_in_words, line_spec
 from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_oil, load_record
 from lube.study.rollers import (
@@ -33,14 +33,23 @@ from lube.study.viscosity_points import read_viscosity_csv
 from lube.types import File
 from lube.units import parse_quantity
 
-_PROPERTIES = (
-    *("kinematic_viscosity", "dynamic_viscosity", "density", "pressure_viscosity_coefficient"),
-    *("thermal_conductivity", "temperature_viscosity_coefficient"),
-)
 _HEIGHT_STEP = "1 pm"
 _ROUGHNESS = {"least": 1e-9, "most": 1e-5}
 """Rms roughness that suits this step, m."""
 _SOURCE = "assumed: given in Python"
+_MODELS = (
+    ("radius", "young_modulus", "poisson_ratio"),
+    ("rms_roughness", "ra_roughness", "topography"),
+    (
+        "hurst_exponent",
+        "long_cutoff",
+        "short_cutoff",
+        "roll_off_wavelength",
+        "skewness",
+        "kurtosis",
+    ),
+)
+"""Arguments that a roller, the heights of its roughness and the roughness of both are made of."""
 _Function = TypeVar("_Function", bound=Callable)
 
 
@@ -58,9 +67,8 @@ def with_parts(function: _Function) -> _Function:
             raise StudyError(f"{owner}: {error}") from None
         for name, kind in (("rollers", Rollers), ("oil", Oil)):
             if name in given and not isinstance(given[name], kind):
-                raise StudyError(
-                    f"{name}: got {shown(given[name])}, need lube.{kind.__name__}(...)"
-                )
+                needed = f"need lube.{kind.__name__}(...)"
+                raise StudyError(f"{name}: got {shown(given[name])}, {needed}")
         return function(*args, **kwargs)
 
     return checked
@@ -177,21 +185,11 @@ class Rollers:
         shear_strength: str = "1 MPa",
         resistivity: str = "0.2 uohm*m",
     ) -> None:
-        first = {
-            "radius": radius,
-            "young_modulus": young_modulus,
-            "poisson_ratio": poisson_ratio,
-        }
-        heights = {
-            "rms_roughness": rms_roughness,
-            "ra_roughness": ra_roughness,
-            "topography": topography,
-        }
+        given = dict(locals())
+        first, heights, roughness = ({name: given[name] for name in names} for names in _MODELS)
         if not isinstance(second, Mapping | None):
-            raise StudyError(
-                f"Rollers: second: got {shown(second)}, need what differs, such as "
-                "{'radius': '30 mm'}"
-            )
+            needed = "need what differs, such as {'radius': '30 mm'}"
+            raise StudyError(f"Rollers: second: got {shown(second)}, {needed}")
         own = dict(second or {})
         other = first | ({} if heights.keys() & own.keys() else heights) | own
         pair = {
@@ -202,10 +200,7 @@ class Rollers:
         }
         self.pair = validate(RollerPair, pair, "Rollers", StudyError)
         for rms in filter(None, self.pair.rms_heights):
-            try:
-                bounded(rms, "m", **_ROUGHNESS)
-            except LubeError as error:
-                raise StudyError(f"Rollers: rms_roughness: {error}") from None
+            bare_number("Rollers: rms_roughness", rms, "m", **_ROUGHNESS)
         layer = {"critical_thickness": critical_thickness, "shear_strength": shear_strength}
         self.layer = validate(BoundaryLayer, layer, "Rollers", StudyError)
         self.resistivity = math.nan
@@ -214,19 +209,10 @@ class Rollers:
         if points is None:
             shortest = amount("shortest_wavelength", shortest_wavelength, "m", above=0.0).item()
             points = grid_points(self.pair.first.radius, shortest)
-        roughness = {
-            "points": points,
-            "hurst_exponent": hurst_exponent,
-            # Lengths only: the other choices of a study depend on its grid.
-            "longest_wavelength": _metres("longest_wavelength", longest_wavelength),
-            "shortest_wavelength": _metres("shortest_wavelength", shortest_wavelength),
-            "long_cutoff": long_cutoff,
-            "short_cutoff": short_cutoff,
-            "roll_off_wavelength": roll_off_wavelength,
-            "skewness": skewness,
-            "kurtosis": kurtosis,
-            "height_step": _HEIGHT_STEP,
-        }
+        # Lengths only: the other choices of a study depend on its grid.
+        for name in ("longest_wavelength", "shortest_wavelength"):
+            roughness[name] = _metres(name, given[name])
+        roughness |= {"points": points, "height_step": _HEIGHT_STEP}
         shared = validate(Roughness, roughness, "Rollers", StudyError)
         self.lines = line_spec(self.pair, shared, largest_force=math.nan)
         self.band = band_in_words(self.pair, shared, self.lines)
@@ -308,20 +294,17 @@ class Oil:
         temperature_range: Amount | None = None,
     ) -> None:
         if (name is None) == (viscosity is None):
-            raise RecordError(
-                f"Oil: got {'neither' if name is None else 'both'}, need either the name of a "
-                "lubricant record or viscosity={...}"
-            )
+            came = "neither" if name is None else "both"
+            needed = "need either the name of a lubricant record or viscosity={...}"
+            raise RecordError(f"Oil: got {came}, {needed}")
+        own = {"density": density, "base": base, "pressure_viscosity": pressure_viscosity}
         if name is None:
-            self.record = _record(viscosity, density, base, pressure_viscosity)
+            self.record = _record(viscosity, **own)
         else:
-            own = {"density": density, "base": base, "pressure_viscosity": pressure_viscosity}
+            needed = "beside a lubricant record, which has its own, need one of the two"
             for key, value in own.items():
                 if value is not None:
-                    raise RecordError(
-                        f"Oil: {key}: got {shown(value)} beside a lubricant record, which has its "
-                        "own, need one of the two"
-                    )
+                    raise RecordError(f"Oil: {key}: got {shown(value)} {needed}")
             try:
                 self.record = load_record(name)
             except RecordError as error:
@@ -353,9 +336,8 @@ class Oil:
         """
         degrees = amount("temperature", temperature, "degC")
         table = self.at(degrees)
-        return described(
-            table[[name for name in table.data_vars if table[name].dims == degrees.dims]]
-        )
+        names = [name for name, values in table.items() if values.dims == degrees.dims]
+        return described(table[names])
 
     def at(self, temperature: xr.DataArray) -> xr.Dataset:
         """Properties in SI units, at temperatures in degC over any dimensions."""
@@ -396,10 +378,7 @@ def _points(viscosity):
             f"Oil: viscosity: got {shown(viscosity)}, need viscosities by temperature, such as "
             "{'40 degC': '320 mm^2/s', '100 degC': '38 mm^2/s'}, or a CSV file"
         )
-    return [
-        {"temperature": temperature, _kind(value): value}
-        for temperature, value in viscosity.items()
-    ]
+    return [{"temperature": level, _kind(value): value} for level, value in viscosity.items()]
 
 
 def _kind(viscosity):

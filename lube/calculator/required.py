@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import xarray as xr
 
-from lube.calculator.amounts import amount, described
+from lube.calculator.amounts import amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.calculator.operating_points import (
     FORMULA,
@@ -23,21 +23,18 @@ from lube.calculator.operating_points import (
     rotation_speed,
     run_all,
     single,
-    with_limits,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.errors import LubeError, RangeError, StudyError
+from lube.errors import RangeError, StudyError
 from lube.grid.discretise import layer_factor_of
 from lube.schema import values_with_limits
 from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval
-from lube.statistics.curves import falling_curve
+from lube.statistics.curves import peaked_curve
 from lube.statistics.sample_size import independent_windows
-from lube.study.field_types import bounded
 from lube.study.line_spec import check_width
 from lube.surfaces.rare_contact import rare_contact_under
 from lube.surfaces.spectra import line_attributes
-from lube.units import parse_number
 
 LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
 """Lambda ratios that are tried at first; even at the last, contact has a probability of 1e-37."""
@@ -96,8 +93,7 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    films = _films(rollers, force, share, realisations, seed)
-    return _labelled(_film_variables(films, rollers))
+    return _labelled(_films(rollers, force, share, realisations, seed))
 
 
 @with_parts
@@ -143,13 +139,8 @@ def required_viscosity(
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     factors = np.exp(_reached(films, table, np.log(FACTORS), tried))
     viscosity = properties["dynamic_viscosity"].item() * factors
-    return _labelled(
-        {
-            "dynamic_viscosity": viscosity,
-            "kinematic_viscosity": viscosity / properties["density"].item(),
-            **_film_variables(films, rollers),
-        }
-    )
+    kinematic = viscosity / properties["density"].item()
+    return _labelled({"dynamic_viscosity": viscosity, "kinematic_viscosity": kinematic} | films)
 
 
 @with_parts
@@ -189,8 +180,7 @@ def required_speed(
     tried = f"speed up to {FACTORS[-1]:g} m/s"
     speeds = np.exp(_reached(films, table, np.log(FACTORS), tried))
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
-    speeds = {"entrainment_speed": speeds, "speed": speeds * turns}
-    return _labelled(speeds | _film_variables(films, rollers))
+    return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
 
 
 @with_parts
@@ -229,7 +219,7 @@ def required_temperature(
     table = _film(rollers, oil, force, speed, (levels, "degC"), film_formula, "temperature")
     films = _films(rollers, force, share, realisations, seed)
     found = _reached(films, table, levels, "temperature of this oil")
-    return _labelled({"temperature": found} | _film_variables(films, rollers))
+    return _labelled({"temperature": found} | films)
 
 
 @with_parts
@@ -287,11 +277,12 @@ def _film(rollers, oil, force, speed, temperature, film_formula, varied=None):
 
 
 def _films(rollers, force, share, realisations, seed):
-    """Film at which the probability, its lower and its upper limit have a share, shape (3,), m."""
+    """Films at which the probability, its lower and its upper limit have a share, shape (3,)."""
     force = single("force", amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
     ratios = _lambda_ratios(rollers, half_width, share, realisations, seed)
-    return rollers.pair.composite_rms_roughness * ratios
+    films = rollers.pair.composite_rms_roughness * ratios
+    return {"film_thickness": films, "lambda_ratio": films / rollers.pair.composite_rms_roughness}
 
 
 def _lambda_ratios(rollers, half_width, share, realisations, seed, own=None):
@@ -300,10 +291,7 @@ def _lambda_ratios(rollers, half_width, share, realisations, seed, own=None):
     The film changes, or the roughness if its own lambda ratio is given: then so does the layer's
     strength in proportion, as of `required_roughness`. A first look by sampling says where to look.
     """
-    try:
-        share = bounded(parse_number(share), None, above=0.0, below=1.0)
-    except LubeError as error:
-        raise StudyError(f"share: {error}") from None
+    share = bare_number("share", share, above=0.0, below=1.0)
     spec, ratios = rollers.lines, LAMBDA_RATIOS
     check_width(spec, 2.0 * half_width, "force: the contact")
     travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
@@ -339,10 +327,9 @@ def _crossing(ratios, probabilities, share):
     Where contact is frequent, touching points merge to long segments whose boundary layer holds:
     the probability rises with the film up to a maximum, and falls beyond it.
     """
-    falling = slice(int(np.argmax(probabilities)), None)
-    unknown = np.full(ratios[falling].size, np.nan)
+    unknown = np.full(ratios.size, np.nan)
     # Over the square, in which the logarithm of a rare probability is nearly linear.
-    curve = falling_curve(ratios[falling] ** 2, probabilities[falling], unknown, _LEAST)
+    curve = peaked_curve(ratios**2, probabilities, unknown, _LEAST)
     return np.sqrt(max(curve.film_at(share), 0.0))
 
 
@@ -368,19 +355,19 @@ def _counted(rollers, half_width, seed, own, ratios, realisations):
     film = xr.DataArray(ratios * rollers.pair.composite_rms_roughness, dims="film")
     table = xr.Dataset({"film_thickness": film, "contact_half_width": half_width})
     table["reduced_modulus"] = rollers.pair.reduced_modulus
-    strength, parts = rollers.layer.shear_strength, [(rollers.layer, table)]
-    if own is not None:
-        layers = [{"shear_strength": strength * ratio / own} for ratio in ratios]
-        parts = [
-            (rollers.layer.model_copy(update=layer), table.isel(film=[number]))
-            for number, layer in enumerate(layers)
-        ]
+    layer = rollers.layer
 
     def run(lines):
-        found = [probabilities(lines, part, layer) for layer, part in parts]
+        if own is None:
+            return probabilities(lines, table, layer)
+        found = []
+        for number, ratio in enumerate(ratios):
+            weaker = {"shear_strength": layer.shear_strength * ratio / own}
+            part = table.isel(film=[number])
+            found.append(probabilities(lines, part, layer.model_copy(update=weaker)))
         return xr.concat(found, "film", coords="minimal", compat="override")
 
-    contact = with_limits(run_all(run, rollers, realisations, seed), table["contact_half_width"])
+    contact = run_all(run, rollers, realisations, seed, table["contact_half_width"])
     return [contact[f"breakthrough_probability_{end}"].values for end in ("mean", "lower", "upper")]
 
 
@@ -389,18 +376,15 @@ def _reached(films, table, levels, tried):
     thickness = np.log(table["film_thickness"].values)
     rising = 1 if thickness[-1] > thickness[0] else -1
     ends = {"left": -rising * np.inf, "right": rising * np.inf}
+    needed = films["film_thickness"]
     with np.errstate(divide="ignore"):  # a lower limit may be 0
-        sought = np.log(films)
+        sought = np.log(needed)
     if sought[0] > thickness.max():
         raise RangeError(
-            f"share: it needs a film of {1e6 * films[0]:.3g} um, which no {tried} gives: at most "
+            f"share: it needs a film of {1e6 * needed[0]:.3g} um, which no {tried} gives: at most "
             f"{1e6 * np.exp(thickness.max()):.3g} um"
         )
     return np.interp(sought, thickness[::rising], levels[::rising], **ends)
-
-
-def _film_variables(films, rollers):
-    return {"film_thickness": films, "lambda_ratio": films / rollers.pair.composite_rms_roughness}
 
 
 def _labelled(found):

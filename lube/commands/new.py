@@ -109,21 +109,17 @@ def _numbers(option, text):
 def _values(numbers):
     """Values of the template that follow from the options with units."""
     keys = {"radius": "radius", "roughness": "rms_roughness"}
-    found = {"rollers": {}, "thinnest": {}}
-    if given := {keys[name]: numbers[name] for name in OF_ROLLERS if name in numbers}:
-        for roller, side in (("first", 0), ("second", -1)):
-            found["rollers"][roller] = {
-                key: f"{values[side]} {units}" for key, (values, units) in given.items()
-            }
-    radius = found["rollers"].get("first", {}).get("radius", _RADIUS)
-    found |= {"longest": LONGEST_WAVELENGTH, "shortest": SHORTEST_WAVELENGTH}
-    found["points"] = grid_points(
-        parse_quantity(radius, "m"), parse_quantity(SHORTEST_WAVELENGTH, "m")
-    )
+    given = {keys[name]: numbers[name] for name in OF_ROLLERS if name in numbers}
+    rollers, thinnest = {}, dict(_THINNEST)
+    for roller, side in (("first", 0), ("second", -1)) if given else ():
+        rollers[roller] = {key: f"{values[side]} {unit}" for key, (values, unit) in given.items()}
     levels = {name: numbers[name] for name in OF_GRID if name in numbers}
-    for name, (values, units) in levels.items():
-        found["thinnest"][name] = f"{values[0 if name == 'speed' else -1]} {units}"
-    return found | {"levels": levels, "thinnest": _THINNEST | found["thinnest"]}
+    for name, (values, unit) in levels.items():
+        thinnest[name] = f"{values[0 if name == 'speed' else -1]} {unit}"
+    waves = {"longest": LONGEST_WAVELENGTH, "shortest": SHORTEST_WAVELENGTH}
+    radius = rollers.get("first", {}).get("radius", _RADIUS)
+    points = grid_points(*(parse_quantity(each, "m") for each in (radius, SHORTEST_WAVELENGTH)))
+    return waves | {"rollers": rollers, "levels": levels, "thinnest": thinnest, "points": points}
 
 
 def _written(path, text, records):

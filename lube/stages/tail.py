@@ -12,7 +12,15 @@ from lube.grid.discretise import layer_factor_of
 from lube.grid.operating_points import surface_speeds
 from lube.grid.window_films import shaped_films, window_films
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
-from lube.schema import CONTACT_DIMS, FILES, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
+from lube.schema import (
+    CONTACT_DIMS,
+    FILES,
+    LIMITS,
+    OPERATING_DIMS,
+    POINT_DIMS,
+    label,
+    values_with_limits,
+)
 from lube.statistics.confidence import mean_interval
 from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
@@ -110,12 +118,12 @@ def tail_probabilities(
         check_gaussian(spec)
     except StudyError as error:
         return _unknown(film, levels, str(error))
+    tables = []
     outcomes = _sampled(spec, film, boundary_layer, seed, threads)
-    tables = [
-        _table(spec, film.isel(film_formula=part), boundary_layer, found, levels)
-        for part, found in zip(_PARTS, outcomes, strict=True)
-        if film["film_formula"][part].size
-    ]
+    for part, found in zip(_PARTS, outcomes, strict=True):
+        if film["film_formula"][part].size:
+            some = film.isel(film_formula=part)
+            tables.append(_table(spec, some, boundary_layer, found, levels))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
     table = table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
@@ -178,7 +186,10 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
     """
     limited = {}
     for name, of_pairs in values.items():
-        limited |= _limited(name, of_pairs, most=1.0 if name.endswith("probability") else np.inf)
+        of_pairs = of_pairs.transpose("pair", ...)
+        most = 1.0 if name.endswith("probability") else np.inf
+        limits = np.minimum(mean_interval(of_pairs.values), most)
+        limited |= values_with_limits(name, [of_pairs[0].copy(data=limit) for limit in limits])
     return xr.Dataset(limited, attrs=values.attrs)
 
 
@@ -187,10 +198,9 @@ def _unknown(film, slide_to_roll_ratio, remark):
     coordinates = {name: film[name] for name in OPERATING_DIMS}
     coordinates["slide_to_roll_ratio"] = slide_to_roll_ratio
     sizes = {name: len(values) for name, values in coordinates.items()}
-    empty = {
-        name: (row.dims, np.full([sizes[dim] for dim in row.dims], np.nan))
-        for name, row in FILES["tail"].items()
-    }
+    empty = {}
+    for name, row in FILES["tail"].items():
+        empty[name] = row.dims, np.full([sizes[dim] for dim in row.dims], np.nan)
     return label(xr.Dataset(empty, coordinates, {"remarks": remark}), "tail")
 
 
@@ -199,25 +209,22 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
     slip = xr.DataArray(slide_to_roll_ratio, dims=_SLIP).assign_coords({_SLIP: slide_to_roll_ratio})
     in_windows, runs = outcomes
     contact, breakthrough = in_windows.transpose("outcome", ...)
-    groups = runs.isel(outcome=2)
-    everywhere = xr.ones_like(slip)
-    speed = film["entrainment_speed"]
+    everywhere, speed = xr.ones_like(slip), film["entrainment_speed"]
     in_window, rate = _in_time(spec, film, runs, slip)
     perimeter = spec.points[0] * spec.spacing
     turn = perimeter / surface_speeds(speed, slip)[0]
     width, longest = 2.0 * film["contact_half_width"], 2.0 * np.pi / spec.q_min
     windows = independent_windows(perimeter, width, longest)
-    runs = _in_pure_rolling(runs).mean("pair")
-    steps = _first_breakthrough(runs, _window_points(spec, film), spec.points[0])
+    rolling = _in_pure_rolling(runs)
+    groups = rolling.isel(outcome=2, drop=True) * spec.points[0]
+    points = _window_points(spec, film)
+    steps = _first_breakthrough(rolling.mean("pair"), points, spec.points[0])
+    values = (breakthrough * everywhere, contact * everywhere, rate)
     table = {
-        **_limited("geometric_contact_probability", contact * everywhere, most=1.0),
-        **_limited("breakthrough_probability", breakthrough * everywhere, most=1.0),
-        **_limited("breakthrough_rate", rate),
+        **pair_limits(xr.Dataset(dict(zip(_OF_PAIRS, values, strict=True)))),
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
-        **_touching_pairs(
-            _in_pure_rolling(groups) * spec.points[0], _in_pure_rolling(breakthrough), windows
-        ),
+        **_touching_pairs(groups, _in_pure_rolling(breakthrough), windows),
         "first_breakthrough_time": spec.spacing / speed * steps,
         **_asymptotes(spec, film, boundary_layer),
     }
@@ -229,10 +236,8 @@ def _in_time(spec, film, runs, slip):
     points = _window_points(spec, film)
     _, broken, _, new, broken_points, new_points, *_ = runs.transpose("outcome", ...)
     # A run is in the window if any of its points is.
-    in_window, new_in_window = (
-        number * (points - 1.0) + their_points
-        for number, their_points in ((broken, broken_points), (new, new_points))
-    )
+    in_window = broken * (points - 1.0) + broken_points
+    new_in_window = new * (points - 1.0) + new_points
     speed = film["entrainment_speed"]
     return in_window, speed / spec.spacing * (broken + abs(slip) * new_in_window)
 
@@ -254,11 +259,10 @@ def _sampled(spec, film, boundary_layer, seed, threads=None):
     Over (pair, outcome, film formula, other operating dimensions).
     """
     thickness, points = xr.broadcast(film["film_thickness"], _window_points(spec, film))
-    factor = layer_factor_of(
-        xr.Dataset(attrs=line_attributes(spec)), film["reduced_modulus"].item(), boundary_layer
-    )
+    lines = xr.Dataset(attrs=line_attributes(spec))
+    factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
     films, widths = thickness.values / spec.height_step, points.values.astype(np.int64)
-    shaped = _shaped_films(spec, film) if "film_profile" in film else None
+    shaped = window_films(film, lines)[0] if "film_profile" in film else None
 
     def on_one_pair(number):
         formulas = slice(None if number < FEWER_PAIRS else 1)
@@ -282,46 +286,30 @@ def _sampled(spec, film, boundary_layer, seed, threads=None):
         ]
 
 
-def _shaped_films(spec, film):
-    """Film at the points of each window, height steps, in the order of `_sampled`."""
-    lines = xr.Dataset(attrs=line_attributes(spec))
-    films, _ = window_films(film, lines)
-    return [one.film.astype(float) if one else None for one in films]
-
-
 def _under_shaped_films(spec, pair, films, factor):
-    """Probabilities and runs as of `rare_contact`; the runs are not known."""
-    known = [number for number, one in enumerate(films) if one is not None]
+    """Probabilities and runs as of `rare_contact`, under films that are known; no runs are."""
+    known = [number for number, one in enumerate(films) if one]
     windows, runs = np.full((2, len(films)), np.nan), np.full((10, len(films)), np.nan)
-    windows[:, known] = rare_contact_under(spec, *pair, [films[i] for i in known], factor)
+    steps = [films[number].film.astype(float) for number in known]
+    windows[:, known] = rare_contact_under(spec, *pair, steps, factor)
     return windows, runs
 
 
-def _limited(name, values, most=np.inf):
-    """Mean and interval of a variable, from its values over pairs of lines."""
-    values = values.transpose("pair", ...)
-    limits = mean_interval(values.values)
-    return values_with_limits(
-        name, [(values.dims[1:], np.minimum(limit, most)) for limit in limits]
-    )
-
-
 def _touching_pairs(groups, breakthrough, windows):
-    """Share of pairs with a breakthrough in a revolution.
+    """Share of pairs with a breakthrough in a revolution, and its limits.
 
     Groups of breakthroughs come independently of one another. Where contact is so frequent that
     hardly any group ends, they are fewer than the independent windows with a breakthrough, which
     are counted instead.
     """
-    expected = _limited("touching_pair_share", groups)
-    seen = _limited("touching_pair_share", breakthrough, most=1.0)
-    windows = windows.broadcast_like(groups.isel(pair=0)).transpose(*groups.isel(pair=0).dims)
+    found = pair_limits(xr.Dataset({"groups": groups, "probability": breakthrough}))
+    shares = {}
     with np.errstate(divide="ignore"):  # infinitely many where contact is always seen
-        expected = {
-            name: (dims, np.maximum(values, -windows.values * np.log1p(-seen[name][1])))
-            for name, (dims, values) in expected.items()
-        }
-    return {name: (dims, -np.expm1(-values)) for name, (dims, values) in expected.items()}
+        for end in LIMITS:
+            seen = -windows * np.log1p(-found[f"probability{end}"])
+            expected = np.maximum(found[f"groups{end}"], seen)
+            shares[f"touching_pair_share{end}"] = -np.expm1(-expected)
+    return shares
 
 
 def _first_breakthrough(runs, points, revolution):
@@ -357,24 +345,19 @@ def _asymptotes(spec, film, boundary_layer):
 
     The boundary layer breaks if the summit behind is sharp enough.
     """
-    lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
+    lines, layer = [spectrum_moments(spec, n) for n in range(len(ROLLERS))], boundary_layer
     names = ("rms_height", "rms_slope", "rms_curvature")
     moments = [sum(line[name] ** 2 for line in lines) for name in names]
-    curvature = breaking_curvature(
-        film["reduced_modulus"].item(),
-        boundary_layer.critical_thickness,
-        boundary_layer.shear_strength,
-    )
+    strength = layer.critical_thickness, layer.shear_strength
+    curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
     if "film_profile" in film:
         return _shaped_asymptotes(film, moments, curvature)
     thickness = film["film_thickness"]
     first = scipy.special.ndtr(-thickness / moments[0] ** 0.5)
     contact = first + 2.0 * film["contact_half_width"] * crossing_rate(thickness, moments)
     share = sharp_summit_share(thickness.values, moments, curvature)
-    return {
-        "geometric_contact_asymptote": contact,
-        "breakthrough_asymptote": contact * thickness.copy(data=share),
-    }
+    breakthrough = contact * thickness.copy(data=share)
+    return {"geometric_contact_asymptote": contact, "breakthrough_asymptote": breakthrough}
 
 
 def _shaped_asymptotes(film, moments, curvature):

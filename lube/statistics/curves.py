@@ -88,8 +88,8 @@ class Curve:
         if not self.films.size:
             return np.nan
         logit, falling = scipy.special.logit(share), slice(self.peak, None)
-        ends = {"left": -np.inf, "right": np.inf}
-        return np.interp(-logit, -self.logits[falling], self.films[falling], **ends)
+        films = self.films[falling]
+        return np.interp(-logit, -self.logits[falling], films, left=-np.inf, right=np.inf)
 
     def thinner_film_at(self, share: float) -> float:
         """Film before the peak at which the probability has a given value as well.
@@ -107,8 +107,8 @@ class Curve:
         if not self.peak:
             return np.nan
         logit, rising = scipy.special.logit(share), slice(self.peak + 1)
-        ends = {"left": np.nan, "right": np.nan}
-        return np.interp(logit, self.logits[rising], self.films[rising], **ends)
+        films = self.films[rising]
+        return np.interp(logit, self.logits[rising], films, left=np.nan, right=np.nan)
 
 
 def falling_curve(
@@ -185,12 +185,9 @@ def peaked_curve(
     rising = falling_curve(-films[before], probabilities[before], sample_size[before], resolution)
     if not falling.films.size or rising.films.size < 2:
         return falling
-    sides = (
-        (-rising.films, falling.films),
-        (rising.logits, falling.logits),
-        (rising.sample_size, falling.sample_size),
-    )
-    joined = (np.concatenate([thin[:0:-1], thick]) for thin, thick in sides)
+    thin = -rising.films, rising.logits, rising.sample_size
+    thick = falling.films, falling.logits, falling.sample_size
+    joined = (np.concatenate([a[:0:-1], b]) for a, b in zip(thin, thick, strict=True))
     return Curve(*joined, peak=rising.films.size - 1, thickest=falling.thickest)
 
 

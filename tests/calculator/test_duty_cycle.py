@@ -56,7 +56,7 @@ def test_contact_of_each_point_is_known_at_any_rarity(rollers, oil):
         here = found[f"tail_breakthrough_{name}"]
         np.testing.assert_array_equal(here[0], alone[f"tail_breakthrough_{name}"])
     assert 0.0 < found["tail_breakthrough_probability"][0] < 1e-6
-    assert found.attrs["remarks"] == ""
+    assert "importance sampling" not in found.attrs["remarks"]
 
 
 def test_the_whole_is_sampled_on_each_pair_of_lines(rollers, oil):
@@ -101,6 +101,13 @@ def test_heights_that_are_not_gaussian_are_counted_only(oil):
     assert np.isnan(found["tail_breakthrough_probability"]).all()
     assert np.isnan(found["whole_tail_rate"]) and not np.isnan(found["whole_probability"])
     assert found.attrs["remarks"].startswith("roughness: got a skewness of -1")
+
+
+def test_what_is_unlikely_to_be_meant_at_a_point_is_remarked(oil):
+    rough = Rollers("50 mm", "3 um", points=50_000, shortest_wavelength="60 um")
+    remarks = lube.duty(POINTS, rough, oil, realisations=1).attrs["remarks"]
+    assert "load share: at 3 of 3 operating points" in remarks
+    assert "at 3 more than all of it" in remarks
 
 
 def test_columns_of_labels_are_kept(rollers, oil, tmp_path):

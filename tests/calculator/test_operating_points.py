@@ -1,5 +1,7 @@
 """The façade gives the workflow's numbers, to the last bit for the same lines."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -61,7 +63,8 @@ def test_rare_contact_is_that_of_the_tail_stage(rollers, oil, busy):
     point = {"force": 400.0, "speed": 100.0, "temperature": 60.0, "film_formula": "paper"}
     one = lube.contact_probability(rollers, oil, **POINT, **values, film_formula="paper")
     there = found["tail_breakthrough_rate"].sel(point)
-    assert one["tail_breakthrough_rate"] == there and one.attrs["remarks"] == ""
+    assert one["tail_breakthrough_rate"] == there
+    assert "importance sampling" not in one.attrs["remarks"]
     assert one["tail_breakthrough_rate"].attrs == {
         "long_name": "breakthroughs per time, by importance sampling",
         "units": "h-1",
@@ -83,6 +86,24 @@ def test_heights_that_are_not_gaussian_have_no_tail(oil):
     found = lube.contact_probability(worn, oil, **POINT, realisations=1)
     assert np.isnan(found["tail_breakthrough_probability"])
     assert found.attrs["remarks"].startswith("roughness: got a skewness of -1")
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"young_modulus": "310 MPa"}, r"Young's modulus: 310 MPa; plastics have 1 GPa"),
+        ({"rms_roughness": "3 um"}, "load share: at 1 of 1 .* at 1 more than all of it"),
+    ],
+)
+def test_what_is_unlikely_to_be_meant_is_remarked_as_by_lube_check(oil, changes, expected):
+    usual = {"radius": "50 mm", "rms_roughness": "0.1 um", "longest_wavelength": "0.2 mm"}
+    assert lube.film(lube.Rollers(**usual), oil, **POINT).attrs["remarks"] == ""
+    odd = lube.Rollers(**usual | changes)
+    remarks = lube.film(odd, oil, **POINT).attrs["remarks"]
+    assert re.search(f"^{expected}", remarks, re.MULTILINE)
+    found = lube.contact_probability(odd, oil, **POINT, realisations=1)
+    assert found.attrs["remarks"] == remarks
+    assert lube.film(odd, oil, **GRID, film_formula=["paper"]).attrs["remarks"]
 
 
 def test_one_point_is_a_point_of_the_grid(rollers, oil, busy):

@@ -61,7 +61,6 @@ def test_what_an_engineer_looks_at_first_is_said():
         ("roughness={points: 250000}", "shortest wave: 12.6 µm"),
         ("roughness={points: 250000, shortest_wavelength: 3.1416 um}", "grid: 2.5 points in"),
         ("rollers={first: {rms_roughness: 3 um}}", "load share: at 125 of 125 operating points"),
-        ("rollers={length: 1000 mm}", "film: nowhere in the range of validity of paper"),
     ],
 )
 def test_what_is_unlikely_to_be_meant_is_remarked(change, expected):
