@@ -84,7 +84,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     return {
         "study": contact.attrs["study"],
         "levels": {
-            name: {"values": values, "names": level_names(name, values, datasets["lubricant"])}
+            name: {"values": values, "names": level_names(name, values)}
             for name, values in levels.items()
         },
         "variables": {
@@ -115,7 +115,7 @@ def page_name(kind: str, name: str) -> str:
     return f"tail.{name}" if kind == "tail" else name
 
 
-def level_names(name: str, values: list, lubricant: xr.Dataset) -> list[str]:
+def level_names(name: str, values: list) -> list[str]:
     """Name the levels of a choice for a reader.
 
     Parameters
@@ -124,23 +124,18 @@ def level_names(name: str, values: list, lubricant: xr.Dataset) -> list[str]:
         One of `CHOICES`.
     values : list
         Its levels.
-    lubricant : xarray.Dataset
-        The ``lubricant`` dataset, for the titles of the oils.
 
     Returns
     -------
     list of str
         Different names, such as ``85.71 r/min``.
     """
-    if name == "lubricant":
-        names = lubricant["lubricant_title"].sel(lubricant=values).values.tolist()
-    elif name == "film_formula":
+    if name in ("lubricant", "film_formula"):
         return values
-    else:
-        unit = COORDINATES[name].units
-        unit = "" if unit == "1" else unit
-        rounded = [value if value == round(value) else float(f"{value:.4g}") for value in values]
-        names = [with_unit(value, unit) for value in rounded]
+    unit = COORDINATES[name].units
+    unit = "" if unit == "1" else unit
+    rounded = [value if value == round(value) else float(f"{value:.4g}") for value in values]
+    names = [with_unit(value, unit) for value in rounded]
     if len(set(names)) == len(names):
         return names
     return [str(value) for value in values]

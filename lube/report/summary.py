@@ -49,11 +49,12 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
     """
     properties = ("temperature", "kinematic_viscosity", "pressure_viscosity_coefficient")
     oils = {
-        oil["lubricant_title"].item(): [
+        record.title: [
             {name: oil[name].values[end].item() for name in properties}
             for end in ((0, -1) if oil.sizes["temperature"] > 1 else (0,))
         ]
-        for oil in (lubricant.isel(lubricant=n) for n in range(lubricant.sizes["lubricant"]))
+        for record in study.lubricants
+        for oil in [lubricant.sel(lubricant=record.name)]
     }
     return render(
         "facts.md",

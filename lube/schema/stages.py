@@ -60,7 +60,7 @@ _CONTACT = _LAYER | {
 _ROWS = (
     Stage(
         "lubricant",
-        values={"lubricants": "lubricants", "temperature": "operating_grid.temperature"},
+        values={"lubricants": "lubricant_values", "temperature": "operating_grid.temperature"},
     ),
     Stage(
         "film",

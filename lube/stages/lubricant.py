@@ -211,7 +211,6 @@ def _row(record, temperature, fit_temperature):
         viscosity_law_used=record.law_used,
         pressure_fit_residual=substance.pressure_fit_residual,
         pressure_viscosity_definition=record.pressure_viscosity.definition_text,
-        lubricant_title=record.title,
     )
 
 

@@ -176,6 +176,12 @@ class Study(StrictModel):
         return self.resistivity != INSULATOR
 
     @property
+    def lubricant_values(self) -> list[dict]:
+        """The lubricant records as plain data, without their titles: they change no result."""
+        options = {"mode": "json", "by_alias": True, "exclude": {"title"}}
+        return [record.model_dump(**options) for record in self.lubricants]
+
+    @property
     def is_flattened(self) -> bool:
         """Whether the oil flattens the roughness lines."""
         return self.roughness_deformation != "none"

@@ -58,14 +58,12 @@ def test_without_importance_sampling_its_values_are_none_and_the_page_knows(expl
 
 def test_levels_have_names_with_units_all_different(explored):
     names = {name: levels["names"] for name, levels in read_back(explored)["levels"].items()}
-    assert names["lubricant"] == ["Mobilgear SHC XMP 320"]
+    assert names["lubricant"] == ["mobilgear-shc-xmp-320"]
     assert names["speed"] == ["85.71 r/min", "100 r/min"]
     assert names["temperature"] == ["40 °C", "80 °C"]
-    assert level_names("force", [12345.0], explored["lubricant"]) == ["12345 N"]
-    assert level_names("force", [10.0001, 10.0002], explored["lubricant"]) == ["10.0001", "10.0002"]
-    oils = xr.concat([explored["lubricant"]] * 2, "lubricant", data_vars="minimal", compat="equals")
-    oils = oils.assign_coords(lubricant=["a", "b"])  # two records of one title
-    assert level_names("lubricant", ["a", "b"], oils) == ["a", "b"]
+    assert level_names("force", [12345.0]) == ["12345 N"]
+    assert level_names("force", [10.0001, 10.0002]) == ["10.0001", "10.0002"]
+    assert level_names("lubricant", ["a", "b"]) == ["a", "b"]
 
 
 def test_of_neighbouring_steps_of_a_trace_the_extremes_stay(explored):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
+from lube.recordings.example_surface import isotropic_surface
 from studies import PAPER
 
-from lube.recordings.example_surface import isotropic_surface
 from lube.stages.surface import measured_surfaces
 from lube.study.study import load_study
 

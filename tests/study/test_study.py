@@ -3,10 +3,12 @@
 import math
 
 import pytest
+import xarray as xr
 from studies import OIL, PAPER
 
 from lube.errors import LubeError, StudyError
 from lube.schema import STAGES
+from lube.stages.lubricant import lubricant_table
 from lube.study.rig_settings import Experiment, Rig
 from lube.study.study import load_study
 from lube.workflow.figure_list import study_figures
@@ -201,3 +203,13 @@ def test_measured_records_of_insulators_are_refused(paper_with):
         load_study(paper_with(*changes))
     with pytest.raises(LubeError, match=r"got 'wood', need a number .*, or insulator"):
         load_study(paper_with(("resistivity", "wood")))
+
+
+def test_an_oils_title_changes_no_stage(study):
+    """Nor the bytes of `lubricant.nc`, so that a new title makes nothing again but what shows it."""
+    other = tuple(record.model_copy(update={"title": "Other"}) for record in study.lubricants)
+    renamed = study.model_copy(update={"lubricants": other})
+    for stage in STAGES:
+        assert renamed.origin(stage) == study.origin(stage)
+    tables = (lubricant_table(one.lubricants, [40.0]) for one in (study, renamed))
+    xr.testing.assert_identical(*tables)
