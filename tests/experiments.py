@@ -1,7 +1,6 @@
 """Experiments with given contact shares, for tests of the stages that use them."""
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 from studies import OIL
 
@@ -78,32 +77,3 @@ def model_of_records(experiment, film, contact, study):
     model = study.film_model
     films = film_at_records(experiment, oils, study.rollers, study.film_formulas, **model)
     return model_at_records(films, experiment, film, contact, study)
-
-
-def over_grid(dataset: xr.Dataset) -> xr.Dataset:
-    """Arrange records over the operating grid, by the levels near their conditions.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An ``experiment``, ``comparison`` or ``gauge`` dataset.
-
-    Returns
-    -------
-    xarray.Dataset
-        Its variables over (slide_to_roll_ratio, lubricant, temperature, speed, force, repeat)
-        instead of ``record``, NaN where there is no record; ``repeat`` numbers the records of one
-        operating point. Records not at a level are left out.
-    """
-    levels = {name: dataset[f"{name}_level"].values for name in ("temperature", "speed", "force")}
-    names = {name: dataset[name].values for name in ("slide_to_roll_ratio", "lubricant")}
-    table = pd.DataFrame(names | levels)
-    labelled = table.notna().all(axis=1).values
-    table = table[labelled]
-    table["repeat"] = table.groupby(list(table.columns)).cumcount()
-    index = xr.Coordinates.from_pandas_multiindex(pd.MultiIndex.from_frame(table), "record")
-    records = dataset.isel(record=labelled)
-    own = {name for name in records.coords if "record" in records[name].dims}
-    clashing = own & {*table.columns, "record"}
-    records = records.drop_vars(clashing).reset_coords(own - clashing)
-    return records.assign_coords(index).unstack("record")

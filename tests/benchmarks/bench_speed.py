@@ -19,10 +19,10 @@ from functools import partial
 import numpy as np
 import scipy.fft
 import xarray as xr
-from literal_scan import scan_statistics
 
 from lube.grid.discretise import revolution, speed_ratios
 from lube.kernels.layer import layer_factor
+from lube.kernels.scan import scan_trace
 from lube.kernels.strips import strip_statistics
 from lube.schema import label
 from lube.stages.film import film_table
@@ -72,6 +72,13 @@ def points_of(study, spec):
     return films, half_windows, factor
 
 
+def literal_scan(pair, ratios, steps, films, half_windows, factor):
+    """Scan every window of all operating points."""
+    for film, half_window in zip(films, half_windows, strict=True):
+        window = np.full(2 * half_window + 1, film)
+        scan_trace(pair, ratios, steps, window, half_window, factor)
+
+
 def measure_slip(study):
     """Measure the strips against the compiled literal scan, one realisation, at several slips."""
     spec = study.line_spec
@@ -86,7 +93,7 @@ def measure_slip(study):
             steps = revolution(pair, ratios)
             chosen = films[-count:], half_windows[-count:], factor  # the thickest
             strips = partial(strip_statistics, pair, ratios, steps, *chosen)
-            scan = partial(scan_statistics, pair, ratios, steps // SCAN_SHARE, *chosen)
+            scan = partial(literal_scan, pair, ratios, steps // SCAN_SHARE, *chosen)
             fast, slow = best_times(strips, scan, runs=2) * (1, SCAN_SHARE)
             times[:, row, column] = fast, slow
             print(
@@ -204,7 +211,7 @@ def measure(study_file):
     study, (films, half_windows, factor) = _prepared(study_file)
     # Compiled, or loaded, before any measurement.
     pair = draw_realisation(study.line_spec, study.seed, 0)
-    for kernel in (strip_statistics, scan_statistics):
+    for kernel in (strip_statistics, literal_scan):
         for slip in (0.0, 1.0):
             kernel(pair, speed_ratios(slip), 10, films, half_windows, factor)
     parts = (

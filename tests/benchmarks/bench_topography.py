@@ -1,6 +1,6 @@
 """Time and memory of reading and reducing a measured map, and the error of a profile's inversion.
 
-    python tests/benchmarks/bench_topography.py [POINTS]
+    PYTHONPATH=tests python tests/benchmarks/bench_topography.py [POINTS]
 
 Writes an X3P file of POINTS x POINTS heights (4096 by default) with holes to a folder that is
 deleted, and reads, prepares and reduces it in a fresh process.

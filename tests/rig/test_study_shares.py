@@ -5,12 +5,13 @@ import warnings
 
 import numpy as np
 import pytest
-from experiments import experiment_at, experiment_of, over_grid
+from experiments import experiment_at, experiment_of
 
 from lube.rig.study_shares import (
     at_comparison_threshold,
     levels_named,
     log_lines,
+    over_grid,
     refused_in_one_line,
 )
 from lube.schema import EXPERIMENT_DIMS

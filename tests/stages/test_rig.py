@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from experiments import over_grid
 
+from lube.rig.study_shares import over_grid
 from lube.schema import EXPERIMENT_DIMS
 from lube.stages.experiment import simulated_experiment
 from lube.stages.rig import rig_records

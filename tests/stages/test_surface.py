@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from lube.recordings.example_surface import isotropic_surface
+from example_surface import isotropic_surface
 from studies import PAPER
 
 from lube.stages.surface import measured_surfaces
