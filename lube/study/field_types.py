@@ -346,7 +346,9 @@ def validate(
 
 def _as_written(line, content):
     """Quote in an error message the value as it is written, not as it is understood, in SI."""
-    message = re.match(r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)?(?: (?!beside)[^\s,]+)?)", line)
+    message = re.match(
+        r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)?(?: (?!beside)[^\s,]+)?)(?![^\s,])", line
+    )
     value = content
     for part in message[1].split(".") if message else ():
         value = value.get(part) if isinstance(value, dict) else None
