@@ -144,7 +144,7 @@ class Manifest:
 def read_manifest(path: str | Path) -> Manifest:
     """Read a manifest.
 
-    Its columns are those of `manifest_schema`. In a CSV file a column of dimensional values has its
+    Its columns are the fields of `Row`. In a CSV file a column of dimensional values has its
     unit in the header (``force [N]``); in a YAML list of mappings the unit is part of the value
     (``force: 800 N``). Numbers may have decimal commas. Several rows may have the same operating
     point.
@@ -182,11 +182,6 @@ def read_manifest(path: str | Path) -> Manifest:
             entries.append(entry)
     origin = entries[0].origin if entries else ORIGINS[0]
     return Manifest(origin, tuple(entries), tuple(refused))
-
-
-def manifest_schema() -> dict:
-    """JSON schema of a manifest's row: each column, or key, with its meaning."""
-    return Row.model_json_schema()
 
 
 def _yaml_rows(path):

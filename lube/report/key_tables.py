@@ -1,56 +1,44 @@
-"""Tables of the documentation that follow from the code: files, variables, keys, film formulas.
+"""Tables of the keys that people write, and of a study's files, for the report."""
 
-``docs/tools/generated_tables.py`` rewrites them between their markers; a test compares the
-documentation with the code.
-"""
+from collections.abc import Iterable, Sequence
+from typing import Any
 
-from lube.ehl.film_formulas import FORMULAS, TOLERANCE
-from lube.recordings.manifest import manifest_schema
-from lube.schema import COORDINATES, DATASETS, FILES, ON_REQUEST, SUMMARIES
+from lube.schema import DATASETS, SUMMARIES
 from lube.study.lubricant_record import LubricantRecord
 from lube.study.study import Study
 
-TABLES = ("files", "coordinates", "variables", "study", "record", "manifest", "formulas")
-"""Names of the tables, as in the markers of the documentation."""
 
-
-def table(name: str) -> str:
-    """Write a table of the documentation.
+def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Write a table.
 
     Parameters
     ----------
-    name : str
-        One of `TABLES`: the datasets; the coordinates that several of them share; the variables
-        of all datasets and benchmarks, each under a heading; the keys of a study, of a lubricant
-        record, and of a list of measured records; the film formulas.
+    head : sequence of str
+        Names of the columns.
+    rows : iterable of sequence of str
+        Their cells, row by row.
 
     Returns
     -------
     str
         Markdown.
+
+    Examples
+    --------
+    >>> print(markdown_table(["key", "value"], [["name", "text"]]))
+    | key | value |
+    | --- | --- |
+    | name | text |
     """
-    match name:
-        case "files":
-            rows = [(f"`{kind}.nc`", SUMMARIES[kind]) for kind in DATASETS]
-            return _table(("file", "content"), rows)
-        case "coordinates":
-            return _variables(COORDINATES)
-        case "variables":
-            return "\n\n".join(
-                f"### `{kind}.nc`\n\n{SUMMARIES[kind]}\n\n{_variables(FILES[kind])}"
-                for kind in (*DATASETS, *ON_REQUEST)
-            )
-        case "study":
-            return _table(("key", "value", "meaning"), study_keys())
-        case "record":
-            return _table(("key", "value", "meaning"), record_keys())
-        case "manifest":
-            return _table(("column or key", "value", "meaning"), _keys(manifest_schema()))
-        case "formulas":
-            found = FORMULAS.values()
-            rows = [(f"`{row.name}`", row.thickness, row.source, row.validity) for row in found]
-            within = f"within {100.0 * TOLERANCE:g} % of the computed film for"
-            return _table(("name", "film", "source", within), rows)
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def files_table() -> str:
+    """Write the table of the files of a study, each with its content, as Markdown."""
+    return markdown_table(
+        ("file", "content"), [(f"`{kind}.nc`", SUMMARIES[kind]) for kind in DATASETS]
+    )
 
 
 def study_keys() -> list[tuple[str, str, str]]:
@@ -61,7 +49,7 @@ def study_keys() -> list[tuple[str, str, str]]:
     list of tuple of str
         Dotted key between backticks; allowed value; meaning.
     """
-    return _keys(Study.model_json_schema())
+    return keys(Study.model_json_schema())
 
 
 def record_keys() -> list[tuple[str, str, str]]:
@@ -72,30 +60,29 @@ def record_keys() -> list[tuple[str, str, str]]:
     list of tuple of str
         As of `study_keys`.
     """
-    return _keys(LubricantRecord.model_json_schema())
+    return keys(LubricantRecord.model_json_schema())
 
 
-def _table(head, rows):
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+def keys(
+    schema: dict[str, Any],
+    path: str = "",
+    definitions: dict[str, Any] | None = None,
+    section: str = "",
+) -> list[tuple[str, str, str]]:
+    """List all keys below a schema, nested ones with dots.
 
+    Parameters
+    ----------
+    schema : dict
+        JSON schema of a model, or of a section of it.
+    path, definitions, section
+        Of a section: the keys that lead to it, the model's definitions, and whether it is optional.
 
-def _dimensions(variable):
-    """Names of the dimensions, in brackets those of some studies only."""
-    dims = variable.all_dims
-    return ", ".join(dim if dim in variable.dims else f"({dim})" for dim in dims)
-
-
-def _variables(variables):
-    rows = [
-        (f"`{name}`", _dimensions(one), one.units or "text", one.long_name)
-        for name, one in variables.items()
-    ]
-    return _table(("name", "dimensions", "unit", "meaning"), rows)
-
-
-def _keys(schema, path="", definitions=None, section=""):
-    """Rows (key, value, meaning) of all keys below a schema, nested ones with dots."""
+    Returns
+    -------
+    list of tuple of str
+        As of `study_keys`.
+    """
     definitions = definitions or schema.get("$defs", {})
     rows = []
     for name, field in schema["properties"].items():
@@ -104,7 +91,7 @@ def _keys(schema, path="", definitions=None, section=""):
         if "properties" in inner and "format" not in inner:
             optional = "" if required else " (section optional)"
             key = f"{path}{name}{'[]' if many else ''}."
-            rows += _keys(inner, key, definitions, section or optional)
+            rows += keys(inner, key, definitions, section or optional)
         else:
             value = _value(field, inner) + (section if required else _default(field))
             meaning = field.get("description", inner.get("description", ""))

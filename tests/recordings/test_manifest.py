@@ -6,7 +6,7 @@ import yaml
 from refusals import one_line
 
 from lube.errors import DataError
-from lube.recordings.manifest import manifest_schema, read_manifest
+from lube.recordings.manifest import Row, read_manifest
 from lube.recordings.reader import open_recording
 
 HEADER = "file,probability,lower,upper,force [kN],speed [rpm],temperature [degC],origin"
@@ -134,7 +134,7 @@ def test_a_tolerance_of_a_degree_is_a_kelvin(folder):
 
 
 def test_the_schema_describes_every_column():
-    columns = manifest_schema()["properties"]
+    columns = Row.model_json_schema()["properties"]
     assert all(column["description"] for column in columns.values())
     assert "where" not in columns
 

@@ -3,14 +3,13 @@
 import re
 
 import pytest
-from generated_tables import with_tables
+from generated_tables import TABLES, table, with_tables
 from markdown_it import MarkdownIt
 from mdit_py_plugins.anchors import anchors_plugin
 from studies import ROOT
 
 from lube.recordings.manifest import read_manifest
 from lube.recordings.reader import open_recording
-from lube.report.key_tables import TABLES, table
 
 PAGES = {
     path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")

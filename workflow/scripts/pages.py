@@ -4,7 +4,7 @@ from pathlib import Path
 
 from lube.report import SUMMARISED
 from lube.report.configuration import configuration
-from lube.report.key_tables import table
+from lube.report.key_tables import files_table
 from lube.report.markdown import title_and_text, to_html
 from lube.report.pages import render
 from lube.report.statements import assumptions_of, limits_of
@@ -26,7 +26,7 @@ parts = {
     "facts": to_html(f"{facts(study, results['lubricant'])}\n\n{made(study)}"),
     "findings": to_html(findings(study, results)),
     "limits": to_html(limits),
-    "files": to_html(table("files")),
+    "files": to_html(files_table()),
     "pipeline": to_html(f"```{drawing}```"),
     "configuration": render("page.html", title="Configuration", body=configuration(study, written)),
     "assumptions": render("page.html", title=title, body=to_html(assumptions)),
