@@ -8,6 +8,7 @@ import json
 from typing import Any
 
 from pydantic import BaseModel
+from written_forms import with_form
 
 from lube.errors import RecordError
 from lube.recordings.manifest import Row
@@ -84,6 +85,7 @@ def _simplified(schema, definitions):
     """Put definitions in place of references, and what is needed, in words, in place of titles."""
     if "$ref" in schema:
         schema = definitions[schema["$ref"].split("/")[-1]] | schema
+    schema = with_form(schema)
     schema = {key: value for key, value in schema.items() if key not in ("$ref", "title")}
     if "default" in schema and schema["default"] in (None, {}):
         del schema["default"]

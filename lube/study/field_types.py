@@ -11,13 +11,13 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, StringConstraints, ValidationError
 
 from lube.errors import LubeError, right_one, shown
-from lube.study.written_forms import Written, written_levels, written_number, written_quantity
 from lube.types import File
 from lube.units import convert, parse_number, parse_quantity
 
@@ -37,6 +37,26 @@ def _with_descriptions(schema, model):
 
 class StrictModel(BaseModel, extra="forbid", frozen=True, json_schema_extra=_with_descriptions):
     """Frozen model that refuses unknown keys; the text under a field describes it."""
+
+
+@dataclass(frozen=True, eq=False)  # hashed by identity, as an annotation must be
+class Written:
+    """Annotation of a field that is not kept as it is written, for its JSON schema.
+
+    A field keeps ``0.05`` where people write ``50 mm``.
+
+    Attributes
+    ----------
+    schema : dict
+        How it is written. ``format`` says in words what is needed; from ``form`` and the keys
+        beside it, ``docs/tools/written_forms.py`` makes the schema for editors.
+    """
+
+    schema: dict[str, Any]
+
+    def __get_pydantic_json_schema__(self, core_schema: object, handler: object) -> dict[str, Any]:
+        """Answer pydantic."""
+        return dict(self.schema)
 
 
 @contextmanager
@@ -116,13 +136,17 @@ def bounded(number: float, units: str | None, came: object = None, **limits: flo
 
 
 def _field(kept, parse, written, hint=""):
-    """Field type: what is kept, its parser, and a function that makes its JSON schema."""
+    """Field type: what is kept, its parser, and how it is written."""
     return Annotated[kept, BeforeValidator(collected(hint=hint)(parse)), Written(written)]
 
 
 def _needed(kind, limits):
     """``quantity in m, above 0``."""
     return f"{kind}, {_in_words(limits)}" if limits else kind
+
+
+def _form(form, needed, units, limits):
+    return {"form": form, "format": needed, "units": units, "limits": limits}
 
 
 def quantity(units: str, **limits: float) -> Any:
@@ -145,7 +169,7 @@ def quantity(units: str, **limits: float) -> Any:
         return bounded(parse_quantity(value, units), units, value, **limits)
 
     needed = _needed(f"quantity in {units}", limits)
-    return _field(float, parse, lambda: written_quantity(units, needed, limits))
+    return _field(float, parse, _form("quantity", needed, units, limits))
 
 
 def pure_number(**limits: float) -> Any:
@@ -165,7 +189,7 @@ def pure_number(**limits: float) -> Any:
     def parse(value):
         return bounded(parse_number(value), None, value, **limits)
 
-    return _field(float, parse, lambda: written_number(_needed("number", limits), limits))
+    return _field(float, parse, _form("number", _needed("number", limits), None, limits))
 
 
 def checked_text(check: Callable[[str], object], kind: str) -> Any:
@@ -188,7 +212,7 @@ def checked_text(check: Callable[[str], object], kind: str) -> Any:
         check(value)
         return value
 
-    return _field(str, parse, lambda: {"type": "string", "format": kind})
+    return _field(str, parse, {"type": "string", "format": kind})
 
 
 def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, pattern: str) -> Any:
@@ -216,11 +240,7 @@ def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, patt
         return value if number is None else bounded(number, units, value, above=0.0)
 
     needed = f"quantity in {units}, or {words}"
-
-    def written():
-        number = written_quantity(units, needed, {"above": 0.0})
-        return {"type": "string", "format": needed, "anyOf": [{"pattern": pattern}, number]}
-
+    written = _form("words", needed, units, {"above": 0.0}) | {"pattern": pattern}
     return _field(float | str, parse, written, hint=f", or {words}")
 
 
@@ -252,7 +272,7 @@ def levels(units: str | None, **limits: float) -> Any:
         return numbers
 
     needed = _needed("list of numbers" if units is None else f"values and units in {units}", limits)
-    return _field(tuple[float, ...], parse, lambda: written_levels(units, needed, limits))
+    return _field(tuple[float, ...], parse, _form("levels", needed, units, limits))
 
 
 def _level_list(value, target):

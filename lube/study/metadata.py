@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints, field_validator
 
 from lube.errors import shown
-from lube.study.field_types import StrictModel, each_once
-from lube.study.written_forms import Written
+from lube.study.field_types import StrictModel, Written, each_once
 
 PAPER = "Mixed and boundary lubrication in rolling contact: experiment and simulation"
 """Title of the paper whose model every study uses."""
@@ -57,7 +56,7 @@ _Orcid = _text(_is_orcid, "an ORCID iD such as 0000-0002-1825-0097, whose last d
 _Day = Annotated[
     datetime.date,
     BeforeValidator(_day),
-    Written(lambda: {"type": ["string", "integer"], "format": "date"}),
+    Written({"type": ["string", "integer"], "format": "date"}),
 ]
 # The characters that CITATION.cff allows.
 _Doi = _text(

@@ -23,6 +23,7 @@ from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import (
     Slug,
     StrictModel,
+    Written,
     collected,
     each_once,
     quantity_or_words,
@@ -33,7 +34,6 @@ from lube.study.lubricant_record import (
     LubricantRecord,
     check_temperatures,
     load_record,
-    shipped_records,
 )
 from lube.study.metadata import About
 from lube.study.operating_grid import TRACED, OperatingGrid, TracePoint
@@ -42,7 +42,6 @@ from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import INSULATOR, ROLLERS, BoundaryLayer, RollerPair, Roughness
 from lube.study.size_limits import check_sizes
-from lube.study.written_forms import Written
 from lube.types import File
 from lube.units import with_unit
 
@@ -55,15 +54,8 @@ def _known_formula(name):
 _Formula = Annotated[
     str,
     AfterValidator(_known_formula),
-    Written(lambda: {"type": "string", "format": "text", "enum": list(FORMULAS)}),
+    Written({"type": "string", "format": "text", "enum": list(FORMULAS)}),
 ]
-
-
-def _names_of_records():
-    """JSON schema of the lubricants as they are written: names, where the study has records."""
-    path = {"type": "string", "pattern": r"\.ya?ml$"}
-    one = {"anyOf": [{"enum": list(shipped_records())}, path]}
-    return {"type": "array", "items": one, "minItems": 1, "format": "list of names or paths"}
 
 
 _Meniscus = quantity_or_words("m", lambda value: value == "none", "none", "^none$")
@@ -93,7 +85,9 @@ class Study(StrictModel):
     """realisations whose lines stay in roughness.nc, 0 among them"""
     rollers: RollerPair
     lubricants: Annotated[
-        tuple[LubricantRecord, ...], Field(min_length=1), Written(_names_of_records)
+        tuple[LubricantRecord, ...],
+        Field(min_length=1),
+        Written({"form": "records", "format": "list of names or paths"}),
     ]
     """names of shipped records, or paths of your own YAML records"""
     film_formulas: tuple[_Formula, ...] = Field(min_length=1)
