@@ -206,7 +206,7 @@ def test_measured_records_of_insulators_are_refused(paper_with):
 
 
 def test_an_oils_title_changes_no_stage(study):
-    """Nor the bytes of `lubricant.nc`: a new title makes nothing again but what shows it."""
+    """Nor `lubricant.nc`, so that a new title makes nothing again but what shows it."""
     other = tuple(record.model_copy(update={"title": "Other"}) for record in study.lubricants)
     renamed = study.model_copy(update={"lubricants": other})
     for stage in STAGES:

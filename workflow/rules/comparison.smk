@@ -1,7 +1,7 @@
 rule comparison:
     input:
         **stage_files("comparison"),
-        records=record_files(),
+        records=ancient(record_files()),
         sources=script_sources("comparison"),
     output:
         result("comparison.nc"),
