@@ -1,8 +1,9 @@
-"""Spectra of profiles cut from isotropic surfaces, by theory."""
+"""Spectra of profiles cut from isotropic surfaces, by theory, and the rms height of a spectrum."""
 
 import numpy as np
 import scipy.special
 
+from lube.surfaces.spectrum_table import band_table, power_law_integral
 from lube.types import Array
 
 
@@ -59,3 +60,10 @@ def profile_of_line(wave_vector: Array, density: Array) -> Array:
     constant = density[:-1] - slope * wave_vector[:-1]
     parts = np.diff(first) * constant + np.diff(second) * slope
     return 2.0 / np.pi * np.sum(parts, axis=-1)
+
+
+def rms_height(spectrum, q_min=None, q_max=None):
+    """Rms height of a `LineSpectrum`'s waves between two wave vectors, m; by default of all."""
+    begin, end = spectrum.limits or spectrum.wave_vector[[0, -1]]
+    table = band_table(spectrum, q_min or begin, q_max or end)
+    return np.sqrt(power_law_integral(*table))

@@ -1,6 +1,5 @@
 """The spectrum of a line as a table: a power law between its values, within a band, its power."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,18 +46,6 @@ class LineSpectrum:
     transfer: Array
     isotropic: bool
     limits: tuple[float, float] | None = None
-
-    def rms_height(self, q_min: float | None = None, q_max: float | None = None) -> float:
-        """Rms height of the waves between two wave vectors, m; by default of all.
-
-        Raises
-        ------
-        DataError
-            If the spectrum does not reach so far.
-        """
-        begin, end = _limits(self)
-        wave_vector, density = band_table(self, q_min or begin, q_max or end)
-        return math.sqrt(power_law_integral(wave_vector, density))
 
 
 def band_table(

@@ -21,7 +21,7 @@ from lube.surfaces.measured_spectrum import line_spectrum
 from lube.surfaces.spectrum_table import power_law_integral
 from lube.surfaces.surface_statistics import height_distribution
 from lube.surfaces.topography import Preparation, Topography, prepare
-from profiles import profile_of_line
+from profiles import profile_of_line, rms_height
 
 SPACING = 0.2e-6
 PROFILES = 40
@@ -54,7 +54,7 @@ def reduce_map(path):
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     print(f"read {read - begin:.1f} s, prepared {prepared - read:.1f} s, spectrum ", end="")
     print(f"{reduced - prepared:.1f} s, distribution {end - reduced:.1f} s, ", end="")
-    print(f"in all {end - begin:.1f} s and {peak:.2f} GB; rms {spectrum.rms_height():.4g} m")
+    print(f"in all {end - begin:.1f} s and {peak:.2f} GB; rms {rms_height(spectrum):.4g} m")
 
 
 def inversion_errors():
@@ -80,7 +80,7 @@ def inversion_errors():
             true = np.interp(spectrum.wave_vector, wave_vector, line)
             ratios.append(spectrum.density / true)
             rms.append(
-                spectrum.rms_height() / np.sqrt(power_law_integral(spectrum.wave_vector, true))
+                rms_height(spectrum) / np.sqrt(power_law_integral(spectrum.wave_vector, true))
             )
         mean, scatter = np.mean(ratios, axis=0), np.std(ratios, axis=0)
         pick = np.linspace(0, mean.size - 1, 8).astype(int)
