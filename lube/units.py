@@ -267,7 +267,7 @@ def _decimal_point(value):
     return f", with a decimal point: {shown(value.replace(',', '.', 1))}"
 
 
-def with_unit(value: float, unit: str) -> str:
+def with_unit(value: float, unit: str, digits: int = 17) -> str:
     """Format a number with its unit, with a prefix or in the customary unit.
 
     Parameters
@@ -276,6 +276,8 @@ def with_unit(value: float, unit: str) -> str:
         The number.
     unit : str
         Its unit, as in a study's schema; empty for a pure number.
+    digits : int, optional
+        Significant digits; six at most are printed.
 
     Returns
     -------
@@ -287,6 +289,7 @@ def with_unit(value: float, unit: str) -> str:
     >>> with_unit(2.1e11, "Pa")
     '210 GPa'
     """
+    value = float(f"{value:.{digits}g}")
     if unit in _CUSTOMARY:
         factor, symbol = _CUSTOMARY[unit]
         return f"{value * factor:.6g} {symbol}"

@@ -31,7 +31,6 @@ from lube.schema import values_with_limits
 from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval
 from lube.statistics.curves import peaked_curve
-from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import check_width
 from lube.surfaces.rare_contact import rare_contact_under
 from lube.surfaces.spectra import line_attributes
@@ -294,8 +293,7 @@ def _lambda_ratios(rollers, half_width, share, realisations, seed, own=None):
     share = bare_number("share", share, above=0.0, below=1.0)
     spec, ratios = rollers.lines, LAMBDA_RATIOS
     check_width(spec, 2.0 * half_width, "force: the contact")
-    travel, longest = spec.spacing * min(spec.points), 2.0 * np.pi / spec.q_min
-    windows = independent_windows(travel, 2.0 * half_width, longest) * realisations
+    windows = spec.independent_windows(2.0 * half_width) * realisations
     is_gaussian = all(line.is_gaussian for line in spec.lines)
     if not is_gaussian and share * windows < 1.0:
         raise RangeError(

@@ -87,7 +87,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     film = film.isel(film_formula=0, missing_dims="ignore")
     moduli = rollers.first.young_modulus, rollers.second.young_modulus
     width, shortest = 2.0 * film["contact_half_width"].min().item(), 2.0 * math.pi / lines.q_max
-    pressure, thinnest = film["hertz_pressure"].max().item(), film["film_thickness"].min().item()
+    pressure = film["hertz_pressure"].max().item()
     waves, points = width / shortest, shortest / lines.spacing
     share = expected_load_share(film, rollers)
     loaded, overloaded = (int((share > limit).sum()) for limit in (0.1, 1.0))
@@ -95,17 +95,16 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel 210 GPa": (
             min(moduli) < 1e9 or max(moduli) > 1.2e12
         ),
-        f"Hertz pressure: up to {_short(pressure, 'Pa')}; gears and bearings have less than "
+        f"Hertz pressure: up to {with_unit(pressure, 'Pa', 3)}; gears and bearings have less than "
         "2.5 GPa, hardened steel flows from some 3 GPa on, and the model is elastic": (
             pressure > 2.5e9
         ),
         f"contact width: {waves:.2g} shortest waves at the smallest force; with fewer than 20 "
         "the probability means little": waves < 20.0,
-        f"shortest wave: {_short(shortest, 'm')}; waves of some 3 µm decide whether the "
+        f"shortest wave: {with_unit(shortest, 'm', 3)}; waves of some 3 µm decide whether the "
         "boundary layer breaks, so there will be too little contact": shortest > 5e-6,
         f"grid: {points:.3g} points in the shortest wave; for the curvature of asperities it "
         "takes 10": points < 10.0 * (1.0 - 1e-6),
-        f"film: down to {_short(thinnest, 'm')}, no thicker than a boundary layer": thinnest < 1e-8,
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
         f"more than a tenth of the load, at {overloaded} more than all of it; the film formula "
         "leaves all to the oil": loaded,
@@ -113,10 +112,6 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     return [text for text, unlikely in found.items() if unlikely]
 
 
-def _short(value, unit=""):
-    return with_unit(float(f"{value:.3g}"), unit)
-
-
 def _range(values, unit=""):
-    ends = _short(np.nanmin(values), unit), _short(np.nanmax(values), unit)
+    ends = (with_unit(end(values), unit, 3) for end in (np.nanmin, np.nanmax))
     return " to ".join(dict.fromkeys(ends))

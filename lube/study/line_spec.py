@@ -171,12 +171,6 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     """
     spacing = 2.0 * math.pi * rollers.first.radius / roughness.points
     width = 2.0 * float(rollers.contact_half_width(largest_force))
-    for name in ("long_cutoff", "short_cutoff"):
-        measured = all(getattr(rollers, roller).topography for roller in ROLLERS)
-        if measured and (cutoff := getattr(roughness, name)):
-            raise StudyError(
-                f"roughness.{name}: got {cutoff:g} m beside two topographies, which have their own"
-            )
     lines = tuple(
         _rough_line(rollers, roughness, name, rms, (spacing, width))
         for name, rms in zip(ROLLERS, rollers.rms_heights, strict=True)
@@ -206,16 +200,12 @@ def band_in_words(rollers: RollerPair, roughness: Roughness, spec: LineSpec) -> 
         longest, shortest = line.longest_wavelength, line.shortest_wavelength
         automatic = line.heights is None and own.longest_wavelength == AUTOMATIC_WAVELENGTH
         why = f" ({AUTOMATIC_WAVELENGTH})" if automatic else ""
-        band = f"waves {_length(longest)}{why} to {_length(shortest)}"
+        band = f"waves {with_unit(longest, 'm', 3)}{why} to {with_unit(shortest, 'm', 3)}"
         if line.hurst_exponent is not None and (own.long_cutoff or own.short_cutoff):
             cutoffs = own.long_cutoff or longest, own.short_cutoff or shortest
-            band += f", heights stated for {' to '.join(map(_length, cutoffs))}"
+            band += f", heights stated for {' to '.join(with_unit(one, 'm', 3) for one in cutoffs)}"
         bands.append(band)
     return bands[0] if bands[0] == bands[1] else f"first: {bands[0]}; second: {bands[1]}"
-
-
-def _length(value):
-    return with_unit(float(f"{value:.3g}"), "m")
 
 
 def _rough_line(rollers, roughness, name, rms, lengths):

@@ -108,12 +108,6 @@ class Preparation:
     closed: bool = False
 
     def __post_init__(self):
-        allowed = {"texture": TEXTURES, "form": FORMS, "holes": HOLES, "rolling": ("x", "y")}
-        for field, values in allowed.items():
-            if getattr(self, field) not in values:
-                raise DataError(
-                    f"{field}: got {getattr(self, field)!r}, need one of {', '.join(values)}"
-                )
         if self.closed and self.form == "curvature":
             raise DataError("form: got 'curvature', need none or tilt for a closed profile")
 

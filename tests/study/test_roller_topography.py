@@ -282,8 +282,3 @@ def test_cutoffs_beside_a_topography_are_refused(study_file):
     own = BAND | {"long_cutoff": "0.8 mm"}
     message = refusal(study_file(MAP, roughness=own))
     assert "roughness.long_cutoff: got 0.8 mm beside a topography" in message
-    both = {"points": 20_000, "shortest_wavelength": "6.25 um", "short_cutoff": "7 um"}
-    path = study_file(MAP)
-    content = yaml.safe_load(path.read_text("utf-8")) | {"roughness": both}
-    path.write_text(yaml.safe_dump(content), encoding="utf-8")
-    assert "roughness.short_cutoff: got 7 um beside two topographies" in refusal(path)

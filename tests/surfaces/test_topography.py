@@ -139,8 +139,3 @@ def test_what_does_not_suit_is_refused_in_one_line(rough, change, settings, mess
     with pytest.raises(DataError, match=message) as error:
         prepare(Topography("map.x3p", heights, (1.0, 1.0)), Preparation("isotropic", **settings))
     assert str(error.value).startswith("map.x3p: ") and "\n" not in str(error.value)
-
-
-def test_an_unknown_setting_is_refused():
-    with pytest.raises(DataError, match="texture: got 'ground', need one of isotropic, along roll"):
-        Preparation("ground")
