@@ -106,8 +106,8 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"grid: {points:.3g} points in the shortest wave; for the curvature of asperities it "
         "takes 10": points < 10.0 * (1.0 - 1e-6),
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
-        f"more than a tenth of the load{f', at {overloaded} more than all of it' * (overloaded > 0)}; "
-        "the film formula leaves all to the oil": loaded,
+        f"more than a tenth of it{f', at {overloaded} more than all' * (overloaded > 0)}; the film "
+        "formula leaves all of the load to the oil": loaded,
     }
     return [text for text, unlikely in found.items() if unlikely]
 
