@@ -91,6 +91,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     waves, points = width / shortest, shortest / lines.spacing
     share = expected_load_share(film, rollers)
     loaded, overloaded = (int((share > limit).sum()) for limit in (0.1, 1.0))
+    more = f"at {overloaded} more than all of it, " if overloaded else ""
     found = {
         f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel 210 GPa": (
             min(moduli) < 1e9 or max(moduli) > 1.2e12
@@ -106,8 +107,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"grid: {points:.3g} points in the shortest wave; for the curvature of asperities it "
         "takes 10": points < 10.0 * (1.0 - 1e-6),
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
-        f"more than a tenth of it{f', at {overloaded} more than all' * (overloaded > 0)}; the film "
-        "formula leaves all of the load to the oil": loaded,
+        f"more than a tenth of the load, {more}which the film formula leaves to the oil": loaded,
     }
     return [text for text, unlikely in found.items() if unlikely]
 

@@ -18,7 +18,7 @@ from lube.units import with_unit
 _FREQUENT, _RARE = 0.1, 0.001
 """Shares of time above and below which contact is called frequent and rare."""
 _AGREEMENT = (
-    *("bias", "rms_difference", "overlap_share", "compared_records", "pairs"),
+    *("bias", "rms_difference", "overlap_share", "compared_records", "pairs", "origin"),
     *("overlap_share_expected_lower", "overlap_share_expected_upper"),
 )
 """Measures of agreement between simulation and rig that the summary states."""
@@ -53,8 +53,8 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
             {name: oil[name].values[end].item() for name in properties}
             for end in ((0, -1) if oil.sizes["temperature"] > 1 else (0,))
         ]
-        for record in study.lubricants
-        for oil in [lubricant.sel(lubricant=record.name)]
+        for number, record in enumerate(study.lubricants[: lubricant.sizes["lubricant"]])
+        for oil in [lubricant.isel(lubricant=number)]
     }
     return render(
         "facts.md",

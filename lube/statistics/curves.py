@@ -174,9 +174,9 @@ def peaked_curve(
 
     Examples
     --------
-    >>> curve = peaked_curve(np.arange(3.0), np.array([0.4, 0.5, 0.1]), np.full(3, 9.0), 1e-6)
-    >>> curve.peak, float(curve.film_at(0.4)) > 1.0, float(curve.thinner_film_at(0.4))
-    (1, True, 0.0)
+    >>> curve = peaked_curve(np.arange(1.0, 4.0), np.array([0.4, 0.5, 0.1]), np.full(3, 9.0), 1e-6)
+    >>> curve.peak, float(curve.film_at(0.4)) > 2.0, float(curve.thinner_film_at(0.4))
+    (1, True, 1.0)
     """
     peak = int(np.argmax(probabilities))
     beyond, before = slice(peak, None), slice(peak, None, -1)

@@ -41,7 +41,11 @@ def test_a_changed_script_or_lubricant_record_reruns_what_follows(spare):
     spare.append("workflow/scripts/gauge.py", "# changed")
     spare.append("lube/study/lubricants/n-dodecane.yaml", "# not of this study")
     assert spare.planned() == after(spare, "gauge")
-    spare.append("lube/study/lubricants/mobilgear-shc-xmp-320.yaml", "# changed")
+    record = spare / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"
+    text = record.read_text(encoding="utf-8")
+    record.write_text(text.replace("title: ", "title: New "), encoding="utf-8")
+    assert spare.planned() == after(spare, "gauge")
+    record.write_text(text.replace("335 mm^2/s", "336 mm^2/s"), encoding="utf-8")
     assert spare.planned() == after(spare, "lubricant", "gauge") | BATCHES
 
 
