@@ -52,7 +52,7 @@ def save(dataset: xr.Dataset, path: File, kind: str, study: "Study", inputs: Fil
     dataset = check(dataset, kind, path).assign_attrs(global_attributes(study, kind, inputs))
     with written_whole(path) as part:
         dataset.to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=_encoding(dataset))
-    log.info("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
+    log.debug("%s: %s", path, ", ".join(f"{n} {name}" for name, n in dataset.sizes.items()))
 
 
 def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:

@@ -11,6 +11,8 @@ from studies import ROOT, SMOKE
 from lube.archive.build import VALUES, archive_contents, exact_versions, make_archive, written_files
 from lube.errors import DataError, StudyError
 from lube.report import SUMMARISED
+from lube.stages.lubricant import lubricant_table
+from lube.storage.netcdf import save
 from lube.study.study import load_study
 
 
@@ -42,7 +44,11 @@ def change(path, **values):
 
 
 def contents_of(path, archive):
-    return archive_contents(load_study(path), path, archive / "data", ["fig02_film"])
+    study, results = load_study(path), path.with_name("results")
+    shutil.copytree(archive / "data", results)
+    oils = lubricant_table(study.lubricants, study.operating_grid.temperature)
+    save(oils, results / "lubricant.nc", "lubricant", study)
+    return archive_contents(study, path, results, ["fig02_film"])
 
 
 def test_a_study_is_archived_with_all_its_files_and_loads_from_there(own, archive, tmp_path):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lube.report.summary import facts, findings, made
+from lube.stages.lubricant import lubricant_table
 from lube.study.rollers import OwnRoughness
 
 
@@ -21,6 +22,14 @@ def test_the_numbers_of_the_study_are_stated(study, datasets):
     ):
         assert words in text
     assert "numpy 2" in made(study) and "The authors of lube" in made(study)
+
+
+def test_two_oils_of_one_title_are_both_stated(study):
+    (oil,) = study.lubricants
+    oils = [oil, oil.model_copy(update={"name": "b"})]
+    table = lubricant_table(oils, study.operating_grid.temperature)
+    text = facts(study.model_copy(update={"lubricants": tuple(oils)}), table)
+    assert text.count("| **Lubricants** | Mobilgear SHC XMP 320: ") == 2
 
 
 def test_several_pairs_and_their_drift_are_stated(study, datasets):

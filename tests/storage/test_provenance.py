@@ -8,6 +8,8 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.schema import FILES
+from lube.stages.lubricant import lubricant_table
+from lube.storage.netcdf import save
 from lube.storage.provenance import (
     LIBRARIES,
     check_config,
@@ -41,6 +43,21 @@ def test_every_file_states_the_studys_values_and_their_sha256(study):
         expected = hashlib.sha256(attributes["config"].encode()).hexdigest()
         assert attributes["config_sha256"] == expected
         assert attributes["study_seed"] == study.seed
+
+
+def test_the_title_of_an_oil_is_no_value_and_in_no_byte_of_the_lubricant_file(study, tmp_path):
+    found = set()
+    for title in ("Mobilgear SHC XMP 320", "My <oil>"):
+        (oil,) = (record.model_copy(update={"title": title}) for record in study.lubricants)
+        mine = study.model_copy(update={"lubricants": (oil,)})
+        assert mine.stage_inputs("lubricant") == study.stage_inputs("lubricant")
+        table = lubricant_table(mine.lubricants, mine.operating_grid.temperature)
+        save(table, tmp_path / "lubricant.nc", "lubricant", mine)
+        found.add((tmp_path / "lubricant.nc").read_bytes())
+    assert len(found) == 1
+    oil = oil.model_copy(update={"viscosity_law": "vogel"})
+    other = study.model_copy(update={"lubricants": (oil,)})
+    assert other.stage_inputs("lubricant") != study.stage_inputs("lubricant")
 
 
 def test_files_name_the_creators_and_the_libraries(study):

@@ -75,7 +75,10 @@ plt.plot([1, 2])
 1 + 1
 """
     execute_notebook(write(code), output, {}, "")
-    printed, warned, shown, result, picture = outputs_of(output)
+    outputs = outputs_of(output)
+    kinds = [one.output_type for one in outputs]
+    assert kinds == ["stream", "stream", "display_data", "execute_result", "display_data"]
+    printed, warned, shown, result, picture = outputs
     assert (printed.name, printed.text) == ("stdout", "1\n2\n")
     assert (warned.name, warned.text) == ("stderr", "careful\n")
     assert shown.data["text/markdown"] == "shown"
