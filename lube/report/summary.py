@@ -48,14 +48,17 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
         Markdown: a table of two columns.
     """
     properties = ("temperature", "kinematic_viscosity", "pressure_viscosity_coefficient")
-    oils = {
-        record.title: [
-            {name: oil[name].values[end].item() for name in properties}
-            for end in ((0, -1) if oil.sizes["temperature"] > 1 else (0,))
-        ]
+    oils = [
+        (
+            record.title,
+            [
+                {name: oil[name].values[end].item() for name in properties}
+                for end in ((0, -1) if oil.sizes["temperature"] > 1 else (0,))
+            ],
+        )
         for number, record in enumerate(study.lubricants[: lubricant.sizes["lubricant"]])
         for oil in [lubricant.isel(lubricant=number)]
-    }
+    ]
     return render(
         "facts.md",
         study=study,
