@@ -66,9 +66,8 @@ def _draw_lines(axes, found, x, y):
     """Draw a line for each level of the other dimensions."""
     others = [name for name in found[y].dims if name != x]
     indices = list(np.ndindex(*(found.sizes[name] for name in others)))
-    shades = (
-        plots.level_colours(range(len(indices))).values() if others else (plots.COLOURS["blue"],)
-    )
+    blue = plots.COLOURS["blue"]
+    shades = plots.level_colours(range(len(indices))).values() if others else (blue,)
     if y == _SHOWN[0]:
         _scale(axes, found)
     for index, color in zip(indices, shades, strict=True):

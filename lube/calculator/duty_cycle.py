@@ -122,10 +122,8 @@ def duty(
     share = share / share.sum()
     whole = _whole(contact, on_pairs, share, 2.0 * table["contact_half_width"].max().item())
     parts = joined(table, contact, on_pairs)
-    found = xr.Dataset(
-        columns | {"share": share} | dict(parts.data_vars) | whole, attrs=parts.attrs
-    )
-    found = with_remarks(found, table, rollers)
+    found = columns | {"share": share} | dict(parts.data_vars) | whole
+    found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers)
     return Answer(labels | dict(found.data_vars), found.coords, found.attrs)
 
 

@@ -15,7 +15,7 @@ from lube.errors import LubeError, RangeError, StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.plausibility import remarks
 from lube.rig.map_curves import windows_in
-from lube.schema import OPERATING_DIMS, POINT_DIMS
+from lube.schema import MEAN_LIMITS, OPERATING_DIMS, POINT_DIMS, values_with_limits
 from lube.stages.contact import contact_at
 from lube.stages.film import film_at, film_profile_table, film_table
 from lube.stages.lubricant import lubricant_table
@@ -363,8 +363,7 @@ def run_all(
     for name in _PROBABILITIES:
         dims = contact[name].dims[1:]
         found = probability_interval(contact[name].values, windows.transpose(*dims).values)
-        for part, values in zip(("mean", "lower", "upper"), found, strict=True):
-            contact[f"{name}_{part}"] = dims, values
+        contact = contact.assign(values_with_limits(name, found, dims, MEAN_LIMITS))
     return contact
 
 

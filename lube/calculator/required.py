@@ -294,19 +294,18 @@ def _lambda_ratios(rollers, half_width, share, realisations, seed, own=None):
     spec, ratios = rollers.lines, LAMBDA_RATIOS
     check_width(spec, 2.0 * half_width, "force: the contact")
     windows = spec.independent_windows(2.0 * half_width) * realisations
-    is_gaussian = all(line.is_gaussian for line in spec.lines)
-    if not is_gaussian and share * windows < 1.0:
+    if not spec.is_gaussian and share * windows < 1.0:
         raise RangeError(
             f"share: got {share:g}, need at least {1.0 / windows:.2g}: {realisations} realisations "
             "show no rarer contact, and importance sampling is for Gaussian heights"
         )
-    if is_gaussian:
+    if spec.is_gaussian:
         first = _sampled(rollers, half_width, seed, own, ratios, FEW_PAIRS)[0]
         near = max(_crossing(ratios, first, share), ratios[np.argmax(first)]) * NEAR
         # The maximum is flat: to find it takes them all.
         is_falling = share < FALLING * first.max()
         ratios = near if is_falling else ratios[ratios < 2.0 * near[-1]]
-    is_seen = share * windows >= OFTEN or not is_gaussian
+    is_seen = share * windows >= OFTEN or not spec.is_gaussian
     method, number = (_counted, realisations) if is_seen else (_sampled, PAIRS)
     limits = method(rollers, half_width, seed, own, ratios, number)
     found = np.array([_crossing(ratios, each, share) for each in limits])
@@ -374,13 +373,12 @@ def _reached(films, table, levels, tried):
     thickness = np.log(table["film_thickness"].values)
     rising = 1 if thickness[-1] > thickness[0] else -1
     ends = {"left": -rising * np.inf, "right": rising * np.inf}
-    needed = films["film_thickness"]
     with np.errstate(divide="ignore"):  # a lower limit may be 0
-        sought = np.log(needed)
+        sought = np.log(films["film_thickness"])
     if sought[0] > thickness.max():
+        film, most = 1e6 * np.exp([sought[0], thickness.max()])
         raise RangeError(
-            f"share: it needs a film of {1e6 * needed[0]:.3g} um, which no {tried} gives: at most "
-            f"{1e6 * np.exp(thickness.max()):.3g} um"
+            f"share: needs a film of {film:.3g} um, which no {tried} gives: at most {most:.3g} um"
         )
     return np.interp(sought, thickness[::rising], levels[::rising], **ends)
 

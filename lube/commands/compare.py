@@ -9,6 +9,7 @@ import xarray as xr
 
 from lube.errors import DataError, shown
 from lube.schema import LIMITS
+from lube.storage.provenance import single_values
 from lube.types import File
 
 STAMP_STRIP = 27
@@ -202,21 +203,10 @@ def _values_of_studies(one, other):
     configs = []
     for dataset in (one, other):
         stages = json.loads(dataset.attrs.get("config", "{}")).values()
-        configs.append({name: value for stage in stages for name, value in _flat(stage).items()})
+        configs.append({name: value for stage in stages for name, value in single_values(stage)})
     names = [name for name in configs[0] if configs[0][name] != configs[1].get(name)]
     for name in names[:_MOST_CHANGES]:
         here, there = (shown(config.get(name)) for config in configs)
         yield f"the studies differ in {name}: {here} against {there}"
     if len(names) > _MOST_CHANGES:
         yield f"the studies differ in {len(names) - _MOST_CHANGES} more values"
-
-
-def _flat(config):
-    """Values of nested mappings, by dotted names."""
-    found = {}
-    for name, value in config.items():
-        if isinstance(value, dict):
-            found |= {f"{name}.{inner}": one for inner, one in _flat(value).items()}
-        else:
-            found[name] = value
-    return found

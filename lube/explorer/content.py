@@ -133,9 +133,8 @@ def level_names(name: str, values: list) -> list[str]:
     if name in ("lubricant", "film_formula"):
         return values
     unit = COORDINATES[name].units
-    unit = "" if unit == "1" else unit
     rounded = [value if value == round(value) else float(f"{value:.4g}") for value in values]
-    names = [with_unit(value, unit) for value in rounded]
+    names = [with_unit(value, "" if unit == "1" else unit) for value in rounded]
     if len(set(names)) == len(names):
         return names
     return [str(value) for value in values]

@@ -47,17 +47,11 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
     str
         Markdown: a table of two columns.
     """
-    properties = ("temperature", "kinematic_viscosity", "pressure_viscosity_coefficient")
+    properties = ["kinematic_viscosity", "pressure_viscosity_coefficient"]
+    ends = lubricant[properties].isel(temperature=sorted({0, lubricant.sizes["temperature"] - 1}))
     oils = [
-        (
-            record.title,
-            [
-                {name: oil[name].values[end].item() for name in properties}
-                for end in ((0, -1) if oil.sizes["temperature"] > 1 else (0,))
-            ],
-        )
-        for number, record in enumerate(study.lubricants[: lubricant.sizes["lubricant"]])
-        for oil in [lubricant.isel(lubricant=number)]
+        (record.title, ends.isel(lubricant=number).to_dataframe().reset_index().to_dict("records"))
+        for number, record in enumerate(study.lubricants[: ends.sizes["lubricant"]])
     ]
     return render(
         "facts.md",

@@ -213,12 +213,11 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
     in_window, rate = _in_time(spec, film, runs, slip)
     perimeter = spec.points[0] * spec.spacing
     turn = perimeter / surface_speeds(speed, slip)[0]
-    width, longest = 2.0 * film["contact_half_width"], 2.0 * np.pi / spec.q_min
-    windows = independent_windows(perimeter, width, longest)
+    width = 2.0 * film["contact_half_width"]
+    windows = independent_windows(perimeter, width, spec.longest_wavelength)
     rolling = _in_pure_rolling(runs)
     groups = rolling.isel(outcome=2, drop=True) * spec.points[0]
-    points = _window_points(spec, film)
-    steps = _first_breakthrough(rolling.mean("pair"), points, spec.points[0])
+    steps = _first_breakthrough(rolling.mean("pair"), _window_points(spec, film), spec.points[0])
     values = (breakthrough * everywhere, contact * everywhere, rate)
     table = {
         **pair_limits(xr.Dataset(dict(zip(_OF_PAIRS, values, strict=True)))),

@@ -196,7 +196,7 @@ def test_lines_that_are_not_gaussian_are_counted_only(oil):
             lambda rollers, oil: lube.required_viscosity(
                 rollers, oil, "400 N", "0.0001 rpm", "60 degC", share=0.01, **RUNS
             ),
-            "share: it needs a film of 0.825 um, which no viscosity within a factor of 1000 of the",
+            "share: needs a film of 0.825 um, which no viscosity within a factor of 1000 of the",
         ),
         (
             lambda rollers, oil: lube.required_speed(
