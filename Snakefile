@@ -12,36 +12,15 @@ if not IS_MODULE:
 
 include: "workflow/rules/notebooks.smk"
 include: "workflow/rules/study.smk"
-include: "workflow/rules/lubricant.smk"
-include: "workflow/rules/film.smk"
-include: "workflow/rules/roughness.smk"
-include: "workflow/rules/surface.smk"
-include: "workflow/rules/batch.smk"
-include: "workflow/rules/contact.smk"
-include: "workflow/rules/tail.smk"
-include: "workflow/rules/areal.smk"
-include: "workflow/rules/patch.smk"
-include: "workflow/rules/film_plane.smk"
-include: "workflow/rules/constant.smk"
-include: "workflow/rules/film_profile.smk"
-include: "workflow/rules/film_shape.smk"
-include: "workflow/rules/flattening.smk"
-include: "workflow/rules/height_distribution.smk"
-include: "workflow/rules/master.smk"
-include: "workflow/rules/experiment.smk"
-include: "workflow/rules/comparison.smk"
-include: "workflow/rules/gauge.smk"
-include: "workflow/rules/areal_gauge.smk"
+include: "workflow/rules/stages.smk"
 include: "workflow/rules/figure.smk"
-include: "workflow/rules/speed.smk"
-include: "workflow/rules/reading.smk"
-include: "workflow/rules/coverage.smk"
 include: "workflow/rules/explorer.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/archive.smk"
 
 
 rule all:
+    """All datasets, figures and pages of the study."""
     default_target: True
     input:
         [result(f"{kind}.nc") for kind in STUDY.datasets],
@@ -53,6 +32,7 @@ rule all:
 
 
 rule areal_contact:
+    """Contact of the isotropic surface that the lines stand for."""
     input:
         products(made_by("areal_contact", FIGURES)),
     message:
@@ -60,6 +40,7 @@ rule areal_contact:
 
 
 rule patch_contact:
+    """Squares of that surface pressed against a flat."""
     input:
         products(made_by("patch_contact", FIGURES)),
     message:
@@ -67,6 +48,7 @@ rule patch_contact:
 
 
 rule computed:
+    """Computed films, and what they do to contact."""
     input:
         products(made_by("computed", FIGURES)),
     message:
@@ -74,6 +56,7 @@ rule computed:
 
 
 rule benchmark:
+    """Measured times and coverage of intervals."""
     input:
         products(made_by("benchmark", FIGURES)),
     message:

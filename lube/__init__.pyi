@@ -14,6 +14,9 @@ from lube.calculator.required import required_roughness as required_roughness
 from lube.calculator.required import required_speed as required_speed
 from lube.calculator.required import required_temperature as required_temperature
 from lube.calculator.required import required_viscosity as required_viscosity
+from lube.contact.ensemble import gather as gather
+from lube.contact.ensemble import gather_map as gather_map
+from lube.contact.ensemble import with_intervals as with_intervals
 from lube.ehl.film_formulas import FORMULAS as FORMULAS
 from lube.errors import DataError as DataError
 from lube.errors import LubeError as LubeError
@@ -30,15 +33,11 @@ from lube.rig.fits import fit_alpha as fit_alpha
 from lube.rig.fits import fit_layer_strength as fit_layer_strength
 from lube.rig.study_shares import over_grid as over_grid
 from lube.stages.comparison import compare as compare
-from lube.stages.contact import contact_map as contact_map
 from lube.stages.contact import contact_statistics as contact_statistics
-from lube.stages.ensemble import gather as gather
-from lube.stages.ensemble import gather_map as gather_map
-from lube.stages.ensemble import with_intervals as with_intervals
 from lube.stages.film import film_table as film_table
 from lube.stages.gauge import gauge_film as gauge_film
 from lube.stages.gauge import gauge_records as gauge_records
-from lube.stages.lubricant import lubricant_table as lubricant_table
+from lube.stages.master import contact_map as contact_map
 from lube.stages.roughness import roughness_lines as roughness_lines
 from lube.stages.trace import contact_trace as contact_trace
 from lube.stages.trace import contact_window as contact_window
@@ -49,6 +48,7 @@ from lube.study.line_spec import RoughLine as RoughLine
 from lube.study.line_spec import line_spec as line_spec
 from lube.study.lubricant_record import load_record as load_record
 from lube.study.lubricant_record import shipped_records as shipped_records
+from lube.study.oil_properties import lubricant_table as lubricant_table
 from lube.study.rollers import BoundaryLayer as BoundaryLayer
 from lube.study.rollers import Roller as Roller
 from lube.study.rollers import RollerPair as RollerPair

@@ -1,11 +1,17 @@
 """Short names of types that many signatures share."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 Array = np.ndarray
+Datasets = Mapping[str, "xr.Dataset"]
+"""Datasets by the names of their kinds."""
 File = str | Path
 """Path of a file or folder."""
 Files = Iterable[File]

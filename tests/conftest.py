@@ -10,12 +10,13 @@ from hypothesis import settings
 from studies import PAPER_CONTENT, SMOKE, with_value
 
 from lube import film_table, line_spec, load_study, roughness_lines
-from lube.stages.contact import contact_map, contact_statistics
-from lube.stages.ensemble import gather, gather_map
-from lube.stages.lubricant import lubricant_table
-from lube.stages.roughness import roughness_batch
+from lube.contact.ensemble import gather, gather_map
+from lube.contact.rough_pair import roughness_batch
+from lube.stages.contact import contact_statistics
+from lube.stages.master import contact_map
 from lube.storage.netcdf import save
 from lube.study.metadata import About
+from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import OwnRoughness
 
 # The first example of a test may have to wait for its kernel to be compiled.

@@ -6,8 +6,6 @@ from studies import OIL
 
 from lube.rig.at_records import model_at_records
 from lube.schema import label
-from lube.stages.film import film_at_records
-from lube.stages.lubricant import lubricant_table
 from lube.statistics.folding import PHASES
 
 THRESHOLDS = np.array([10.0, 100.0, 1000.0])
@@ -73,7 +71,4 @@ def experiment_at(levels, shares, **values):
 
 def model_of_records(experiment, film, contact, study):
     """The model at the conditions of each record, as the workflow makes it."""
-    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    model = study.film_model
-    films = film_at_records(experiment, oils, study.rollers, study.film_formulas, **model)
-    return model_at_records(films, experiment, film, contact, study)
+    return model_at_records(experiment, film, contact, study)

@@ -25,6 +25,7 @@ FLOORS = [
     {"ehl"},
     {"grid"},
     {"study"},
+    {"contact"},
     {"rig", "storage"},
     {"recordings"},
     {"stages"},

@@ -2,33 +2,15 @@
 
 import numpy as np
 import yaml
+from made import made
 from studies import CONFIG, PAPER_CONTENT
 
+from lube.contact.rough_pair import roughness_batch
 from lube.grid.operating_points import operating_points
-from lube.recordings.manifest import read_manifest
-from lube.rig.at_records import model_at_records
 from lube.rig.simulator import SimulatedRig
-from lube.stages.areal import strip_contacts
-from lube.stages.areal_gauge import gauge_by_surface
-from lube.stages.comparison import compare
-from lube.stages.constant import constant_effect
-from lube.stages.contact import contact_map, contact_statistics
-from lube.stages.ensemble import gather, gather_map
-from lube.stages.experiment import measured_experiment, simulated_experiment
-from lube.stages.film import film_at_records, film_profile_table, film_table
-from lube.stages.film_plane import film_plane
-from lube.stages.film_shape import film_shape_probabilities
-from lube.stages.flattening import flattened_contact
-from lube.stages.gauge import gauge_records
-from lube.stages.height_distribution import height_distributions
-from lube.stages.lubricant import lubricant_table
-from lube.stages.patch import patch_contact
-from lube.stages.rig import rig_records
-from lube.stages.roughness import roughness_batch, roughness_lines
-from lube.stages.surface import measured_surfaces
-from lube.stages.tail import tail_probabilities
-from lube.stages.trace import contact_trace
+from lube.stages.film import film_table
 from lube.storage.netcdf import save
+from lube.study.oil_properties import lubricant_table
 from lube.study.study import load_study
 
 
@@ -218,82 +200,10 @@ def write_datasets(content, folder):
         From the kind of each dataset to its path.
     """
     study, paths = load_study(write_study(content, folder)), {}
-    for kind, dataset in _datasets(study).items():
+    for kind, dataset in made(study).items():
         paths[kind] = folder / f"{kind}.nc"
         save(dataset, paths[kind], kind, study)
     return paths
-
-
-def _datasets(study):
-    grid, layer = study.operating_grid, study.boundary_layer
-    oil = lubricant_table(study.lubricants, grid.temperature)
-    flattened = study.is_flattened
-    rough, formulas = study.rough_rollers, study.film_formulas
-    levels, films = (grid.force, grid.speed), study.film_model
-    slips = {"slide_to_roll_ratio": study.slips}
-    film = film_table(oil, rough, *levels, formulas, **slips, **films)
-    lines = roughness_lines(study.line_spec, study.seed, study.kept_realisations)
-    batch = roughness_batch(study.line_spec, study.seed, range(study.realisations))
-    run = contact_statistics(batch, film, layer, study.slips, study.revolutions, flattened)
-    contact = gather([run], film)
-    profile = film_profile_table(oil, rough, *levels, films["inlet_meniscus"])
-    spec, rollers, some = study.line_spec, study.rollers, {}
-    if study.has("comparison"):
-        some |= _records(study, film, contact)
-    if study.has("master"):
-        some["master"] = gather_map([contact_map(batch, film, layer)])
-        some["constant"] = constant_effect(oil, film, some["master"])
-    if study.has("gauge"):
-        some["gauge"] = gauge_records(some["master"], contact, some["comparison"])
-    if study.has("patch"):
-        some["patch"] = patch_contact(spec, rollers.reduced_modulus, study.seed)
-    if study.has("film_shape"):
-        some["film_shape"] = film_shape_probabilities(spec, film, profile, layer, study.seed, 2)
-    if study.has("areal"):
-        areal = strip_contacts(spec, film, layer, rollers.length, study.seed, study.slips)
-        some["areal"] = areal
-    if study.has("areal_gauge"):
-        read = some["comparison"], some["gauge"]
-        some["areal_gauge"] = gauge_by_surface(film, some["areal"], *read)
-    if study.has("height_distribution"):
-        some["height_distribution"] = height_distributions(spec, film, layer, study.seed)
-    if not spec.is_one_pair:
-        realisations = range(study.realisations)
-        some["flattening"] = flattened_contact(spec, film, layer, study.seed, realisations, 2)
-    if study.topographies:
-        some["surface"] = measured_surfaces(study.topographies, spec, 0.7)
-    resistivity = study.resistivity if study.conducts else np.nan
-    tracing = study.trace_points, layer, resistivity, flattened
-    return some | {
-        "lubricant": oil,
-        "film": film,
-        "film_profile": profile,
-        "roughness": lines,
-        "contact": contact,
-        "tail": tail_probabilities(spec, film, layer, study.seed, study.slips, 1, flattened),
-        "trace": contact_trace(lines, film, *tracing),
-        "film_plane": film_plane(oil, rollers.reduced_modulus),
-    }
-
-
-def _records(study, film, contact):
-    """Simulated or measured records, compared with the simulation."""
-    rig_lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
-    if study.experiment.manifest:
-        experiment = measured_experiment(read_manifest(study.experiment.manifest), study)
-    else:
-        experiment = simulated_experiment(rig_lines, film, study)
-    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    at_records = film_at_records(
-        experiment, oils, study.rough_rollers, study.film_formulas, **study.film_model
-    )
-    model = model_at_records(at_records, experiment, film, contact, study)
-    comparison = compare(model, experiment, contact)
-    return {
-        "rig": rig_records(rig_lines, film, study),
-        "experiment": experiment,
-        "comparison": comparison,
-    }
 
 
 def _write_scan(path):

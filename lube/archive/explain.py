@@ -10,13 +10,13 @@ from typing import Any
 
 import xarray as xr
 
+from lube.contact.ensemble import with_intervals
+from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError
 from lube.grid.levels import format_levels, level_index
 from lube.report.pages import render
 from lube.schema import CONTACT_DIMS
 from lube.stages.contact import contact_statistics
-from lube.stages.ensemble import with_intervals
-from lube.stages.roughness import roughness_batch
 from lube.storage.netcdf import load
 from lube.storage.provenance import fingerprint, input_sums, json_attribute
 from lube.study.line_spec import LineSpec

@@ -24,9 +24,9 @@ from lube.calculator.operating_points import (
     with_remarks,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.contact.ensemble import windows_in
 from lube.errors import DataError, LubeError, right_one, shown
 from lube.physics.hertz import reduced_radius
-from lube.rig.map_curves import windows_in
 from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval

@@ -11,19 +11,21 @@ import xarray as xr
 from lube.calculator.amounts import Amount, amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.contact.counted import contact_at
+from lube.contact.ensemble import windows_in
+from lube.contact.rough_pair import roughness_batch
 from lube.errors import LubeError, RangeError, StudyError, shown
 from lube.grid.discretise import speed_ratios
+from lube.grid.films import film_at
 from lube.grid.plausibility import remarks
-from lube.rig.map_curves import windows_in
 from lube.schema import MEAN_LIMITS, OPERATING_DIMS, POINT_DIMS, values_with_limits
-from lube.stages.contact import contact_at
-from lube.stages.film import film_at, film_profile_table, film_table
-from lube.stages.lubricant import lubricant_table
-from lube.stages.roughness import roughness_batch
+from lube.stages.film import film_table
+from lube.stages.film_profile import film_profile_table
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.stages.trace import contact_trace
 from lube.statistics.confidence import probability_interval
 from lube.study.line_spec import check_width
+from lube.study.oil_properties import lubricant_table
 from lube.study.rig_settings import RIG_REALISATIONS
 from lube.study.rollers import BoundaryLayer
 

@@ -14,10 +14,10 @@ from lube.calculator.amounts import Amount, amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.errors import LubeError, RecordError, StudyError, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
-from lube.stages.lubricant import lubricant_table
 from lube.study.field_types import validate
 from lube.study.line_spec import LineSpec, band_in_words, line_spec
 from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_oil, load_record
+from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import (
     INSULATOR,
     LONGEST_WAVELENGTH,

@@ -11,7 +11,7 @@ from lube.commands.run import repository
 from lube.errors import LubeError
 from lube.grid.plausibility import overview, remarks
 from lube.stages.film import film_table
-from lube.stages.lubricant import lubricant_table
+from lube.study.oil_properties import lubricant_table
 from lube.types import File
 from lube.workflow.command_line import changes_of, study_of_command
 from lube.workflow.study_files import StudyFiles

@@ -6,14 +6,18 @@ contact width: nothing is rounded to the nearest level of the operating grid.
 """
 
 import logging
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
+from lube.grid.films import film_at
 from lube.grid.operating_points import at_slip
 from lube.rig.ensemble_runs import EnsembleRuns
 from lube.rig.record_scatter import record_scatter
 from lube.schema import OPERATING_DIMS
+from lube.study.oil_properties import lubricant_table
+from lube.study.rollers import RollerPair
 from lube.study.study import Study
 
 Data = xr.Dataset
@@ -23,27 +27,23 @@ log = logging.getLogger(__name__)
 PROBABILITY = "breakthrough_probability"
 
 
-def model_at_records(
-    at_records: Data, experiment: Data, film: Data, contact: Data, study: Study
-) -> Data:
+def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) -> Data:
     """Probability at the conditions of each record, and the scatter of one pair there.
 
     Parameters
     ----------
-    at_records : xarray.Dataset
-        Film at each record, from `lube.stages.film.film_at_records`.
     experiment : xarray.Dataset
         An ``experiment`` dataset.
     film, contact : xarray.Dataset
         The datasets of these kinds of the study. Probabilities in pure rolling are taken from
         them at records whose film and contact width they contain.
     study : Study
-        Its rollers, roughness lines, boundary layer and drift.
+        Its oils, rollers, films, roughness lines, boundary layer and drift.
 
     Returns
     -------
     xarray.Dataset
-        The variables of `at_records`; ``breakthrough_probability`` over (realisation,
+        The variables of `film_at_records`; ``breakthrough_probability`` over (realisation,
         film_formula, record); the results of `lube.rig.record_scatter.record_scatter` over the
         same dimensions, most without realisation; and the attributes ``travel`` and
         ``longest_wavelength``, both m, of one realisation.
@@ -52,6 +52,9 @@ def model_at_records(
         own slip: apart from that film slip does not change the expected probability. It changes the
         scatter of a record.
     """
+    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+    rollers, formulas = study.rough_rollers, study.film_formulas
+    at_records = film_at_records(experiment, oils, rollers, formulas, **study.film_model)
     runs = EnsembleRuns(study, at_records)
     points = runs.points_of(at_records)
     stored = _stored(runs, film, contact)
@@ -69,6 +72,54 @@ def model_at_records(
         "formula_place", errors="ignore"
     )
     return model.assign_attrs(attributes)
+
+
+def film_at_records(
+    experiment: xr.Dataset,
+    lubricant: xr.Dataset,
+    rollers: RollerPair,
+    formulas: Sequence[str],
+    with_shape: bool = False,
+    inlet_shear_heating: str = "none",
+    inlet_meniscus: float | None = None,
+) -> xr.Dataset:
+    """Film thickness at the conditions of each record.
+
+    Parameters
+    ----------
+    experiment : xarray.Dataset
+        An ``experiment`` dataset.
+    lubricant : xarray.Dataset
+        A ``lubricant`` dataset at all temperatures of the records.
+    rollers, formulas, with_shape, inlet_shear_heating, inlet_meniscus
+        As in `lube.grid.films.film_at`; the slip is that of each record.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material``,
+        ``contact_half_width`` and ``dynamic_viscosity`` over film_formula and record;
+        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. If they have a
+        shape, ``film_profile`` over record and film_position, and ``formula_place``. With inlet
+        shear heating its factor over record, and with a meniscus its distance.
+    """
+    force, speed, temperature, oil, slip = (
+        xr.DataArray(experiment[name].values, dims="record")
+        for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio")
+    )
+    properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
+    options = with_shape, slip, inlet_shear_heating, inlet_meniscus
+    table = film_at(properties, rollers, force, speed, formulas, *options)
+    table["dynamic_viscosity"] = properties["dynamic_viscosity"]
+    names = ["film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width"]
+    names += ["reduced_radius", "reduced_modulus", "composite_rms_roughness", "dynamic_viscosity"]
+    names += ["film_profile", "formula_place"] if with_shape else []
+    if inlet_shear_heating != "none":
+        names.append("inlet_shear_heating_factor")
+    if inlet_meniscus is not None:
+        names.append("inlet_meniscus")
+        table["inlet_meniscus"] = inlet_meniscus
+    return table[names].transpose("film_formula", "record", ...)
 
 
 def _stored(runs, film, contact):

@@ -9,8 +9,9 @@ import scipy.interpolate
 import scipy.special
 import xarray as xr
 
+from lube.contact.ensemble import windows_in
 from lube.ehl.film_formulas import formula
-from lube.rig.map_curves import curve_at, layer_curve_at, logits_on, windows_in
+from lube.rig.map_curves import curve_at, layer_curve_at, logits_on
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile

@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
+from lube.contact.ensemble import windows_in
 from lube.statistics.curves import Curve, peaked_curve
-from lube.statistics.sample_size import effective_sample_size, independent_windows
-from lube.types import Values
+from lube.statistics.sample_size import effective_sample_size
 
 PROBABILITY = "breakthrough_probability"
 
@@ -52,24 +52,6 @@ def layer_curve_at(probability: xr.DataArray, master: xr.Dataset, width: float) 
         Against the logarithm of the lambda ratio; its sample size is unknown, NaN.
     """
     return _curve(probability, master, width, np.full(probability.shape[0], np.nan))
-
-
-def windows_in(dataset: xr.Dataset, width: Values) -> Values:
-    """Count the independent contact windows in one realisation of a dataset.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        With the attributes ``travel`` and ``longest_wavelength`` of a realisation, m.
-    width : float, numpy.ndarray or xarray.DataArray
-        Contact width, m.
-
-    Returns
-    -------
-    float, numpy.ndarray or xarray.DataArray
-        From `lube.statistics.sample_size.independent_windows`.
-    """
-    return independent_windows(dataset.attrs["travel"], width, dataset.attrs["longest_wavelength"])
 
 
 def _curve(probability, master, width, sample_size):

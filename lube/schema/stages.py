@@ -5,7 +5,7 @@ the study that it uses. From the rows follow the inputs and parameters of the Sn
 the values recorded in every file, and the list of datasets.
 
 To add a stage `name`, add a row here, its file in ``files.csv`` and the variables in
-``variables.csv``, the script ``workflow/scripts/name.py`` and the rule ``workflow/rules/name.smk``.
+``variables.csv``, and the function `make` in ``lube/stages/name.py``.
 """
 
 from dataclasses import dataclass, field
@@ -18,7 +18,9 @@ class Stage:
     Attributes
     ----------
     name : str
-        Name of the stage, and of its rule, script, schema table and file (``film.nc``).
+        Name of the stage, and of its rule, module, schema table and file (``film.nc``).
+    says : str
+        What it makes, in a few words, for the messages of Snakemake.
     inputs : tuple of str
         Stages whose files it reads.
     values : dict
@@ -31,14 +33,36 @@ class Stage:
         such as ``areal_contact``. Files of ``benchmark`` are not results of the study.
     only_with : tuple of str
         Attributes of the study without which there is no such file.
+    written : str
+        Attribute of `lube.workflow.study_files.StudyFiles` that lists the files which people wrote
+        and the stage reads; none by default.
+    parameters : tuple of str
+        Attributes of the study that change the file beside the `values`, but not what is in it.
+    priority : int
+        Jobs of a higher one are started first.
+    parallel : bool
+        Whether a job uses all cores.
+    in_batches : bool
+        Whether it joins batches of realisations.
     """
 
     name: str
+    says: str
     inputs: tuple[str, ...] = ()
     values: dict = field(default_factory=dict)
     same_values: tuple[str, ...] = ()
     target: str = "all"
     only_with: tuple[str, ...] = ()
+    written: str = ""
+    parameters: tuple[str, ...] = ()
+    priority: int = 0
+    parallel: bool = False
+    in_batches: bool = False
+
+    @property
+    def message(self) -> str:
+        """Message of its jobs."""
+        return f"{self.name.replace('_', ' ').capitalize()}: {self.says}"
 
 
 def _cylinder(roller):
@@ -60,10 +84,13 @@ _CONTACT = _LAYER | {
 _ROWS = (
     Stage(
         "lubricant",
+        "viscosity fits, density and pressure-viscosity coefficient",
         values={"lubricants": "lubricant_values", "temperature": "operating_grid.temperature"},
+        priority=1,
     ),
     Stage(
         "film",
+        "Hertz contact and film thickness over forces, speeds and temperatures",
         inputs=("lubricant",),
         values={
             "rollers": {
@@ -82,41 +109,67 @@ _ROWS = (
             "inlet_shear_heating": "inlet_shear_heating",
             "inlet_meniscus": "inlet_meniscus",
         },
+        priority=1,
     ),
-    Stage("roughness", values=_LINES),
+    Stage(
+        "roughness",
+        "the kept realisations, with their moments",
+        values=_LINES,
+        parameters=("kept_realisations",),
+    ),
     Stage(
         "surface",
+        "spectrum and heights of the measured topographies",
         values={
             "surfaces": "measured_surfaces",
             "lines": "line_spec",
             "hurst_exponent": "roughness.hurst_exponent",
         },
         only_with=("topographies",),
+        written="topography_files",
     ),
     Stage(
         "contact",
+        "probabilities of all realisations and their intervals",
         inputs=("film",),
         values=_LINES | _CONTACT | {"revolutions": "revolutions"},
         same_values=("roughness",),  # each batch draws its lines itself
+        in_batches=True,
     ),
-    Stage("tail", inputs=("film",), values=_LINES | _CONTACT),
+    Stage(
+        "tail",
+        "probability and rate of contact at any rarity",
+        inputs=("film",),
+        values=_LINES | _CONTACT,
+        priority=2,
+    ),
     Stage(
         "height_distribution",
+        "probabilities by skewness and kurtosis",
         inputs=("film",),
         values=_LINES | _LAYER,
         same_values=("roughness",),  # whose lines have other distributions here
         only_with=("line_spec.is_drawn", "follows_master_map"),
+        priority=2,
     ),
     Stage(
-        "master", inputs=("film",), values=_LINES | _LAYER, same_values=("roughness",), **_MAPPED
+        "master",
+        "probabilities over lambda ratio and contact width",
+        inputs=("film",),
+        values=_LINES | _LAYER,
+        same_values=("roughness",),
+        in_batches=True,
+        **_MAPPED,
     ),
     Stage(
         "trace",
+        "contact length and resistance over one revolution",
         inputs=("film", "roughness"),
         values=_LINES | _CONTACT | {"traces": "traces", "resistivity": "resistivity"},
     ),
     Stage(
         "experiment",
+        "contact shares of the rig's records",
         inputs=("film",),
         values={
             **_LINES,
@@ -133,65 +186,112 @@ _ROWS = (
         },
         same_values=("roughness",),  # it draws the lines of the simulated rig's rollers
         only_with=("conducts",),
+        written="measured_files",
+        priority=2,
     ),
     Stage(
         "rig",
+        "voltage and resistance at the trace points, and contact shares by bandwidth",
         inputs=("film",),
         values={"traces": "traces"},
         same_values=("experiment",),
         only_with=("conducts",),
     ),
-    Stage("comparison", inputs=("film", "contact", "experiment"), only_with=("conducts",)),
-    Stage("gauge", inputs=("master", "contact", "comparison"), only_with=_GAUGED),
+    Stage(
+        "comparison",
+        "breakthrough probability against the contact share of each record",
+        inputs=("film", "contact", "experiment"),
+        only_with=("conducts",),
+    ),
+    Stage(
+        "gauge",
+        "films, pressure-viscosity coefficient and boundary layer from the records",
+        inputs=("master", "contact", "comparison"),
+        only_with=_GAUGED,
+    ),
     Stage(
         "areal",
+        "contact of the surfaces that the lines stand for, several minutes",
         inputs=("film",),
         values=_LINES | _CONTACT | {"length": "rollers.length"},
         target="areal_contact",
         only_with=(*_SURFACE, "follows_master_map"),
+        parallel=True,
     ),
     Stage(
         "areal_gauge",
+        "films from the records, by the surface",
         inputs=("film", "areal", "comparison", "gauge"),
         target="areal_contact",
         only_with=(*_SURFACE, *_GAUGED),
     ),
     Stage(
         "patch",
+        "surfaces pressed against a flat, several minutes",
         values=_LINES | {"reduced_modulus": "rollers.reduced_modulus"},
         target="patch_contact",
         only_with=_SURFACE,
     ),
-    Stage("film_profile", inputs=("lubricant",), same_values=("film",), target="computed"),
+    Stage(
+        "film_profile",
+        "pressure and film across the contact, by Reynolds' equation",
+        inputs=("lubricant",),
+        same_values=("film",),
+        target="computed",
+    ),
     Stage(
         "film_shape",
+        "contact under flat films and the computed one, some minutes",
         inputs=("film", "film_profile"),
         values=_LINES | _LAYER,
         target="computed",
         only_with=("line_spec.is_gaussian",),
+        parallel=True,
     ),
     Stage(
         "flattening",
+        "contact of lines that the oil has flattened, some minutes",
         inputs=("film",),
         values=_LINES | _LAYER | {"realisations": "realisations"},
         target="computed",
+        parallel=True,
     ),
     Stage(
         "film_plane",
+        "computed film over Moes' numbers, some seconds a lubricant",
         inputs=("lubricant",),
         values={"reduced_modulus": "rollers.reduced_modulus"},
         target="computed",
     ),
-    Stage("constant", inputs=("lubricant", "film", "master"), target="computed", **_MAPPED),
+    Stage(
+        "constant",
+        "contact by Eq. 3 as printed, by its source and by the computed film",
+        inputs=("lubricant", "film", "master"),
+        target="computed",
+        **_MAPPED,
+    ),
     Stage(
         "coverage",
+        "how often intervals contain the true value for new rollers, about 30 minutes",
         values={"realisations": "realisations"},
         same_values=("contact", "master", "experiment"),
         target="benchmark",
         only_with=("conducts",),
+        parallel=True,
     ),
-    Stage("speed", same_values=("contact",), target="benchmark"),
-    Stage("reading", target="benchmark"),
+    Stage(
+        "speed",
+        "the study's kernels against plain versions of the same work, a few minutes",
+        same_values=("contact",),
+        target="benchmark",
+        parallel=True,
+    ),
+    Stage(
+        "reading",
+        "time to read records, against other readers of the same files, a few minutes",
+        target="benchmark",
+        parallel=True,
+    ),
 )
 
 STAGES = {row.name: row for row in _ROWS}

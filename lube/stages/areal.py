@@ -20,10 +20,12 @@ from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, values_with_limits
 from lube.statistics.confidence import jackknife_interval, mean_interval
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import ROLLERS
+from lube.types import Datasets
 
 SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""
@@ -35,6 +37,19 @@ MANY = 30.0
 _NAMES = {"geometric_contact_probability": "contacts", "breakthrough_probability": "breakthroughs"}
 AROUND = 100
 """Rows on either side of a known point in which its contact is followed."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``areal.nc``; see `lube.stages`."""
+    return strip_contacts(
+        study.line_spec,
+        inputs["film"],
+        study.boundary_layer,
+        study.rollers.length,
+        study.seed,
+        study.operating_grid.slide_to_roll_ratio,
+        threads,
+    )
 
 
 def strip_contacts(

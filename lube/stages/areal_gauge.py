@@ -10,13 +10,20 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
+from lube.contact.ensemble import windows_in
 from lube.grid.operating_points import at_slip
-from lube.rig.map_curves import windows_in
 from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
 from lube.statistics.curves import falling_curve, film_interval
+from lube.study.study import Study
+from lube.types import Datasets
 
 RESOLUTION = 1e-6
 """Probabilities closer than this to 0 or to 1 are not read."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``areal_gauge.nc``; see `lube.stages`."""
+    return gauge_by_surface(inputs["film"], inputs["areal"], inputs["comparison"], inputs["gauge"])
 
 
 def gauge_by_surface(

@@ -17,13 +17,15 @@ import pandas as pd
 import scipy.special
 import xarray as xr
 
-from lube.rig.map_curves import windows_in
+from lube.contact.ensemble import windows_in
+from lube.rig.at_records import model_at_records
 from lube.rig.study_shares import at_comparison_threshold, levels_named, log_lines
 from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size
-from lube.types import Array
+from lube.study.study import Study
+from lube.types import Array, Datasets
 
 log = logging.getLogger(__name__)
 
@@ -31,6 +33,12 @@ GROUPS = ("force", "speed", "temperature")
 PROBABILITY = "breakthrough_probability"
 FIGURES = ("bias", "rms_difference", "logit_rms_difference", "overlap_share")
 """Figures of agreement whose range for a correct model is estimated."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``comparison.nc``; see `lube.stages`."""
+    film, contact, experiment = (inputs[kind] for kind in ("film", "contact", "experiment"))
+    return compare(model_at_records(experiment, film, contact, study), experiment, contact)
 
 
 def compare(model: xr.Dataset, experiment: xr.Dataset, levels: xr.Dataset) -> xr.Dataset:

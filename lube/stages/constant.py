@@ -11,9 +11,16 @@ from lube.ehl.film_formulas import formula
 from lube.physics import dimensionless
 from lube.rig.map_curves import curve_at
 from lube.schema import OPERATING_DIMS, label
+from lube.study.study import Study
+from lube.types import Datasets
 
 FILMS = ("paper", "pan-hamrock", "computed")
 """Eq. 3 as printed, as in its source, and the solution of Reynolds' equation."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``constant.nc``; see `lube.stages`."""
+    return constant_effect(inputs["lubricant"], inputs["film"], inputs["master"])
 
 
 def constant_effect(lubricant: xr.Dataset, film: xr.Dataset, master: xr.Dataset) -> xr.Dataset:

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError, LubeError
 from lube.grid.operating_points import OperatingPoint, operating_points
-from lube.recordings.manifest import Entry, Manifest
+from lube.recordings.manifest import Entry, Manifest, read_manifest
 from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 from lube.rig.record import LEVELS, TRACE_SAMPLES, Conditions, Record
 from lube.rig.simulator import SimulatedRig
@@ -21,8 +22,17 @@ from lube.rig.study_shares import levels_named
 from lube.schema import LIMITS, label, values_with_limits
 from lube.statistics.folding import PHASES
 from lube.study.study import Study
+from lube.types import Datasets
 
 log = logging.getLogger(__name__)
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``experiment.nc``; see `lube.stages`."""
+    if study.experiment.manifest:
+        return measured_experiment(read_manifest(study.experiment.manifest), study)
+    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
+    return simulated_experiment(lines, inputs["film"], study)
 
 
 # Simulated records

@@ -7,11 +7,18 @@ from lube.ehl.film_formulas import FORMULAS
 from lube.grid.film_profiles import profiles_of, six_digits
 from lube.physics.dimensionless import dimensionless_material
 from lube.schema import label
+from lube.study.study import Study
+from lube.types import Datasets
 
 MOES_LOADS = np.geomspace(0.1, 100.0, 25)
 MOES_MATERIALS = np.arange(2.0, 16.0)
 PLACES = ("central", "minimum", "mean")
 _DIMS = ("lubricant", "moes_material", "moes_load")
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``film_plane.nc``; see `lube.stages`."""
+    return film_plane(inputs["lubricant"], study.rollers.reduced_modulus)
 
 
 def film_plane(lubricant: xr.Dataset, reduced_modulus: float) -> xr.Dataset:

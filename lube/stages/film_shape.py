@@ -16,10 +16,11 @@ from lube.schema import POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval, probability_interval, ratio_interval
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
 from lube.surfaces.rare_contact import check_gaussian, rare_contact_under
 from lube.surfaces.spectra import line_attributes
 from lube.surfaces.synthetic import draw_realisation
-from lube.types import Array
+from lube.types import Array, Datasets
 
 FILM_MODELS = ("formula", "flat", "open", "computed")
 """Films that are compared: the study's first film formula and the computed central film, both flat
@@ -27,6 +28,14 @@ and cut off at the edges of Hertz' contact; the latter with Hertz' gap around it
 film with the gap around it."""
 PAIRS = 40
 """Pairs of lines; errors follow from the scatter between them."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``film_shape.nc``; see `lube.stages`."""
+    films = inputs["film"], inputs["film_profile"]
+    return film_shape_probabilities(
+        study.line_spec, *films, study.boundary_layer, study.seed, threads
+    )
 
 
 def film_shape_probabilities(

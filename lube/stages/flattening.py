@@ -14,10 +14,18 @@ from lube.schema import MEAN_LIMITS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import probability_interval, ratio_interval
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
 from lube.surfaces.spectra import line_attributes
 from lube.surfaces.synthetic import draw_realisation, wave_amplitudes
+from lube.types import Datasets
 
 ROUGHNESS_MODELS = ("undeformed", "flattened")
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``flattening.nc``; see `lube.stages`."""
+    lines = study.seed, range(study.realisations)
+    return flattened_contact(study.line_spec, inputs["film"], study.boundary_layer, *lines, threads)
 
 
 def flattened_contact(

@@ -21,8 +21,15 @@ from lube.rig.map_curves import curve_at
 from lube.schema import AT_RECORDS, label, values_with_limits
 from lube.statistics.curves import film_interval
 from lube.statistics.one_pair import quantile, standard_error
+from lube.study.study import Study
+from lube.types import Datasets
 
 _KEPT = ("film_thickness", "lambda_ratio", "contact_half_width", "comparison_threshold")
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``gauge.nc``; see `lube.stages`."""
+    return gauge_records(inputs["master"], inputs["contact"], inputs["comparison"])
 
 
 def gauge_records(master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:

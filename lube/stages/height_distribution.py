@@ -12,8 +12,10 @@ from lube.schema import MEAN_LIMITS, label, values_with_limits
 from lube.statistics.confidence import probability_interval
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
 from lube.surfaces.spectra import line_attributes
 from lube.surfaces.synthetic import draw_realisation
+from lube.types import Datasets
 
 SKEWNESS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 """Levels of the skewness of both lines; those of run-in rollers are negative."""
@@ -23,6 +25,12 @@ LAMBDA_RATIOS = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0])
 """Levels of the lambda ratio."""
 PAIRS = 8
 """Realisations, the first of the study: all distributions have the same random phases."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``height_distribution.nc``; see `lube.stages`."""
+    layer = study.boundary_layer
+    return height_distributions(study.line_spec, inputs["film"], layer, study.seed, threads)
 
 
 def height_distributions(

@@ -12,11 +12,13 @@ import xarray as xr
 
 from lube.schema import label
 from lube.study.line_spec import LineSpec
+from lube.study.study import Study
 from lube.surfaces.elastic_contact import find_tamaas, press_line, press_surface
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import ROLLERS, draw_realisation
+from lube.types import Datasets
 
 log = logging.getLogger(__name__)
 
@@ -28,6 +30,11 @@ LEAST_POINTS = 256
 """Points along a side, at least."""
 DIMS = ("realisation", "relative_pressure")
 _NAMES = ("pressure", "contact_area_share", "contacts")
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``patch.nc``; see `lube.stages`."""
+    return patch_contact(study.line_spec, study.rollers.reduced_modulus, study.seed)
 
 
 def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Dataset:

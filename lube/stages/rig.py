@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError
 from lube.grid.operating_points import OperatingPoint, operating_points
 from lube.physics.electrical import resistance_from_voltage
@@ -10,9 +11,16 @@ from lube.rig.contact_share import record_counter
 from lube.rig.simulator import Revolution, SimulatedRig
 from lube.schema import EXPERIMENT_DIMS, POINT_DIMS, label
 from lube.study.study import Study
+from lube.types import Datasets
 
 BANDWIDTHS = (1e3, 3e3, 1e4, 3e4, 1e5, 3e5)
 """Bandwidths in Hz of the rigs that are compared, other things equal."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``rig.nc``; see `lube.stages`."""
+    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
+    return rig_records(lines, inputs["film"], study)
 
 
 def rig_records(lines: xr.Dataset, film: xr.Dataset, study: Study) -> xr.Dataset:

@@ -5,16 +5,21 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import PADDING, roughness_batch
 from lube.schema import label
 from lube.study.line_spec import LineSpec
-from lube.surfaces.spectra import line_attributes, line_moments, spectrum_bands, spectrum_moments
-from lube.surfaces.synthetic import ROLLERS, draw_realisation
-
-PADDING = np.iinfo(np.int32).min
-"""Fill value beyond the end of the shorter of two lines."""
+from lube.study.study import Study
+from lube.surfaces.spectra import line_moments, spectrum_bands, spectrum_moments
+from lube.surfaces.synthetic import ROLLERS
+from lube.types import Datasets
 
 BANDS = 60
 """Bands of waves of the prescribed spectrum."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``roughness.nc``; see `lube.stages`."""
+    return roughness_lines(study.line_spec, study.seed, study.kept_realisations)
 
 
 def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> xr.Dataset:
@@ -59,31 +64,3 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
 def _moments(pair, spec):
     lines = (line[:size] for line, size in zip(pair, spec.points, strict=True))
     return [line_moments(line, spec.spacing) for line in lines]
-
-
-def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> xr.Dataset:
-    """Draw realisations as whole height steps, which the other stages use without a file.
-
-    Parameters
-    ----------
-    spec, seed, realisations
-        As in `roughness_lines`.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``height`` over (realisation, roller, position), int32, in height steps; the attribute
-        ``height_step`` is the step in m. The shorter line is padded with `PADDING`.
-    """
-    heights = np.full((len(realisations), len(ROLLERS), max(spec.points)), PADDING, np.int32)
-    for row, realisation in enumerate(realisations):
-        for roller, line in enumerate(draw_realisation(spec, seed, realisation)):
-            heights[row, roller, : line.size] = line
-    return xr.Dataset(
-        {"height": (("realisation", "roller", "position"), heights)},
-        {
-            "realisation": np.asarray(realisations, np.int64),
-            "roller": np.asarray(ROLLERS, np.int64),
-        },
-        line_attributes(spec),
-    )

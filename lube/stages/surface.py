@@ -12,6 +12,7 @@ from lube.schema import label, values_with_limits
 from lube.study.line_spec import LineSpec
 from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import ROLLERS as NAMES
+from lube.study.study import Study
 from lube.study.topography_lines import preparation, prepared
 from lube.surfaces.measured_spectrum import line_spectrum
 from lube.surfaces.spectrum_table import LineSpectrum
@@ -22,11 +23,18 @@ from lube.surfaces.surface_statistics import (
     waves_of_surface,
 )
 from lube.surfaces.synthetic import ROLLERS
+from lube.types import Datasets
 
 STANDARD_HEIGHTS = np.linspace(-6.0, 6.0, 61)
 """Middles of the bins of heights, in rms heights."""
 
 _UNKNOWN = (np.nan, np.nan, np.nan)
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``surface.nc``; see `lube.stages`."""
+    hurst_exponent = study.roughness.hurst_exponent
+    return measured_surfaces(study.topographies, study.line_spec, hurst_exponent)
 
 
 def measured_surfaces(

@@ -25,9 +25,11 @@ from lube.statistics.confidence import mean_interval
 from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
 from lube.surfaces.rare_contact import check_gaussian, rare_contact, rare_contact_under
 from lube.surfaces.spectra import line_attributes, spectrum_moments
 from lube.surfaces.synthetic import ROLLERS
+from lube.types import Datasets
 
 PAIRS = 40
 """Pairs of lines for the first film formula, enough for a relative standard error of 2 %; errors
@@ -42,6 +44,19 @@ _AS_DRAWN = (
 _OF_PAIRS = "breakthrough_probability", "geometric_contact_probability", "breakthrough_rate"
 _PARTS = slice(0, 1), slice(1, None)
 """The first film formula, and the others."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``tail.nc``; see `lube.stages`."""
+    return tail_probabilities(
+        study.line_spec,
+        inputs["film"],
+        study.boundary_layer,
+        study.seed,
+        study.operating_grid.slide_to_roll_ratio,
+        threads,
+        study.is_flattened,
+    )
 
 
 def tail_probabilities(

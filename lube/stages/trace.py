@@ -16,12 +16,26 @@ from lube.kernels.motion import surface_position
 from lube.physics.electrical import contact_resistance
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
 from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
+from lube.types import Datasets
 
 log = logging.getLogger(__name__)
 
 REALISATION = 0
 """The realisation that traces show."""
 _MOES = ["moes_load", "moes_material"]
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``trace.nc``; see `lube.stages`."""
+    return contact_trace(
+        inputs["roughness"],
+        inputs["film"],
+        study.trace_points,
+        study.boundary_layer,
+        study.resistivity if study.conducts else np.nan,
+        study.is_flattened,
+    )
 
 
 def contact_trace(

@@ -3,7 +3,7 @@
 A lubricant record gives the viscosity in one of four ways: as points, as a CSV file of
 measurements beside the record, by ISO grade and viscosity index, or by naming a CoolProp fluid.
 Every section names its source, or says ``assumed: ...`` and why. This module only reads and checks;
-the properties at a temperature are computed in `lube.stages.lubricant`.
+the properties at a temperature are computed in `lube.study.oil_properties`.
 """
 
 import re

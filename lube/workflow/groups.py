@@ -3,7 +3,7 @@
 from lube.schema import STAGES
 from lube.storage.git import ROOT
 
-_BATCHED = ("contact", "master")  # the stages that are run in batches of realisations
+_BATCHED = {name for name, stage in STAGES.items() if stage.in_batches}
 
 
 def job_groups() -> dict[str, str]:
@@ -26,7 +26,8 @@ def job_groups() -> dict[str, str]:
         if after.intersection(stage.inputs):
             after.add(name)
     # Rules that are no stages, such as `explorer`, follow the stages.
-    groups = {path.stem: "figures" for path in ROOT.glob("workflow/scripts/*.py")}
+    scripts = {path.stem for path in ROOT.glob("workflow/scripts/*.py")} - {"stage"}
+    groups = dict.fromkeys(scripts, "figures")
     groups |= {name: "figures" if name in after else "beside" for name in STAGES}
     groups |= dict.fromkeys(before.difference(_BATCHED) | {"resolved_study"}, "tables")
     return groups | {"batch": "batches"}

@@ -116,6 +116,23 @@ def _imports_of(file):
     return imported_modules(file.read_text(encoding="utf-8"))
 
 
+def stage_sources(stage: str) -> list[str]:
+    """List the files of the lube package that the job of a stage depends on.
+
+    Parameters
+    ----------
+    stage : str
+        Its name in `lube.schema.STAGES`.
+
+    Returns
+    -------
+    list of str
+        The files of `sources`, from the working folder.
+    """
+    own = map(from_here, sources(f"import lube.stages.{stage}"))
+    return sorted({*own, *script_sources("stage")})
+
+
 def script_sources(name: str) -> list[str]:
     """List the files of the lube package that a script of the workflow depends on.
 

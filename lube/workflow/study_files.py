@@ -145,7 +145,14 @@ class StudyFiles:
             # The job does not read their files, so the values of their forerunners count too.
             names |= {*forerunners(name), name}
         values = [self.study.stage_inputs(name) for name in STAGES if name in names]
+        own = (name for stage in stages for name in STAGES[stage].parameters)
+        values += [getattr(self.study, name) for name in own]
         return digest([*values, self.study.about.in_files])
+
+    def written_files(self, stage: str) -> list[str]:
+        """List the files, written by people, that a stage reads besides the study."""
+        attribute = STAGES[stage].written
+        return getattr(self, attribute)() if attribute else []
 
     def batches_of(self, stage: str) -> list[str]:
         """Return the files of a stage's batches, such as ``batches/contact_0.nc``."""

@@ -11,8 +11,8 @@ from studies import ROOT, SMOKE
 from lube.archive.build import VALUES, archive_contents, exact_versions, make_archive, written_files
 from lube.errors import DataError, StudyError
 from lube.report import SUMMARISED
-from lube.stages.lubricant import lubricant_table
 from lube.storage.netcdf import save
+from lube.study.oil_properties import lubricant_table
 from lube.study.study import load_study
 
 

@@ -8,14 +8,14 @@ import pytest
 import xarray as xr
 
 from lube.archive.explain import explain, in_words
+from lube.contact.ensemble import gather
+from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError
 from lube.schema import CONTACT_DIMS
 from lube.stages.contact import contact_statistics
-from lube.stages.ensemble import gather
 from lube.stages.film import film_table
-from lube.stages.lubricant import lubricant_table
-from lube.stages.roughness import roughness_batch
 from lube.storage.netcdf import save
+from lube.study.oil_properties import lubricant_table
 
 POINT = {"force": 1600.0, "speed": 100.0, "temperature": 80.0}
 REALISATIONS = 9  # from eight on, NumPy sums pairwise

@@ -30,6 +30,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from lube.contact.ensemble import gather, gather_map
+from lube.contact.rough_pair import roughness_batch
 from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.operating_points import operating_points
 from lube.recordings.manifest import Entry, Manifest, read_manifest
@@ -39,14 +41,13 @@ from lube.rig.fits import ALPHA_FACTORS, alpha_logits, fit_records, strength_log
 from lube.rig.simulator import SimulatedRig
 from lube.schema import LIMITS, label
 from lube.stages.comparison import compare
-from lube.stages.contact import contact_map, contact_statistics
-from lube.stages.ensemble import gather, gather_map
+from lube.stages.contact import contact_statistics
 from lube.stages.experiment import measured_experiment
-from lube.stages.film import film_at_records, film_table
+from lube.stages.film import film_table
 from lube.stages.gauge import gauge_film
-from lube.stages.lubricant import lubricant_table
-from lube.stages.roughness import roughness_batch
+from lube.stages.master import contact_map
 from lube.storage.netcdf import save
+from lube.study.oil_properties import lubricant_table
 from lube.study.study import load_study
 
 TURNS = (0.01, 0.3, 1.0, 10.4, 100.4)
@@ -207,10 +208,7 @@ def comparisons(study, ensemble, table, motion, turns=TURNS):
 
 def model_of(experiment, ensemble, study):
     """The model at the records, by one ensemble."""
-    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    own = study.rollers, study.film_formulas
-    films = film_at_records(experiment, oils, *own, **study.film_model)
-    return model_at_records(films, experiment, ensemble.film, ensemble.contact, study)
+    return model_at_records(experiment, ensemble.film, ensemble.contact, study)
 
 
 def judge(ensemble, comparison, shares):

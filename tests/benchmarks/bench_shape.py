@@ -21,6 +21,7 @@ from functools import partial
 
 import numpy as np
 
+from lube.contact.rough_pair import roughness_batch
 from lube.grid.contact_runs import WINDOWS_PER_WIDTH
 from lube.grid.discretise import layer_factor_of, line_pair
 from lube.grid.window_films import window_films
@@ -29,8 +30,7 @@ from lube.kernels.shaped import shaped_statistics
 from lube.schema import OPERATING_DIMS
 from lube.stages.contact import contact_statistics
 from lube.stages.film import film_table
-from lube.stages.lubricant import lubricant_table
-from lube.stages.roughness import roughness_batch
+from lube.study.oil_properties import lubricant_table
 from lube.study.study import load_study
 
 SHARE = 200

@@ -25,13 +25,13 @@ import numpy as np
 import scipy.special
 import scipy.stats
 
+from lube.contact.rough_pair import roughness_batch
 from lube.grid.discretise import layer_factor_of
 from lube.schema import OPERATING_DIMS
 from lube.stages.contact import contact_statistics
 from lube.stages.film import film_table
-from lube.stages.lubricant import lubricant_table
-from lube.stages.roughness import roughness_batch
 from lube.stages.tail import FEWER_PAIRS, PAIRS, tail_probabilities
+from lube.study.oil_properties import lubricant_table
 from lube.study.study import load_study
 from lube.surfaces.rare_contact import draw_pair, rare_contact
 from lube.surfaces.spectra import line_attributes

@@ -7,9 +7,9 @@ import pytest
 
 import lube
 from lube import LubeError
-from lube.stages.film import film_profile_table
-from lube.stages.lubricant import lubricant_table
+from lube.stages.film_profile import film_profile_table
 from lube.stages.tail import tail_probabilities
+from lube.study.oil_properties import lubricant_table
 
 GRID = {
     "force": ([100.0, 400.0, 1600.0], "N"),

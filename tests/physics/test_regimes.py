@@ -15,7 +15,7 @@ from lube.physics import dimensionless
 from lube.physics.regimes import moes_asymptotes, regime
 from lube.schema import REGIMES
 from lube.stages.film import film_table
-from lube.stages.lubricant import lubricant_table
+from lube.study.oil_properties import lubricant_table
 
 ISO_RIGID, PIEZO_RIGID, ISO_ELASTIC, PIEZO_ELASTIC = range(4)
 

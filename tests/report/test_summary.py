@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lube.report.summary import facts, findings, made
-from lube.stages.lubricant import lubricant_table
+from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import OwnRoughness
 
 

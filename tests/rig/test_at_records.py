@@ -10,14 +10,14 @@ from literal_scan import scan_statistics
 from studies import OIL
 
 from lube import contact_statistics, film_table
+from lube.contact.rough_pair import roughness_batch
 from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
 from lube.rig.ensemble_runs import EnsembleRuns
 from lube.rig.record_scatter import combined_deviations
-from lube.stages.lubricant import lubricant_table
-from lube.stages.roughness import roughness_batch
 from lube.statistics.one_pair import repeat_factor
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.lubricant_record import load_record
+from lube.study.oil_properties import lubricant_table
 
 PROBABILITY = "breakthrough_probability"
 CONDITIONS = [(250.0, 77.0, 66.6), (1234.5, 60.0, 79.3), (100.0, 100.0, 60.0), (90.0, 63.0, 80.4)]

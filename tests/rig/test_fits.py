@@ -6,9 +6,9 @@ import xarray as xr
 from experiments import experiment_of
 
 from lube.physics.starvation import starvation_factor
+from lube.rig.at_records import film_at_records
 from lube.rig.fits import _lambda_ratios
-from lube.stages.film import film_at_records
-from lube.stages.lubricant import lubricant_table
+from lube.study.oil_properties import lubricant_table
 
 CORRECTED = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 0.4e-3}
 FORMULAS = ["paper", "moes", "computed"]

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lube.contact.rough_pair import roughness_batch
 from lube.grid.operating_points import operating_points
 from lube.physics.electrical import divider_voltage, resistance_from_voltage
 from lube.rig import simulator as module
 from lube.rig.simulator import SimulatedRig, logged_voltage
 from lube.stages.contact import contact_statistics
-from lube.stages.roughness import roughness_batch
 from lube.study.rig_settings import Rig
 
 TIME_STEP, SPOT, CAPACITANCE = 6e-7, 0.64, 2.7e-10

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
+from lube.contact.ensemble import gather_map
+from lube.contact.rough_pair import roughness_batch
 from lube.rig.map_curves import curve_at
 from lube.stages.constant import FILMS, constant_effect
-from lube.stages.contact import contact_map
-from lube.stages.ensemble import gather_map
 from lube.stages.film import film_table
-from lube.stages.lubricant import lubricant_table
-from lube.stages.roughness import roughness_batch
+from lube.stages.master import contact_map
 from lube.study.line_spec import line_spec
+from lube.study.oil_properties import lubricant_table
 
 FORCES, SPEEDS, TEMPERATURES = [400.0, 1600.0], [100.0, 200.0], [50.0, 80.0]
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from written_recordings import write_csv
 
+from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError
 from lube.recordings.manifest import read_manifest
 from lube.rig.record import LEVELS, TRACE_SAMPLES
 from lube.schema import POINT_DIMS, check
 from lube.stages.contact import contact_statistics
 from lube.stages.experiment import measured_experiment, simulated_experiment
-from lube.stages.roughness import roughness_batch
 
 FAST = {"bandwidth": "50 MHz", "sampling_rate": "2 MHz", "noise": "0 V", "lead_resistance": "0 ohm"}
 

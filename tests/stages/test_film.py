@@ -11,8 +11,11 @@ from studies import PAPER
 from lube import schema
 from lube.ehl import film_formulas
 from lube.errors import DataError, LubeError
-from lube.stages.film import film_at, film_at_records, film_profile_table, film_table
-from lube.stages.lubricant import lubricant_table
+from lube.grid.films import film_at
+from lube.rig.at_records import film_at_records
+from lube.stages.film import film_table
+from lube.stages.film_profile import film_profile_table
+from lube.study.oil_properties import lubricant_table
 from lube.study.study import load_study
 
 PAPERS = load_study(PAPER)

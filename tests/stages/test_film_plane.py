@@ -11,8 +11,8 @@ from lube.grid import film_profiles
 from lube.physics.dimensionless import moes_numbers
 from lube.stages import film_plane as stage
 from lube.stages.film_plane import film_plane
-from lube.stages.lubricant import lubricant_table
 from lube.study.lubricant_record import load_record
+from lube.study.oil_properties import lubricant_table
 
 OILS = ("mobilgear-shc-xmp-320", "n-dodecane")
 

@@ -5,10 +5,10 @@ import pytest
 
 from lube import contact_statistics, film_table, gather, roughness_lines
 from lube.physics.hertz import hertz_gap
-from lube.stages.film import film_profile_table
+from lube.stages.film_profile import film_profile_table
 from lube.stages.film_shape import FILM_MODELS, PAIRS, film_shape_probabilities, window_models
-from lube.stages.lubricant import lubricant_table
 from lube.stages.tail import tail_probabilities
+from lube.study.oil_properties import lubricant_table
 
 SEED = 1
 GRID = [200.0, 1600.0], [100.0]

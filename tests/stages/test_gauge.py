@@ -10,7 +10,7 @@ from lube.rig.fits import fit_alpha, fit_layer_strength
 from lube.rig.map_curves import curve_at
 from lube.schema import LIMITS, check, label
 from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
-from lube.stages.lubricant import lubricant_table
+from lube.study.oil_properties import lubricant_table
 
 FORMULA = {"film_formula": "paper"}
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lube.stages.contact import contact_at
+from lube.contact.counted import contact_at
+from lube.contact.rough_pair import roughness_batch
 from lube.stages.height_distribution import LAMBDA_RATIOS, PAIRS, height_distributions
-from lube.stages.roughness import roughness_batch
 
 NAMES = ("breakthrough_probability", "geometric_contact_probability")
 

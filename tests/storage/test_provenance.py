@@ -8,7 +8,6 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.schema import FILES
-from lube.stages.lubricant import lubricant_table
 from lube.storage.netcdf import save
 from lube.storage.provenance import (
     LIBRARIES,
@@ -20,6 +19,7 @@ from lube.storage.provenance import (
     input_sums,
     merged_config,
 )
+from lube.study.oil_properties import lubricant_table
 
 
 def made_by(study, kind):

@@ -8,7 +8,7 @@ from studies import OIL, PAPER
 
 from lube.errors import LubeError, StudyError
 from lube.schema import STAGES
-from lube.stages.lubricant import lubricant_table
+from lube.study.oil_properties import lubricant_table
 from lube.study.rig_settings import Experiment, Rig
 from lube.study.study import load_study
 from lube.workflow.figure_list import study_figures

@@ -3,6 +3,7 @@ from lube.storage.git import changed_code, commit, commit_date
 
 
 rule archive:
+    """The archive of the study, to publish with a paper."""
     input:
         written=lambda wildcards: archived_texts(FILES),
         datasets=[result(f"{kind}.nc") for kind in KINDS],
@@ -29,6 +30,7 @@ rule archive:
 
 
 rule verify:
+    """Check the archive as it is."""
     # Without inputs: it checks the archive as it is. Without outputs: it is repeated each time.
     log:
         result("logs/verify.log"),

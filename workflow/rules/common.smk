@@ -12,7 +12,7 @@ from lube.storage.files import check_writable
 from lube.storage.git import ROOT
 from lube.workflow.command_line import study_of_command, study_of_module
 from lube.workflow.environment import compute_alike, use_package
-from lube.workflow.sources import from_here, script_sources
+from lube.workflow.sources import from_here, script_sources, stage_sources
 from lube.workflow.study_files import StudyFiles, digest, one_line_errors
 
 # For all jobs.
@@ -34,7 +34,6 @@ result = FILES.result
 stage_files = FILES.stage_files
 stage_inputs = FILES.stage_inputs
 record_files = FILES.record_files
-measured_files = FILES.measured_files
 batches_of = FILES.batches_of
 batch_limits = FILES.batch_limits
 

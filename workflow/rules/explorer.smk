@@ -6,6 +6,7 @@ EXPLORED = [
 
 
 rule explorer:
+    """A page on which to move over the operating points."""
     input:
         **{kind: result(f"{kind}.nc") for kind in EXPLORED},
         templates=[

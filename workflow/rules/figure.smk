@@ -1,4 +1,5 @@
 rule figure:
+    """A figure, drawn by its notebook."""
     input:
         # Saving a notebook with its outputs must not make the figure again; its cells must.
         notebook=ancient(from_here("notebooks/{figure}.ipynb")),

@@ -7,6 +7,7 @@ TEMPLATES = [from_here(path) for path in sorted(Path(ROOT, "lube/report/template
 
 
 rule pages:
+    """Text of the report."""
     input:
         **{kind: result(f"{kind}.nc") for kind in SUMMARISED if STUDY.has(kind)},
         study=FILES.study_file,
@@ -51,6 +52,7 @@ rule pages:
 
 
 rule times:
+    """Run times of all jobs, a page of the report."""
     input:
         # When all else is done.
         [result(f"{kind}.nc") for kind in STUDY.datasets],
@@ -81,6 +83,7 @@ rule times:
 if not IS_MODULE:
 
     rule report:
+        """The report, one HTML file."""
         input:
             rules.pages.output,
             rules.times.output,

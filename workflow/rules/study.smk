@@ -1,4 +1,5 @@
 rule resolved_study:
+    """The study with all that it is based on, as one file."""
     input:
         FILES.study_files(),
     output:

@@ -15,8 +15,8 @@ from lube.physics.coolprop_fluids import (
 from lube.physics.pressure_viscosity import roelands_coefficient
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
 from lube.schema import check
-from lube.stages.lubricant import lubricant_table
 from lube.study.lubricant_record import load_record
+from lube.study.oil_properties import lubricant_table
 
 STUDY = [40.0, 50.0, 60.0, 70.0, 80.0]
 AT_40 = np.array([313.15])

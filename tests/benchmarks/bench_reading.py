@@ -1,7 +1,7 @@
 """Speed of reading and evaluating recordings, compared with other readers of the same files.
 
     snakemake benchmark                                            # measures, saves and draws
-    python tests/benchmarks/bench_records.py [STUDY [READING.NC]]  # measures and prints
+    python tests/benchmarks/bench_reading.py [STUDY [READING.NC]]  # measures and prints
 
 Each reader runs in its own process, whose peak memory is recorded, and the readers take turns; a
 time is the shortest of several runs, with the files in the system's cache. The binary recording is

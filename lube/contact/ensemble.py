@@ -1,4 +1,4 @@
-r"""The ensemble stage: from realisations to probabilities with 95 % intervals.
+r"""Ensembles: from realisations to probabilities with 95 % intervals.
 
 The scatter between realisations determines the effective sample size n of an ensemble: the
 number of independent trials, each with contact at probability p, whose mean has the variance of
@@ -17,10 +17,10 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
-from lube.rig.map_curves import windows_in
 from lube.schema import MEAN_LIMITS, label, values_with_limits
 from lube.statistics import sample_size
 from lube.statistics.confidence import probability_interval
+from lube.types import Values
 
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 ATTRIBUTES = ("travel", "longest_wavelength")
@@ -62,6 +62,26 @@ def independent_windows(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
     )
     return sample_size.independent_windows(
         contact.attrs["travel"] * slower, 2.0 * half_width, contact.attrs["longest_wavelength"]
+    )
+
+
+def windows_in(dataset: xr.Dataset, width: Values) -> Values:
+    """Count the independent contact windows in one realisation of a dataset.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        With the attributes ``travel`` and ``longest_wavelength`` of a realisation, m.
+    width : float, numpy.ndarray or xarray.DataArray
+        Contact width, m.
+
+    Returns
+    -------
+    float, numpy.ndarray or xarray.DataArray
+        From `lube.statistics.sample_size.independent_windows`.
+    """
+    return sample_size.independent_windows(
+        dataset.attrs["travel"], width, dataset.attrs["longest_wavelength"]
     )
 
 

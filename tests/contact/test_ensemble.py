@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lube import contact_statistics, gather, roughness_lines, with_intervals
+from lube.contact.ensemble import PROBABILITIES, independent_windows
 from lube.errors import DataError
-from lube.stages.ensemble import PROBABILITIES, independent_windows
 from lube.statistics.confidence import probability_interval
 
 

@@ -1,0 +1,75 @@
+"""The contact model, counted: probability and extent of contact of rough lines (MDR model).
+
+The compiled kernels work on whole height steps and grid points; here film thicknesses,
+half-widths and counts are converted to them and back. An operating point reaches the kernels
+only as its film thickness and contact window, so any dimension of the film table passes through
+unchanged.
+"""
+
+import logging
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from lube.grid.contact_runs import ContactRuns
+from lube.grid.discretise import line_pair, revolution, speed_ratios
+from lube.study.rollers import BoundaryLayer
+
+log = logging.getLogger(__name__)
+
+
+def contact_at(
+    lines: xr.Dataset,
+    film: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    slide_to_roll_ratio: Sequence[float] = (0.0,),
+    revolutions: int = 1,
+    flattened: bool = False,
+) -> xr.Dataset:
+    """Run the contact model over the dimensions that the films and contact widths have.
+
+    Parameters
+    ----------
+    lines, boundary_layer, slide_to_roll_ratio, revolutions, flattened
+        As in `contact_statistics`.
+    film : xarray.Dataset
+        With ``film_thickness`` and ``contact_half_width``, m, over any dimensions, and
+        ``reduced_modulus``, Pa. With ``film_profile`` the film has the computed shape, else it is
+        flat and ends at the edges of the contact.
+
+    Returns
+    -------
+    xarray.Dataset
+        The results of `contact_statistics` but the share of the load, over (realisation,
+        slide_to_roll_ratio, dimensions of the films), without attributes of their variables.
+        Its own are ``travel`` and ``longest_wavelength``, both m, of a realisation.
+    """
+    thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
+    runs = ContactRuns(lines, film, boundary_layer, flattened)
+    counts = np.empty((lines.sizes["realisation"], len(slide_to_roll_ratio), thickness.size, 4))
+    for r, realisation in enumerate(lines["realisation"].values):
+        pair = line_pair(lines, realisation)
+        for s, ratio in enumerate(slide_to_roll_ratio):
+            ratios = speed_ratios(ratio)
+            counts[r, s] = runs.statistics(pair, ratios, revolutions * revolution(pair, ratios))
+            log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
+    touching, breaking, points, overlap = np.moveaxis(counts, -1, 0)
+    spacing = lines.attrs["spacing"]
+    stiffness = film["reduced_modulus"].item() * spacing  # of one spring, Eq. 5
+    results = {
+        "geometric_contact_probability": touching,
+        "breakthrough_probability": breaking,
+        "mean_contact_length": points * spacing,
+        "mean_contact_force": overlap * lines.attrs["height_step"] * stiffness,
+    }
+    dims = ("realisation", "slide_to_roll_ratio", *thickness.dims)
+    shape = counts.shape[:2] + thickness.shape
+    variables = {name: (dims, values.reshape(shape)) for name, values in results.items()}
+    for name in ("critical_thickness", "shear_strength"):
+        variables[name] = ((), getattr(boundary_layer, name))
+    coords = {"realisation": lines["realisation"].values, **thickness.coords}
+    # NaN if both lines are measured: one pair has no ensemble, hence no interval.
+    longest = 2.0 * np.pi / np.fmin.reduce(np.atleast_1d(lines.attrs["q_min"]))
+    travel = spacing * min(lines.attrs["points"])
+    return xr.Dataset(variables, coords, {"travel": travel, "longest_wavelength": longest})

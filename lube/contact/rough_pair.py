@@ -1,0 +1,41 @@
+"""Pairs of rough lines, drawn as the study's seed says."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from lube.study.line_spec import LineSpec
+from lube.surfaces.spectra import line_attributes
+from lube.surfaces.synthetic import ROLLERS, draw_realisation
+
+PADDING = np.iinfo(np.int32).min
+"""Fill value beyond the end of the shorter of two lines."""
+
+
+def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> xr.Dataset:
+    """Draw realisations as whole height steps, which the other stages use without a file.
+
+    Parameters
+    ----------
+    spec, seed, realisations
+        As in `roughness_lines`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``height`` over (realisation, roller, position), int32, in height steps; the attribute
+        ``height_step`` is the step in m. The shorter line is padded with `PADDING`.
+    """
+    heights = np.full((len(realisations), len(ROLLERS), max(spec.points)), PADDING, np.int32)
+    for row, realisation in enumerate(realisations):
+        for roller, line in enumerate(draw_realisation(spec, seed, realisation)):
+            heights[row, roller, : line.size] = line
+    return xr.Dataset(
+        {"height": (("realisation", "roller", "position"), heights)},
+        {
+            "realisation": np.asarray(realisations, np.int64),
+            "roller": np.asarray(ROLLERS, np.int64),
+        },
+        line_attributes(spec),
+    )

@@ -1,0 +1,180 @@
+"""The film over any operating conditions: the contact, its groups, film thickness and profile."""
+
+import logging
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from lube.ehl.film_formulas import formula
+from lube.ehl.line_contact import FilmProfile
+from lube.grid.film_profiles import film_positions, profiles_of, sampled
+from lube.physics import dimensionless, hertz
+from lube.physics.inlet_heating import inlet_shear_heating_factor
+from lube.physics.regimes import regime
+
+log = logging.getLogger(__name__)
+
+
+def film_at(
+    lubricant: xr.Dataset,
+    rollers,
+    force: xr.DataArray,
+    speed: xr.DataArray,
+    formulas: Sequence[str],
+    with_shape: bool = False,
+    slide_to_roll_ratio: xr.DataArray | float = 0.0,
+    inlet_shear_heating: str = "none",
+    inlet_meniscus: float | None = None,
+) -> xr.Dataset:
+    """Film thickness over the dimensions that the lubricant, force and speed have.
+
+    Parameters
+    ----------
+    lubricant : xarray.Dataset
+        As in `lube.stages.film.film_table`, over lubricant and temperature or others.
+    rollers : RollerPair
+        Geometry, elasticity and roughness of the two rollers.
+    force, speed : xarray.DataArray
+        Normal force, N, and rotation speed of the first roller in pure rolling, rpm.
+    formulas : sequence of str
+        Names of film formulas.
+    slide_to_roll_ratio : xarray.DataArray or float, optional
+        Slide-to-roll ratio.
+    with_shape, inlet_shear_heating, inlet_meniscus
+        As in `lube.stages.film.film_table`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of the ``film`` file, without attributes.
+
+    Raises
+    ------
+    StudyError
+        If a film formula is unknown.
+    RangeError
+        If the meniscus lies inside a contact.
+    """
+    chosen = [formula(name) for name in formulas]
+    # "exact": coordinates that differ in one value would otherwise be cut to their intersection.
+    with xr.set_options(arithmetic_join="exact", keep_attrs=False):
+        contact = hertz_contact(rollers, force, speed)
+        groups = film_groups(lubricant, rollers, force, contact)
+        table = contact.merge(_regime(*groups[:3]), join="exact")
+        table = table.merge(_film(chosen, rollers, groups, table, inlet_meniscus), join="exact")
+        factor = _heating_factor(lubricant, contact, slide_to_roll_ratio)
+        if inlet_shear_heating != "none":
+            for name in ("film_thickness", "lambda_ratio"):
+                table[name] = table[name] * factor
+            _warn(factor)
+        table["inlet_shear_heating_factor"] = factor
+        if with_shape:
+            solved = solved_profiles(groups, rollers, inlet_meniscus)
+            profile = over_positions(solved, FilmProfile.film_at, rollers, contact)
+            table["film_profile"] = profile * rollers.reduced_radius
+    return table
+
+
+def _heating_factor(lubricant, contact, slide_to_roll_ratio):
+    film_modulus = 2.0 * contact["reduced_modulus"]
+    return xr.apply_ufunc(
+        inlet_shear_heating_factor,
+        lubricant["dynamic_viscosity"],
+        lubricant["temperature_viscosity_coefficient"],
+        contact["entrainment_speed"],
+        lubricant["thermal_conductivity"],
+        contact["hertz_pressure"] / film_modulus,
+        slide_to_roll_ratio,
+        join="exact",
+    )
+
+
+def _warn(factor):
+    unknown = int(factor.isnull().sum())
+    if unknown:
+        log.warning(
+            "inlet_shear_heating: the film is not known at %d of %d conditions, where the heating "
+            "is beyond the range of the formula",
+            unknown,
+            factor.size,
+        )
+
+
+def solved_profiles(groups: tuple, rollers, inlet_meniscus: float | None) -> xr.DataArray:
+    """Film profile of each operating point."""
+    meniscus = {"meniscus": _over_radius(inlet_meniscus, rollers)}
+    return xr.apply_ufunc(profiles_of, *groups, join="exact", kwargs=meniscus)
+
+
+def _over_radius(inlet_meniscus, rollers):
+    return None if inlet_meniscus is None else inlet_meniscus / rollers.reduced_radius
+
+
+def hertz_contact(rollers, force: xr.DataArray, speed: xr.DataArray) -> xr.Dataset:
+    """Contact without roughness and oil; arguments as in `film_at`."""
+    pair = (rollers.length, rollers.reduced_radius, rollers.reduced_modulus)
+    return xr.Dataset(
+        {
+            "reduced_radius": rollers.reduced_radius,
+            "reduced_modulus": rollers.reduced_modulus,
+            "composite_rms_roughness": rollers.composite_rms_roughness,
+            "contact_half_width": hertz.contact_half_width(force, *pair),
+            "hertz_pressure": hertz.maximum_pressure(force, *pair),
+            "entrainment_speed": 2.0 * np.pi * rollers.first.radius * speed / 60.0,
+        }
+    )
+
+
+def film_groups(lubricant: xr.Dataset, rollers, force, contact: xr.Dataset) -> tuple:
+    """W, U and G of each operating point, with the oil's viscosity and E'."""
+    film_modulus = 2.0 * rollers.reduced_modulus
+    scale = film_modulus, rollers.reduced_radius
+    viscosity, alpha = lubricant["dynamic_viscosity"], lubricant["pressure_viscosity_coefficient"]
+    return (
+        dimensionless.dimensionless_load(force / rollers.length, *scale),
+        dimensionless.dimensionless_speed(viscosity, contact["entrainment_speed"], *scale),
+        dimensionless.dimensionless_material(alpha, film_modulus),
+        viscosity,
+        film_modulus,
+    )
+
+
+def _regime(load, speed, material):
+    moes_load, moes_material = dimensionless.moes_numbers(load, speed, material)
+    flag = xr.apply_ufunc(regime, moes_load, moes_material, join="exact")
+    flag = flag.astype("int8")  # the type of its flag_values, as CF requires
+    return xr.Dataset({"moes_load": moes_load, "moes_material": moes_material, "regime": flag})
+
+
+def _film(formulas, rollers, groups, table, inlet_meniscus):
+    names = xr.DataArray([row.name for row in formulas], dims="film_formula", name="film_formula")
+    meniscus = _over_radius(inlet_meniscus, rollers)
+
+    def films(meniscus):
+        options = {"join": "exact", "kwargs": {"meniscus": meniscus}}
+        of_formulas = [xr.apply_ufunc(row.film, *groups, **options) for row in formulas]
+        return xr.concat(of_formulas, dim=names, join="exact") * rollers.reduced_radius
+
+    film = films(meniscus)
+    starved = {} if meniscus is None else {"starvation_factor": film / films(None)}
+    valid = [row.holds(table["moes_load"], table["moes_material"]) for row in formulas]
+    return xr.Dataset(
+        {
+            "film_thickness": film,
+            "lambda_ratio": film / rollers.composite_rms_roughness,
+            "in_validity_range": xr.concat(valid, dim=names, join="exact"),
+            "formula_place": ("film_formula", [row.thickness for row in formulas]),
+            "formula_source": ("film_formula", [row.source for row in formulas]),
+            **starved,
+        }
+    )
+
+
+def over_positions(solved: xr.DataArray, sample, rollers, contact: xr.Dataset) -> xr.DataArray:
+    """Sample a quantity of every profile, over their dimensions and film_position."""
+    half_width = float(contact["contact_half_width"].min())
+    positions = film_positions(half_width, rollers.reduced_radius, rollers.composite_rms_roughness)
+    values = sampled(solved.values, sample, positions)
+    coordinates = solved.coords.merge({"film_position": positions}).coords
+    return xr.DataArray(values, coordinates, (*solved.dims, "film_position"))

@@ -1,0 +1,27 @@
+"""All datasets of a study in memory, made as the workflow makes them."""
+
+from lube.contact.rough_pair import roughness_batch
+from lube.schema import STAGES
+from lube.stages import maker
+
+
+def made(study, kinds=tuple(STAGES), threads=2):
+    """Make the datasets of some kinds that the study has, and batches of all its realisations.
+
+    Returns
+    -------
+    dict
+        From each kind to its dataset, those that they are made from included.
+    """
+    datasets = {}
+    for name, stage in STAGES.items():
+        if stage.target == "benchmark" or not study.has(name) or name not in kinds:
+            continue
+        if stage.in_batches:
+            lines = roughness_batch(study.line_spec, study.seed, range(study.realisations))
+            batch = maker(name, "make_batch")(study, datasets["film"], lines)
+            datasets[f"{name}_batch"] = batch
+            datasets["batches"] = [batch]
+        datasets[name] = maker(name)(study, datasets, threads)
+    datasets.pop("batches", None)
+    return datasets

@@ -1,0 +1,84 @@
+# A rule for each stage, as the registry `lube.schema.stages` says; its function is in `lube/stages`.
+from lube.schema import STAGES
+
+for stage in STAGES.values():
+    if stage.target != "benchmark":
+
+        rule:
+            name:
+                stage.name
+            input:
+                **stage_files(stage.name),
+                batches=batches_of(stage.name) if stage.in_batches else [],
+                written=FILES.written_files(stage.name),
+                # Their values are parameters; another title, which is none, makes nothing again.
+                records=ancient(record_files()),
+                sources=stage_sources(stage.name),
+            output:
+                result(f"{stage.name}.nc"),
+            log:
+                result(f"logs/{stage.name}.log"),
+            benchmark:
+                result(f"benchmarks/{stage.name}.tsv")
+            threads: workflow.cores if stage.parallel else 1
+            priority: stage.priority
+            params:
+                study=stage_inputs(stage.name),
+            message:
+                stage.message
+            script:
+                "../scripts/stage.py"
+
+    else:
+
+        rule:
+            name:
+                stage.name
+            input:
+                script=from_here(f"tests/benchmarks/bench_{stage.name}.py"),
+                study=ancient(result("study.yaml")),
+                records=record_files(),
+                sources=script_sources(f"tests/benchmarks/bench_{stage.name}.py"),
+            output:
+                result(f"{stage.name}.nc"),
+            log:
+                result(f"logs/{stage.name}.log"),
+            benchmark:
+                result(f"benchmarks/{stage.name}.tsv")
+            # All cores, so that no other job disturbs the measurement.
+            threads: workflow.cores
+            params:
+                study=stage_inputs(stage.name),
+                python=sys.executable,
+            message:
+                stage.message
+            shell:
+                "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"
+
+    workflow.get_rule(stage.name).docstring = stage.message
+
+
+rule batch:
+    """Batches of realisations, which contact and master map join."""
+    input:
+        film=result("film.nc"),
+        sources=script_sources("batch"),
+    output:
+        **{
+            kind: result(f"batches/{kind}_{{first}}.nc")
+            for kind in ("contact", "master")
+            if STUDY.has(kind)
+        },
+    log:
+        result("logs/batch_{first}.log"),
+    benchmark:
+        result("benchmarks/batch_{first}.tsv")
+    # The summary and most figures wait for them.
+    priority: 1
+    params:
+        study=stage_inputs("contact", "master"),
+        realisations=batch_limits,
+    message:
+        "Batch: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points"
+    script:
+        "../scripts/batch.py"

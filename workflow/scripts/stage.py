@@ -1,0 +1,17 @@
+"""Make the dataset of a stage, by the function `make` of its module in `lube/stages`."""
+
+from lube.schema import STAGES
+from lube.stages import maker
+from lube.storage.netcdf import load, save
+from lube.study.study import load_study
+from lube.workflow.jobs import begin_job
+
+begin_job(snakemake.log[0])
+study, stage = load_study(**snakemake.config["study"]), STAGES[snakemake.rule]
+files = {kind: snakemake.input[kind] for kind in stage.inputs}
+inputs = {kind: load(path, kind, study) for kind, path in files.items()}
+batches = [load(path, f"{stage.name}_batch", study) for path in snakemake.input.batches]
+dataset = maker(stage.name)(study, {**inputs, "batches": batches}, snakemake.threads)
+# The batches are left out: how many there are changes nothing.
+made_from = [*files.values(), *snakemake.input.written]
+save(dataset, snakemake.output[0], stage.name, study, made_from)
