@@ -143,11 +143,11 @@ class _InProcess(Engine):
     @classmethod
     def execute_managed_notebook(cls, nb_man, kernel_name, **options):
         # Nothing is added to the user's history of IPython.
-        config = Config({"HistoryManager": {"enabled": False}})
-        manager = InProcessKernelManager(config=config)
+        manager = InProcessKernelManager(config=Config({"HistoryManager": {"enabled": False}}))
         manager.start_kernel()
         # Pictures appear below the cells, in Matplotlib's defaults, not in the user's own style.
         manager.kernel.shell.enable_matplotlib("inline")
+        matplotlib.pyplot.close("all")  # figures of the process that this one was forked from
         matplotlib.rcdefaults()
         client = manager.client()
         client.start_channels()

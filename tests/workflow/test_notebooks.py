@@ -3,6 +3,7 @@
 import os
 from functools import partial
 
+import matplotlib.pyplot as plt
 import nbformat
 import pytest
 from written_notebooks import write_notebook
@@ -86,6 +87,16 @@ plt.plot([1, 2])
     assert "image/png" in picture.data
     cell = nbformat.read(output, as_version=4).cells[-1]
     assert cell.execution_count == result.execution_count == 2
+
+
+def test_figures_of_this_process_are_not_the_notebooks(write, output):
+    here = plt.figure()
+    code = "import matplotlib.pyplot as plt\nplt.plot([1, 2])\nlen(plt.get_fignums())"
+    execute_notebook(write(code), output, {}, "")
+    result, picture = outputs_of(output)
+    assert result.data["text/plain"] == "1" and "image/png" in picture.data
+    assert plt.fignum_exists(here.number)
+    plt.close(here)
 
 
 def test_the_stamps_text_and_no_style_of_the_users_reach_the_notebook(
