@@ -1,5 +1,6 @@
-"""The registry of stages: each row has its script, rule and schema, and names real values."""
+"""The registry of stages: each row has its function and schema, and names real values."""
 
+import inspect
 import json
 
 import pytest
@@ -8,6 +9,7 @@ from unlike_studies import STUDIES, write_study
 
 from lube.errors import LubeError
 from lube.schema import DATASETS, FILES, ON_REQUEST, STAGES, SUMMARIES, forerunners
+from lube.stages import maker
 from lube.stages.areal import strip_contacts
 from lube.stages.film_shape import film_shape_probabilities
 from lube.stages.patch import patch_contact
@@ -19,13 +21,13 @@ def test_every_kept_file_of_the_schema_has_its_row():
     assert {kind.removesuffix("_batch") for kind in FILES} == set(STAGES)
 
 
-def test_every_stage_has_a_rule_and_a_script_of_its_name():
-    rules = "\n".join(path.read_text("utf-8") for path in (ROOT / "workflow/rules").glob("*.smk"))
+def test_every_stage_has_a_function_that_makes_it_or_a_benchmark():
     for name, stage in STAGES.items():
-        assert f"rule {name}:\n" in rules
-        assert f'result("{name}.nc"),' in rules
-        if stage.target != "benchmark":
-            assert (ROOT / f"workflow/scripts/{name}.py").is_file()
+        if stage.target == "benchmark":
+            assert (ROOT / f"tests/benchmarks/bench_{name}.py").is_file()
+        else:
+            assert list(inspect.signature(maker(name)).parameters) == ["study", "inputs", "threads"]
+        assert stage.in_batches == (f"{name}_batch" in FILES)
 
 
 def test_stages_stand_after_those_they_depend_on():

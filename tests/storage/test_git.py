@@ -60,7 +60,7 @@ def test_code_of_an_archive_states_its_commit(folder):
 
 @needs_git
 def test_a_commit_is_marked_if_the_code_that_computes_has_changed(folder):
-    write(folder, "1", "lube/stages/film.py", "workflow/scripts/film.py", "README.md")
+    write(folder, "1", "lube/stages/film.py", "workflow/scripts/stage.py", "README.md")
     head = commit_all(folder)
     write(folder, "2", "README.md")
     assert commit() == head

@@ -25,7 +25,7 @@ def test_a_figure_says_what_it_needs(write, study):
     code = "%matplotlib inline\nfrom lube import gather\nfilm = '../film.nc'\nx = 'contact.nc'"
     figure = study_figures(study, write("fig01_mine", code))["fig01_mine"]
     assert figure.datasets == ["contact", "film"]
-    assert {"lube/stages/ensemble.py", "lube/workflow/notebooks.py"} <= set(figure.sources)
+    assert {"lube/contact/ensemble.py", "lube/workflow/notebooks.py"} <= set(figure.sources)
     assert figure.target == "all"
     assert (figure.title, figure.text) == ("Film", "Some *words*.")
 

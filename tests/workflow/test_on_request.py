@@ -35,7 +35,7 @@ def test_report_and_archive_have_what_was_made_on_request_and_ask_for_nothing_el
     assert "Nothing to be done" in spare.run()
     assert "Nothing to be done" in spare.run("archive", "report")
     # Where it is out of date, report and archive make it again; bare Snakemake leaves it alone.
-    spare.append("workflow/scripts/film_profile.py", "# changed")
+    spare.append("lube/stages/film_profile.py", "# changed")
     assert spare.planned() == set()
     for target in ("archive", "report"):
         assert named(spare, target) == MADE

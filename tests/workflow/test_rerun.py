@@ -37,8 +37,8 @@ def test_a_changed_module_reruns_the_jobs_that_import_it_and_what_follows(spare)
     assert spare.planned() == after(spare, "trace")
 
 
-def test_a_changed_script_or_lubricant_record_reruns_what_follows(spare):
-    spare.append("workflow/scripts/gauge.py", "# changed")
+def test_a_changed_stage_or_lubricant_record_reruns_what_follows(spare):
+    spare.append("lube/stages/gauge.py", "# changed")
     spare.append("lube/study/lubricants/n-dodecane.yaml", "# not of this study")
     assert spare.planned() == after(spare, "gauge")
     record = spare / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"

@@ -2,8 +2,10 @@
 
 import pytest
 
-from lube.workflow.sources import ROOT, imported_modules, script_sources, sources
+from lube.schema import STAGES
+from lube.workflow.sources import ROOT, imported_modules, script_sources, sources, stage_sources
 
+MADE = [name for name, stage in STAGES.items() if stage.target != "benchmark"]
 SCRIPTS = sorted(path.stem for path in (ROOT / "workflow/scripts").glob("*.py"))
 
 
@@ -29,8 +31,8 @@ def test_imports_are_found_wherever_they_are():
 
 
 def test_a_public_name_means_the_module_that_defines_it():
-    assert "lube/stages/ensemble.py" in sources("from lube import gather")
-    assert "lube/stages/ensemble.py" in sources("import lube\nlube.gather([])")
+    assert "lube/contact/ensemble.py" in sources("from lube import gather")
+    assert "lube/contact/ensemble.py" in sources("import lube\nlube.gather([])")
 
 
 def test_imports_are_followed_through_modules_and_packages(package):
@@ -47,17 +49,18 @@ def test_the_study_and_the_registry_are_left_out_because_their_values_are_parame
     study = {"study/study": "import lube.units", "schema/stages": "", "units": ""}
     root = package(study | {"a": "import lube.study.study"})
     assert sources("import lube.a, lube.schema.stages", root) == ["lube/a.py"]
-    for script in SCRIPTS:
-        assert not {"lube/study/study.py", "lube/__init__.py"} & set(script_sources(script))
+    for files in [*map(script_sources, SCRIPTS), *map(stage_sources, MADE)]:
+        assert not {"lube/study/study.py", "lube/__init__.py"} & set(files)
 
 
-def test_a_module_is_a_source_of_the_scripts_that_use_it():
+def test_a_module_is_a_source_of_the_scripts_and_stages_that_use_it():
     def users(module):
-        return {name for name in SCRIPTS if f"lube/{module}.py" in script_sources(name)}
+        found = {name for name in SCRIPTS if f"lube/{module}.py" in script_sources(name)}
+        return found | {name for name in MADE if f"lube/{module}.py" in stage_sources(name)}
 
     assert users("stages/trace") == {"trace"}
     assert users("plots") == {"explorer"}
     assert {"batch", "trace", "rig", "experiment"} <= users("kernels/layer")
     assert "figure" in users("workflow/notebooks")
-    assert users("workflow/jobs") == set(SCRIPTS)
-    assert {"lube/schema/files.csv", "lube/schema/variables.csv"} <= set(script_sources("film"))
+    assert users("workflow/jobs") == {*SCRIPTS, *MADE}
+    assert {"lube/schema/files.csv", "lube/schema/variables.csv"} <= set(stage_sources("film"))

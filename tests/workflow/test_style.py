@@ -7,6 +7,8 @@ from pathlib import Path
 
 from repository import ROOT
 
+from lube.schema import STAGES
+
 BIN = Path(sys.executable).parent
 
 # One Python environment is right here; all other lints apply.
@@ -29,12 +31,19 @@ def test_the_sources_are_tidy():
 
 def test_every_rule_has_a_message_a_log_a_benchmark_and_a_script_of_its_name():
     rules = "\n".join(path.read_text("utf-8") for path in (ROOT / "workflow/rules").glob("*.smk"))
-    for rule in re.split(r"^rule ", rules, flags=re.MULTILINE)[1:]:
+    for rule in re.split(r"^ *rule ", rules, flags=re.MULTILINE)[1:]:
         name = rule.split(":")[0]
         assert "    message:\n" in rule and "    log:\n" in rule, name
         # `verify` makes no file and is repeated each time.
         assert name == "verify" or "    benchmark:\n" in rule, name
         assert f'script:\n        "../scripts/{name}.py"' in rule or "    shell:\n" in rule, name
+
+
+def test_every_rule_is_told_in_a_sentence(smoke):
+    listed = smoke.snakemake("--list", study=None).stdout.splitlines()
+    rules = {line.split(" (")[0]: line for line in listed if re.match(r"\w+( \(|$)", line)}
+    assert STAGES.keys() <= rules.keys()
+    assert all(re.fullmatch(r"\w+ \(.{15,}\)", line) for line in rules.values()), rules
 
 
 def test_rule_files_hold_declarations_only():
