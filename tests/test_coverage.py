@@ -14,10 +14,10 @@ import functools
 import numpy as np
 import pytest
 from benchmarks import bench_coverage as bench
+from lube.rig.ensemble_runs import EnsembleRuns
 from studies import PAPER
 
 from lube import load_study
-from lube.rig.ensemble_runs import EnsembleRuns
 
 ENSEMBLES, REALISATIONS = 2, 32
 PAIRS = {"rolling": 120, "slipping": 60}

@@ -33,7 +33,6 @@ from lube.statistics.confidence import mean_interval
 from lube.statistics.curves import peaked_curve
 from lube.study.line_spec import check_width
 from lube.surfaces.rare_contact import rare_contact_under
-from lube.surfaces.spectra import line_attributes
 
 LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
 """Lambda ratios that are tried at first; even at the last, contact has a probability of 1e-37."""
@@ -332,8 +331,8 @@ def _crossing(ratios, probabilities, share):
 
 def _sampled(rollers, half_width, seed, own, ratios, pairs):
     """Mean and limits of the breakthrough probability, by importance sampling."""
-    spec, lines = rollers.lines, xr.Dataset(attrs=line_attributes(rollers.lines))
-    factor = layer_factor_of(lines, rollers.pair.reduced_modulus, rollers.layer)
+    spec = rollers.lines
+    factor = layer_factor_of(spec, rollers.pair.reduced_modulus, rollers.layer)
     factors = factor * (1.0 if own is None else own / ratios)
     points = 2 * int(half_width / spec.spacing) + 1
     steps = ratios * rollers.pair.composite_rms_roughness / spec.height_step

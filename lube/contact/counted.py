@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from lube.grid.contact_runs import ContactRuns
-from lube.grid.discretise import line_pair, revolution, speed_ratios
+from lube.contact.windows import ContactWindows
+from lube.grid.discretise import LineGrid, line_pair
 from lube.study.rollers import BoundaryLayer
 
 log = logging.getLogger(__name__)
@@ -46,13 +46,12 @@ def contact_at(
         Its own are ``travel`` and ``longest_wavelength``, both m, of a realisation.
     """
     thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    runs = ContactRuns(lines, film, boundary_layer, flattened)
+    windows = ContactWindows(LineGrid.of(lines), film, boundary_layer, flattened)
     counts = np.empty((lines.sizes["realisation"], len(slide_to_roll_ratio), thickness.size, 4))
     for r, realisation in enumerate(lines["realisation"].values):
         pair = line_pair(lines, realisation)
         for s, ratio in enumerate(slide_to_roll_ratio):
-            ratios = speed_ratios(ratio)
-            counts[r, s] = runs.statistics(pair, ratios, revolutions * revolution(pair, ratios))
+            counts[r, s] = windows.count(pair, ratio, revolutions)
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
     touching, breaking, points, overlap = np.moveaxis(counts, -1, 0)
     spacing = lines.attrs["spacing"]

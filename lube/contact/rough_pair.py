@@ -6,11 +6,18 @@ import numpy as np
 import xarray as xr
 
 from lube.study.line_spec import LineSpec
+from lube.study.study import Study
 from lube.surfaces.spectra import line_attributes
 from lube.surfaces.synthetic import ROLLERS, draw_realisation
+from lube.types import Pair
 
 PADDING = np.iinfo(np.int32).min
 """Fill value beyond the end of the shorter of two lines."""
+
+
+def drawn(study: Study, realisation: int) -> Pair:
+    """Draw the two lines of a realisation of a study."""
+    return draw_realisation(study.line_spec, study.seed, realisation)
 
 
 def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> xr.Dataset:

@@ -1,5 +1,6 @@
 """From SI units to the kernels' whole numbers: height steps, grid points and time steps."""
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -9,6 +10,32 @@ import xarray as xr
 from lube.errors import DataError
 from lube.grid.operating_points import surface_speeds
 from lube.kernels.layer import layer_factor
+
+
+@dataclass(frozen=True)
+class LineGrid:
+    """Points and heights of roughness lines; a `lube.study.line_spec.LineSpec` serves as well.
+
+    Attributes
+    ----------
+    spacing : float
+        Distance dx of neighbouring points, m.
+    height_step : float
+        Height of one step of the whole-number heights, m.
+    q_max : float
+        Largest wave number of both lines, rad/m.
+    """
+
+    spacing: float
+    height_step: float
+    q_max: float = np.inf
+
+    @classmethod
+    def of(cls, lines: xr.Dataset) -> "LineGrid":
+        """Grid of a ``roughness`` dataset."""
+        own = lines.attrs
+        return cls(own["spacing"], own["height_step"], float(np.max(own["q_max"])))
+
 
 UNKNOWN_FILM = 2**40
 """Height steps of a film that is not known. No sum of lines reaches so high, and larger films could
@@ -122,13 +149,13 @@ def line_pair(lines: xr.Dataset, realisation: int) -> tuple[np.ndarray, np.ndarr
     return tuple(pair)
 
 
-def layer_factor_of(lines: xr.Dataset, reduced_modulus: float, boundary_layer: Layer) -> float:
-    """Compute `lube.kernels.layer.layer_factor` for a dataset of lines.
+def layer_factor_of(grid: LineGrid, reduced_modulus: float, boundary_layer: Layer) -> float:
+    """Compute `lube.kernels.layer.layer_factor` on the grid of some lines.
 
     Parameters
     ----------
-    lines : xarray.Dataset
-        A ``roughness`` or ``roughness_batch`` dataset.
+    grid : LineGrid
+        Grid of the lines.
     reduced_modulus : float
         E*, Pa.
     boundary_layer : Layer
@@ -143,13 +170,13 @@ def layer_factor_of(lines: xr.Dataset, reduced_modulus: float, boundary_layer: L
         reduced_modulus,
         boundary_layer.critical_thickness,
         boundary_layer.shear_strength,
-        lines.attrs["spacing"],
-        lines.attrs["height_step"],
+        grid.spacing,
+        grid.height_step,
     )
 
 
 def whole_numbers(
-    film_thickness: npt.ArrayLike, half_width: npt.ArrayLike, lines: xr.Dataset
+    film_thickness: npt.ArrayLike, half_width: npt.ArrayLike, grid: LineGrid
 ) -> tuple[np.ndarray, np.ndarray]:
     r"""Express films in height steps and half-windows in grid points.
 
@@ -157,8 +184,8 @@ def whole_numbers(
     ----------
     film_thickness, half_width : array_like
         :math:`h_0` and :math:`a`, m, of equal shape.
-    lines : xarray.Dataset
-        A ``roughness`` or ``roughness_batch`` dataset.
+    grid : LineGrid
+        Grid of the lines.
 
     Returns
     -------
@@ -168,11 +195,10 @@ def whole_numbers(
 
     Examples
     --------
-    >>> lines = xr.Dataset(attrs={"height_step": 1e-12, "spacing": 1e-6})
-    >>> whole_numbers([1e-9], [3.9e-6], lines)
+    >>> whole_numbers([1e-9], [3.9e-6], LineGrid(spacing=1e-6, height_step=1e-12))
     (array([1000]), array([3]))
     """
-    steps = np.fmin(np.asarray(film_thickness) / lines.attrs["height_step"], UNKNOWN_FILM)
+    steps = np.fmin(np.asarray(film_thickness) / grid.height_step, UNKNOWN_FILM)
     films = np.rint(steps)
-    half_windows = np.floor(np.asarray(half_width) / lines.attrs["spacing"])
+    half_windows = np.floor(np.asarray(half_width) / grid.spacing)
     return films.astype(np.int64), half_windows.astype(np.int64)

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import drawn
 from lube.grid.films import film_at
 from lube.grid.operating_points import at_slip
-from lube.rig.ensemble_runs import EnsembleRuns
-from lube.rig.record_scatter import record_scatter
+from lube.rig.record_scatter import record_scatter, study_windows
 from lube.schema import OPERATING_DIMS
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import RollerPair
@@ -55,10 +55,9 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     rollers, formulas = study.rough_rollers, study.film_formulas
     at_records = film_at_records(experiment, oils, rollers, formulas, **study.film_model)
-    runs = EnsembleRuns(study, at_records)
-    points = runs.points_of(at_records)
-    stored = _stored(runs, film, contact)
-    probability = _probability(runs, points, stored, contact.sizes["realisation"])
+    windows, inverse = study_windows(study, at_records).distinct()
+    stored = _stored(study, film, contact)
+    probability = _probability(windows, stored, contact.sizes["realisation"], study)[:, inverse]
     scatter = record_scatter(at_records, experiment, probability, study)
     dims = ("film_formula", "record")
     shape = tuple(at_records.sizes[name] for name in dims)
@@ -122,28 +121,24 @@ def film_at_records(
     return table[names].transpose("film_formula", "record", ...)
 
 
-def _stored(runs, film, contact):
+def _stored(study, film, contact):
     """Probability of every realisation at the points of contact.nc in pure rolling, by point."""
     rolling = contact["slide_to_roll_ratio"].values == 0.0
     if not rolling.any() or contact["revolutions"].item() != 1:
         return {}
-    film = at_slip(film, 0.0)
-    points = runs.points_of(film.transpose(*OPERATING_DIMS, ...))
+    film = at_slip(film, 0.0).transpose(*OPERATING_DIMS, ...)
     stored = contact[PROBABILITY].isel(slide_to_roll_ratio=int(np.argmax(rolling))).values
     columns = stored.reshape(len(stored), -1).T
-    return dict(zip(map(tuple, points.T.tolist()), columns, strict=True))
+    return dict(zip(study_windows(study, film).keys, columns, strict=True))
 
 
-def _probability(runs, points, stored, realisations):
+def _probability(windows, stored, realisations, study):
     """Probability of every realisation in one revolution of pure rolling, shape (R, P)."""
-    distinct, inverse = np.unique(points, axis=1, return_inverse=True)
-    values = np.empty((realisations, distinct.shape[1]))
-    missing = []
-    for number, point in enumerate(map(tuple, distinct.T.tolist())):
-        values[:, number] = stored.get(point, np.nan)
-        missing += [number] * (point not in stored)
-    for realisation in range(realisations) if missing else ():
-        pair = runs.pair(realisation)
-        values[realisation, missing] = runs.share(pair, 0.0, distinct[:, missing])
+    unknown = np.full(realisations, np.nan)
+    values = np.array([stored.get(key, unknown) for key in windows.keys]).T
+    missing = np.array([key not in stored for key in windows.keys])
+    for realisation in range(realisations) if missing.any() else ():
+        pair = drawn(study, realisation)
+        values[realisation, missing] = windows[missing].count(pair)[:, 1]
         log.info("records: realisation %d of %d: done", realisation + 1, realisations)
-    return values[:, inverse.ravel()]
+    return values

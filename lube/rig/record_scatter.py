@@ -18,8 +18,9 @@ from collections import deque
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import drawn
+from lube.contact.windows import ContactWindows
 from lube.grid.discretise import revolution, speed_ratios
-from lube.rig.ensemble_runs import EnsembleRuns
 from lube.statistics.confidence import mean_over_first
 from lube.statistics.one_pair import persistent_share, scatter_ratio
 from lube.study.study import Study
@@ -40,6 +41,11 @@ MOST_STRETCHES = 8
 ALIGNMENT_RATIOS = np.linspace(1.0, 3.75, 12)
 """Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare. With fewer
 the interpolation between them makes the effects of lines alone at neighbouring films too alike."""
+
+
+def study_windows(study: Study, film: Data) -> ContactWindows:
+    """Contact windows of the films of a study, such as those at the records."""
+    return ContactWindows(study.line_spec, film, study.boundary_layer, study.is_flattened)
 
 
 def record_scatter(
@@ -74,9 +80,8 @@ def record_scatter(
         alignments, each first line is paired with several second lines for this mean: otherwise
         the error of the mean is a large part of the small scatter of such records.
     """
-    runs = EnsembleRuns(study, model)
-    points = runs.points_of(model)
-    formulas = points.shape[1] // model.sizes["record"]
+    windows = study_windows(study, model)
+    formulas = windows.size // model.sizes["record"]
     slips = np.tile(experiment["slide_to_roll_ratio"].values, formulas)
     turns = np.tile(experiment["turns"].values, formulas)
     variance = _variance(probability)
@@ -84,7 +89,7 @@ def record_scatter(
     ratio, deviation = 1.0 / turns, probability - probability.mean(axis=0)
     for slip in np.unique(slips):
         here = np.flatnonzero((slips == slip) & (turns >= 1.0))
-        shares = _one_revolution(runs, points[:, here], slip, probability[:, here])
+        shares = _one_revolution(study, windows[here], slip, probability[:, here])
         by_slip = _variance_ratio(_variance(shares), variance[here])
         part = np.minimum(persistent[here] / by_slip, 1.0)
         alone, together = _components(study, slip, turns[here], part)
@@ -94,11 +99,11 @@ def record_scatter(
         deviation[: len(shares), here] = shares - shares.mean(axis=0)
         deviation[len(shares) :, here] = np.nan
     short = (turns < 1.0) & (variance > 0.0)
-    scatter = _short_variance(runs, points[:, short], slips[short], turns[short], len(probability))
+    scatter = _short_variance(study, windows[short], slips[short], turns[short], len(probability))
     ratio[short] = np.where(scatter > 0.0, scatter / variance[short], ratio[short])
     mean, error = mean_over_first(probability), np.ones(turns.size)
     if line_effects is not None and len(probability) <= MOST_PAIRS:
-        mean, error = _pooled(runs, points, len(probability), mean, persistent)
+        mean, error = _pooled(study, windows, len(probability), mean, persistent)
     return {
         "scatter_ratio": ratio,
         "record_deviation": deviation,
@@ -115,13 +120,13 @@ def _variance(shares):
 # One alignment
 
 
-def _one_revolution(runs, points, slip, rolling):
+def _one_revolution(study, windows, slip, rolling):
     """Share of every realisation in one revolution with slip, shape (R, P)."""
-    if slip == 0.0 or not points.size:
+    if slip == 0.0 or not windows.size:
         return rolling
-    shares = np.empty((min(len(rolling), MOST_PAIRS), points.shape[1]))
+    shares = np.empty((min(len(rolling), MOST_PAIRS), windows.size))
     for realisation, row in enumerate(shares):
-        row[:] = runs.share(runs.pair(realisation), slip, points)
+        row[:] = windows.count(drawn(study, realisation), slip)[:, 1]
         log.info("records with slip %g: realisation %d: done", slip, realisation)
     return shares
 
@@ -205,9 +210,11 @@ def _line_effects(model, study, slips, turns, realisations):
     if one_alignment or not (turns > 1.0).any() or realisations < 2:
         return (np.zeros if one_alignment else np.ones)(ratio.size), None
     thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
-    runs = EnsembleRuns(study)
-    levels = runs.points(thickness, model["contact_half_width"].mean().item())
-    in_first, in_second = _crosswise(runs, min(realisations, MOST_PAIRS), levels)
+    levels = model[["reduced_modulus"]].assign(
+        film_thickness=("level", thickness), contact_half_width=model["contact_half_width"].mean()
+    )
+    levels = ContactWindows(study.line_spec, levels, study.boundary_layer)
+    in_first, in_second = _crosswise(study, levels, min(realisations, MOST_PAIRS))
     persistent = persistent_share(in_first, in_second)
     known = np.isfinite(persistent)
     if not known.any():
@@ -217,55 +224,59 @@ def _line_effects(model, study, slips, turns, realisations):
     return rows[-1], np.array(rows[:-1])
 
 
-def _pooled(runs, points, count, mean, persistent):
+def _pooled(study, windows, count, mean, persistent):
     """Mean over several pairings of the lines, one of which is known, and its relative variance."""
     pairings = min(PAIRINGS, count)
-    distinct, inverse = np.unique(points, axis=1, return_inverse=True)
-    shares, firsts = np.zeros(distinct.shape[1]), deque(maxlen=pairings - 1)
+    distinct, inverse = windows.distinct()
+    shares, firsts = np.zeros(distinct.size), deque(maxlen=pairings - 1)
     for number in range(count + pairings - 1):
-        first, second = runs.pair(number % count)
+        first, second = drawn(study, number % count)
         if number >= pairings - 1:
-            shares += sum(runs.share((other, second), 0.0, distinct) for other in firsts)
+            shares += sum(distinct.count((other, second))[:, 1] for other in firsts)
         firsts.append(first)
     log.info("each line paired with %d others: done", pairings - 1)
-    mean = (mean + shares[inverse.ravel()] / count) / pairings
+    mean = (mean + shares[inverse] / count) / pairings
     return mean, persistent + (1.0 - persistent) / pairings
 
 
-def _crosswise(runs, count, levels):
+def _crosswise(study, levels, count):
     """Share of each first line with each second line, two of shape (count, count, levels).
 
     One in a whole turn of the first line, one in a whole turn of the second. In a turn of a line
     of another size a part of a line passes more often than the rest: this adds to its effect, but
     does not persist.
     """
-    in_first, in_second = np.empty((2, count, count, levels.shape[1]))
+    in_first, in_second = np.empty((2, count, count, levels.size))
     for begin in range(0, count, LINES_IN_MEMORY):
         numbers = range(begin, min(begin + LINES_IN_MEMORY, count))
-        firsts = [runs.pair(number)[0] for number in numbers]
+        firsts = [drawn(study, number)[0] for number in numbers]
         for other in range(count):
-            _, second = runs.pair(other)
+            _, second = drawn(study, other)
             for number, first in zip(numbers, firsts, strict=True):
-                whole = first.size, second.size
-                shares = _whole_turns(runs, (first, second), levels, whole)
+                shares = _whole_turns((first, second), levels)
                 in_first[number, other], in_second[number, other] = shares
         log.info("lines %d to %d, paired with all others: done", begin, numbers[-1])
     return in_first, in_second
 
 
-def _whole_turns(runs, pair, levels, whole):
+def _whole_turns(pair, levels):
     """Shares in a turn of the first and of the second line."""
-    shorter, longer = sorted(whole)
-    counts = {shorter: runs.breakthroughs(pair, 0.0, levels, 0, shorter)}
-    if longer > shorter:
-        counts[longer] = counts[shorter] + runs.breakthroughs(pair, 0.0, levels, shorter, longer)
-    return [counts[steps] / steps for steps in whole]
+    first, second = (line.size for line in pair)
+    turns = 1.0, second / first
+    begun = levels.count(pair, turns=min(turns))[:, 1]
+    if first == second:
+        return begun, begun
+    shorter, longer = sorted((first, second))
+    rest = levels.count(pair, turns=max(turns) - min(turns), begin=shorter)[:, 1]
+    # Whole numbers of time steps again.
+    whole = (np.rint(begun * shorter) + np.rint(rest * (longer - shorter))) / longer
+    return (begun, whole) if first == shorter else (whole, begun)
 
 
 # Short records
 
 
-def _short_variance(runs, points, slips, turns, realisations):
+def _short_variance(study, windows, slips, turns, realisations):
     """Variance between the shares of records of less than one revolution, shape (P,).
 
     It is not in proportion to 1 / turns: the waves of a whole line have the amplitudes of the
@@ -276,9 +287,9 @@ def _short_variance(runs, points, slips, turns, realisations):
     shares = {motion: [] for motion in motions}
     at = {motion: (slips == motion[0]) & (turns == motion[1]) for motion in motions}
     for realisation in range(min(realisations, MOST_PAIRS)) if motions else ():
-        pair = runs.pair(realisation)
+        pair = drawn(study, realisation)
         for motion in motions:
-            shares[motion] += _stretches(runs, pair, *motion, points[:, at[motion]])
+            shares[motion] += _stretches(pair, *motion, windows[at[motion]])
         log.info("short records: realisation %d: done", realisation)
     variance = np.zeros(turns.size)
     for motion in motions:
@@ -286,8 +297,8 @@ def _short_variance(runs, points, slips, turns, realisations):
     return variance
 
 
-def _stretches(runs, pair, slip, turns, points):
+def _stretches(pair, slip, turns, windows):
     """Shares of one pair in separate stretches of its lines, a list of arrays of shape (P,)."""
     count = min(int(1.0 / turns), MOST_STRETCHES)
     begins = np.arange(count) * revolution(pair, speed_ratios(slip)) // count
-    return [runs.share(pair, slip, points, turns, begin) for begin in begins]
+    return [windows.count(pair, slip, turns, begin)[:, 1] for begin in begins]

@@ -22,11 +22,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from lube.grid.contact_runs import ContactRuns
+from lube.contact.windows import ContactWindows
 from lube.grid.discretise import line_pair, revolution, speed_ratios
 from lube.grid.operating_points import OperatingPoint
 from lube.kernels.circuit import sampled_voltage
-from lube.kernels.motion import surface_position
 from lube.physics.electrical import contact_resistance, film_capacitance
 from lube.study.rig_settings import Rig
 from lube.study.study import Study
@@ -53,7 +52,8 @@ class SimulatedRig:
 
     def __init__(self, lines: xr.Dataset, study: Study, points: list[OperatingPoint]) -> None:
         self._lines, self._study, self._points = lines, study, points
-        self._ratios = speed_ratios(points[0].slide_to_roll_ratio)
+        self._slip = points[0].slide_to_roll_ratio
+        self._ratios = speed_ratios(self._slip)
 
     def revolutions(self) -> Iterator[tuple[int, int, "Revolution"]]:
         """Run all pairs of rollers, each at all operating points.
@@ -79,15 +79,11 @@ class SimulatedRig:
 
     def _turns(self, drawn, numbers):
         """Grid points in contact at all time steps of each turn, at some operating points."""
-        rig, contacts, runs = self._study.rig, None, self._runs(numbers)
+        rig, contacts, windows = self._study.rig, None, self._windows(numbers)
         for turn, pair in enumerate(self._rollers(drawn)):
             steps = revolution(pair, self._ratios)
             if contacts is None or not self._repeats(pair):
-                begun = tuple(
-                    np.roll(line, -surface_position(turn * steps, ratio))
-                    for line, ratio in zip(pair, self._ratios, strict=True)
-                )
-                contacts = runs.trace(begun, self._ratios, steps)
+                contacts = windows.trace(pair, self._slip, turn * steps)
             part = min(rig.revolutions - turn, 1.0)
             yield contacts[:, : max(round(part * steps), 1)]
 
@@ -108,13 +104,13 @@ class SimulatedRig:
                 )
             yield pair
 
-    def _runs(self, numbers):
-        """Prepare the contact model at some operating points."""
+    def _windows(self, numbers):
+        """Contact windows of some operating points."""
         rows = [self._points[number].row for number in numbers]
         film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
         film["reduced_modulus"] = rows[0]["reduced_modulus"]  # the same at all
         layer, flattened = self._study.boundary_layer, self._study.is_flattened
-        return ContactRuns(self._lines, film, layer, flattened)
+        return ContactWindows(self._study.line_spec, film, layer, flattened)
 
     def _revolution(self, contact, number, seed):
         point, spacing = self._points[number], self._lines.attrs["spacing"]

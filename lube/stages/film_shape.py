@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
 
+from lube.contact.window_films import scaled_film
 from lube.grid.discretise import layer_factor_of, whole_numbers
 from lube.grid.operating_points import at_slip
-from lube.grid.window_films import scaled_film
 from lube.kernels.strips import strip_statistics
 from lube.kernels.whole_runs import whole_run_steps
 from lube.physics.hertz import hertz_gap
@@ -18,7 +18,6 @@ from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.surfaces.rare_contact import check_gaussian, rare_contact_under
-from lube.surfaces.spectra import line_attributes
 from lube.surfaces.synthetic import draw_realisation
 from lube.types import Array, Datasets
 
@@ -109,10 +108,9 @@ def _edges(spec, film, thickness, boundary_layer, work):
     lines differ in length, the second is continued until the first ends.
     """
     seed, threads = work
-    lines = xr.Dataset(attrs=line_attributes(spec))
     widths = film["contact_half_width"].broadcast_like(thickness).transpose(*POINT_DIMS)
-    points = whole_numbers(thickness.values.ravel(), widths.values.ravel(), lines)
-    factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
+    points = whole_numbers(thickness.values.ravel(), widths.values.ravel(), spec)
+    factor = layer_factor_of(spec, film["reduced_modulus"].item(), boundary_layer)
 
     def on_one_pair(number):
         first, second = draw_realisation(spec, seed, number)
@@ -137,8 +135,7 @@ _DIMS = ("pair", "film_model", *POINT_DIMS)
 def _sampled(spec, film, profile, thickness, boundary_layer, work):
     """Geometric contact and breakthrough over `_DIMS`."""
     seed, threads = work
-    lines = xr.Dataset(attrs=line_attributes(spec))
-    factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
+    factor = layer_factor_of(spec, film["reduced_modulus"].item(), boundary_layer)
     widths = profile["contact_half_width"].broadcast_like(thickness).transpose(*POINT_DIMS)
     rows = [
         window_models(spec, *each, film["reduced_radius"].item())

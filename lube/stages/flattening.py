@@ -6,8 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import xarray as xr
 
-from lube.grid.contact_runs import ContactRuns
-from lube.grid.discretise import revolution, speed_ratios
+from lube.contact.windows import ContactWindows
 from lube.grid.operating_points import at_slip
 from lube.physics.flattening import amplitude_ratio
 from lube.schema import MEAN_LIMITS, POINT_DIMS, label, values_with_limits
@@ -15,7 +14,6 @@ from lube.statistics.confidence import probability_interval, ratio_interval
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
-from lube.surfaces.spectra import line_attributes
 from lube.surfaces.synthetic import draw_realisation, wave_amplitudes
 from lube.types import Datasets
 
@@ -59,17 +57,14 @@ def flattened_contact(
         The ``flattening`` file of `lube.schema`, in pure rolling.
     """
     film = at_slip(film).isel(film_formula=0).transpose(*POINT_DIMS, ...)
-    lines = xr.Dataset(attrs=line_attributes(spec))
     models = [
-        ContactRuns(lines, film, boundary_layer, flattened=model == "flattened")
+        ContactWindows(spec, film, boundary_layer, flattened=model == "flattened")
         for model in ROUGHNESS_MODELS
     ]
-    ratios = speed_ratios(0.0)
 
     def run(number):
         pair = draw_realisation(spec, seed, number)
-        steps = revolution(pair, ratios)
-        return [model.statistics(pair, ratios, steps)[:, 1] for model in models]
+        return [model.count(pair)[:, 1] for model in models]
 
     with ThreadPoolExecutor(threads) as pool:
         probability = np.array(list(pool.map(run, realisations)))

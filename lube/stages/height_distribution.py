@@ -5,15 +5,13 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import xarray as xr
 
-from lube.grid.discretise import layer_factor_of, whole_numbers
-from lube.kernels.strips import strip_statistics
+from lube.contact.windows import ContactWindows
 from lube.kernels.synthesis import mean_powers
 from lube.schema import MEAN_LIMITS, label, values_with_limits
 from lube.statistics.confidence import probability_interval
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
-from lube.surfaces.spectra import line_attributes
 from lube.surfaces.synthetic import draw_realisation
 from lube.types import Datasets
 
@@ -62,15 +60,16 @@ def height_distributions(
     """
     half_width = film["contact_half_width"].max().item()
     films = LAMBDA_RATIOS * film["composite_rms_roughness"].item()
-    lines = xr.Dataset(attrs=line_attributes(spec))
-    points = whole_numbers(films, np.full(films.size, half_width), lines)
-    factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
+    points = film[["reduced_modulus"]].assign(
+        film_thickness=("lambda_ratio", films), contact_half_width=half_width
+    )
+    contact_windows = ContactWindows(spec, points, boundary_layer)
     levels = [(skewness, kurtosis) for skewness in SKEWNESS for kurtosis in KURTOSIS]
     # Both rollers turn as one, so a revolution of the smaller one shows all of its line.
     windows = np.full(films.size, spec.independent_windows(2.0 * half_width))
 
     def row(level):
-        return _row(_with_heights(spec, *level), seed, points, factor, windows)
+        return _row(_with_heights(spec, *level), seed, contact_windows, windows)
 
     # Drawing and counting release Python's lock, so threads share the work.
     with ThreadPoolExecutor(threads) as pool:
@@ -95,13 +94,12 @@ def _with_heights(spec, skewness, kurtosis):
     )
 
 
-def _row(spec, seed, points, factor, windows):
+def _row(spec, seed, contact_windows, windows):
     """Probabilities with their intervals over the films, and the moments that were attained."""
     counts, moments = [], []
     for number in range(PAIRS):
         pair = draw_realisation(spec, seed, number)
-        steps = pair[0].size
-        counts.append(strip_statistics(pair, (1.0, 1.0), steps, *points, factor) / steps)
+        counts.append(contact_windows.count(pair))
         moments += map(_moments, pair)
     contact, breakthrough, _, _ = np.moveaxis(np.array(counts), -1, 0)
     skewness, kurtosis = np.mean(moments, axis=0)

@@ -7,10 +7,10 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
+from lube.contact.window_films import shaped_films
+from lube.contact.windows import ContactWindows
 from lube.errors import DataError, StudyError
-from lube.grid.discretise import layer_factor_of
 from lube.grid.operating_points import surface_speeds
-from lube.grid.window_films import shaped_films, window_films
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import (
     CONTACT_DIMS,
@@ -26,8 +26,8 @@ from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
-from lube.surfaces.rare_contact import check_gaussian, rare_contact, rare_contact_under
-from lube.surfaces.spectra import line_attributes, spectrum_moments
+from lube.surfaces.rare_contact import check_gaussian
+from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import ROLLERS
 from lube.types import Datasets
 
@@ -272,21 +272,15 @@ def _sampled(spec, film, boundary_layer, seed, threads=None):
 
     Over (pair, outcome, film formula, other operating dimensions).
     """
-    thickness, points = xr.broadcast(film["film_thickness"], _window_points(spec, film))
-    lines = xr.Dataset(attrs=line_attributes(spec))
-    factor = layer_factor_of(lines, film["reduced_modulus"].item(), boundary_layer)
-    films, widths = thickness.values / spec.height_step, points.values.astype(np.int64)
-    shaped = window_films(film, lines)[0] if "film_profile" in film else None
+    thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
+    points = ContactWindows(spec, film, boundary_layer)
+    # The other film formulas have the first 8 of the 40 pairs.
+    first = points[: points.size // thickness.shape[0]]
 
     def on_one_pair(number):
-        formulas = slice(None if number < FEWER_PAIRS else 1)
-        shape = films[formulas].shape
-        if shaped:
-            found = _under_shaped_films(spec, (seed, number), shaped[: np.prod(shape)], factor)
-        else:
-            point = films[formulas].ravel(), widths[formulas].ravel()
-            found = rare_contact(spec, seed, number, *point, factor)
-        return [values.reshape(-1, *shape) for values in found]
+        some = points if number < FEWER_PAIRS else first
+        found = some.sample(spec, seed, number)
+        return [values.reshape(len(values), -1, *thickness.shape[1:]) for values in found]
 
     # Drawing and counting release Python's lock, so threads share the work.
     with ThreadPoolExecutor(threads) as pool:
@@ -298,15 +292,6 @@ def _sampled(spec, film, boundary_layer, seed, threads=None):
             xr.DataArray(np.stack([one[:, part] for one in each[:pairs]]), coordinates, dims)
             for each in found
         ]
-
-
-def _under_shaped_films(spec, pair, films, factor):
-    """Probabilities and runs as of `rare_contact`, under films that are known; no runs are."""
-    known = [number for number, one in enumerate(films) if one]
-    windows, runs = np.full((2, len(films)), np.nan), np.full((10, len(films)), np.nan)
-    steps = [films[number].film.astype(float) for number in known]
-    windows[:, known] = rare_contact_under(spec, *pair, steps, factor)
-    return windows, runs
 
 
 def _touching_pairs(groups, breakthrough, windows):

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from lube.contact.window_films import film_on_points, shaped_films
+from lube.contact.windows import ContactWindows, Waves
 from lube.errors import DataError
-from lube.grid.contact_runs import ContactRuns, Waves
-from lube.grid.discretise import layer_factor_of, line_pair, revolution, speed_ratios, whole_numbers
+from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, speed_ratios, whole_numbers
 from lube.grid.operating_points import at_slip, known_films, surface_speeds
-from lube.grid.window_films import film_on_points, shaped_films
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.physics.electrical import contact_resistance
@@ -77,13 +77,9 @@ def contact_trace(
         If the film is known at none of the points.
     """
     table = _known_rows(film, points)
-    runs = ContactRuns(lines, table, boundary_layer, flattened)
-    pair = line_pair(lines, REALISATION)
-    ratio = points[0]["slide_to_roll_ratio"]
-    ratios = speed_ratios(ratio)
-    steps = revolution(pair, ratios)
-    spacing = lines.attrs["spacing"]
-    length = runs.trace(pair, ratios, steps) * spacing
+    windows = ContactWindows(LineGrid.of(lines), table, boundary_layer, flattened)
+    ratio, spacing = points[0]["slide_to_roll_ratio"], lines.attrs["spacing"]
+    length = windows.trace(line_pair(lines, REALISATION), ratio) * spacing
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
     trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
@@ -94,11 +90,12 @@ def contact_trace(
         shear_strength=boundary_layer.shear_strength,
         resistivity=resistivity,
     )
-    if "film_profile" in table:
+    if windows.is_shaped:
         trace["film_profile"] = shaped_films(table)
     if flattened:
         trace = trace.assign({name: table[name] for name in _MOES})
-    return label(trace.assign_coords(time=spacing / faster_surface * np.arange(steps)), "trace")
+    time = spacing / faster_surface * np.arange(length.shape[1])
+    return label(trace.assign_coords(time=time), "trace")
 
 
 def _known_rows(film, points):
@@ -159,18 +156,19 @@ def contact_window(
         h_l = \frac{\pi \tau_0}{12} \frac{D^3}{F}
     """
     point = trace.isel(operating_point=operating_point)
-    spacing, height_step = lines.attrs["spacing"], lines.attrs["height_step"]
+    grid = LineGrid.of(lines)
+    spacing, height_step = grid.spacing, grid.height_step
     half_width, shaped = point["contact_half_width"].item(), "film_profile" in point
     widest = half_width * (point["film_position"].values[-1] if shaped else 1.0)
-    film, half_window = whole_numbers(point["film_thickness"], reach or widest, lines)
+    film, half_window = whole_numbers(point["film_thickness"], reach or widest, grid)
     window = np.arange(-half_window, half_window + 1)
     if shaped:
-        film = film_on_points(point["film_profile"], half_width, window, lines)
+        film = film_on_points(point["film_profile"], half_width, window, grid)
     ratios = speed_ratios(point["slide_to_roll_ratio"].item())
     pair = line_pair(lines, REALISATION)
     if "moes_load" in point:
         contact = [point[name].item() for name in ("contact_half_width", *_MOES)]
-        pair = [Waves(line, lines).flattened(*contact) for line in pair]
+        pair = [Waves(line, grid).flattened(*contact) for line in pair]
     moving = zip(pair, ratios, strict=True)
     rows = [line[(surface_position(step, ratio) + window) % line.size] for line, ratio in moving]
     heights = np.array(rows, np.int64)
@@ -179,7 +177,7 @@ def contact_window(
         touching = np.abs(window[overlap > 0]).max(initial=0)
         shown = np.abs(window) <= max(half_width / spacing, touching + 1)
         window, heights, overlap = window[shown], heights[:, shown], overlap[shown]
-    segments = _segments(overlap, point, lines)
+    segments = _segments(overlap, point, grid)
     return xr.Dataset(
         {
             "height": (("roller", "x"), heights * height_step),
@@ -190,16 +188,16 @@ def contact_window(
     )
 
 
-def _segments(overlap, point, lines):
+def _segments(overlap, point, grid):
     """Maximal runs of positive overlap, and the state of their boundary layer."""
     edges = np.flatnonzero(np.diff(overlap > 0, prepend=False, append=False))
     first, last = edges[::2], edges[1::2] - 1
     points = last - first + 1
     sums = np.array([overlap[i : i + n].sum() for i, n in zip(first, points, strict=True)])
-    stiffness = point["reduced_modulus"].item() * lines.attrs["spacing"]
-    length = points * lines.attrs["spacing"]
-    force = stiffness * sums * lines.attrs["height_step"]
-    factor = layer_factor_of(lines, point["reduced_modulus"], point).item()
+    stiffness = point["reduced_modulus"].item() * grid.spacing
+    length = points * grid.spacing
+    force = stiffness * sums * grid.height_step
+    factor = layer_factor_of(grid, point["reduced_modulus"], point).item()
     broken = [layer_breaks(*each, factor) for each in zip(points, sums, strict=True)]
     return {
         "first": first,

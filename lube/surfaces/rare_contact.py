@@ -38,6 +38,8 @@ WINDOWS = 800
 """Windows along each pair of lines."""
 RUNS = 400
 """Runs along each pair of lines."""
+RUN_NUMBERS = 10
+"""Numbers that `rare_contact` gives of the runs."""
 NEGLIGIBLE = 1e-9
 """Likelihood of contact at a point, over that at the thinnest film, that is passed over."""
 
@@ -189,7 +191,7 @@ def rare_contact(
         If the lines are not Gaussian.
     """
     drawn = _Drawn(spec, seed, number, int(widths.max()))
-    windows, runs = np.empty((2, films.size)), np.empty((10, films.size))
+    windows, runs = np.empty((2, films.size)), np.empty((RUN_NUMBERS, films.size))
     for i, (film, width) in enumerate(zip(films, widths, strict=True)):
         log_tail = scipy.special.log_ndtr(-film / drawn.both.rms)
         touching = (drawn.place * width).astype(np.int64), drawn.heights(log_tail)

@@ -29,6 +29,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from lube.rig.ensemble_runs import EnsembleRuns
 
 from lube.contact.ensemble import gather, gather_map
 from lube.contact.rough_pair import roughness_batch
@@ -36,7 +37,6 @@ from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.operating_points import operating_points
 from lube.recordings.manifest import Entry, Manifest, read_manifest
 from lube.rig.at_records import model_at_records
-from lube.rig.ensemble_runs import EnsembleRuns
 from lube.rig.fits import ALPHA_FACTORS, alpha_logits, fit_records, strength_logits, study_strength
 from lube.rig.simulator import SimulatedRig
 from lube.schema import LIMITS, label

@@ -7,12 +7,12 @@ import pytest
 import xarray as xr
 from experiments import experiment_at, experiment_of, model_of_records
 from literal_scan import scan_statistics
+from lube.rig.ensemble_runs import EnsembleRuns
 from studies import OIL
 
 from lube import contact_statistics, film_table
 from lube.contact.rough_pair import roughness_batch
 from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
-from lube.rig.ensemble_runs import EnsembleRuns
 from lube.rig.record_scatter import combined_deviations
 from lube.statistics.one_pair import repeat_factor
 from lube.statistics.sample_size import effective_sample_size

@@ -7,6 +7,7 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from lube.errors import DataError
+from lube.grid.discretise import LineGrid
 from lube.physics.hertz import hertz_gap
 from lube.types import Array
 
@@ -107,43 +108,40 @@ def scaled_film(profile: xr.DataArray, scale: xr.DataArray, film: xr.Dataset) ->
     return scale * (profile - gap) + gap
 
 
-def window_films(film: xr.Dataset, lines: xr.Dataset) -> tuple[list[WindowFilm | None], Array]:
+def window_films(film: xr.Dataset, grid: LineGrid) -> list[WindowFilm | None]:
     """Films with the computed shape, in whole height steps and points.
 
     Parameters
     ----------
     film : xarray.Dataset
         As in `shaped_films`.
-    lines : xarray.Dataset
-        A ``roughness`` or ``roughness_batch`` dataset, for its spacing and height step.
+    grid : LineGrid
+        Grid of the lines.
 
     Returns
     -------
-    films : list of WindowFilm
+    list of WindowFilm
         Of each operating point, in the order of ``film_thickness``, as far as the profile reaches;
         None where the film is not known.
-    half_windows : numpy.ndarray of int64
-        Points on either side of the contact's centre.
     """
     shaped = shaped_films(film)
     widths = film["contact_half_width"].broadcast_like(film["film_thickness"])
     widths = widths.transpose(*film["film_thickness"].dims).values.ravel()
     rows = shaped.stack(point=film["film_thickness"].dims).transpose("point", ...)
-    films = [_as_far(row, width, lines) for row, width in zip(rows, widths, strict=True)]
-    return films, np.floor(widths / lines.attrs["spacing"]).astype(np.int64)
+    return [_as_far(row, width, grid) for row, width in zip(rows, widths, strict=True)]
 
 
-def _as_far(profile, half_width, lines):
+def _as_far(profile, half_width, grid):
     """Film at all points of a line to which a profile reaches."""
     if not np.isfinite(profile).all():
         return None
-    ends = profile["film_position"].values[[0, -1]] * half_width / lines.attrs["spacing"]
+    ends = profile["film_position"].values[[0, -1]] * half_width / grid.spacing
     points = np.arange(np.ceil(ends[0]), np.floor(ends[1]) + 1.0)
-    return WindowFilm(film_on_points(profile, half_width, points, lines), int(-points[0]))
+    return WindowFilm(film_on_points(profile, half_width, points, grid), int(-points[0]))
 
 
 def film_on_points(
-    profile: xr.DataArray, half_width: float, points: Array, lines: xr.Dataset
+    profile: xr.DataArray, half_width: float, points: Array, grid: LineGrid
 ) -> Array:
     """Film at points of a line.
 
@@ -155,8 +153,8 @@ def film_on_points(
         Half-width of the contact, m.
     points : numpy.ndarray, shape (n,)
         Points, counted from the line of centres.
-    lines : xarray.Dataset
-        A ``roughness`` or ``roughness_batch`` dataset, for its spacing and height step.
+    grid : LineGrid
+        Grid of the lines.
 
     Returns
     -------
@@ -164,5 +162,5 @@ def film_on_points(
         Film at the points, height steps, from a cubic spline through the profile.
     """
     film = CubicSpline(profile["film_position"].values, profile.values)
-    position = points * (lines.attrs["spacing"] / half_width)
-    return np.rint(film(position) / lines.attrs["height_step"]).astype(np.int64)
+    position = points * (grid.spacing / half_width)
+    return np.rint(film(position) / grid.height_step).astype(np.int64)

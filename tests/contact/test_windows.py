@@ -7,7 +7,7 @@ import pytest
 from literal_scan import scan_statistics
 
 from lube import roughness_lines
-from lube.grid.contact_runs import WINDOWS_PER_WIDTH, ContactRuns, Waves
+from lube.contact.windows import WINDOWS_PER_WIDTH, ContactRuns, Waves
 from lube.grid.discretise import layer_factor_of, line_pair, whole_numbers
 from lube.physics.flattening import amplitude_ratio
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from lube.contact.window_films import WindowFilm, film_on_points, shaped_films, window_films
 from lube.errors import DataError
-from lube.grid.window_films import WindowFilm, film_on_points, shaped_films, window_films
 from lube.physics.hertz import hertz_gap
 
 POSITION = np.linspace(-3.0, 3.0, 601).round(6)
