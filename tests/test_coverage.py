@@ -14,10 +14,10 @@ import functools
 import numpy as np
 import pytest
 from benchmarks import bench_coverage as bench
-from lube.rig.ensemble_runs import EnsembleRuns
 from studies import PAPER
 
 from lube import load_study
+from lube.contact.rough_pair import drawn
 
 ENSEMBLES, REALISATIONS = 2, 32
 PAIRS = {"rolling": 120, "slipping": 60}
@@ -103,7 +103,5 @@ def test_a_record_of_several_cycles_is_that_of_the_run_itself(coarse, rollers, m
     study, slip, turns = bench.variant(coarse, rollers, motion), bench.MOTIONS[motion], 10.4
     table = bench.operating_table(bench.film_of(study), "slipping")
     found = bench.record_shares(study, table, slip, [turns], 0)
-    runs = EnsembleRuns(study)
-    points = runs.points(table["film_thickness"], table["contact_half_width"])
-    share = runs.share(runs.pair(0), slip, points, turns)
+    share = bench.windows_of(study, table).count(drawn(study, 0), slip, turns)[:, 1]
     np.testing.assert_allclose(found[0], share, rtol=1e-12 if motion == "rolling" else 0.01)

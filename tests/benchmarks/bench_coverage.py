@@ -29,10 +29,10 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from lube.rig.ensemble_runs import EnsembleRuns
 
 from lube.contact.ensemble import gather, gather_map
-from lube.contact.rough_pair import roughness_batch
+from lube.contact.rough_pair import drawn, roughness_batch
+from lube.contact.windows import ContactWindows
 from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.operating_points import operating_points
 from lube.recordings.manifest import Entry, Manifest, read_manifest
@@ -142,22 +142,28 @@ def operating_table(film, motion):
     return frame
 
 
+def windows_of(study, table):
+    """Contact windows of the rows of a table of operating points."""
+    films = {name: ("point", table[name]) for name in ("film_thickness", "contact_half_width")}
+    films = xr.Dataset(films | {"reduced_modulus": study.rollers.reduced_modulus})
+    return ContactWindows(study.line_spec, films, study.boundary_layer)
+
+
 def record_shares(study, table, slip, turns, realisation):
     """Shares of a pair's records of so many turns, shape (turns, points).
 
     After a cycle of alignments a pair shows the same again, so that the longest records follow
     from one cycle.
     """
-    runs = EnsembleRuns(study)
-    pair = runs.pair(realisation)
+    pair = drawn(study, realisation)
     turn = revolution(pair, speed_ratios(slip))
     ends = np.maximum(np.round(np.array(turns) * turn).astype(np.int64), 1)
     cycle = _cycle(pair, speed_ratios(slip)) * turn
     whole, rest = ends // cycle, ends % cycle
     marks = np.unique([0, *rest, *(cycle * (whole > 0))])
-    points = runs.points(table["film_thickness"], table["contact_half_width"])
+    windows = windows_of(study, table)
     between = [
-        runs.breakthroughs(pair, slip, points, begin, end)
+        np.rint(windows.count(pair, slip, (end - begin) / turn, begin)[:, 1] * (end - begin))
         for begin, end in itertools.pairwise(marks)
     ]
     counts = np.cumsum([np.zeros(len(table), np.int64), *between], axis=0)

@@ -93,12 +93,13 @@ def breakthroughs(pairs, film, windows, factor):
 
 def print_points(study, film, lines):
     """Speed over the literal scan, and scatter over that of every window, point by point."""
-    factor = layer_factor_of(lines[0], film["reduced_modulus"].item(), study.boundary_layer)
+    factor = layer_factor_of(study.line_spec, film["reduced_modulus"].item(), study.boundary_layer)
     zero = np.zeros(1, np.int32)
     pairs = [(sum(line_pair(one, one["realisation"].values[0])), zero) for one in lines]
     steps = pairs[0][0].size
     for table in points_often(film):
-        (one,), (half,) = window_films(table, lines[0])
+        (one,) = window_films(table, study.line_spec)
+        half = int(table["contact_half_width"].item() / study.line_spec.spacing)
         reached = one.below(pairs[0][0].max())
         literal = (1.0, 1.0), steps // SHARE, reached.film, reached.before, factor
         _, passed = timed(partial(scan_trace, pairs[0], *literal))

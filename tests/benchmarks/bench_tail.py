@@ -128,7 +128,7 @@ def ensemble(study, film, realisations):
 def points_of(study, film):
     """Films in height steps and window points of all operating points, and the layer's factor."""
     spec, attributes = study.line_spec, film.assign_attrs(line_attributes(study.line_spec))
-    factor = layer_factor_of(attributes, film["reduced_modulus"].item(), study.boundary_layer)
+    factor = layer_factor_of(study.line_spec, film["reduced_modulus"].item(), study.boundary_layer)
     half = np.floor(film["contact_half_width"] / spec.spacing).broadcast_like(
         film["film_thickness"]
     )

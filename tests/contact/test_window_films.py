@@ -6,10 +6,11 @@ import xarray as xr
 
 from lube.contact.window_films import WindowFilm, film_on_points, shaped_films, window_films
 from lube.errors import DataError
+from lube.grid.discretise import LineGrid
 from lube.physics.hertz import hertz_gap
 
 POSITION = np.linspace(-3.0, 3.0, 601).round(6)
-LINES = xr.Dataset(attrs={"spacing": 1e-6, "height_step": 1e-12})
+GRID = LineGrid(spacing=1e-6, height_step=1e-12)
 WIDTHS = [50e-6, 100e-6]
 
 
@@ -58,8 +59,7 @@ def test_the_dry_gap_outside_the_contact_is_not_scaled():
 
 def test_films_at_the_points_follow_the_profile():
     table = film_table()
-    films, half_windows = window_films(table, LINES)
-    assert half_windows.tolist() == [50, 100] * 3
+    films = window_films(table, GRID)
     shaped = shaped_films(table).stack(point=["film_formula", "force"])
     for number, (one, width) in enumerate(zip(films, WIDTHS * 3, strict=True)):
         points = np.arange(one.film.size) - one.before
@@ -72,7 +72,7 @@ def test_films_at_the_points_follow_the_profile():
 def test_a_film_that_is_not_known_is_none():
     table = film_table()
     table["film_profile"][1] = np.nan
-    films, _ = window_films(table, LINES)
+    films = window_films(table, GRID)
     assert [one is None for one in films] == [False, True] * 3
 
 
@@ -81,7 +81,7 @@ def test_a_spline_through_a_parabola_is_exact():
     points = np.arange(-100, 101)
     position = points * 1e-6 / 50e-6
     expected = np.rint((1.0 + 0.5 * (position - 0.5) ** 2) * 1e6)
-    np.testing.assert_allclose(film_on_points(profile, 50e-6, points, LINES), expected, atol=1)
+    np.testing.assert_allclose(film_on_points(profile, 50e-6, points, GRID), expected, atol=1)
 
 
 def test_only_points_within_reach_are_kept():

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 from experiments import experiment_at, experiment_of, model_of_records
 from literal_scan import scan_statistics
-from lube.rig.ensemble_runs import EnsembleRuns
 from studies import OIL
 
 from lube import contact_statistics, film_table
@@ -181,9 +180,9 @@ def test_a_part_of_a_turn_scatters_as_parts_of_the_realisations_do(busy, slip):
     experiment = experiment_off_the_grid([0], turns=0.5, slide_to_roll_ratio=slip)
     model = model_of_records(experiment, film, contact, study).isel(record=0)
     lines = roughness_batch(study.line_spec, study.seed, range(study.realisations))
-    factor = layer_factor_of(lines, study.rollers.reduced_modulus, study.boundary_layer)
+    factor = layer_factor_of(study.line_spec, study.rollers.reduced_modulus, study.boundary_layer)
     thickness = model["film_thickness"].values
-    points = whole_numbers(thickness, np.full(thickness.size, model["contact_half_width"]), lines)
+    points = whole_numbers(thickness, np.full(thickness.size, model["contact_half_width"]), study.line_spec)
     half, ratios = study.line_spec.points[0] // 2, speed_ratios(slip)
     shares = []
     for pair in (line_pair(lines, number) for number in range(study.realisations)):
@@ -250,10 +249,11 @@ def test_the_pooled_mean_is_that_of_each_first_line_with_four_second_lines(busy)
     experiment = experiment_off_the_grid([0, 3], turns=5.0, slide_to_roll_ratio=0.1)
     model = model_of_records(experiment, busy.film, contact, study)
     lines = roughness_batch(study.line_spec, study.seed, range(6))
-    factor = layer_factor_of(lines, study.rollers.reduced_modulus, study.boundary_layer)
-    points = EnsembleRuns(study).points(model["film_thickness"], model["contact_half_width"])
+    factor = layer_factor_of(study.line_spec, study.rollers.reduced_modulus, study.boundary_layer)
+    spread = xr.broadcast(model["film_thickness"], model["contact_half_width"])
+    points = whole_numbers(*(one.values.ravel() for one in spread), study.line_spec)
     pairs = [line_pair(lines, number) for number in range(6)]
-    expected = np.zeros(points.shape[1])
+    expected = np.zeros(points[0].size)
     for number, other in itertools.product(range(6), range(4)):
         pair = pairs[number][0], pairs[(number + other) % 6][1]
         steps = pair[0].size
