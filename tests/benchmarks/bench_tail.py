@@ -34,7 +34,6 @@ from lube.stages.tail import FEWER_PAIRS, PAIRS, tail_probabilities
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import load_study
 from lube.surfaces.rare_contact import draw_pair, rare_contact
-from lube.surfaces.spectra import line_attributes
 
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 SEEDS = 20
@@ -127,7 +126,7 @@ def ensemble(study, film, realisations):
 
 def points_of(study, film):
     """Films in height steps and window points of all operating points, and the layer's factor."""
-    spec, attributes = study.line_spec, film.assign_attrs(line_attributes(study.line_spec))
+    spec = study.line_spec
     factor = layer_factor_of(study.line_spec, film["reduced_modulus"].item(), study.boundary_layer)
     half = np.floor(film["contact_half_width"] / spec.spacing).broadcast_like(
         film["film_thickness"]
