@@ -127,6 +127,7 @@ def altered(dataset):
 
 def test_datasets_of_every_kind_that_differ_in_everything_are_compared(datasets, compared):
     for kind, dataset in datasets.items():
+        dataset = dataset.isel({dim: slice(4) for dim in dataset.dims})
         named = {line.split(":")[0] for line in compared(dataset, altered(dataset))}
         scalars = {name for name, variable in dataset.data_vars.items() if variable.ndim == 0}
         assert named, kind
