@@ -114,7 +114,7 @@ def test_the_roughness_may_be_for_a_rare_share(rollers, oil, busy):
 
 
 def test_counting_and_sampling_agree_where_both_see(rollers, oil, monkeypatch):
-    for share in (0.003, 0.3):
+    for share in (0.003, 0.05, 0.3):
         ends = {}
         for name, often in (("counted", 0.0), ("sampled", np.inf)):
             monkeypatch.setattr(required, "OFTEN", often)

@@ -18,7 +18,7 @@ def checker():
     return ComplianceChecker
 
 
-# What is asked of a file, and what of it may be found wanting.
+# Conventions with the checks that we run, and the complaints that we accept.
 CONVENTIONS = {
     # CF's own `time` counts from a date; that of a trace begins with the revolution.
     ("cf:1.11", "all_priorities"): {
