@@ -99,9 +99,7 @@ class EnsembleRuns:
     def breakthroughs(self, pair: Pair, slip: float, points: Array, begin: int, end: int) -> Array:
         """Count the time steps from `begin` to `end` with breakthrough under flat films, (P,)."""
         pair, ratios = _begun(pair, slip, begin), speed_ratios(slip)
-        films, half_windows = np.ascontiguousarray(points)
-        counts = strip_statistics(pair, ratios, end - begin, films, half_windows, self._factor)
-        return counts[:, 1]
+        return strip_statistics(pair, ratios, end - begin, *points, self._factor)[:, 1]
 
 
 def _begun(pair, slip, begin):
