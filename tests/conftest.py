@@ -1,5 +1,7 @@
 """Shared fixtures: the rollers of the smoke study on grids fine or small enough for a test."""
 
+import fcntl
+import pickle
 import subprocess
 from types import SimpleNamespace
 
@@ -190,9 +192,16 @@ def paper_with(tmp_path):
 
 
 @pytest.fixture(scope="session")
-def datasets(study):
-    """One dataset of every kind; not to be changed."""
-    return datasets_of_every_kind(study)
+def datasets(study, tmp_path_factory, worker_id):
+    """One dataset of every kind; not to be changed. One of several test processes makes them."""
+    if worker_id == "master":
+        return datasets_of_every_kind(study)
+    made = tmp_path_factory.getbasetemp().parent / "datasets"
+    with made.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not made.exists():
+            made.write_bytes(pickle.dumps(datasets_of_every_kind(study)))
+        return pickle.loads(made.read_bytes())
 
 
 @pytest.fixture(scope="session")

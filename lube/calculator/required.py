@@ -377,7 +377,7 @@ def _reached(films, table, levels, tried):
     if sought[0] > thickness.max():
         film, most = 1e6 * np.exp([sought[0], thickness.max()])
         raise RangeError(
-            f"share: needs a film of {film:.3g} um, which no {tried} gives: at most {most:.3g} um"
+            f"share: it needs a film of {film:.3g} um, and no {tried} gives more than {most:.3g} um"
         )
     return np.interp(sought, thickness[::rising], levels[::rising], **ends)
 

@@ -85,9 +85,9 @@ def _mark_step(step, points, broken, lengths):
 @kernel
 def _mark_steps(first, last, points, broken, lengths):
     """Mark the time steps first .. last in the same way; return n times their number."""
-    broken[first : last + 1] = 1
-    if lengths is not None:
-        lengths[first : last + 1] += points
+    # Numba takes seconds to compile the same with slices.
+    for step in range(first, last + 1):
+        _mark_step(step, points, broken, lengths)
     return points * (last - first + 1)
 
 
@@ -293,6 +293,8 @@ def strip_statistics(
     >>> strip_statistics(lines, (1.0, 1.0), 5, films, np.array([1, 1]), 1.0).tolist()
     [[3, 3, 3, 6], [0, 0, 0, 0]]
     """
+    # For another layout in memory Numba would compile the kernel once more.
+    films, half_windows = np.ascontiguousarray([films, half_windows])
     order, margin = _plan(films, half_windows)
     return _run_strips(lines, speed_ratios, steps, films, half_windows, factor, order, margin, None)
 

@@ -166,10 +166,10 @@ def _films(row, groups, factor, meniscus):
     load, speed, material, *oil = groups
     options = {"join": "exact", "kwargs": {"meniscus": meniscus}}
     if not row.depends_on_oil:
-        # One factor after another: the integral of starvation takes a hundred times their memory.
+        # Some factors at a time: the integral of starvation takes a hundred times their memory.
         films = [
-            xr.apply_ufunc(row.film, load, speed, one * material, *oil, **options)
-            for one in factor.values
+            xr.apply_ufunc(row.film, load, speed, factor[some] * material, *oil, **options)
+            for some in np.array_split(range(factor.size), 1 + factor.size // 20)
         ]
         return xr.concat(films, "factor", join="exact")
     nodes = xr.DataArray(COMPUTED_FACTORS, dims="factor")

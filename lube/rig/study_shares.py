@@ -9,6 +9,7 @@ import xarray as xr
 from lube.errors import DataError
 from lube.grid.levels import format_levels
 from lube.schema import COORDINATES, LIMITS
+from lube.units import with_unit
 
 MOST_LINES = 10
 """Lines of a long list that are logged."""
@@ -61,8 +62,7 @@ def over_grid(dataset: xr.Dataset) -> xr.Dataset:
     names = {name: dataset[name].values for name in ("slide_to_roll_ratio", "lubricant")}
     table = pd.DataFrame(names | levels)
     labelled = table.notna().all(axis=1).values
-    table = table[labelled]
-    table["repeat"] = table.groupby(list(table.columns)).cumcount()
+    table = table[labelled].assign(repeat=lambda rows: rows.groupby(list(rows)).cumcount())
     index = xr.Coordinates.from_pandas_multiindex(pd.MultiIndex.from_frame(table), "record")
     records = dataset.isel(record=labelled)
     own = {name for name in records.coords if "record" in records[name].dims}
@@ -107,9 +107,9 @@ def levels_named(levels: Mapping[str, float]) -> str:
     Examples
     --------
     >>> levels_named({"force": 800.0, "speed": 100.0, "temperature": 40.0})
-    '800 N, 100 rpm, 40 degC'
+    '800 N, 100 r/min, 40 °C'
     """
-    return ", ".join(f"{value:.6g} {COORDINATES[name].units}" for name, value in levels.items())
+    return ", ".join(with_unit(value, COORDINATES[name].units) for name, value in levels.items())
 
 
 def log_lines(log: Logger, lines: Sequence[str]) -> None:

@@ -68,6 +68,7 @@ def imported_modules(code: str) -> tuple[str, ...]:
     return tuple(found)
 
 
+@functools.cache
 def sources(code: str, root: Path = ROOT) -> list[str]:
     """List the files of the lube package that some Python code depends on.
 

@@ -66,12 +66,12 @@ def test_realisations_are_computed_again_to_the_last_bit(folder):
                 np.testing.assert_array_equal(result.again[name].squeeze(), stored[name].squeeze())
 
 
-def test_mean_and_interval_are_computed_again_at_points_all_over_the_grid(folder):
+def test_mean_and_interval_are_computed_again_at_every_point(folder):
     """A point computed alone has the same bits as among all the others."""
     with xr.open_dataset(folder / "contact.nc") as contact:
         levels = [contact[name].values.tolist() for name in CONTACT_DIMS]
         results = set(contact.data_vars) - {"critical_thickness", "shear_strength"}
-    for point in list(product(*levels))[::3]:
+    for point in product(*levels):
         result = explain(folder / "contact.nc", None, **dict(zip(CONTACT_DIMS, point, strict=True)))
         assert result.differing == []
         assert results <= set(result.again.data_vars)

@@ -261,6 +261,21 @@ def test_a_trace_is_drawn_where_one_was_kept_and_found_from_elsewhere(visit, exp
     assert page.inner_text("#trace-text").endswith("and around the peak in every step.")
 
 
+def test_of_an_insulator_the_trace_is_drawn_without_a_resistance(visit, explored, tmp_path):
+    resistance = explored["trace"]["contact_resistance"]
+    trace = explored["trace"].assign(contact_resistance=xr.full_like(resistance, np.nan))
+    study = {kind: each for kind, each in explored.items() if kind != "comparison"}
+    path = tmp_path / "insulator.html"
+    path.write_text(explorer_page(study | {"trace": trace}, BAND), encoding="utf-8")
+    page = visit(path)
+    for part in ("whole", "close"):
+        longest = 1e6 * trace["contact_length"].isel(operating_point=0).values.max()
+        assert max(drawn(page, part)["length"]) == pytest.approx(longest, rel=1e-15)
+    assert page.locator("#figure-close_length canvas").count() > 0
+    assert page.locator("[id$=_resistance]").count() == 0
+    assert "resistance" not in page.inner_text("body").lower()
+
+
 def test_records_near_the_point_are_told_with_their_intervals(visit, explored, page_file):
     page = visit(page_file, "#force=1600&temperature=80")
     comparison = explored["comparison"].isel(film_formula=0)

@@ -76,7 +76,7 @@ def test_slips_and_lubricants_are_kept_apart():
 
 def test_names(experiment):
     point = {"force": 800.0, "speed": 600.0 / 7.0, "temperature": 40.0}
-    assert levels_named(point) == "800 N, 85.7143 rpm, 40 degC"
+    assert levels_named(point) == "800 N, 85.7143 r/min, 40 °C"
     assert refused_in_one_line(experiment) == ""
     refused = experiment.assign_attrs(refused="a.csv: bad\nb.csv: worse")
     assert refused_in_one_line(refused) == "Refused: 2 of 14 records. a.csv: bad; b.csv: worse"

@@ -71,14 +71,16 @@ def test_the_line_reads_as_in_the_gauge_and_the_quotient_is_of_both(busy, read, 
 
 def test_a_noisy_record_and_an_uncertain_curve_are_read_less_surely(read, areal):
     def width(**values):
-        value, lower, upper = (read([0.3], 400.0, **values)[name].item() for name in NAMES)
+        found = read([0.3], 400.0, **values)
+        value, lower, upper = (found[name].item() for name in NAMES)
         assert lower < value < upper
         return upper - lower
 
     names = [f"breakthrough_probability{side}" for side in ("_lower", "_upper")]
     spread = {name: areal[name] * factor for name, factor in zip(names, (0.7, 1.3), strict=True)}
-    assert width(share_error=0.05) > 1.2 * width()
-    assert width(areal=areal.assign(spread)) > 1.2 * width()
+    plain = width()
+    assert width(share_error=0.05) > 1.2 * plain
+    assert width(areal=areal.assign(spread)) > 1.2 * plain
 
 
 def test_records_without_contact_have_a_lower_limit_only_and_without_a_share_none(read):

@@ -146,8 +146,8 @@ def test_points_without_a_record_are_named(compared, busy, mean, caplog):
         found = compared(experiment)
     lines = found.missing.splitlines()
     assert len(lines) == 9
-    assert "1600 N, 60 rpm, 60 degC: no record" in lines
-    assert "100 N, 60 rpm, 60 degC: no record" not in lines
+    assert "1600 N, 60 r/min, 60 °C: no record" in lines
+    assert "100 N, 60 r/min, 60 °C: no record" not in lines
     assert caplog.messages == lines
     assert (found["compared_records"] == 3).all()
 
@@ -158,8 +158,8 @@ def test_a_record_near_no_level_or_without_a_share_does_not_count_for_a_point(at
     levels = np.where(np.arange(12) == 7, np.nan, np.tile([100.0, 400.0, 1600.0], 4))
     found = at_grid(shares, force_level=levels)
     assert found.missing.splitlines() == [
-        "400 N, 60 rpm, 80 degC: no record",
-        "400 N, 100 rpm, 60 degC: no record",
+        "400 N, 60 r/min, 80 °C: no record",
+        "400 N, 100 r/min, 60 °C: no record",
     ]
     assert (found["compared_records"] == 11).all()
     assert found["simulated_probability"].notnull().all()

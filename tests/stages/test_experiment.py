@@ -66,7 +66,7 @@ def test_a_simulated_record_stands_at_its_operating_point(ideal, rig_film, study
     for name in LEVELS:
         np.testing.assert_array_equal(ideal[name], ideal[f"{name}_level"])
     assert set(ideal["slide_to_roll_ratio"].values) == {0.0}
-    assert ideal["record"].values[0] == "800 N, 100 rpm, 40 degC"
+    assert ideal["record"].values[0] == "800 N, 100 r/min, 40 °C"
     assert (ideal["turns"].values, ideal.refused, ideal.remarks) == (pytest.approx(2.0), "", "")
 
 
@@ -96,7 +96,7 @@ def test_several_pairs_make_several_records_of_each_point(simulated):
     one, several = simulated(pairs=1), simulated(pairs=3)
     assert several.sizes["record"] == 6 and several["pairs"] == 3
     assert several["pair"].values.tolist() == ["1", "1", "2", "2", "3", "3"]
-    assert several["record"].values[5] == "1600 N, 100 rpm, 80 degC, pair 3"
+    assert several["record"].values[5] == "1600 N, 100 r/min, 80 °C, pair 3"
     np.testing.assert_array_equal(several["contact_share"][:2], one["contact_share"])
     assert len(set(at_100_ohm(several)["contact_share"].values)) == 6
 

@@ -1,24 +1,32 @@
 """What others see who open a file: labels, units and checksums, as the conventions ask."""
 
+import functools
 import json
 
 import cf_units
 import netCDF4
 import pytest
+from compliance_checker.cf import util
 from compliance_checker.runner import CheckSuite, ComplianceChecker
 
 from lube.schema import FILES
 from lube.storage.provenance import global_attributes
 
 
-@pytest.fixture(scope="module")
-def checker():
-    """The compliance checker, its conventions loaded."""
+@pytest.fixture
+def checker(monkeypatch):
+    """The compliance checker, its conventions loaded.
+
+    It looks for the geophysical variables of a file in each of its checks: most of its time. The
+    files do not change meanwhile, so that once is enough.
+    """
+    found_once = functools.cache(util.get_geophysical_variables)
+    monkeypatch.setattr(util, "get_geophysical_variables", found_once)
     CheckSuite.load_all_available_checkers()
     return ComplianceChecker
 
 
-# What is asked of a file, and what of it may be found wanting.
+# Conventions with the checks that we run, and the complaints that we accept.
 CONVENTIONS = {
     # CF's own `time` counts from a date; that of a trace begins with the revolution.
     ("cf:1.11", "all_priorities"): {

@@ -6,8 +6,6 @@ import shutil
 import pytest
 from repository import Repository, copy_of_the_repository
 
-WITHOUT_CACHES = shutil.ignore_patterns("__pycache__")
-
 
 @pytest.fixture(scope="session")
 def smoke(tmp_path_factory, worker_id):
@@ -22,9 +20,9 @@ def smoke(tmp_path_factory, worker_id):
     with shared.with_suffix(".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if shared.exists():
-            return Repository(shutil.copytree(shared, folder, symlinks=True))
+            return Repository(shared).copied(folder)
         repository = made(folder)
-        shutil.copytree(folder, shared, symlinks=True, ignore=WITHOUT_CACHES)
+        repository.copied(shared)
         return repository
 
 
@@ -38,7 +36,7 @@ def made(folder):
 def archived(smoke, tmp_path_factory):
     """A repository with the smoke study archived by Snakemake; not to be changed."""
     folder = tmp_path_factory.mktemp("archived") / "repository"
-    repository = Repository(shutil.copytree(smoke.folder, folder, symlinks=True))
+    repository = smoke.copied(folder)
     said = repository.run("archive")
     assert "Archive: results/smoke/archive/smoke.zip" in said
     return repository
@@ -50,21 +48,9 @@ def archive(archived):
     return archived.results / "archive/smoke"
 
 
-@pytest.fixture(scope="session")
-def spare_folder(tmp_path_factory):
-    """Folder of all spare repositories in turn: compiled kernels depend on the path."""
-    return tmp_path_factory.mktemp("spare") / "repository"
-
-
 @pytest.fixture
-def spare(smoke, spare_folder):
+def spare(smoke, tmp_path_factory):
     """A copy of the repository with the smoke study done, free to be changed."""
-    caches = spare_folder / "lube/kernels/__pycache__"
-    kept = spare_folder.with_name("compiled")
-    if caches.exists():
-        caches.rename(kept)
-    shutil.rmtree(spare_folder, ignore_errors=True)
-    shutil.copytree(smoke.folder, spare_folder, symlinks=True, ignore=WITHOUT_CACHES)
-    if kept.exists():
-        kept.rename(caches)
-    return Repository(spare_folder)
+    copy = smoke.copied(tmp_path_factory.mktemp("spare") / "repository")
+    yield copy
+    shutil.rmtree(copy.folder, ignore_errors=True)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
+from numba.core.caching import _CacheLocator
 
 from lube.schema import STAGES
 from lube.study.resolve import resolved_content
@@ -99,6 +100,17 @@ class Repository:
         (self / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
         return "mine.yaml"
 
+    def copied(self, folder):
+        """A copy, with the machine code of its kernels under the name that Numba looks for."""
+        copy = Repository(shutil.copytree(self.folder, folder, symlinks=True))
+        named = [
+            _CacheLocator.get_suitable_cache_subpath(one / "lube/kernels/any.py")
+            for one in (self.folder, folder)
+        ]
+        for compiled in copy.folder.glob(f"lube/kernels/__pycache__/*/{named[0]}"):
+            compiled.rename(compiled.with_name(named[1]))
+        return copy
+
     def append(self, name, text):
         """Add a line to a file."""
         with (self / name).open("a", encoding="utf-8") as file:
@@ -118,7 +130,7 @@ class Repository:
 
     @contextlib.contextmanager
     def clean_slate(self):
-        """Remove all results for a while; compiled kernels, which depend on the path, stay."""
+        """Remove all results for a while; compiled kernels stay."""
         kept = self.folder.with_name("kept")
         kept.mkdir()
         for name in ("results", ".snakemake"):

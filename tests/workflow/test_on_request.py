@@ -15,7 +15,7 @@ OTHERS = ("areal", "patch", "film_shape", "flattening", "film_plane", "constant"
 
 def named(repository, *targets):
     """Which of the kinds and figures made on request the plan of some targets names."""
-    said = repository.run(*targets, "-n", "--quiet", "none")
+    said = repository.run(*targets, "-n")
     return {name for name in (*MADE, *OTHERS) if re.search(rf"\b{name}\b", said)}
 
 
@@ -29,7 +29,7 @@ def test_report_and_archive_have_what_was_made_on_request_and_ask_for_nothing_el
     report = (spare.results / "report.html").read_text("utf-8")
     for name in (f"figures/{FIGURE}.png", f"notebooks/{FIGURE}.ipynb", "data/film_profile.nc"):
         assert (archive / name).is_file()
-    assert f'resultPath: "{PICTURE}"' in report and "film_profile.nc" in report
+    assert f'"{PICTURE}":' in report and "film_profile.nc" in report
     assert not [name for name in OTHERS if (archive / f"data/{name}.nc").exists()]
     assert verify_archive(archive) == []
     assert "Nothing to be done" in spare.run()

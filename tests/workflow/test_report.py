@@ -7,7 +7,6 @@ import shutil
 from html import unescape
 
 import pytest
-from repository import Repository
 
 from lube.report.markdown import plain, title_and_text, to_html
 
@@ -15,8 +14,7 @@ from lube.report.markdown import plain, title_and_text, to_html
 @pytest.fixture(scope="module")
 def report(smoke, tmp_path_factory):
     """The report of the smoke study, as text."""
-    folder = tmp_path_factory.mktemp("reported") / "repository"
-    repository = Repository(shutil.copytree(smoke.folder, folder, symlinks=True))
+    repository = smoke.copied(tmp_path_factory.mktemp("reported") / "repository")
     repository.run("report")
     return (repository.results / "report.html").read_text("utf-8")
 
