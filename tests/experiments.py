@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from studies import OIL
 
-from lube.rig.at_records import model_at_records
+from lube.inference.at_records import model_at_records
 from lube.schema import label
 from lube.statistics.folding import PHASES
 

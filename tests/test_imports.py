@@ -26,7 +26,7 @@ FLOORS = [
     {"grid"},
     {"study"},
     {"contact"},
-    {"rig", "storage"},
+    {"rig", "inference", "storage"},
     {"recordings"},
     {"stages"},
     {"report"},

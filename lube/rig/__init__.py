@@ -1,1 +1,1 @@
-"""The twin-disc rig: what it would record, and what records tell."""
+"""The simulated rig: what it records, and the share of contact in a record."""

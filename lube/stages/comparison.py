@@ -18,8 +18,8 @@ import scipy.special
 import xarray as xr
 
 from lube.contact.ensemble import windows_in
-from lube.rig.at_records import model_at_records
-from lube.rig.study_shares import at_comparison_threshold, levels_named, log_lines
+from lube.inference.at_records import model_at_records
+from lube.inference.study_shares import at_comparison_threshold, levels_named, log_lines
 from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
@@ -47,7 +47,7 @@ def compare(model: xr.Dataset, experiment: xr.Dataset, levels: xr.Dataset) -> xr
     Parameters
     ----------
     model : xarray.Dataset
-        From `lube.rig.at_records.model_at_records`.
+        From `lube.inference.at_records.model_at_records`.
     experiment : xarray.Dataset
         The ``experiment`` dataset that it was made for.
     levels : xarray.Dataset

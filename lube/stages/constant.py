@@ -8,8 +8,8 @@ import scipy.special
 import xarray as xr
 
 from lube.ehl.film_formulas import formula
+from lube.inference.map_curves import curve_at
 from lube.physics import dimensionless
-from lube.rig.map_curves import curve_at
 from lube.schema import OPERATING_DIMS, label
 from lube.study.study import Study
 from lube.types import Datasets

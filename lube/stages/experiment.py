@@ -14,11 +14,11 @@ import xarray as xr
 from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError, LubeError
 from lube.grid.operating_points import OperatingPoint, operating_points
+from lube.inference.study_shares import levels_named
 from lube.recordings.manifest import Entry, Manifest, read_manifest
 from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 from lube.rig.record import LEVELS, TRACE_SAMPLES, Conditions, Record
 from lube.rig.simulator import SimulatedRig
-from lube.rig.study_shares import levels_named
 from lube.schema import LIMITS, label, values_with_limits
 from lube.statistics.folding import PHASES
 from lube.study.study import Study

@@ -16,8 +16,8 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.rig.fits import fit_alpha, fit_layer_strength, study_strength
-from lube.rig.map_curves import curve_at
+from lube.inference.fits import fit_alpha, fit_layer_strength, study_strength
+from lube.inference.map_curves import curve_at
 from lube.schema import AT_RECORDS, label, values_with_limits
 from lube.statistics.curves import film_interval
 from lube.statistics.one_pair import quantile, standard_error

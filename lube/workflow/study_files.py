@@ -239,7 +239,7 @@ class StudyFiles:
         experiment = Path(self.result("experiment.nc"))
         if not experiment.exists():
             return None
-        from lube.rig.study_shares import refused_in_one_line
+        from lube.inference.study_shares import refused_in_one_line
         from lube.storage.netcdf import load
 
         with contextlib.suppress(LubeError):  # of an older version, not made by this run

@@ -35,9 +35,15 @@ from lube.contact.rough_pair import drawn, roughness_batch
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.operating_points import operating_points
+from lube.inference.at_records import model_at_records
+from lube.inference.fits import (
+    ALPHA_FACTORS,
+    alpha_logits,
+    fit_records,
+    strength_logits,
+    study_strength,
+)
 from lube.recordings.manifest import Entry, Manifest, read_manifest
-from lube.rig.at_records import model_at_records
-from lube.rig.fits import ALPHA_FACTORS, alpha_logits, fit_records, strength_logits, study_strength
 from lube.rig.simulator import SimulatedRig
 from lube.schema import LIMITS, label
 from lube.stages.comparison import compare

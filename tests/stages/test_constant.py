@@ -5,7 +5,7 @@ import pytest
 
 from lube.contact.ensemble import gather_map
 from lube.contact.rough_pair import roughness_batch
-from lube.rig.map_curves import curve_at
+from lube.inference.map_curves import curve_at
 from lube.stages.constant import FILMS, constant_effect
 from lube.stages.film import film_table
 from lube.stages.master import contact_map

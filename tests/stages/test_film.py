@@ -12,7 +12,7 @@ from lube import schema
 from lube.ehl import film_formulas
 from lube.errors import DataError, LubeError
 from lube.grid.films import film_at
-from lube.rig.at_records import film_at_records
+from lube.inference.at_records import film_at_records
 from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
 from lube.study.oil_properties import lubricant_table

@@ -6,8 +6,8 @@ import xarray as xr
 from experiments import experiment_at, experiment_of
 
 from lube import contact_statistics, film_table
-from lube.rig.fits import fit_alpha, fit_layer_strength
-from lube.rig.map_curves import curve_at
+from lube.inference.fits import fit_alpha, fit_layer_strength
+from lube.inference.map_curves import curve_at
 from lube.schema import LIMITS, check, label
 from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
 from lube.study.oil_properties import lubricant_table

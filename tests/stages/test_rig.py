@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lube.rig.study_shares import over_grid
+from lube.inference.study_shares import over_grid
 from lube.schema import EXPERIMENT_DIMS
 from lube.stages.experiment import simulated_experiment
 from lube.stages.rig import rig_records

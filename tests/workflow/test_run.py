@@ -7,7 +7,7 @@ import pytest
 from repository import products_of
 from studies import SMOKE_DATASETS
 
-from lube.rig.study_shares import over_grid
+from lube.inference.study_shares import over_grid
 from lube.schema import STAGES, check, forerunners
 from lube.storage.netcdf import load
 

@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 from experiments import experiment_of
 
+from lube.inference.at_records import film_at_records
+from lube.inference.fits import _lambda_ratios
 from lube.physics.starvation import starvation_factor
-from lube.rig.at_records import film_at_records
-from lube.rig.fits import _lambda_ratios
 from lube.study.oil_properties import lubricant_table
 
 CORRECTED = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 0.4e-3}

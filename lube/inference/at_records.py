@@ -14,7 +14,7 @@ import xarray as xr
 from lube.contact.rough_pair import drawn
 from lube.grid.films import film_at
 from lube.grid.operating_points import at_slip
-from lube.rig.record_scatter import record_scatter, study_windows
+from lube.inference.record_scatter import record_scatter, study_windows
 from lube.schema import OPERATING_DIMS
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import RollerPair
@@ -44,7 +44,7 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     -------
     xarray.Dataset
         The variables of `film_at_records`; ``breakthrough_probability`` over (realisation,
-        film_formula, record); the results of `lube.rig.record_scatter.record_scatter` over the
+        film_formula, record); the results of `lube.inference.record_scatter.record_scatter` over the
         same dimensions, most without realisation; and the attributes ``travel`` and
         ``longest_wavelength``, both m, of one realisation.
 

@@ -56,7 +56,7 @@ def record_scatter(
     Parameters
     ----------
     model : xarray.Dataset
-        Films at the records, from `lube.rig.at_records.film_at_records`.
+        Films at the records, from `lube.inference.at_records.film_at_records`.
     experiment : xarray.Dataset
         With the slide-to-roll ratio and the number of revolutions of each record.
     probability : numpy.ndarray

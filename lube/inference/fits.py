@@ -11,7 +11,7 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.ehl.film_formulas import formula
-from lube.rig.map_curves import curve_at, layer_curve_at, logits_on
+from lube.inference.map_curves import curve_at, layer_curve_at, logits_on
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile

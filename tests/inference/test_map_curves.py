@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy.special import expit, logit
 
-from lube.rig.map_curves import curve_at, layer_curve_at, logits_on
+from lube.inference.map_curves import curve_at, layer_curve_at, logits_on
 
 WIDTHS = np.array([0.5e-3, 1e-3, 2e-3])
 RATIOS = np.geomspace(0.5, 2.0, 9)

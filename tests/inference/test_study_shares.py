@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from experiments import experiment_at, experiment_of
 
-from lube.rig.study_shares import (
+from lube.inference.study_shares import (
     at_comparison_threshold,
     levels_named,
     log_lines,

@@ -12,7 +12,7 @@ from studies import OIL
 from lube import contact_statistics, film_table
 from lube.contact.rough_pair import roughness_batch
 from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
-from lube.rig.record_scatter import combined_deviations
+from lube.inference.record_scatter import combined_deviations
 from lube.statistics.one_pair import repeat_factor
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.lubricant_record import load_record
@@ -182,7 +182,9 @@ def test_a_part_of_a_turn_scatters_as_parts_of_the_realisations_do(busy, slip):
     lines = roughness_batch(study.line_spec, study.seed, range(study.realisations))
     factor = layer_factor_of(study.line_spec, study.rollers.reduced_modulus, study.boundary_layer)
     thickness = model["film_thickness"].values
-    points = whole_numbers(thickness, np.full(thickness.size, model["contact_half_width"]), study.line_spec)
+    points = whole_numbers(
+        thickness, np.full(thickness.size, model["contact_half_width"]), study.line_spec
+    )
     half, ratios = study.line_spec.points[0] // 2, speed_ratios(slip)
     shares = []
     for pair in (line_pair(lines, number) for number in range(study.realisations)):

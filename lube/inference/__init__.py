@@ -1,0 +1,1 @@
+"""What records tell: the model at their conditions, their scatter, factors fitted to them."""
