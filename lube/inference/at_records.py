@@ -44,8 +44,8 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     -------
     xarray.Dataset
         The variables of `film_at_records`; ``breakthrough_probability`` over (realisation,
-        film_formula, record); the results of `lube.inference.record_scatter.record_scatter` over the
-        same dimensions, most without realisation; and the attributes ``travel`` and
+        film_formula, record); the results of `lube.inference.record_scatter.record_scatter` over
+        the same dimensions, most without realisation; and the attributes ``travel`` and
         ``longest_wavelength``, both m, of one realisation.
 
         The probabilities are those of one revolution of pure rolling, at the film of the record's
