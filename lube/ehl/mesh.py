@@ -130,7 +130,7 @@ def fitted_mesh(
 
 
 def _smooth(values):
-    """Take out what alternates from node to node.
+    """Remove oscillations from node to node.
 
     A pressure that does so deflects nothing midway between the nodes. Where the oil is almost solid
     it drives nothing either, and is no reason for finer nodes.

@@ -39,7 +39,7 @@ def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tupl
 
 
 def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Dataset:
-    """Select the film at one slip, on which it depends by inlet shear heating.
+    """Select one slide-to-roll ratio; the film depends on it only with inlet shear heating.
 
     Parameters
     ----------

@@ -131,7 +131,7 @@ def strip_contacts(
     broken = contacts * sharp_surface_summit_share(films, moments, sharp)
     found = {"expected_contacts": contacts, "expected_breakthroughs": broken}
     strips = np.where(contacts > MANY, FEWER_STRIPS, STRIPS)
-    # Of a parabola as high as summits rise above the film on average.
+    # Size of the smallest contact: a parabola as high as the mean summit above the film.
     smallest = math.sqrt(8.0 / moments[1]) * moments[0] / films.max()
     surface = isotropic_surface(spec, widths.max(), smallest)
     found |= _sampled(spec, surface, (films, widths, strips), sharp, length, seed, threads)

@@ -102,7 +102,7 @@ def film_shape_probabilities(
 
 
 def _edges(spec, film, thickness, boundary_layer, work):
-    """Breakthrough judged by whole runs, and that of the pieces in the window over it.
+    """Breakthrough probability from uncut runs, and its ratio when the window's edges cut them.
 
     Counted in pure rolling, in the first `PAIRS` pairs of lines of the study's seed. Where the
     lines differ in length, the second is continued until the first ends.

@@ -35,7 +35,7 @@ PAIRS = 40
 """Pairs of lines for the first film formula, enough for a relative standard error of 2 %; errors
 follow from the scatter between them."""
 FEWER_PAIRS = 8
-"""Pairs of lines for the other film formulas, the first of these."""
+"""The first of these pairs, used for the other film formulas."""
 _SLIP = "slide_to_roll_ratio"
 _AS_DRAWN = (
     "roughness_deformation: got lines that the oil flattens, need none: importance sampling is for "

@@ -274,7 +274,7 @@ def check_width(spec: LineSpec, width: float, what: str) -> None:
 
 
 def _key(roller, own, name):
-    """Key of a value of a roller's roughness: its own, or else that of the study."""
+    """Configuration key that set a value of the roughness: the roller's, else the study's."""
     is_own = getattr(own, name, None) is not None
     return f"rollers.{roller}.roughness.{name}" if is_own else f"roughness.{name}"
 
@@ -329,8 +329,8 @@ def _check_roll_off(longest, shortest, roll_off, key):
 def _check_perimeter(perimeter, longest, shortest, roller):
     if perimeter < longest or math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
         raise StudyError(
-            f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short, need a "
-            f"whole number of waves between {shortest:.3g} and {longest:.3g} m long around it"
+            f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short; it "
+            f"must hold a whole number of waves between {shortest:.3g} and {longest:.3g} m"
         )
 
 

@@ -385,7 +385,7 @@ class Study(StrictModel):
         if simulated and self.rig.drift > 0.0 and not self.line_spec.is_gaussian:
             raise ValueError(
                 f"rig.drift: got {self.rig.drift:g}, need 0 for a simulated rig with roughness "
-                "that is measured or not Gaussian: a mixture of old and new lines would not keep it"
+                "that is measured or not Gaussian: a mixture of lines has another distribution"
             )
         largest = max(self.experiment.thresholds) * self.experiment.release_ratio
         voltage = divider_voltage(largest, self.rig)

@@ -40,7 +40,8 @@ LEAST_DENSITIES = 6
 """Fewest densities that the search for the instrument's resolution keeps."""
 
 LEAST_CHANGE = 2.0
-"""A roll-off nearer than this factor to either end of the spectrum cannot be told from none."""
+"""A roll-off nearer than this factor to either end of the spectrum cannot be distinguished from
+no roll-off."""
 
 
 class Estimate(NamedTuple):

@@ -51,7 +51,7 @@ def input_paths(files: Files) -> list[str]:
     paths = sorted({os.path.relpath(file) for file in files})
     for path in paths:
         if "{" in path or "}" in path:
-            raise LubeError(f"{path}: got a name with braces, need one without")
+            raise LubeError(f"{path}: the name of a file must not contain {{ or }}")
     return paths
 
 
