@@ -22,6 +22,7 @@ from lube.grid.discretise import (
 from lube.kernels.motion import surface_position
 from lube.kernels.shaped import shaped_statistics, shaped_trace
 from lube.kernels.strips import strip_statistics, strip_trace
+from lube.kernels.whole_runs import whole_run_steps
 from lube.physics.flattening import amplitude_ratio
 from lube.surfaces.rare_contact import RUN_NUMBERS, rare_contact, rare_contact_under
 from lube.surfaces.synthetic import LineSpecLike
@@ -169,6 +170,27 @@ class ContactWindows:
                 motion = lines, ratios, steps, steps
                 broken[point] = shaped_trace(*motion, film.film, film.before, self._factor)[:, 1]
         return broken
+
+    def count_uncut(self, pair: Pair) -> Array:
+        """Count breakthroughs of whole segments, of which a part lies in the window.
+
+        Elsewhere the edges of the window cut segments, and the parts inside are judged.
+
+        Parameters
+        ----------
+        pair : tuple of numpy.ndarray
+            Two lines, int32 height steps, that roll without slip. If they differ in length, the
+            second is continued until the first ends.
+
+        Returns
+        -------
+        numpy.ndarray
+            Share of the time steps with a broken boundary layer under flat films, shape (P,); NaN
+            where the film is not known.
+        """
+        line = pair[0] + np.resize(pair[1], pair[0].size)
+        steps = whole_run_steps(line, self._films, self.half_windows, self._factor)
+        return np.where(self.unknown, np.nan, steps / line.size)
 
     def sample(self, spec: LineSpecLike, seed: int, number: int) -> Pair:
         """Estimate probabilities and rates at any rarity, on one pair of Gaussian lines.

@@ -240,19 +240,12 @@ _ROWS = (
         target="computed",
     ),
     Stage(
-        "film_shape",
-        "contact under flat films and the computed one, some minutes",
-        inputs=("film", "film_profile"),
-        values=_LINES | _LAYER,
-        target="computed",
-        only_with=("line_spec.is_gaussian",),
-        parallel=True,
-    ),
-    Stage(
-        "flattening",
-        "contact of lines that the oil has flattened, some minutes",
-        inputs=("film",),
-        values=_LINES | _LAYER | {"realisations": "realisations"},
+        "variants",
+        "contact if one choice of the model is made otherwise, some minutes",
+        inputs=("lubricant", "film", "film_profile"),
+        values=_LINES
+        | _LAYER
+        | {"realisations": "realisations", "roughness_deformation": "roughness_deformation"},
         target="computed",
         parallel=True,
     ),
@@ -262,13 +255,6 @@ _ROWS = (
         inputs=("lubricant",),
         values={"reduced_modulus": "rollers.reduced_modulus"},
         target="computed",
-    ),
-    Stage(
-        "constant",
-        "contact by Eq. 3 as printed, by its source and by the computed film",
-        inputs=("lubricant", "film", "master"),
-        target="computed",
-        **_MAPPED,
     ),
     Stage(
         "coverage",

@@ -1,0 +1,212 @@
+"""The variants stage: what contact becomes if one choice of the study is made otherwise.
+
+All variants are computed on the same lines, so their ratios are better known than the probabilities
+themselves.
+"""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from lube.contact.windows import ContactWindows
+from lube.grid.films import film_at
+from lube.grid.operating_points import at_slip
+from lube.physics.flattening import amplitude_ratio
+from lube.physics.hertz import hertz_gap
+from lube.schema import POINT_DIMS, label, values_with_limits
+from lube.statistics.confidence import mean_interval, probability_interval, ratio_interval
+from lube.study.study import Study
+from lube.surfaces.synthetic import draw_realisation, wave_amplitudes
+from lube.types import Datasets
+
+PAIRS = 40
+"""Pairs of lines on which contact is sampled; errors follow from the scatter between them."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """The study with some of its choices made otherwise; None is the study's own choice.
+
+    Attributes
+    ----------
+    film : str, optional
+        Film formula, or ``computed``, the central film by Reynolds' equation; of the study, its
+        first formula.
+    film_shape : str, optional
+        ``flat`` and cut off at the edges of the contact; ``open``, flat with the gap of the dry
+        contact around it; or ``computed``, the shape by Reynolds' equation.
+    roughness_deformation : str, optional
+        As in a study.
+    is_uncut : bool, optional
+        Whether the boundary layer is judged on whole segments, of which a part lies in the window;
+        else on the parts that the edges of the window leave.
+    """
+
+    film: str | None = None
+    film_shape: str | None = None
+    roughness_deformation: str | None = None
+    is_uncut: bool = False
+
+    def of(self, study: Study) -> "Variant":
+        """Return the variant with the study's own choices in place of None."""
+        return Variant(
+            self.film or study.film_formulas[0],
+            self.film_shape or study.film_shape,
+            self.roughness_deformation or study.roughness_deformation,
+            self.is_uncut,
+        )
+
+    @property
+    def is_flattened(self) -> bool:
+        """Whether the oil flattens the lines."""
+        return self.roughness_deformation != "none"
+
+
+STUDY = "study"
+VARIANTS = {
+    STUDY: Variant(),
+    "paper": Variant(film="paper"),
+    "pan-hamrock": Variant(film="pan-hamrock"),
+    "computed, flat": Variant("computed", "flat"),
+    "computed, open": Variant("computed", "open"),
+    "computed": Variant("computed", "computed"),
+    "as drawn": Variant(roughness_deformation="none"),
+    "flattened": Variant(roughness_deformation="venner-1997"),
+    "uncut": Variant(film_shape="flat", roughness_deformation="none", is_uncut=True),
+}
+"""All variants by name, the study's own first; the others are compared with it."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``variants.nc``; see `lube.stages`.
+
+    Contact is sampled at any rarity if the study's lines are Gaussian and as drawn. Variants that
+    cannot be sampled, and all others, are counted on the study's realisations.
+    """
+    chosen = {name: variant.of(study) for name, variant in VARIANTS.items()}
+    own, spec = chosen[STUDY], study.line_spec
+    films = {each: _film(each, study, inputs) for each in dict.fromkeys(chosen.values())}
+    windows = {
+        each: ContactWindows(spec, film, study.boundary_layer, each.is_flattened)
+        for each, film in films.items()
+    }
+    is_sampled = study.is_sampled
+    sampled = [each for each in films if is_sampled and not (each.is_flattened or each.is_uncut)]
+    counted = [own, *(each for each in films if each not in sampled and each != own)]
+    found = _counted(counted, windows, study, threads)
+    if sampled:
+        found |= _sampled(sampled, windows, study, threads)
+    film = films[own]
+    shape, dims = film["film_thickness"].shape, ("variant", *POINT_DIMS)
+    table = {
+        name: (dims, np.reshape([found[each][name] for each in chosen.values()], (-1, *shape)))
+        for name in found[own]
+    }
+    thickness = np.array([films[each]["film_thickness"].values for each in chosen.values()])
+    ratios = [_roughness_ratio(each, spec, film) for each in chosen.values()]
+    table |= {
+        "film_thickness": (dims, thickness),
+        "lambda_ratio": (dims, thickness / film["composite_rms_roughness"].item()),
+        "roughness_ratio": (dims, ratios),
+        "is_sampled": ("variant", [int(each in sampled) for each in chosen.values()]),
+        "film_formula": ((), study.film_formulas[0]),
+    }
+    coordinates = {name: film[name] for name in POINT_DIMS} | {"variant": list(VARIANTS)}
+    return label(xr.Dataset(table, coordinates), "variants")
+
+
+def _film(variant, study, inputs):
+    """Film of a variant, in pure rolling or at the study's first slip."""
+    film = at_slip(inputs["film"]).isel(film_formula=0).transpose(*POINT_DIMS, ...)
+    profile = inputs["film_profile"].transpose(*POINT_DIMS, "film_position")
+    is_heated = study.inlet_shear_heating != "none"
+    thinner = film["inlet_shear_heating_factor"] if is_heated else 1.0
+    if variant.film == "computed":
+        film = film.assign(film_thickness=thinner * profile["central_film"])
+        film["formula_place"] = "central"
+    elif variant.film != study.film_formulas[0]:
+        levels = study.rough_rollers, film["force"], film["speed"], [variant.film]
+        meniscus = study.film_model["inlet_meniscus"]
+        other = film_at(inputs["lubricant"], *levels, inlet_meniscus=meniscus).isel(film_formula=0)
+        film = film.assign(film_thickness=thinner * other["film_thickness"])
+        film["formula_place"] = other["formula_place"]
+    film["film_thickness"] = film["film_thickness"].transpose(*POINT_DIMS)
+    if variant.film_shape == "flat":
+        return film.drop_vars("film_profile", errors="ignore")
+    if variant.film_shape == "computed":
+        return film.assign(film_profile=profile["film"])
+    gap = profile["film_position"].copy(data=hertz_gap(profile["film_position"].values))
+    gap = gap.drop_attrs() * film["contact_half_width"] ** 2 / film["reduced_radius"]
+    return film.assign(film_profile=film["film_thickness"] + gap)
+
+
+def _sampled(variants, windows, study, threads):
+    """Probabilities by importance sampling."""
+
+    def run(number):
+        pair = study.line_spec, study.seed, number
+        return [windows[each].sample(*pair)[0] for each in variants]
+
+    values = _on_pairs(run, PAIRS, threads)
+    return _with_limits(variants, values, np.minimum(mean_interval(values), 1.0))
+
+
+def _counted(variants, windows, study, threads):
+    """Probabilities counted on the study's realisations."""
+
+    def run(number):
+        pair = draw_realisation(study.line_spec, study.seed, number)
+        return [_count(each, windows[each], pair) for each in variants]
+
+    values = _on_pairs(run, study.realisations, threads)
+    widths = (2 * windows[variants[0]].half_windows + 1) * study.line_spec.spacing
+    independent = study.line_spec.independent_windows(widths)
+    return _with_limits(variants, values, probability_interval(values, independent))
+
+
+def _count(variant, windows, pair):
+    if not variant.is_uncut:
+        return windows.count(pair)[:, :2].T
+    breakthrough = windows.count_uncut(pair)
+    return [np.full_like(breakthrough, np.nan), breakthrough]
+
+
+def _on_pairs(run, pairs, threads):
+    with ThreadPoolExecutor(threads) as pool:
+        return np.array(list(pool.map(run, range(pairs))))
+
+
+def _with_limits(variants, values, means):
+    """Probabilities of each variant, and their ratios to those of the first on the same lines."""
+    contact, breakthrough = np.moveaxis(np.array(means), 2, 0)
+    ratio = np.array(ratio_interval(values[:, :, 1], values[:, :1, 1]))
+    return {
+        each: values_with_limits("geometric_contact_probability", contact[:, at])
+        | values_with_limits("breakthrough_probability", breakthrough[:, at])
+        | values_with_limits("probability_ratio", ratio[:, at])
+        for at, each in enumerate(variants)
+    }
+
+
+def _roughness_ratio(variant, spec, film):
+    """Rms height of both lines together, as the oil leaves it, over that as drawn."""
+    if not variant.is_flattened:
+        return np.ones(film["film_thickness"].shape)
+    waves = [wave_amplitudes(spec, roller) for roller in range(len(spec.lines))]
+    power = np.concatenate([amplitudes**2 for _, amplitudes in waves])
+    wavelength = np.concatenate(
+        [
+            points * spec.spacing / (first + np.arange(amplitudes.size))
+            for points, (first, amplitudes) in zip(spec.points, waves, strict=True)
+        ]
+    )
+
+    def ratio(half_width, *moes):
+        kept = amplitude_ratio(wavelength / half_width, *moes)
+        return np.sqrt(np.sum(kept**2 * power) / np.sum(power))
+
+    names = ("contact_half_width", "moes_load", "moes_material")
+    contact = (film[name].drop_attrs() for name in names)
+    return xr.apply_ufunc(ratio, *contact, vectorize=True).transpose(*POINT_DIMS).values
