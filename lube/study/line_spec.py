@@ -274,7 +274,7 @@ def check_width(spec: LineSpec, width: float, what: str) -> None:
 
 
 def _key(roller, own, name):
-    """Configuration key that set a value of the roughness: the roller's, else the study's."""
+    """Name the key that set a value of the roughness: the roller's, else the study's."""
     is_own = getattr(own, name, None) is not None
     return f"rollers.{roller}.roughness.{name}" if is_own else f"roughness.{name}"
 

@@ -1,0 +1,128 @@
+"""Contact of a study with one choice made otherwise: the same lines, the other stages' numbers."""
+
+import numpy as np
+import pytest
+from made import made
+
+from lube.physics.flattening import amplitude_ratio
+from lube.schema import POINT_DIMS
+from lube.stages.film import film_table
+from lube.stages.variants import STUDY, VARIANTS, make
+from lube.surfaces.synthetic import draw_realisation
+
+GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (60.0, 80.0)}
+FORMULAS = ("paper", "pan-hamrock", "computed")
+KINDS = ("lubricant", "film", "film_profile", "contact", "tail", "variants")
+
+
+@pytest.fixture(scope="module")
+def few(busy_study):
+    """A study of four operating points and few realisations, its first film formula `paper`."""
+    grid = busy_study.operating_grid.model_copy(update=GRID)
+    changes = {"operating_grid": grid, "realisations": 6, "film_formulas": ("paper",)}
+    return busy_study.model_copy(update=changes)
+
+
+@pytest.fixture(scope="module")
+def files(few):
+    return made(few, KINDS)
+
+
+@pytest.fixture(scope="module")
+def found(files):
+    return files["variants"].squeeze(["lubricant", "speed"])
+
+
+def close(found, expected, **tolerance):
+    np.testing.assert_allclose(found, expected.transpose(*found.dims), **tolerance)
+
+
+def test_the_studys_own_choices_are_sampled_as_in_the_tail(found, files):
+    own, tail = found.sel(variant=STUDY), files["tail"].squeeze()
+    for name in ("breakthrough_probability", "geometric_contact_probability"):
+        for end in ("", "_lower", "_upper"):
+            close(own[name + end], tail[name + end], rtol=1e-12)
+    assert (own["probability_ratio"] == 1.0).all()
+    same = found.sel(variant=["paper", "as drawn"])  # as the study has them
+    assert (same["breakthrough_probability"] == own["breakthrough_probability"]).all()
+
+
+def test_films_are_those_of_the_film_stage(found, files, few):
+    film = film_table(files["lubricant"], few.rollers, GRID["force"], GRID["speed"], FORMULAS)
+    film = film.squeeze()
+    for name, formula in zip(("paper", "pan-hamrock", "computed, flat"), FORMULAS, strict=True):
+        expected = film["film_thickness"].sel(film_formula=formula)
+        close(found["film_thickness"].sel(variant=name), expected, rtol=1e-5)
+    ratio = found["film_thickness"].sel(variant="pan-hamrock") / found["film_thickness"][0]
+    np.testing.assert_allclose(ratio, 2.922 / 2.992, rtol=1e-12)
+
+
+def test_a_thinner_film_has_more_contact_and_every_ratio_its_interval(found):
+    printed, source = (found["breakthrough_probability"].sel(variant=one) for one in FORMULAS[:2])
+    assert (source > printed).all()
+    known = found["probability_ratio"] > 0.0
+    for end, sign in (("_lower", -1.0), ("_upper", 1.0)):
+        distance = found[f"probability_ratio{end}"] - found["probability_ratio"]
+        assert (sign * distance.where(known, 0.0) >= 0.0).all()
+
+
+def test_flattened_lines_are_counted_as_in_the_contact_stage(few, found):
+    flattened = few.model_copy(update={"roughness_deformation": "venner-1997"})
+    contact = made(flattened, ("lubricant", "film", "contact"))["contact"].squeeze()
+    here = found.sel(variant="flattened")
+    assert here["is_sampled"] == 0
+    for end, mean in (("", "_mean"), ("_lower", "_lower"), ("_upper", "_upper")):
+        expected = contact[f"breakthrough_probability{mean}"]
+        close(here[f"breakthrough_probability{end}"], expected, rtol=1e-12)
+    assert (here["probability_ratio"] < 1.0).all()
+
+
+def test_whole_segments_break_less_often_than_the_parts_in_the_window(found, files):
+    """The more so the narrower the contact; and the ratio is to the parts on the same lines."""
+    here = found.sel(variant="uncut")
+    parts = here["breakthrough_probability"] / here["probability_ratio"]
+    close(parts, files["contact"]["breakthrough_probability_mean"].squeeze(), rtol=1e-12)
+    ratio = here["probability_ratio"]
+    assert ((ratio > 0.5) & (ratio < 1.0)).all() and (ratio.diff("force") > 0.0).all()
+
+
+def test_where_the_lines_are_not_gaussian_all_is_counted(few):
+    heights = few.roughness.model_copy(update={"skewness": -1.0, "kurtosis": 5.0})
+    worn = few.model_copy(update={"roughness": heights, "realisations": 2})
+    files = made(worn, KINDS)
+    found, contact = files["variants"].squeeze(), files["contact"].squeeze()
+    assert not found["is_sampled"].any()
+    own = found["breakthrough_probability"].sel(variant=STUDY)
+    close(own, contact["breakthrough_probability_mean"], rtol=1e-12)
+    assert found["breakthrough_probability"].notnull().all()
+
+
+def test_a_film_that_did_not_converge_is_unknown_in_its_variants_alone(few, files, found):
+    profile = files["film_profile"].transpose(*POINT_DIMS, ...).copy(deep=True)
+    for name in ("film", "central_film"):
+        profile[name][0, 0, 0, 1] = np.nan
+    holed = make(few, files | {"film_profile": profile}).squeeze()["breakthrough_probability"]
+    expected = found["breakthrough_probability"].copy()
+    computed = [number for number, one in enumerate(VARIANTS.values()) if one.film == "computed"]
+    expected[computed, 0, 1] = np.nan
+    np.testing.assert_array_equal(holed, expected)
+
+
+def test_the_roughness_ratio_by_a_plain_transform(few, files):
+    """All waves of both lines one by one, from the lines as drawn."""
+    here = {"temperature": -1, "speed": 0, "force": -1, "lubricant": 0}
+    point, power = files["film"].isel(here), np.zeros(2)
+    moes = point["moes_load"].item(), point["moes_material"].item()
+    for number in (0, 1):
+        for line in draw_realisation(few.line_spec, few.seed, number):
+            waves = np.fft.rfft(line)[1:]
+            wavelength = line.size * few.line_spec.spacing / np.arange(1, waves.size + 1)
+            kept = amplitude_ratio(wavelength / point["contact_half_width"].item(), *moes)
+            power += [np.sum(np.abs(waves) ** 2), np.sum(np.abs(kept * waves) ** 2)]
+    found = files["variants"].sel(variant="flattened")["roughness_ratio"].isel(here)
+    assert found.item() == pytest.approx(np.sqrt(power[1] / power[0]), rel=0.03)
+
+
+def test_every_variant_is_named_once(found):
+    assert found["variant"].values.tolist() == list(VARIANTS)
+    assert len(set(VARIANTS.values())) == len(VARIANTS)
