@@ -68,3 +68,12 @@ def test_the_papers_grid():
     pressure = hertz.maximum_pressure(force, LENGTH, RADIUS, modulus)
     np.testing.assert_allclose(pressure, [121e6, 485e6], rtol=3e-3)
     assert int(width[1] / (2.0 * np.pi * 0.05 / 1e6)) == 1337
+
+
+def test_the_gap_is_the_parabola_far_away_and_the_integral_of_its_slope():
+    distance = np.linspace(1.0, 3.0, 20001)
+    slope = np.sqrt(distance**2 - 1.0)  # of a half-plane beside Hertz' pressure
+    steps = 0.5 * (slope[1:] + slope[:-1]) * np.diff(distance)
+    assert hertz.hertz_gap(distance)[-1] == pytest.approx(steps.sum(), rel=1e-5)
+    assert hertz.hertz_gap(np.array([-1e4]))[0] == pytest.approx(0.5e8, rel=1e-6)
+    assert np.all(hertz.hertz_gap(np.linspace(-1.0, 1.0, 11)) == 0.0)

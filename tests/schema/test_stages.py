@@ -11,7 +11,6 @@ from lube.errors import LubeError
 from lube.schema import DATASETS, FILES, ON_REQUEST, STAGES, SUMMARIES, forerunners
 from lube.stages import maker
 from lube.stages.areal import strip_contacts
-from lube.stages.film_shape import film_shape_probabilities
 from lube.stages.patch import patch_contact
 from lube.study.study import load_study
 
@@ -64,8 +63,6 @@ def test_what_the_registry_promises_is_what_the_stages_can_make(name, tmp_path):
     assert study.has("areal") == (not areal and study.follows_master_map)
     assert study.has("areal_gauge") == (study.has("areal") and study.has("gauge"))
     assert study.has("patch") == (not refuses(patch_contact, spec, None, None))
-    shaped = refuses(film_shape_probabilities, spec, None, None, layer, 1)
-    assert study.has("film_shape") == (not shaped)
     assert study.has("surface") == bool(study.topographies)
     for stage in ("rig", "experiment", "comparison"):
         assert study.has(stage) == (study.resistivity != "insulator")

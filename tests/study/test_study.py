@@ -129,7 +129,7 @@ def changed_stages(paper_with):
 
 MECHANICS = {"contact", "tail", "areal", "trace", "experiment"}
 # Those that are for pure rolling too.
-LAYER = MECHANICS | {"master", "height_distribution", "film_shape", "flattening"}
+LAYER = MECHANICS | {"master", "height_distribution", "variants"}
 LINES = LAYER | {"roughness", "patch"}
 SPECTRUM = LINES | {"surface"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
@@ -150,14 +150,14 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("rollers.first.radius", "60 mm", SPECTRUM | {"film"}),
         ("film_formulas", ["paper"], {"film"}),
         ("film_shape", "computed", {"film"}),
-        ("roughness_deformation", "venner-1997", MECHANICS),
+        ("roughness_deformation", "venner-1997", MECHANICS | {"variants"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
         ("traces.1.temperature", "60 degC", {"trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"experiment"}),
         ("rig.drift", 0.1, {"experiment"}),
         ("experiment.threshold", "10 ohm", {"experiment"}),
-        ("realisations", 128, {"coverage", "flattening"}),
+        ("realisations", 128, {"coverage", "variants"}),
         ("batch_size", 8, set()),
         ("kept_realisations", [0, 1], set()),
         ("name", "another", set()),
@@ -173,7 +173,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
 )
 def test_what_reads_the_master_map_needs_flat_films_and_lines_as_drawn(paper_with, change):
     paper, study = load_study(PAPER), load_study(paper_with(change))
-    mapped = {"master", "gauge", "constant", "areal", "areal_gauge", "height_distribution"}
+    mapped = {"master", "gauge", "areal", "areal_gauge", "height_distribution"}
     assert all(paper.has(stage) for stage in mapped)
     assert {stage for stage in STAGES if paper.has(stage) and not study.has(stage)} == mapped
 

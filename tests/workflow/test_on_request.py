@@ -10,7 +10,7 @@ from lube.archive.verify import verify_archive
 FIGURE = "fig29_film_profile"
 PICTURE = f"{RESULTS}/figures/{FIGURE}.png"
 MADE = {"film_profile", FIGURE}
-OTHERS = ("areal", "patch", "film_shape", "flattening", "film_plane", "constant", "speed")
+OTHERS = ("areal", "patch", "variants", "film_plane", "speed")
 
 
 def named(repository, *targets):
