@@ -57,7 +57,7 @@ def imported_modules(code: str) -> tuple[str, ...]:
     """
     found, waiting = [], [ast.parse(code)]
     while waiting:
-        node = waiting.pop()
+        node = waiting.pop(0)
         # An expression holds no import, and most of the code is in expressions.
         waiting += [each for each in ast.iter_child_nodes(node) if not isinstance(each, ast.expr)]
         if isinstance(node, ast.ImportFrom) and node.module:
