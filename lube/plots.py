@@ -452,7 +452,8 @@ def probability_limits(*panels: Axes, least: float = 0.0) -> None:
     highest = max([one.dataLim.ymax for one in panels if one.dataLim.ymax > 0.0], default=1.0)
     for panel in panels:
         room = 1.05 if panel.get_yscale() == "linear" else 1.5
-        panel.set_ylim(least, min(room * highest, 1.0))
+        # Not scaled by its data first: all of them may be 0, on a logarithmic scale.
+        panel.set(autoscaley_on=False, ylim=(least, min(room * highest, 1.0)))
         for line in [line for line in panel.lines if line.get_marker() not in NOT_POINTS]:
             below = (np.asarray(line.get_ydata(), float) < least).any()
             line.set(clip_on=bool(below), in_layout=False)

@@ -1,5 +1,7 @@
 """What the figures share: labels from attributes, units, interval bars, the same bytes."""
 
+import warnings
+
 import matplotlib
 import numpy as np
 import pytest
@@ -100,6 +102,15 @@ def test_axes_of_probabilities_end_at_one_or_above_the_data_and_cut_no_marker(
     plots.probability_limits(axes, least=least)
     np.testing.assert_allclose(axes.get_ylim(), (least, top))
     assert not points.get_clip_on() and below.get_clip_on()
+
+
+def test_a_logarithmic_panel_of_zeros_alone_has_limits_without_a_warning():
+    _, axes = plt.subplots()
+    axes.set_yscale("log")
+    axes.plot([40.0, 60.0], [0.0, 0.0], "o")
+    with warnings.catch_warnings(action="error"):
+        plots.probability_limits(axes, least=1e-3)
+    assert axes.get_ylim() == (1e-3, 1.0)
 
 
 def test_units_are_spelt_alike_in_figures_and_text():

@@ -141,12 +141,12 @@ def _computed_again(stored, film, run):
             "contact.nc: got a line that is a measured profile, need lines drawn from a spectrum: "
             "its heights are in roughness.nc alone"
         )
-    spec = LineSpec(**run["lines"])
-    layer = BoundaryLayer.model_construct(**run["boundary_layer"])
+    spec, layer = LineSpec(**run["lines"]), BoundaryLayer.model_construct(**run["boundary_layer"])
     flattened = run["roughness_deformation"] != "none"
     ratios, parts = stored["slide_to_roll_ratio"].values.tolist(), []
-    for realisation in stored["realisation"].values.tolist():
-        lines = roughness_batch(spec, run["seed"], [realisation])
+    numbers = stored["realisation"].values.tolist()
+    for first in range(0, len(numbers), 8):  # a few at a time, for the memory that lines take
+        lines = roughness_batch(spec, run["seed"], numbers[first : first + 8])
         parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"], flattened))
     options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
     return xr.concat(parts, "realisation", **options)

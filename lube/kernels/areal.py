@@ -74,8 +74,7 @@ def touching_strips(
     """
     reach = covariances[0].shape[0] - 1
     rows = reach - around
-    contact, breakthrough = np.zeros(rows + 1), np.zeros(rows + 1)
-    contacts = np.zeros(2)
+    contact, breakthrough, contacts = np.zeros(rows + 1), np.zeros(rows + 1), np.zeros(2)
     seen = np.zeros((reach + 1 + around, width), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
     heights = np.empty(width, np.float32)
@@ -83,16 +82,17 @@ def touching_strips(
     for row in range(reach + 1):
         known[0, row], known[1, row] = covariances[0][row].min(), covariances[0][row].max()
     nearly = film - 1e-5 * abs(film)
+    known_row = np.int64(0)  # for the literal 0, Numba would compile `_row` and `_contact` again
     for k in range(places[0].size):
         origin = touching[0][k]
         rise = touching[1][k] - fields[0][places[0][k], places[1][k] + origin]
         moved = fields, covariances, places[0][k], places[1][k], origin, rise
         search = film, sharp, seen, np.int32(2 * k + 1), stack
-        touched, _, broken, _ = _row(moved, search, heights, 0)
+        touched, _, broken, _ = _row(moved, search, heights, known_row)
         contact[0] += 1.0 / max(touched, 1)
         breakthrough[0] += (broken > 0) / max(touched, 1)
         search = film, sharp, seen, np.int32(2 * k + 2), stack
-        points, breaks, first = _contact(moved, search, 0, origin)
+        points, breaks, first = _contact(moved, search, known_row, origin)
         contacts[0] += 1.0 / points
         contacts[1] += breaks / points
         if first <= -around:

@@ -104,8 +104,7 @@ def _read(notebook):
     code = "\n".join(python_of(cell, notebook) for cell in cells if cell["type"] == "code")
     files = sorted({*map(from_here, sources(code)), *script_sources("figure")})
     title, text = title_and_text(cells[0]["source"] if cells[0]["type"] == "markdown" else "")
-    title, tags = title or notebook.stem, _tags(cells)
-    return Figure(notebook.stem, cells, datasets, files, title, text, tags)
+    return Figure(notebook.stem, cells, datasets, files, title or notebook.stem, text, _tags(cells))
 
 
 def _tags(cells):
