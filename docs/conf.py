@@ -8,8 +8,8 @@ from docutils.nodes import SkipChildren, SkipNode
 from docutils.writers.html5_polyglot import HTMLTranslator
 
 import lube
+from lube.pipeline.figure_list import FURTHER
 from lube.report.markdown import title_and_text
-from lube.workflow.figure_list import FURTHER
 
 project = "lube"
 author = copyright = "The authors of lube"

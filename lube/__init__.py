@@ -44,7 +44,7 @@ _HOMES = {
     "lube.study.rollers": ("BoundaryLayer", "Roller", "RollerPair", "Roughness"),
     "lube.study.study": ("Study", "load_study"),
     "lube.surfaces.spectra": ("power_spectrum",),
-    "lube.workflow.results": ("results_folder",),
+    "lube.pipeline.results": ("results_folder",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

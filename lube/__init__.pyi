@@ -27,6 +27,7 @@ from lube.inference.fits import fit_alpha as fit_alpha
 from lube.inference.fits import fit_layer_strength as fit_layer_strength
 from lube.inference.study_shares import over_grid as over_grid
 from lube.physics.electrical import contact_resistance as contact_resistance
+from lube.pipeline.results import results_folder as results_folder
 from lube.recordings.manifest import read_manifest as read_manifest
 from lube.recordings.reader import Recording as Recording
 from lube.recordings.reader import open_recording as open_recording
@@ -56,6 +57,5 @@ from lube.study.rollers import Roughness as Roughness
 from lube.study.study import Study as Study
 from lube.study.study import load_study as load_study
 from lube.surfaces.spectra import power_spectrum as power_spectrum
-from lube.workflow.results import results_folder as results_folder
 
 __version__: str

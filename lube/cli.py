@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import lube
 from lube.errors import LubeError
-from lube.workflow.environment import compute_alike
+from lube.pipeline.environment import compute_alike
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -22,10 +22,10 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.markers import CARETDOWN, CARETLEFT, CARETRIGHT, CARETUP
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
+from lube.pipeline.stamps import stamp
 from lube.schema import COORDINATES
 from lube.storage.files import written_whole
 from lube.units import SYMBOLS, convert
-from lube.workflow.stamps import stamp
 
 COLOURS = {
     "black": "#000000",
@@ -524,7 +524,7 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     Raises
     ------
     DataError
-        As from `lube.workflow.stamps.stamp`, or if a file cannot be written.
+        As from `lube.pipeline.stamps.stamp`, or if a file cannot be written.
     """
     # Here, as only notebooks need it: the plots of answers work without.
     from IPython import get_ipython

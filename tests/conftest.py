@@ -30,7 +30,7 @@ def pytest_collection_modifyitems(items):
     """Put tests of the smoke study first, in one process; the other begins with those without."""
 
     def rank(item):
-        in_workflow = item.path.parent.name == "workflow"
+        in_workflow = item.path.parent.name == "pipeline"
         return item.path.name != "test_run.py", in_workflow, item.path
 
     items.sort(key=rank)

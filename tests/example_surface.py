@@ -25,7 +25,7 @@ RMS_HEIGHT = 0.2e-6
 _SEED = 25178
 
 
-def isotropic_surface(
+def rolled_off_surface(
     points: int,
     length: float,
     hurst_exponent: float,
@@ -57,7 +57,7 @@ def isotropic_surface(
 
     Examples
     --------
-    >>> surface = isotropic_surface(64, 1.0, 0.8, 0.2, 0.01, np.random.default_rng(1))
+    >>> surface = rolled_off_surface(64, 1.0, 0.8, 0.2, 0.01, np.random.default_rng(1))
     >>> surface.shape, f"{np.std(surface):.4f}"
     ((64, 64), '0.0100')
     """
@@ -74,7 +74,7 @@ def isotropic_surface(
 def example_heights() -> Array:
     """Heights of the example, shape (256, 256), m, NaN in holes."""
     generator = np.random.default_rng(_SEED)
-    heights = isotropic_surface(POINTS, LENGTH, HURST_EXPONENT, ROLL_OFF, RMS_HEIGHT, generator)
+    heights = rolled_off_surface(POINTS, LENGTH, HURST_EXPONENT, ROLL_OFF, RMS_HEIGHT, generator)
     place = np.arange(POINTS) / POINTS
     heights += 3e-6 * place[:, None] + 1e-6 * place
     for row, column in generator.integers(5, POINTS - 5, (8, 2)):

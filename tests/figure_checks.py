@@ -18,9 +18,9 @@ from matplotlib.patches import Rectangle
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox
 
+from lube.pipeline.cells import cells_of, datasets_of
+from lube.pipeline.stamps import DRAWN_BY
 from lube.plots import EDGE_MARK, NOT_POINTS
-from lube.workflow.cells import cells_of, datasets_of
-from lube.workflow.stamps import DRAWN_BY
 
 MARGIN = 1.0
 """Pixels by which boxes may overlap or stick out: the rounding of glyphs."""

@@ -1,6 +1,6 @@
 """How often intervals contain the true value, for pairs of rollers that are in no ensemble.
 
-A short version of `tests/benchmarks/bench_coverage.py`, on coarse lines whose layer is so weak that
+A short version of `benchmarks/bench_coverage.py`, on coarse lines whose layer is so weak that
 as many segments break as on the paper's. The contact widths of its forces are levels of the map:
 between them a coarse grid rounds the window by up to a tenth. Some 120 pairs at 7 points, judged by
 two ensembles of 32 realisations, give a coverage of 95 % with a standard error of about 2 %, most
@@ -11,9 +11,9 @@ because the spread of few pairs is underestimated.
 
 import functools
 
+import bench_coverage as bench
 import numpy as np
 import pytest
-from benchmarks import bench_coverage as bench
 from studies import PAPER
 
 from lube import load_study

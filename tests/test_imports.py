@@ -30,7 +30,7 @@ FLOORS = [
     {"recordings"},
     {"stages"},
     {"report"},
-    {"workflow"},
+    {"pipeline"},
     {"archive", "plots"},
     {"calculator"},
     {"commands", "explorer"},
@@ -102,14 +102,14 @@ def loaded_after(statement):
         # The command switches off functions of NumPy, which must not be loaded by then.
         ("import lube.cli", {"numpy"}),
         (
-            "import lube.workflow.command_line, lube.workflow.study_files, lube.archive.inputs",
+            "import lube.pipeline.command_line, lube.pipeline.study_files, lube.archive.inputs",
             {"xarray", "numba", "matplotlib", "netCDF4", "scipy", "CoolProp", "papermill"},
         ),
         (
             "import lube; lube.Oil, lube.contact_probability, lube.required_film, lube.duty",
             {"snakemake", "papermill", "nbformat", "rocrate", "docutils", "markdown_it"},
         ),
-        ("import lube.workflow.figure_list", {"xarray", "nbformat", "papermill", "docutils"}),
+        ("import lube.pipeline.figure_list", {"xarray", "nbformat", "papermill", "docutils"}),
     ],
 )
 def test_what_is_imported_at_every_start_is_light(statement, heavy):

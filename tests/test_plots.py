@@ -10,9 +10,9 @@ from matplotlib.markers import CARETDOWN, CARETLEFT, CARETRIGHT, CARETUP
 from PIL import Image
 
 from lube import plots
+from lube.pipeline.stamps import stamp
 from lube.storage.provenance import global_attributes
 from lube.units import with_unit
-from lube.workflow.stamps import stamp
 
 matplotlib.use("Agg")
 plt = plots.plt

@@ -1,11 +1,11 @@
 """Are the stated errors of importance sampling those that it has?
 
-A short version of `tests/benchmarks/bench_tail.py`, on coarse lines whose layer is weak.
+A short version of `benchmarks/bench_tail.py`, on coarse lines whose layer is weak.
 """
 
+import bench_tail as bench
 import numpy as np
 import pytest
-from benchmarks import bench_tail as bench
 
 from lube.schema import OPERATING_DIMS
 

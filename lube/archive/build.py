@@ -19,6 +19,8 @@ from lube.archive.citation import citation_file, zenodo_metadata
 from lube.archive.crate import CATALOGUE, crate_metadata
 from lube.archive.page import archive_page
 from lube.errors import DataError, StudyError, shown
+from lube.pipeline.figures import wrong_figures
+from lube.pipeline.study_files import origin, products
 from lube.report import SUMMARISED
 from lube.storage.files import why_not, written_whole
 from lube.storage.git import ROOT, code_files, commit
@@ -29,8 +31,6 @@ from lube.study.resolve import study_files, with_topographies
 from lube.study.study import Study
 from lube.study.text_files import read_yaml
 from lube.types import File
-from lube.workflow.figures import wrong_figures
-from lube.workflow.study_files import origin, products
 
 SUMS = "SHA256SUMS"
 """Name of the file of SHA-256 sums, in the format of ``sha256sum --check``."""

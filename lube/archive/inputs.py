@@ -1,8 +1,8 @@
 """The inputs of the Snakemake rule `archive`. Heavy imports wait: each start needs this module."""
 
 from lube.errors import LubeError
-from lube.workflow.sources import from_here
-from lube.workflow.study_files import StudyFiles, input_paths, one_line_errors
+from lube.pipeline.sources import from_here
+from lube.pipeline.study_files import StudyFiles, input_paths, one_line_errors
 
 
 @one_line_errors()

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from lube.archive.build import check_is_archive
 from lube.errors import DataError
+from lube.pipeline.figures import paths_for, read_origin
+from lube.pipeline.notebooks import execute_notebook
 from lube.types import File
-from lube.workflow.figures import paths_for, read_origin
-from lube.workflow.notebooks import execute_notebook
 
 
 def redraw(folder: File, target: File, figures: list[str]) -> Iterator[tuple[str, bool]]:

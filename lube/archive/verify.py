@@ -15,11 +15,11 @@ from pathlib import Path
 
 from lube.archive.build import SUMS, VALUES, check_is_archive, files_of, values_text
 from lube.errors import DataError, LubeError, shown
+from lube.pipeline.figures import wrong_figures
 from lube.storage.netcdf import load
 from lube.storage.provenance import REMEDY, descriptive_attributes, fingerprint, input_sums
 from lube.study.study import load_study
 from lube.types import File
-from lube.workflow.figures import wrong_figures
 
 _OF_BROWSERS = (".DS_Store", "Thumbs.db", "desktop.ini")
 

@@ -10,11 +10,11 @@ import pandas as pd
 from lube.commands.run import repository
 from lube.errors import LubeError
 from lube.grid.plausibility import overview, remarks
+from lube.pipeline.command_line import changes_of, study_of_command
+from lube.pipeline.study_files import StudyFiles
 from lube.stages.film import film_table
 from lube.study.oil_properties import lubricant_table
 from lube.types import File
-from lube.workflow.command_line import changes_of, study_of_command
-from lube.workflow.study_files import StudyFiles
 
 
 def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], list[str]]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from lube.commands.run import repository
 from lube.errors import DataError, LubeError, shown
+from lube.pipeline.command_line import PAPER
 from lube.report.pages import render
 from lube.storage.files import why_not
 from lube.study.lubricant_record import is_record_path
@@ -16,7 +17,6 @@ from lube.study.schema_files import schema_line
 from lube.study.study import load_study
 from lube.types import File
 from lube.units import parse_quantity
-from lube.workflow.command_line import PAPER
 
 OF_ROLLERS = {"radius": "m", "roughness": "m"}
 """Options for one or two numbers with a unit, and the kind of unit."""

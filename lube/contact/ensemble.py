@@ -26,7 +26,7 @@ PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 ATTRIBUTES = ("travel", "longest_wavelength")
 
 
-def independent_windows(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
+def windows_by_force(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
     """Count the independent contact windows in one realisation.
 
     Two windows see independent roughness where they are a longest wavelength apart on both
@@ -148,9 +148,9 @@ def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     DataError
-        As from `independent_windows`.
+        As from `windows_by_force`.
     """
-    return _add_intervals(contact, independent_windows(contact, film), "contact")
+    return _add_intervals(contact, windows_by_force(contact, film), "contact")
 
 
 def _join(batches):

@@ -8,7 +8,7 @@ import xarray as xr
 from lube.study.line_spec import LineSpec
 from lube.study.study import Study
 from lube.surfaces.spectra import line_attributes
-from lube.surfaces.synthetic import ROLLERS, draw_realisation
+from lube.surfaces.synthetic import ROLLER_NUMBERS, draw_realisation
 from lube.types import Pair
 
 PADDING = np.iinfo(np.int32).min
@@ -34,7 +34,7 @@ def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
         ``height`` over (realisation, roller, position), int32, in height steps; the attribute
         ``height_step`` is the step in m. The shorter line is padded with `PADDING`.
     """
-    heights = np.full((len(realisations), len(ROLLERS), max(spec.points)), PADDING, np.int32)
+    heights = np.full((len(realisations), len(ROLLER_NUMBERS), max(spec.points)), PADDING, np.int32)
     for row, realisation in enumerate(realisations):
         for roller, line in enumerate(draw_realisation(spec, seed, realisation)):
             heights[row, roller, : line.size] = line
@@ -42,7 +42,7 @@ def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
         {"height": (("realisation", "roller", "position"), heights)},
         {
             "realisation": np.asarray(realisations, np.int64),
-            "roller": np.asarray(ROLLERS, np.int64),
+            "roller": np.asarray(ROLLER_NUMBERS, np.int64),
         },
         line_attributes(spec),
     )

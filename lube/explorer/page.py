@@ -23,7 +23,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from lube.explorer.content import CHOICES, page_content
 from lube.explorer.figures import COLUMNS, THEME, TINTS, draw
-from lube.workflow.stamps import stamp
+from lube.pipeline.stamps import stamp
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _NAMES = {
@@ -55,7 +55,7 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
     Raises
     ------
     DataError
-        As from `lube.workflow.stamps.stamp`.
+        As from `lube.pipeline.stamps.stamp`.
     """
     content = page_content(datasets)
     start = content["traces"][0]["at"]

@@ -34,7 +34,7 @@ class Stage:
     only_with : tuple of str
         Attributes of the study without which there is no such file.
     written : str
-        Attribute of `lube.workflow.study_files.StudyFiles` that lists the files which people wrote
+        Attribute of `lube.pipeline.study_files.StudyFiles` that lists the files which people wrote
         and the stage reads; none by default.
     parameters : tuple of str
         Attributes of the study that change the file beside the `values`, but not what is in it.

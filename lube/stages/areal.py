@@ -24,7 +24,7 @@ from lube.study.study import Study
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.spectra import spectrum_moments
-from lube.surfaces.synthetic import ROLLERS
+from lube.surfaces.synthetic import ROLLER_NUMBERS
 from lube.types import Datasets
 
 SURFACES = 24
@@ -123,7 +123,7 @@ def strip_contacts(
     sharp = 0.5 * breaking_curvature(
         modulus, boundary_layer.critical_thickness, boundary_layer.shear_strength
     )
-    lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
+    lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLER_NUMBERS))]
     names = ("rms_height", "rms_slope", "rms_curvature")
     moments = [sum(line[name] ** 2 for line in lines) for name in names]
     films, widths = thickness.values.ravel(), 2.0 * half_width.values.ravel()

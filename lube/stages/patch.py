@@ -17,7 +17,7 @@ from lube.surfaces.elastic_contact import find_tamaas, press_line, press_surface
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.spectra import spectrum_moments
-from lube.surfaces.synthetic import ROLLERS, draw_realisation
+from lube.surfaces.synthetic import ROLLER_NUMBERS, draw_realisation
 from lube.types import Datasets
 
 log = logging.getLogger(__name__)
@@ -88,7 +88,7 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
 
 
 def _moments(spec, name):
-    return np.array([spectrum_moments(spec, roller)[name] for roller in range(len(ROLLERS))])
+    return np.array([spectrum_moments(spec, roller)[name] for roller in range(len(ROLLER_NUMBERS))])
 
 
 def _pressed(spec, surface, values, seed, number):

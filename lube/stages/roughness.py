@@ -10,7 +10,7 @@ from lube.schema import label
 from lube.study.line_spec import LineSpec
 from lube.study.study import Study
 from lube.surfaces.spectra import line_moments, spectrum_bands, spectrum_moments
-from lube.surfaces.synthetic import ROLLERS
+from lube.surfaces.synthetic import ROLLER_NUMBERS
 from lube.types import Datasets
 
 BANDS = 60
@@ -47,10 +47,10 @@ def roughness_lines(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
     dims, moments = ("realisation", "roller"), [_moments(pair, spec) for pair in heights.values]
     for name in moments[0][0]:
         dataset[name] = dims, [[line[name] for line in pair] for pair in moments]
-    expected = [spectrum_moments(spec, roller) for roller in range(len(ROLLERS))]
+    expected = [spectrum_moments(spec, roller) for roller in range(len(ROLLER_NUMBERS))]
     for name in expected[0]:
         dataset[f"spectrum_{name}"] = "roller", [line[name] for line in expected]
-    bands = [spectrum_bands(spec, roller, BANDS) for roller in range(len(ROLLERS))]
+    bands = [spectrum_bands(spec, roller, BANDS) for roller in range(len(ROLLER_NUMBERS))]
     for number, name in enumerate(("wave_vector", "prescribed_density")):
         dataset[name] = ("roller", "wave"), [band[number] for band in bands]
     dataset["wave"] = np.arange(BANDS)

@@ -11,7 +11,7 @@ from lube.errors import DataError
 from lube.schema import label, values_with_limits
 from lube.study.line_spec import LineSpec
 from lube.study.roller_topography import RollerTopography
-from lube.study.rollers import ROLLERS as NAMES
+from lube.study.rollers import ROLLERS
 from lube.study.study import Study
 from lube.study.topography_lines import preparation, prepared
 from lube.surfaces.measured_spectrum import line_spectrum
@@ -22,7 +22,7 @@ from lube.surfaces.surface_statistics import (
     roll_off,
     waves_of_surface,
 )
-from lube.surfaces.synthetic import ROLLERS
+from lube.surfaces.synthetic import ROLLER_NUMBERS
 from lube.types import Datasets
 
 STANDARD_HEIGHTS = np.linspace(-6.0, 6.0, 61)
@@ -64,13 +64,13 @@ def measured_surfaces(
     """
     parts, remarks, described = [], [], {}
     for name, topography in topographies.items():
-        line = spec.lines[NAMES.index(name)]
+        line = spec.lines[ROLLERS.index(name)]
         key = topography.key, line.q_min, line.q_max  # both rollers may have the same one
         if key not in described:
             described[key] = _described(topography, line)
         parts.append(_surface(topography, described[key], line, hurst))
         remarks += [f"{name} roller: {text}" for text in _remarks(described[key][-1], line)]
-    rollers = [ROLLERS[NAMES.index(name)] for name in topographies]
+    rollers = [ROLLER_NUMBERS[ROLLERS.index(name)] for name in topographies]
     # Spectra have different numbers of waves; NaN stands for the missing ones.
     table = xr.concat(parts, xr.Variable("roller", rollers), join="outer")
     return label(table.assign_attrs(remarks="\n".join(remarks)), "surface")

@@ -28,7 +28,7 @@ from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.surfaces.rare_contact import check_gaussian
 from lube.surfaces.spectra import spectrum_moments
-from lube.surfaces.synthetic import ROLLERS
+from lube.surfaces.synthetic import ROLLER_NUMBERS
 from lube.types import Datasets
 
 PAIRS = 40
@@ -344,7 +344,7 @@ def _asymptotes(spec, film, boundary_layer):
 
     The boundary layer breaks if the summit behind is sharp enough.
     """
-    lines, layer = [spectrum_moments(spec, n) for n in range(len(ROLLERS))], boundary_layer
+    lines, layer = [spectrum_moments(spec, n) for n in range(len(ROLLER_NUMBERS))], boundary_layer
     names = ("rms_height", "rms_slope", "rms_curvature")
     moments = [sum(line[name] ** 2 for line in lines) for name in names]
     strength = layer.critical_thickness, layer.shear_strength

@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 _CODE = (
     *("Snakefile", "workflow/Snakefile", "pyproject.toml", "LICENSE", "CITATION.cff"),
     *("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/**/*", "lube/**/*"),
-    *("notebooks/*.ipynb", "tests/benchmarks/*.py", "profiles/*/config.yaml"),
+    *("notebooks/*.ipynb", "benchmarks/*.py", "profiles/*/config.yaml"),
     *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
     *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
     *(f"workflow/config/{name}.yaml" for name in ("run-in", "measured", "oils")),

@@ -17,7 +17,7 @@ import numpy as np
 import scipy.fft
 
 from lube.errors import DataError
-from lube.surfaces.synthetic import ROLLERS, LineSpecLike, wave_amplitudes
+from lube.surfaces.synthetic import ROLLER_NUMBERS, LineSpecLike, wave_amplitudes
 from lube.types import Array, Pair
 
 POINTS_PER_WAVE = 5
@@ -142,7 +142,9 @@ def isotropic_surface(
     step = 2.0 * np.pi / (points * spacing)
     # The waves of equal length share what the lines' waves of this length have.
     shell = np.rint(waves).astype(np.int64)
-    power = sum(_power(spec, roller, step, shell.max() + 1) for roller in range(len(ROLLERS)))
+    power = sum(
+        _power(spec, roller, step, shell.max() + 1) for roller in range(len(ROLLER_NUMBERS))
+    )
     # But in the first column, and in the last of an even number, a wave is also its mirror image.
     number = np.full(waves.shape, 2)
     number[:, 0] = 1

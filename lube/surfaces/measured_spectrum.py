@@ -53,7 +53,7 @@ BINS_PER_DECADE_INVERTED = 4
 narrower. With this width the mean over 40 profiles, each 40 roll-offs long, at H = 0.5, 0.7 and
 0.9, is within 3 % of the true density at a third of the roll-off and shorter, 8 to 10 % too low at
 the roll-off, and 20 to 70 % too high at two to five times the roll-off, where the line has little;
-the rms height is 2 % too high. See ``tests/benchmarks/bench_topography.py``."""
+the rms height is 2 % too high. See ``benchmarks/bench_topography.py``."""
 
 MOST_ANISOTROPY = 0.3
 """Largest `anisotropy` of a surface that counts as isotropic. At H = 0.8 this is a surface whose

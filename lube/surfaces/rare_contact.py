@@ -31,7 +31,7 @@ import scipy.special
 from lube.errors import StudyError
 from lube.kernels.tail import touching_runs, touching_windows
 from lube.surfaces.spectra import autocovariance
-from lube.surfaces.synthetic import ROLLERS, LineSpecLike, draw_gaussian_line
+from lube.surfaces.synthetic import ROLLER_NUMBERS, LineSpecLike, draw_gaussian_line
 from lube.types import Array, Pair, Values
 
 WINDOWS = 800
@@ -82,7 +82,7 @@ def sum_of_lines(spec: LineSpecLike, lags: int) -> SumOfLines:
     SumOfLines
         The moments.
     """
-    lines = [autocovariance(spec, roller, lags) for roller in range(len(ROLLERS))]
+    lines = [autocovariance(spec, roller, lags) for roller in range(len(ROLLER_NUMBERS))]
     variance = lines[0][0] + lines[1][0]
     return SumOfLines(np.sqrt(variance), tuple(line / variance for line in lines))
 

@@ -31,7 +31,7 @@ from lube.kernels.synthesis import (
 )
 from lube.surfaces.translation import REACH, gaussian_power, johnson_curve
 
-ROLLERS = (1, 2)
+ROLLER_NUMBERS = (1, 2)
 """Labels of the two rollers in files."""
 
 
@@ -286,5 +286,5 @@ def draw_realisation(
     >>> [f"{line.size}: {np.std(line) * 1e-12:.3g}" for line in draw_realisation(spec, 1, 0)]
     ['1000: 2e-07', '800: 1e-07']
     """
-    children = np.random.SeedSequence((seed, realisation)).spawn(len(ROLLERS))
+    children = np.random.SeedSequence((seed, realisation)).spawn(len(ROLLER_NUMBERS))
     return tuple(draw_line(spec, roller, child) for roller, child in enumerate(children))

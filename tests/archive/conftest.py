@@ -7,9 +7,9 @@ import pytest
 from studies import SMOKE, SMOKE_DATASETS
 
 from lube.archive.build import make_archive
+from lube.pipeline.study_files import origin, products
 from lube.storage.netcdf import save
 from lube.storage.provenance import fingerprint
-from lube.workflow.study_files import origin, products
 
 FIGURE = "fig02_film"
 

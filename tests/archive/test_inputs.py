@@ -6,8 +6,8 @@ import pytest
 from studies import SMOKE
 
 from lube.archive.inputs import archived_texts
+from lube.pipeline.study_files import StudyFiles
 from lube.study.metadata import About
-from lube.workflow.study_files import StudyFiles
 
 
 def test_an_archive_is_made_from_the_study_its_bases_records_and_code(study):

@@ -17,7 +17,7 @@ import time
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "pipeline"))
 from repository import SMOKE, copy_of_the_repository, environment
 
 # The Slurm plugin of Snakemake drops SLURM_CONF, so the file must stand in its default place.

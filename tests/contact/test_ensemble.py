@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lube import contact_statistics, gather, roughness_lines, with_intervals
-from lube.contact.ensemble import PROBABILITIES, independent_windows
+from lube.contact.ensemble import PROBABILITIES, windows_by_force
 from lube.errors import DataError
 from lube.statistics.confidence import probability_interval
 
@@ -35,7 +35,7 @@ def test_gathered_batches_are_one_run_whatever_their_order_and_commits(batches, 
 
 def test_interval_of_every_point_is_that_of_its_realisations(batches, few):
     contact = gather([batches(range(5))], few)
-    windows = independent_windows(contact, few)
+    windows = windows_by_force(contact, few)
     for force, temperature in np.ndindex(2, 2):
         point = {"force": force, "temperature": temperature, "film_formula": 1}
         here = contact.isel(point).squeeze()
@@ -48,7 +48,7 @@ def test_interval_of_every_point_is_that_of_its_realisations(batches, few):
 def test_independent_windows_are_a_longest_wavelength_apart_on_the_slower_surface(batches, few):
     rolling, ratios = batches([0]), [0.0, 1.0, -1.0, 2.0]
     slipping = rolling.isel(slide_to_roll_ratio=[0] * 4).assign_coords(slide_to_roll_ratio=ratios)
-    windows = independent_windows(slipping, few)
+    windows = windows_by_force(slipping, few)
     longest = 2.0 * few["contact_half_width"].sel(force=1600.0).item()
     for force in (200.0, 1600.0):
         width = 2.0 * few["contact_half_width"].sel(force=force).item()

@@ -16,7 +16,7 @@ import tempfile
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "pipeline"))
 from kills import VICTIMS, Kill, finished, survive
 from repository import copy_of_the_repository
 

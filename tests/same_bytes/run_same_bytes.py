@@ -18,11 +18,11 @@ import tempfile
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "pipeline"))
 from repository import RESULTS, Repository, copy_of_the_repository
 from test_cluster_generic import SUBMIT
 
-from lube.workflow.environment import AVX512
+from lube.pipeline.environment import AVX512
 
 BATCH_SIZES = (1, 2, 3, 4)
 

@@ -23,7 +23,7 @@ def test_every_kept_file_of_the_schema_has_its_row():
 def test_every_stage_has_a_function_that_makes_it_or_a_benchmark():
     for name, stage in STAGES.items():
         if stage.target == "benchmark":
-            assert (ROOT / f"tests/benchmarks/bench_{name}.py").is_file()
+            assert (ROOT / f"benchmarks/bench_{name}.py").is_file()
         else:
             assert list(inspect.signature(maker(name)).parameters) == ["study", "inputs", "threads"]
         assert stage.in_batches == (f"{name}_batch" in FILES)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from example_surface import isotropic_surface
+from example_surface import rolled_off_surface
 from studies import PAPER
 
 from lube.stages.surface import measured_surfaces
@@ -46,7 +46,7 @@ def blurred(heights):
 
 @pytest.fixture(scope="module")
 def heights():
-    return isotropic_surface(POINTS, LENGTH, 0.8, 6e-5, 2e-7, np.random.default_rng(3))
+    return rolled_off_surface(POINTS, LENGTH, 0.8, 6e-5, 2e-7, np.random.default_rng(3))
 
 
 def test_waves_that_show_the_instrument_are_named(tmp_path, heights):
@@ -69,6 +69,6 @@ def test_a_band_of_few_densities_has_no_fits(tmp_path, heights):
 
 
 def test_what_is_not_self_affine_is_said(tmp_path):
-    smooth = isotropic_surface(POINTS, LENGTH, 2.0, 6e-5, 2e-7, np.random.default_rng(3))
+    smooth = rolled_off_surface(POINTS, LENGTH, 2.0, 6e-5, 2e-7, np.random.default_rng(3))
     remarks = described(tmp_path, smooth).attrs["remarks"]
     assert "is not between 0 and 1: it is not self-affine" in remarks

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 import yaml
-from example_surface import isotropic_surface
+from example_surface import rolled_off_surface
 from refusals import one_line
 from studies import CONFIG, PAPER
 
@@ -83,7 +83,7 @@ def test_a_line_drawn_from_a_map_has_the_rms_height_and_slope_that_the_map_was_m
         assert np.std(line) * spec.height_step == pytest.approx(spec.rms_height[roller], rel=1e-6)
     # The surface it was made from, again with its waves in the band only.
     points, length = 256, 400e-6
-    surface = isotropic_surface(points, length, 0.8, 50e-6, 0.2e-6, np.random.default_rng(25178))
+    surface = rolled_off_surface(points, length, 0.8, 50e-6, 0.2e-6, np.random.default_rng(25178))
     waves = np.fft.fft2(surface)
     q = np.hypot(*np.meshgrid(*[2 * np.pi * np.fft.fftfreq(points, length / points)] * 2))
     inside = (q >= spec.q_min) & (q <= spec.q_max)

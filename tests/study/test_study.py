@@ -7,11 +7,11 @@ import xarray as xr
 from studies import OIL, PAPER
 
 from lube.errors import LubeError, StudyError
+from lube.pipeline.figure_list import study_figures
 from lube.schema import STAGES
 from lube.study.oil_properties import lubricant_table
 from lube.study.rig_settings import Experiment, Rig
 from lube.study.study import load_study
-from lube.workflow.figure_list import study_figures
 
 # What the paper says
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.fft
-from example_surface import isotropic_surface
+from example_surface import rolled_off_surface
 
 from lube.errors import DataError
 from lube.surfaces.measured_spectrum import (
@@ -45,7 +45,7 @@ def true_line(q, hurst, points=1024, roll_off=ROLL_OFF):
 
 
 def drawn_map(hurst, seed, points=1024):
-    heights = isotropic_surface(points, LENGTH, hurst, ROLL_OFF, RMS, np.random.default_rng(seed))
+    heights = rolled_off_surface(points, LENGTH, hurst, ROLL_OFF, RMS, np.random.default_rng(seed))
     return Topography("map.x3p", heights, (LENGTH / points,) * 2)
 
 

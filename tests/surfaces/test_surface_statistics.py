@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.fft
 import scipy.stats
-from example_surface import isotropic_surface
+from example_surface import rolled_off_surface
 
 from lube.errors import DataError
 from lube.surfaces.measured_spectrum import line_spectrum
@@ -69,7 +69,7 @@ def test_a_drawn_map_has_its_hurst_exponent_and_roll_off():
     settings = Preparation("isotropic")
     fits = []
     for seed in range(6):
-        heights = isotropic_surface(512, 4e-4, 0.8, 5e-5, 2e-7, np.random.default_rng(seed))
+        heights = rolled_off_surface(512, 4e-4, 0.8, 5e-5, 2e-7, np.random.default_rng(seed))
         surface = Topography("map", heights[:400, :400], (4e-4 / 512,) * 2)
         found = line_spectrum(prepare(surface, settings), settings)
         fits.append((hurst_exponent(found, Waves(4e-5, 4e-6)), roll_off(found, Waves(1, 0))))
@@ -93,7 +93,7 @@ def test_the_fits_are_of_the_surface_and_not_of_the_instruments_resolution(instr
     along, across = (scipy.fft.fftfreq(points), scipy.fft.rfftfreq(points))
     wavelength = length / points / np.maximum(np.hypot(along[:, None], across), 1e-9)
     for seed in range(6):
-        heights = isotropic_surface(points, length, 0.8, 6e-5, 2e-7, np.random.default_rng(seed))
+        heights = rolled_off_surface(points, length, 0.8, 6e-5, 2e-7, np.random.default_rng(seed))
         heights = scipy.fft.irfft2(scipy.fft.rfft2(heights) * passed(wavelength))
         surface = Topography("map", heights, (length / points,) * 2)
         found = line_spectrum(prepare(surface, settings), settings)

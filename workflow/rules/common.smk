@@ -10,10 +10,10 @@ sys.path.insert(0, str(Path(workflow.snakefile).parents[2]))
 
 from lube.storage.files import check_writable
 from lube.storage.git import ROOT
-from lube.workflow.command_line import study_of_command, study_of_module
-from lube.workflow.environment import compute_alike, use_package
-from lube.workflow.sources import from_here, script_sources, stage_sources
-from lube.workflow.study_files import StudyFiles, digest, one_line_errors
+from lube.pipeline.command_line import study_of_command, study_of_module
+from lube.pipeline.environment import compute_alike, use_package
+from lube.pipeline.sources import from_here, script_sources, stage_sources
+from lube.pipeline.study_files import StudyFiles, digest, one_line_errors
 
 # For all jobs.
 use_package(ROOT)

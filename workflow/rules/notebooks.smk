@@ -2,7 +2,7 @@
 from lube.report.markdown import plain, to_html
 from lube.schema import SUMMARIES
 from lube.study.metadata import PAPER as PAPER_TITLE
-from lube.workflow.figure_list import chapters, made_by, made_on_request, study_figures
+from lube.pipeline.figure_list import chapters, made_by, made_on_request, study_figures
 
 with one_line_errors():
     FIGURES = study_figures(STUDY)

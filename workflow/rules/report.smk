@@ -1,5 +1,5 @@
 from lube.report import SUMMARISED
-from lube.workflow.command_line import PAPER, same_study
+from lube.pipeline.command_line import PAPER, same_study
 
 # Chapter of the report that holds its pages.
 ABOUT_THE_STUDY = "About the study"

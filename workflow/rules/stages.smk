@@ -35,10 +35,10 @@ for stage in STAGES.values():
             name:
                 stage.name
             input:
-                script=from_here(f"tests/benchmarks/bench_{stage.name}.py"),
+                script=from_here(f"benchmarks/bench_{stage.name}.py"),
                 study=ancient(result("study.yaml")),
                 records=record_files(),
-                sources=script_sources(f"tests/benchmarks/bench_{stage.name}.py"),
+                sources=script_sources(f"benchmarks/bench_{stage.name}.py"),
             output:
                 result(f"{stage.name}.nc"),
             log:

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from lube.archive.build import make_archive
+from lube.pipeline.jobs import begin_job
 from lube.study.study import load_study
-from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study, study_file = load_study(**snakemake.config["study"]), snakemake.config["study"]["path"]

@@ -4,10 +4,10 @@ One job for both results: the lines never leave its memory, and Python starts on
 """
 
 from lube.contact.rough_pair import roughness_batch
+from lube.pipeline.jobs import begin_job
 from lube.stages import contact, master
 from lube.storage.netcdf import load, save
 from lube.study.study import load_study
-from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(**snakemake.config["study"])

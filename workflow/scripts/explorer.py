@@ -1,10 +1,10 @@
 """Make explorer.html, a page that shows any operating point of the study."""
 
 from lube.explorer.page import explorer_page
+from lube.pipeline.jobs import begin_job
 from lube.storage.files import written_whole
 from lube.storage.netcdf import load
 from lube.study.study import load_study
-from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study = load_study(**snakemake.config["study"])

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from lube.pipeline.figures import draw_figure
+from lube.pipeline.jobs import begin_job
 from lube.storage.git import ROOT
-from lube.workflow.figures import draw_figure
-from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 notebook, results = snakemake.input.notebook, Path(snakemake.output.notebook).parents[1]

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from lube.pipeline.jobs import begin_job
 from lube.report import SUMMARISED
 from lube.report.configuration import configuration
 from lube.report.key_tables import files_table
@@ -12,7 +13,6 @@ from lube.report.summary import facts, findings, made
 from lube.storage.files import written_whole
 from lube.storage.netcdf import load
 from lube.study.study import load_study
-from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study, paper = load_study(**snakemake.config["study"]), load_study(snakemake.input.paper)

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from lube.pipeline.jobs import begin_job
 from lube.storage.files import written_whole
 from lube.study.resolve import resolved_text
-from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 output, study = Path(snakemake.output[0]), snakemake.config["study"]

@@ -1,10 +1,10 @@
 """Make the dataset of a stage, by the function `make` of its module in `lube/stages`."""
 
+from lube.pipeline.jobs import begin_job
 from lube.schema import STAGES
 from lube.stages import maker
 from lube.storage.netcdf import load, save
 from lube.study.study import load_study
-from lube.workflow.jobs import begin_job
 
 begin_job(snakemake.log[0])
 study, stage = load_study(**snakemake.config["study"]), STAGES[snakemake.rule]

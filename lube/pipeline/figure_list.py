@@ -1,0 +1,188 @@
+"""The figures of a study, from their notebooks' cells: what each needs and what it says."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from lube.pipeline.cells import cells_of, datasets_of, python_of
+from lube.pipeline.sources import from_here, script_sources, sources
+from lube.report.markdown import title_and_text
+from lube.schema import ON_REQUEST
+from lube.study.study import Study
+from lube.types import File
+
+FURTHER = "further-figures"
+"""Chapter of a notebook that names none."""
+
+NO_FIGURE = "no-figure"
+"""Tag of a notebook that is none of the study's figures."""
+
+GAUSSIAN = "gaussian-lines"
+"""Tag of a notebook that needs Gaussian roughness lines, as drawn."""
+
+MAPPED = "flat-film"
+"""Tag of a notebook that needs contact to depend on the film thickness and the width alone."""
+
+ENSEMBLE = "ensemble"
+"""Tag of a notebook about the scatter between pairs of lines."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One notebook of the folder ``notebooks``, read before any job.
+
+    Attributes
+    ----------
+    name : str
+        Name of the figure and its notebook, such as ``fig02_film``.
+    cells : list of dict
+        What determines the figure: the types, sources and tags of the notebook's cells.
+    datasets : list of str
+        Kinds of the datasets that its parameters cell names.
+    sources : list of str
+        Files of the lube package that its cells and the script ``figure.py`` depend on, from the
+        working folder.
+    title, text : str
+        Heading of its first cell, or else its name; and the text below. In Markdown.
+    tags : list of str
+        Tags of all cells.
+    """
+
+    name: str
+    cells: list[dict]
+    datasets: list[str]
+    sources: list[str]
+    title: str
+    text: str
+    tags: list[str]
+
+    @property
+    def target(self) -> str:
+        """Target of Snakemake that makes it: ``all``, or that of a dataset made on request only."""
+        return next((ON_REQUEST[name] for name in self.datasets if name in ON_REQUEST), "all")
+
+    @property
+    def chapter(self) -> str:
+        """Chapter of the report, from a tag such as ``chapter-oil-and-film``."""
+        words = [*self._tagged("chapter-"), FURTHER][0]
+        return words.replace("-", " ").capitalize()
+
+    def fits(self, study: Study) -> bool:
+        """Whether a study has what the figure compares.
+
+        Parameters
+        ----------
+        study : Study
+            The study.
+
+        Returns
+        -------
+        bool
+            False if a tag such as ``several-force`` or ``several-lubricant`` asks for several
+            where the study has one, the tag ``gaussian-lines`` for Gaussian lines as drawn where
+            it has others, the tag ``flat-film`` for contact that depends on the film thickness and
+            the width alone, the tag ``ensemble`` for several pairs where it has one measured pair,
+            or a dataset for what the study lacks.
+        """
+        if not all(study.has(name) for name in self.datasets):
+            return False
+        if GAUSSIAN in self.tags and not study.is_sampled:
+            return False
+        if MAPPED in self.tags and not study.follows_master_map:
+            return False
+        if ENSEMBLE in self.tags and study.line_spec.is_one_pair:
+            return False
+        levels = study.operating_grid.model_dump() | {"lubricant": study.lubricants}
+        return all(len(levels.get(name, ())) > 1 for name in self._tagged("several-"))
+
+    def _tagged(self, prefix):
+        return [tag.removeprefix(prefix) for tag in self.tags if tag.startswith(prefix)]
+
+
+def _read(notebook):
+    cells, datasets = cells_of(notebook), sorted(set(datasets_of(notebook).values()))
+    code = "\n".join(python_of(cell, notebook) for cell in cells if cell["type"] == "code")
+    files = sorted({*map(from_here, sources(code)), *script_sources("figure")})
+    title, text = title_and_text(cells[0]["source"] if cells[0]["type"] == "markdown" else "")
+    return Figure(notebook.stem, cells, datasets, files, title or notebook.stem, text, _tags(cells))
+
+
+def _tags(cells):
+    return [tag for cell in cells for tag in cell["tags"]]
+
+
+def study_figures(study: Study, folder: File = "notebooks") -> dict[str, Figure]:
+    """List the figures that a study can draw.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    folder : str or Path, optional
+        Folder of the notebooks, from the repository on if relative.
+
+    Returns
+    -------
+    dict of str to Figure
+        By name, sorted; without the notebooks tagged ``no-figure``.
+
+    Raises
+    ------
+    LubeError
+        If a notebook is damaged, is not Python or has no parameters cell.
+    """
+    paths = sorted(Path(from_here(folder)).glob("*.ipynb"))
+    figures = [_read(path) for path in paths if NO_FIGURE not in _tags(cells_of(path))]
+    return {figure.name: figure for figure in figures if figure.fits(study)}
+
+
+def made_by(target: str, figures: dict[str, Figure]) -> list[str]:
+    """List the figures that a target of Snakemake makes, such as ``all`` or ``benchmark``."""
+    return [name for name, figure in figures.items() if figure.target == target]
+
+
+def made_on_request(figures: dict[str, Figure], folder: File, words: Iterable[str]) -> list[str]:
+    """List the figures made on request that are there, or that the same run makes.
+
+    A picture stays where a job fails or is repeated, so the list is the same in every process of a
+    run. Measured times are left out: they are not results of the study.
+
+    Parameters
+    ----------
+    figures : dict of str to Figure
+        As from `study_figures`.
+    folder : str or Path
+        Folder of the study's results.
+    words : iterable of str
+        Words of the command, among them targets such as ``computed``.
+
+    Returns
+    -------
+    list of str
+        Their names.
+    """
+    return [
+        name
+        for name, figure in figures.items()
+        if figure.target not in ("all", "benchmark")
+        and (figure.target in words or Path(folder, f"figures/{name}.png").is_file())
+    ]
+
+
+def chapters(figures: dict[str, Figure]) -> dict[str, str]:
+    """Return each figure's chapter of the report, with the chapter's number.
+
+    Parameters
+    ----------
+    figures : dict of str to Figure
+        As from `study_figures`.
+
+    Returns
+    -------
+    dict of str to str
+        From each figure's name to its chapter, such as ``1 Oil and film``: in the order of the
+        figures, measured times last.
+    """
+    ordered = sorted(figures.values(), key=lambda one: (one.target == "benchmark", one.name))
+    names = list(dict.fromkeys(figure.chapter for figure in ordered))
+    return {name: f"{1 + names.index(one.chapter)} {one.chapter}" for name, one in figures.items()}

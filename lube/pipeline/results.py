@@ -1,0 +1,73 @@
+"""The study whose results a notebook shows, chosen in one place."""
+
+import difflib
+import os
+from pathlib import Path
+
+from lube.errors import DataError, shown
+from lube.pipeline.stamps import DRAWN_BY
+from lube.schema import DATASETS
+from lube.storage.git import ROOT
+from lube.types import File
+
+CHOSEN = "LUBE_STUDY"
+"""Environment variable that chooses the study."""
+
+
+def results_folder(study: File | None = None, default: str = "paper") -> Path:
+    """Find the results of a study, from any working folder.
+
+    Parameters
+    ----------
+    study : str or Path, optional
+        Name of the study, such as ``slip``, or the folder of its results. If it is not given:
+        within a study's results or an archive, that study; else the one that the environment
+        variable ``LUBE_STUDY`` names; else `default`.
+    default : str, optional
+        The study that is shown where none is chosen.
+
+    Returns
+    -------
+    Path
+        Folder of the study's datasets, absolute. A study's name is looked for in the folder
+        ``results`` of the working folder, of those above it, and of the repository. In a notebook
+        that the workflow executes, it has no meaning, because the workflow gives the datasets.
+
+    Raises
+    ------
+    DataError
+        If there is no such folder with a dataset.
+    """
+    if DRAWN_BY in os.environ:
+        return Path.cwd()
+    here = Path.cwd()
+    if study is None:
+        for folder in (here, here / "data", here.parent, here.parent / "data"):
+            if _holds_results(folder):
+                return folder
+        study = os.environ.get(CHOSEN, default)
+    for folder in (Path(study).absolute(), *(base / study for base in _bases(here))):
+        if _holds_results(folder):
+            return folder
+    raise DataError(_missing(str(study), here))
+
+
+def _bases(here):
+    """Folders that hold the results of several studies, the nearest first."""
+    return [folder / "results" for folder in (here, *here.parents, ROOT)]
+
+
+def _holds_results(folder):
+    return any((folder / f"{kind}.nc").is_file() for kind in DATASETS)
+
+
+def _missing(study, here):
+    came = f"study: got {shown(study)}"
+    folders = [folder for base in _bases(here) for folder in sorted(base.glob("*"))]
+    there = list(dict.fromkeys(folder.name for folder in folders if _holds_results(folder)))
+    near = difflib.get_close_matches(study, there, n=1)
+    if near:
+        return f"{came}, did you mean {near[0]!r}?"
+    if there:
+        return f"{came}, need one with results: {', '.join(there)}; {CHOSEN} chooses it"
+    return f"{came}, which has no results yet: run snakemake first"

@@ -1,0 +1,183 @@
+"""A copy of the repository, in which the real Snakemake runs the smoke study."""
+
+import contextlib
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+from numba.core.caching import _CacheLocator
+
+from lube.pipeline.cells import datasets_of
+from lube.schema import STAGES
+from lube.study.resolve import resolved_content
+from lube.study.study import load_study
+
+ROOT = Path(__file__).parents[2]
+COPIED = ("Snakefile", "README.md", "CHANGELOG.md", "pyproject.toml")
+COPIED += ("config", "workflow", "docs", "lube", "notebooks", "profiles", "benchmarks")
+SMOKE = "workflow/config/smoke.yaml"
+RESULTS = "results/smoke"
+SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+
+
+def is_left_out(notebook):
+    """Whether a figure compares oils, or shows a file that bare `snakemake` does not make of the
+    smoke study, which has one oil."""
+    text = notebook.read_text("utf-8")
+    others = set(STAGES).difference(load_study(ROOT / SMOKE).datasets)
+    return "several-lubricant" in text or any(f'study / \\"{kind}.nc' in text for kind in others)
+
+
+@dataclass(frozen=True)
+class Repository:
+    """A copy of the repository, in which the smoke study may be run and spoilt."""
+
+    folder: Path
+
+    def __truediv__(self, name):
+        return self.folder / name
+
+    @property
+    def results(self):
+        return self.folder / RESULTS
+
+    @property
+    def notebooks(self):
+        """Those of the figures that bare `snakemake` makes of the smoke study."""
+        paths = sorted((self.folder / "notebooks").glob("fig*.ipynb"))
+        return [path.stem for path in paths if not is_left_out(path)]
+
+    def command(self, *arguments, study=SMOKE):
+        options = ["--configfile", study] if study else []
+        return [str(SNAKEMAKE), *arguments, *options]
+
+    def snakemake(self, *arguments, study=SMOKE):
+        """Run Snakemake and return the finished process; its `stdout` is all it said."""
+        return subprocess.run(
+            self.command(*arguments, study=study),
+            cwd=self.folder,
+            env=environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+        )
+
+    def run(self, *arguments, study=SMOKE):
+        """Run Snakemake, which must succeed."""
+        finished = self.snakemake(*arguments, study=study)
+        assert finished.returncode == 0, finished.stdout
+        return finished.stdout
+
+    def planned(self, study=SMOKE):
+        """Results that the next run would make, but for pages, which follow all."""
+        return {name for name in self._planned(study) if not name.endswith(".html")}
+
+    def planned_pages(self, study=SMOKE):
+        """Pages of the report that the next run would make."""
+        return {name for name in self._planned(study) if name.startswith("report/")}
+
+    def _planned(self, study):
+        """All files that the next run would make, by Snakemake's own dry plan."""
+        rows = [line.split("\t") for line in self.run("--summary", study=study).splitlines()]
+        made = {row[0] for row in rows if row[-1] == "update pending"}
+        return {str(Path(name).relative_to(RESULTS)) for name in made}
+
+    def with_values(self, **changes):
+        """Write a copy of the smoke study with some values changed, and return its name."""
+        content = resolved_content(self / SMOKE, folder=self.folder)
+        for key, value in changes.items():
+            *path, last = key.split("__")
+            inner = content
+            for part in path:
+                inner = inner[part]
+            inner[last] = value
+        (self / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+        return "mine.yaml"
+
+    def copied(self, folder):
+        """A copy, with the machine code of its kernels under the name that Numba looks for."""
+        copy = Repository(shutil.copytree(self.folder, folder, symlinks=True))
+        named = [
+            _CacheLocator.get_suitable_cache_subpath(one / "lube/kernels/any.py")
+            for one in (self.folder, folder)
+        ]
+        for compiled in copy.folder.glob(f"lube/kernels/__pycache__/*/{named[0]}"):
+            compiled.rename(compiled.with_name(named[1]))
+        return copy
+
+    def append(self, name, text):
+        """Add a line to a file."""
+        with (self / name).open("a", encoding="utf-8") as file:
+            file.write(text + "\n")
+
+    def snapshot(self):
+        """Contents and times of all results."""
+        files = (path for path in self.results.rglob("*") if path.is_file())
+        return {path: (path.stat().st_mtime_ns, digest(path)) for path in files}
+
+    def products(self):
+        """Digests of what a study is run for: datasets, figures, notebooks and the explorer."""
+        paths = [*self.results.glob("*.nc"), *self.results.glob("figures/*")]
+        paths += self.results.glob("*.html")
+        paths += self.results.glob("notebooks/*")
+        return {str(path.relative_to(self.results)): digest(path) for path in paths}
+
+    @contextlib.contextmanager
+    def clean_slate(self):
+        """Remove all results for a while; compiled kernels stay."""
+        kept = self.folder.with_name("kept")
+        kept.mkdir()
+        for name in ("results", ".snakemake"):
+            shutil.move(self / name, kept / name)
+        try:
+            yield
+        finally:
+            for name in ("results", ".snakemake"):
+                shutil.rmtree(self / name, ignore_errors=True)
+                shutil.move(kept / name, self / name)
+            kept.rmdir()
+
+
+def environment():
+    """The environment of a user who has not prepared anything for the copy."""
+    names = {"PYTHONPATH", "SNAKEMAKE_PROFILE", "PYTHONDONTWRITEBYTECODE"}
+    return {name: value for name, value in os.environ.items() if name not in names}
+
+
+def digest(path):
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def copy_of_the_repository(folder):
+    folder.mkdir(parents=True)
+    for name in COPIED:
+        if (ROOT / name).is_dir():
+            ignored = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints")
+            shutil.copytree(ROOT / name, folder / name, ignore=ignored)
+        else:
+            shutil.copy2(ROOT / name, folder / name)
+    return Repository(folder)
+
+
+def products_of(figure):
+    """Files that a figure's job makes."""
+    return {
+        *(f"figures/{figure}.{suffix}" for suffix in ("png", "pdf", "json")),
+        f"notebooks/{figure}.ipynb",
+    }
+
+
+def figures_of(repository, *datasets):
+    """Files of all figures that use one of some datasets."""
+    users = [
+        figure
+        for figure in repository.notebooks
+        if set(datasets_of(repository / f"notebooks/{figure}.ipynb").values()) & set(datasets)
+    ]
+    return {name for figure in users for name in products_of(figure)}

@@ -1,0 +1,123 @@
+"""The bar of a run on a terminal: its estimate, and what stands above it."""
+
+import io
+import logging
+from types import SimpleNamespace
+
+import pytest
+from rich.console import Console
+from snakemake.logging import DefaultFormatter
+from snakemake_interface_logger_plugins.common import LogEvent
+from snakemake_interface_logger_plugins.registry import LoggerPluginRegistry
+
+from lube.pipeline import progress
+from lube.pipeline.jobs import SILENT
+from lube.pipeline.progress import LogHandler, Remaining, in_words, progress_bar, reason_of_failure
+
+
+def test_jobs_to_come_take_as_long_as_those_of_their_rule():
+    remaining = Remaining({"film": 1, "figure": 4}, now=0.0)
+    assert remaining.seconds(1.0) is None
+    for job, rule, begin, end in ((1, "film", 0.0, 10.0), (2, "figure", 10.0, 12.0)):
+        remaining.started(job, rule, begin)
+        remaining.finished(job, end)
+    assert remaining.seconds(12.0) == pytest.approx(3 * 2.0)
+    remaining.started(3, "figure", 12.0)
+    assert remaining.seconds(13.0) == pytest.approx(5.0)
+    remaining.finished(99, 13.0)  # of a group that Snakemake did not announce
+
+
+def test_a_job_of_a_new_rule_takes_as_long_as_it_has_been_running_at_least():
+    remaining = Remaining({"lubricant": 1, "batch": 3}, now=0.0)
+    remaining.started(1, "lubricant", 0.0)
+    remaining.finished(1, 1.0)
+    assert remaining.seconds(1.0) == pytest.approx(3.0)
+    remaining.started(2, "batch", 1.0)
+    assert remaining.seconds(21.0) == pytest.approx(2 * 20.0)
+
+
+def test_jobs_side_by_side_share_the_time():
+    remaining = Remaining({"batch": 4}, now=0.0)
+    for job in (1, 2):
+        remaining.started(job, "batch", 0.0)
+    for job in (1, 2):
+        remaining.finished(job, 10.0)
+    assert remaining.seconds(10.0) == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.0, "about 1 s left"), (89.0, "about 89 s left"), (9000.0, "about 2.5 h left")],
+)
+def test_the_estimate_is_round(seconds, words):
+    assert in_words(seconds) == words
+
+
+def test_the_reason_is_the_last_line_of_the_log(tmp_path):
+    log = tmp_path / "film.log"
+    assert reason_of_failure([str(log)]) == "it ended without a word in its log"
+    log.write_text("Traceback\nError: oil.yaml: no source\n\n")
+    assert reason_of_failure([str(log)]) == f"Error: oil.yaml: no source\n  its whole log: {log}"
+
+
+def test_a_log_has_no_bar_and_a_terminal_has_one(monkeypatch):
+    monkeypatch.setattr(LoggerPluginRegistry(), "plugins", {})
+    assert not progress_bar()
+    monkeypatch.setattr(progress.sys, "stderr", SimpleNamespace(isatty=lambda: True))
+    assert progress_bar()
+    assert LoggerPluginRegistry().get_plugin("lube").log_handler is LogHandler
+
+
+def handler(monkeypatch, dryrun=False):
+    monkeypatch.setenv(SILENT, "")
+    made = LogHandler(SimpleNamespace(dryrun=dryrun, nocolor=True), None)
+    made.setFormatter(DefaultFormatter())
+    made._console = Console(file=io.StringIO(), force_terminal=True, width=100, color_system=None)
+    return made
+
+
+def report(made, event=None, level=logging.INFO, msg="", **values):
+    record = logging.LogRecord("snakemake", level, "", 0, msg, (), None)
+    record.__dict__.update(values)
+    if event:
+        record.event = event
+    made.emit(record)
+
+
+def test_a_run_shows_the_bar_its_failures_and_its_end_only(monkeypatch, tmp_path):
+    (tmp_path / "film.log").write_text("Error: [no] film\n")
+    made = handler(monkeypatch)
+    report(made, msg="Building DAG of jobs...")
+    report(made, LogEvent.RUN_INFO, stats={"film": 1, "all": 1, "total": 2})
+    job = {"jobid": 1, "rule_name": "film"}
+    report(made, LogEvent.JOB_INFO, rule_msg="Film: [x] films", reason="r" * 2000, **job)
+    report(made, msg="Select jobs to execute...")
+    for _ in range(2):
+        values = job | {"log": [str(tmp_path / "film.log")]}
+        report(made, LogEvent.JOB_ERROR, logging.ERROR, **values)
+    report(made, LogEvent.JOB_FINISHED, job_id=1)
+    report(made, LogEvent.PROGRESS, done=1, total=99)
+    end = {"jobid": 0, "rule_name": "all", "rule_msg": "Done: results"}
+    report(made, LogEvent.JOB_INFO, **end)
+    report(made, level=logging.WARNING, msg="low disk")
+    made.close()
+    shown = made._console.file.getvalue()
+    assert "Building" in shown and "Select" not in shown and "rrr" not in shown
+    assert shown.count("FAILED Film: [x] films: Error: [no] film") == 1
+    assert "1/2 jobs" in shown and "Done: results" in shown and "low disk" in shown
+    assert "left" not in shown.splitlines()[-1]
+
+
+def test_without_progress_the_jobs_are_lines(monkeypatch):
+    made = handler(monkeypatch)
+    values = {"rule_msg": "Film: films", "jobid": 1, "reason": "", "rule_name": "film"}
+    report(made, LogEvent.JOB_INFO, **values)
+    made.close()
+    assert "Job 1: Film: films" in made._console.file.getvalue()
+
+
+def test_a_dry_run_has_snakemakes_own_lines(monkeypatch, capsys):
+    made = handler(monkeypatch, dryrun=True)
+    made._plain.stream = io.StringIO()
+    report(made, LogEvent.RUN_INFO, msg="Job stats", stats={"film": 1})
+    assert made._plain.stream.getvalue() == "Job stats\n"

@@ -1,0 +1,75 @@
+"""The files of a study as the rules name them."""
+
+import re
+
+import pytest
+from studies import SMOKE
+from unlike_studies import STUDIES, write_study
+
+from lube.pipeline.study_files import StudyFiles, input_paths, one_line_errors
+from lube.study.metadata import About
+from lube.study.study import load_study
+
+
+@pytest.fixture
+def files(study):
+    return StudyFiles(study, SMOKE, {})
+
+
+def test_a_target_that_the_study_lacks_is_refused_in_one_line(paper_with):
+    path = paper_with(("film_shape", "computed"), ("name", "mine"))
+    files = StudyFiles(load_study(path), path, {})
+    files.check_targets(["computed", "-n", "archive", "results/mine/contact.nc"])
+    for target in ("areal_contact", "gauge", "./results/mine/gauge.nc", "results/mine/master.nc"):
+        with pytest.raises(SystemExit, match=f"got the target {target}, need .*film_shape: flat"):
+            files.check_targets(["--cores", "2", target])
+    with pytest.raises(SystemExit, match="need a measured topography of a roller"):
+        files.check_targets(["results/mine/surface.nc"])
+
+
+def test_a_surface_along_rolling_has_no_isotropic_surface_to_press_or_to_count(tmp_path):
+    path = write_study(STUDIES["insulator"], tmp_path / "mine")
+    files = StudyFiles(load_study(path), path, {})
+    for target in ("areal_contact", "patch_contact", "results/insulator/areal.nc"):
+        with pytest.raises(SystemExit, match=f"the target {target}, need .*isotropic surfaces"):
+            files.check_targets([target])
+    for target in ("rig", "results/insulator/experiment.nc", "comparison", "gauge"):
+        with pytest.raises(SystemExit, match=f"the target {target}, need .*that conduct"):
+            files.check_targets([target])
+
+
+def test_inputs_are_named_from_the_working_folder_each_once(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert input_paths([tmp_path / "b", "a", tmp_path / "a"]) == ["a", "b"]
+
+
+def test_a_name_that_snakemake_takes_for_a_wildcard_is_refused():
+    line = "The study cannot start. {oil}.yaml: the name of a file must not contain { or }"
+    with pytest.raises(SystemExit, match=f"^{re.escape(line)}$"), one_line_errors():
+        input_paths(["{oil}.yaml"])
+
+
+def test_fingerprints_follow_values_and_makers(files, study):
+    def of(**changes):
+        return StudyFiles(study.model_copy(update=changes), SMOKE, {}).stage_inputs
+
+    for stage in ("film", "contact", "rig"):
+        assert of(batch_size=1)(stage) == files.stage_inputs(stage)
+        assert of(about=About(title="mine"))(stage) != files.stage_inputs(stage)
+    assert of(seed=1)("film") == files.stage_inputs("film")
+    assert of(seed=1)("rig") != files.stage_inputs("rig")  # by the experiment's values
+    formulas = of(film_formulas=("moes",))
+    assert formulas("contact") == files.stage_inputs("contact")  # which reads film.nc
+    assert formulas("speed") != files.stage_inputs("speed")  # which reads no file
+    assert files.stage_inputs("contact", "master") != files.stage_inputs("contact")
+
+
+def test_a_manifest_and_its_records_are_inputs(paper_with, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    head = "file,force [N],speed [rpm],temperature [degC]\n"
+    (tmp_path / "records.csv").write_text(f"{head}run.csv,800,100,40\nno.csv,800,100,40\n")
+    (tmp_path / "run.csv").write_text("time [s],voltage [mV]\n0,50\n")
+    path = paper_with(("experiment.manifest", "records.csv"))
+    files = StudyFiles(load_study(path), path, {})
+    assert files.measured_files() == ["records.csv", "run.csv"]
+    assert files.refused_records() is None  # nothing evaluated yet

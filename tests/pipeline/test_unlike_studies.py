@@ -1,0 +1,27 @@
+"""All figures of unlike studies: what a reader would complain about."""
+
+from pathlib import Path
+
+import pytest
+from figure_checks import draw, faults
+from unlike_studies import STUDIES, write_datasets
+
+from lube.pipeline.figure_list import study_figures
+from lube.study.study import load_study
+
+NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", STUDIES)
+def test_no_figure_has_colliding_text_covered_or_missing_points(name, tmp_path):
+    paths = write_datasets(STUDIES[name], tmp_path / name)
+    figures = study_figures(load_study(tmp_path / name / "study.yaml"), NOTEBOOKS)
+    found = [
+        f"{figure.name}: {fault}"
+        for figure in figures.values()
+        if figure.target != "benchmark"
+        for fault in faults(draw(NOTEBOOKS / f"{figure.name}.ipynb", paths))
+    ]
+    assert not found, "\n".join(found)
