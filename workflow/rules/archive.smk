@@ -31,6 +31,7 @@ rule archive:
 
 rule verify:
     """Check the archive as it is."""
+
     # Without inputs: it checks the archive as it is. Without outputs: it is repeated each time.
     log:
         result("logs/verify.log"),

@@ -20,8 +20,8 @@ for stage in STAGES.values():
                 result(f"logs/{stage.name}.log"),
             benchmark:
                 result(f"benchmarks/{stage.name}.tsv")
-            threads: workflow.cores if stage.parallel else 1
             priority: stage.priority
+            threads: workflow.cores if stage.parallel else 1
             params:
                 study=stage_inputs(stage.name),
             message:
