@@ -23,7 +23,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.windows import ContactWindows
-from lube.grid.discretise import line_pair, revolution, speed_ratios
+from lube.grid.discretise import LineGrid, line_pair, revolution, speed_ratios
 from lube.grid.operating_points import OperatingPoint
 from lube.kernels.circuit import sampled_voltage
 from lube.physics.electrical import contact_resistance, film_capacitance
@@ -110,7 +110,7 @@ class SimulatedRig:
         film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
         film["reduced_modulus"] = rows[0]["reduced_modulus"]  # the same at all
         layer, flattened = self._study.boundary_layer, self._study.is_flattened
-        return ContactWindows(self._study.line_spec, film, layer, flattened)
+        return ContactWindows(LineGrid.of(self._lines), film, layer, flattened)
 
     def _revolution(self, contact, number, seed):
         point, spacing = self._points[number], self._lines.attrs["spacing"]

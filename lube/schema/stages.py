@@ -154,7 +154,7 @@ _ROWS = (
     ),
     Stage(
         "master",
-        "probabilities over lambda ratio and contact width",
+        "map of probabilities over lambda ratio and contact width",
         inputs=("film",),
         values=_LINES | _LAYER,
         same_values=("roughness",),

@@ -329,8 +329,8 @@ def _check_roll_off(longest, shortest, roll_off, key):
 def _check_perimeter(perimeter, longest, shortest, roller):
     if perimeter < longest or math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
         raise StudyError(
-            f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short; it "
-            f"must hold a whole number of waves between {shortest:.3g} and {longest:.3g} m"
+            f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short; need "
+            f"one that holds a whole number of waves between {shortest:.3g} and {longest:.3g} m"
         )
 
 

@@ -70,5 +70,5 @@ def test_the_batches_wait_for_the_tables_alone_and_the_figures_for_all(profile):
         members.setdefault(group, set()).add(rule)
     assert members["tables"] == {"lubricant", "film", "resolved_study"}
     assert members["batches"] == {"batch"}
-    assert {"contact", "gauge", "variants", "explorer", "times"} < members["figures"]
-    assert {"experiment", "tail", "trace", "roughness"} < members["beside"]
+    assert {"contact", "gauge", "explorer", "times"} < members["figures"]
+    assert {"experiment", "tail", "trace", "roughness", "variants"} < members["beside"]

@@ -62,7 +62,7 @@ def test_snakefile_and_configuration_of_the_catalogue_do_as_well(other):
     (other / "Snakefile").write_text(
         'configfile: "config/config.yaml"\n'
         "module lube:\n"
-        '    snakefile: "lube/pipeline/Snakefile"\n'
+        '    snakefile: "lube/workflow/Snakefile"\n'
         "    config: config\n"
         "use rule * from lube\n",
         encoding="utf-8",

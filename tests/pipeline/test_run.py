@@ -154,7 +154,7 @@ def test_each_job_says_in_words_what_is_made_and_nothing_alarms(smoke):
     assert len(messages) == int(re.search(r"^total +(\d+)$", said, re.MULTILINE)[1])
     for message in messages:
         assert re.match(
-            r"(Lubricant|Film|Roughness|Batch|Contact|Tail|Height distribution|Master map|Trace|Rig"
+            r"(Lubricant|Film|Roughness|Batch|Contact|Tail|Height distribution|Master|Trace|Rig"
             r"|Experiment|Comparison|Gauge|Figures?|Explorer|Report|Done): \S+",
             message,
         )

@@ -61,6 +61,6 @@ def test_a_module_is_a_source_of_the_scripts_and_stages_that_use_it():
     assert users("stages/trace") == {"trace"}
     assert users("plots") == {"explorer"}
     assert {"batch", "trace", "rig", "experiment"} <= users("kernels/layer")
-    assert "figure" in users("workflow/notebooks")
-    assert users("workflow/jobs") == {*SCRIPTS, *MADE}
+    assert "figure" in users("pipeline/notebooks")
+    assert users("pipeline/jobs") == {*SCRIPTS, *MADE}
     assert {"lube/schema/files.csv", "lube/schema/variables.csv"} <= set(stage_sources("film"))

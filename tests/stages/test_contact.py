@@ -187,7 +187,13 @@ def test_springs_pressed_flat_carry_what_their_stiffness_says(film, layer):
     lines = xr.Dataset(
         {"height": (("realisation", "roller", "position"), heights)},
         {"realisation": [0]},
-        {"spacing": spacing, "height_step": 1e-12, "points": [points] * 2, "q_min": 1e4},
+        {
+            "spacing": spacing,
+            "height_step": 1e-12,
+            "points": [points] * 2,
+            "q_min": 1e4,
+            "q_max": 1e6,
+        },
     )
     share = contact_statistics(lines, few, layer)["contact_load_share"].squeeze()
     window = (2 * np.floor(few["contact_half_width"] / spacing) + 1) * spacing
