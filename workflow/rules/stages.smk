@@ -55,7 +55,8 @@ for stage in STAGES.values():
             shell:
                 "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"
 
-    workflow.get_rule(stage.name).docstring = stage.message
+    # As a module of another workflow, its name may have a prefix.
+    list(workflow.rules)[-1].docstring = stage.message
 
 
 rule batch:
