@@ -10,10 +10,11 @@ from doctest import NORMALIZE_WHITESPACE, OutputChecker
 import pytest
 import xarray as xr
 from markdown_it import MarkdownIt
-from studies import ROOT
+from studies import PAPER, ROOT
 
 import lube
-from lube import load_study
+from lube import film_table, load_study, lubricant_table
+from lube.physics.pressure_viscosity import roelands_slope
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md"))]
 
@@ -94,3 +95,46 @@ def test_the_site_is_built_without_warnings_and_shows_everything(smoke, tmp_path
     documented = "".join(text for name, text in pages.items() if name.startswith("api/"))
     for name in {*lube.__all__} - {"__version__"}:
         assert f'id="lube.{name}"' in documented, f"put {name} into docs/api/"
+
+
+def test_both_films_of_golds_coefficient_are_those_of_the_code():
+    text = (ROOT / "docs/limits.md").read_text(encoding="utf-8")
+    study = load_study(PAPER)
+    points = re.findall(
+        r"^  \| (\d+) N, (\d+) r/min, (\d+) °C \| ([\d.]+) and ([\d.]+) µm"
+        r" \| ([\d.]+) and ([\d.]+) µm",
+        text,
+        re.MULTILINE,
+    )
+    assert len(points) == 3
+    for force, speed, temperature, *stated in points:
+        oil = lubricant_table(study.lubricants, [float(temperature)])
+        slope = oil["pressure_viscosity_coefficient"].copy()
+        viscosity = oil["dynamic_viscosity"].item()
+        secant = slope.copy(data=[[roelands_slope(slope.item(), viscosity, "secant", 200e6)]])
+        if temperature == "40":
+            pair = f"{1e9 * secant.item():.1f} 1/GPa for {1e9 * slope.item():.1f} at 40 °C"
+            assert pair in text
+        found = []
+        for coefficient in (slope, secant):
+            table = oil.assign(pressure_viscosity_coefficient=coefficient)
+            point = [float(force)], [float(speed)], ["paper", "computed"]
+            films = film_table(table, study.rough_rollers, *point)["film_thickness"]
+            found += [f"{1e6 * film:.3f}" for film in films.values.ravel()]
+        assert found == stated, (force, speed, temperature)
+
+
+def test_the_times_of_the_readmes_commands_are_ranges():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    times = re.findall(r"(\w+ \w+ \w+) minutes", text)
+    assert len(times) == 2
+    assert all(re.fullmatch(r"\w+ to \w+", time) for time in times), times
+
+
+def test_the_number_of_the_surface_is_that_of_areal_nc_with_its_command():
+    text = " ".join((ROOT / "docs/measurements.md").read_text(encoding="utf-8").split())
+    assert re.search(
+        r"[\d.]+ \(95 % interval [\d.]+ to [\d.]+\) by importance sampling "
+        r"\(`areal.nc` of the paper's study, by `snakemake areal_contact`\)",
+        text,
+    )
