@@ -43,6 +43,7 @@ from lube.inference.fits import (
     strength_logits,
     study_strength,
 )
+from lube.inference.record_curves import map_curves
 from lube.recordings.manifest import Entry, Manifest, read_manifest
 from lube.rig.simulator import SimulatedRig
 from lube.schema import LIMITS, label
@@ -233,9 +234,10 @@ def judge(ensemble, comparison, shares):
     """
     one = comparison.isel(film_formula=0)
     lower, upper = (one[f"predicted_share_{side}"].values for side in ("lower", "upper"))
-    strength = strength_logits(ensemble.master, ensemble.contact, comparison)
+    curves = map_curves(ensemble.master, comparison)
+    strength = strength_logits(curves, ensemble.contact, comparison)
     fits = {
-        "alpha": (ALPHA_FACTORS, alpha_logits(ensemble.master, comparison), 1.0),
+        "alpha": (ALPHA_FACTORS, alpha_logits(curves, comparison), 1.0),
         "layer": (*strength, study_strength(ensemble.contact)),
     }
     everyone = np.ones((len(shares), 1))
@@ -259,10 +261,17 @@ def _with_shares(comparison, shares):
 
 def _films(ensemble, comparison, shares):
     """Gauged films of all pairs, one after the other along the record dimension."""
-    names = ["contact_half_width", "scatter_ratio", "share_error", "composite_rms_roughness"]
+    names = [
+        "contact_half_width",
+        "film_thickness",
+        "scatter_ratio",
+        "share_error",
+        "composite_rms_roughness",
+    ]
     pairs, points = shares.shape
     everyone = comparison[names].drop_vars("record").isel(record=np.tile(range(points), pairs))
-    gauged = gauge_film(ensemble.master, _with_shares(everyone, shares.ravel()))
+    curves = map_curves(ensemble.master, everyone)
+    gauged = gauge_film(curves, _with_shares(everyone, shares.ravel()))
     limits = [gauged[f"gauged_lambda_ratio{limit}"].values for limit in LIMITS]
     with np.errstate(divide="ignore"):
         return np.log(np.stack(limits, axis=-1)).reshape(pairs, points, 3)

@@ -74,15 +74,31 @@ def shaped_films(film: xr.Dataset) -> xr.DataArray:
     xarray.DataArray
         Over the dimensions of ``film_thickness`` and film_position, m.
     """
-    profile, place = film["film_profile"], film["formula_place"]
-    inside = profile.sel(film_position=slice(-1.0, 1.0))
-    central = profile.sel(film_position=0.0, drop=True)
-    minimum = profile.min("film_position", skipna=False)
-    mean = inside.integrate("film_position") / 2.0
-    own = xr.where(place == "central", central, xr.where(place == "minimum", minimum, mean))
+    profile, own = film["film_profile"], film_at_places(film)
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         shaped = scaled_film(profile, film["film_thickness"] / own, film)
     return shaped.transpose(*film["film_thickness"].dims, "film_position")
+
+
+def film_at_places(film: xr.Dataset) -> xr.DataArray:
+    """Film with the computed shape, there where each film formula refers to.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        With ``film_profile``, and ``formula_place`` over film_formula.
+
+    Returns
+    -------
+    xarray.DataArray
+        At the line of centres, at the thinnest point, or on average over Hertz' contact, m; over
+        film_formula and the dimensions of the profile without film_position.
+    """
+    profile, place = film["film_profile"], film["formula_place"]
+    central = profile.sel(film_position=0.0, drop=True)
+    minimum = profile.min("film_position", skipna=False)
+    mean = profile.sel(film_position=slice(-1.0, 1.0)).integrate("film_position") / 2.0
+    return xr.where(place == "central", central, xr.where(place == "minimum", minimum, mean))
 
 
 def scaled_film(profile: xr.DataArray, scale: xr.DataArray, film: xr.Dataset) -> xr.DataArray:

@@ -67,9 +67,6 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
         model[name] = (*lead, *dims), values.reshape(values.shape[:-1] + shape)
     model = model.assign_coords(realisation=contact["realisation"].values)
     attributes = {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
-    model = model.drop_dims("film_position", errors="ignore").drop_vars(
-        "formula_place", errors="ignore"
-    )
     return model.assign_attrs(attributes)
 
 

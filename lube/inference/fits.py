@@ -1,6 +1,6 @@
 """Fits of one unknown of the model to all records together.
 
-The film thickness is taken from its formula and the probability from the master map. The fit
+The film thickness is taken from its formula and the probability from the records' curves. The fit
 varies the pressure-viscosity coefficient, or the strength of the boundary layer.
 """
 
@@ -11,7 +11,7 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.ehl.film_formulas import formula
-from lube.inference.map_curves import curve_at, layer_curve_at, logits_on
+from lube.inference.record_curves import RecordCurves
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
@@ -26,23 +26,25 @@ COMPUTED_FACTORS = np.array([0.125, 0.25, 0.5, 1.0, 2.0])
 """Factors at which a computed film is solved for. Beyond, it grows as a power of the factor: so
 viscous an oil has a pressure spike too steep to be resolved."""
 STRENGTH_LEVELS = 193
-"""Number of layer strengths that are tried, between the map's weakest and strongest."""
+"""Number of layer strengths that are tried, between the curves' weakest and strongest."""
 
 
-def fit_alpha(master: Data, contact: Data, comparison: Data) -> Data:
+def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
     """Fit the factor of the pressure-viscosity coefficient to all records together.
 
     For every lubricant and film formula there is one factor, common to all records. The film
-    thickness is recomputed with the formula, and the probability read from the map.
+    thickness is recomputed with the formula, and the probability read from the records' curves.
 
     All records of a pair see the same rollers, so their errors are correlated as the
-    realisations are; those of different pairs are independent, except for the map's own error.
+    realisations are; those of different pairs are independent, except for the curves' own error.
     It is assumed that the film formula is correct but for the coefficient, and that the
     simulated roughness is that of the rollers.
 
     Parameters
     ----------
-    master, contact, comparison : xarray.Dataset
+    curves : RecordCurves
+        Of the records of the comparison.
+    contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
     Returns
@@ -53,17 +55,17 @@ def fit_alpha(master: Data, contact: Data, comparison: Data) -> Data:
         infinity. ``alpha_factor_coverage`` is the share of realisations whose interval, each
         left out and taken as the records, contains 1.
     """
-    logits = alpha_logits(master, comparison)
+    logits = alpha_logits(curves, comparison)
     return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison)
 
 
-def alpha_logits(master: Data, comparison: Data) -> xr.DataArray:
-    """Logits of the map's mean probability at the records, for each of `ALPHA_FACTORS`.
+def alpha_logits(curves: RecordCurves, comparison: Data) -> xr.DataArray:
+    """Logits of the mean probability at the records, for each of `ALPHA_FACTORS`.
 
     Parameters
     ----------
-    master, comparison : xarray.Dataset
-        Datasets of these kinds, of one study.
+    curves, comparison
+        As in `fit_alpha`.
 
     Returns
     -------
@@ -71,38 +73,44 @@ def alpha_logits(master: Data, comparison: Data) -> xr.DataArray:
         Over (factor, film_formula, record).
     """
     factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
-    logits = _mean_logits(master, comparison, _lambda_ratios(comparison, factor))
+    logits = curves.logits(_lambda_ratios(comparison, factor))
     return logits.transpose("factor", "film_formula", "record")
 
 
-def fit_layer_strength(master: Data, contact: Data, comparison: Data) -> Data:
+def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
     """Fit the strength tau0 / h_c of the boundary layer to all records together.
 
     As `fit_alpha`, with the film thickness as the formula gives it.
 
     Parameters
     ----------
-    master, contact, comparison : xarray.Dataset
+    curves : RecordCurves
+        Of the records of the comparison.
+    contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
     Returns
     -------
     xarray.Dataset
         ``fitted_layer_strength`` (Pa/m) with ``_lower`` and ``_upper`` over (fitted_lubricant,
-        film_formula). Beyond the strengths of the map it is NaN, a limit 0 or infinity.
+        film_formula). Beyond the strengths of the curves it is NaN, a limit 0 or infinity.
         ``fitted_layer_strength_coverage`` as in `fit_alpha`.
     """
-    tried, logits = strength_logits(master, contact, comparison)
+    tried, logits = strength_logits(curves, contact, comparison)
     study = study_strength(contact)
     return _fits("fitted_layer_strength", tried, study, logits, contact, comparison)
 
 
-def strength_logits(master: Data, contact: Data, comparison: Data) -> tuple[Array, xr.DataArray]:
-    """Logits of the map's mean probability at the records, for many layer strengths.
+def strength_logits(
+    curves: RecordCurves, contact: Data, comparison: Data
+) -> tuple[Array, xr.DataArray]:
+    """Logits of the mean probability at the records, for many layer strengths.
 
     Parameters
     ----------
-    master, contact, comparison : xarray.Dataset
+    curves : RecordCurves
+        Of the records of the comparison.
+    contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
     Returns
@@ -112,9 +120,9 @@ def strength_logits(master: Data, contact: Data, comparison: Data) -> tuple[Arra
     logits : xarray.DataArray
         Over (factor, film_formula, record).
     """
-    tried = np.geomspace(*master["layer_strength"].values[[0, -1]], STRENGTH_LEVELS)
-    logits = _coarse_strength_logits(master, comparison, study_strength(contact))
-    # A record is left out if the contact of any layer is too rare for the map there.
+    tried = np.geomspace(*curves.strengths[[0, -1]], STRENGTH_LEVELS)
+    logits = _coarse_strength_logits(curves, comparison, study_strength(contact))
+    # A record is left out if the contact of any layer is too rare for the curves there.
     known = logits.notnull().all("layer_strength")
     spline = scipy.interpolate.PchipInterpolator(
         np.log(logits["layer_strength"]), logits.fillna(0.0)
@@ -195,26 +203,15 @@ def _between_nodes(films, factor):
     return np.exp(curve(np.minimum(np.log(factor), last)) + beyond * curve(last, 1))
 
 
-def _mean_logits(master, comparison, ratios):
-    """Logits of the map's mean probability, at some lambda ratios."""
-    widths = 2.0 * comparison["contact_half_width"]
-    return logits_on(lambda width: curve_at(master, width), widths, ratios)
+def _coarse_strength_logits(curves, comparison, study):
+    """Logits over (layer_strength, film_formula, record) at the strengths of the curves.
 
-
-def _coarse_strength_logits(master, comparison, study):
-    """Logits over (layer_strength, film_formula, record) at the strengths of the coarse map.
-
-    The coarse map gives the difference to the study's layer, for which there is the fine map.
+    Those of layers are coarse. They give the difference to the study's layer.
     """
-    maps = master["layer_breakthrough_probability"].mean("realisation")
-    ratios, widths = comparison["lambda_ratio"], 2.0 * comparison["contact_half_width"]
-    coarse = [
-        logits_on(lambda width, one=one: layer_curve_at(one, master, width), widths, ratios)
-        for one in maps.transpose("layer_strength", ...)
-    ]
-    coarse = xr.concat(coarse, maps["layer_strength"], join="exact")
-    fine = _mean_logits(master, comparison, ratios)
-    logits = fine + coarse - coarse.sel(layer_strength=study, method="nearest", drop=True)
+    ratios = comparison["lambda_ratio"]
+    coarse = curves.layer_logits(ratios)
+    own = coarse.sel(layer_strength=study, method="nearest", drop=True)
+    logits = curves.logits(ratios) + coarse - own
     return logits.transpose("layer_strength", "film_formula", "record")
 
 

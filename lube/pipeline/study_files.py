@@ -87,7 +87,7 @@ _NEEDED = {
     "line_spec.is_isotropic": "isotropic surfaces",
     "conducts": "rollers that conduct, a `resistivity` that is not `insulator`",
     "line_spec.is_drawn": "lines that are drawn from a spectrum",
-    "follows_master_map": "`film_shape: flat` and `roughness_deformation: none`",
+    "has_master_map": "`film_shape: flat` and `roughness_deformation: none`",
 }
 """What a study needs for the stages that are `only_with` it, in words."""
 
@@ -125,7 +125,7 @@ class StudyFiles:
 
     def stage_files(self, stage: str) -> dict[str, str]:
         """Return the files that a stage reads, from each stage's name to its dataset."""
-        return {name: self.result(f"{name}.nc") for name in STAGES[stage].inputs}
+        return {name: self.result(f"{name}.nc") for name in self.study.inputs_of(stage)}
 
     def stage_inputs(self, *stages: str) -> str:
         """Return a fingerprint of all that a job takes from the study itself.

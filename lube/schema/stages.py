@@ -22,7 +22,7 @@ class Stage:
     says : str
         What it makes, in a few words, for the messages of Snakemake.
     inputs : tuple of str
-        Stages whose files it reads.
+        Stages whose files it reads, as far as the study has them.
     values : dict
         Values of the study that it uses: from the name of each value in the file's attribute
         ``config`` to the dotted attribute of `lube.study.study.Study`, or a mapping of such.
@@ -71,9 +71,7 @@ def _cylinder(roller):
     return {name: f"rollers.{roller}.{name}" for name in names}
 
 
-_MAPPED = {"only_with": ("follows_master_map",)}
 _SURFACE = ("line_spec.is_gaussian", "line_spec.is_isotropic")
-_GAUGED = ("follows_master_map", "conducts")
 _LINES = {"seed": "seed", "lines": "line_spec"}
 _LAYER = {"reduced_modulus": "rollers.reduced_modulus", "boundary_layer": "boundary_layer"}
 _CONTACT = _LAYER | {
@@ -147,9 +145,9 @@ _ROWS = (
         "height_distribution",
         "probabilities by skewness and kurtosis",
         inputs=("film",),
-        values=_LINES | _LAYER,
+        values=_LINES | _LAYER | {"roughness_deformation": "roughness_deformation"},
         same_values=("roughness",),  # whose lines have other distributions here
-        only_with=("line_spec.is_drawn", "follows_master_map"),
+        only_with=("line_spec.is_drawn",),
         priority=2,
     ),
     Stage(
@@ -159,7 +157,7 @@ _ROWS = (
         values=_LINES | _LAYER,
         same_values=("roughness",),
         in_batches=True,
-        **_MAPPED,
+        only_with=("has_master_map",),
     ),
     Stage(
         "trace",
@@ -207,7 +205,7 @@ _ROWS = (
         "gauge",
         "films, pressure-viscosity coefficient and boundary layer from the records",
         inputs=("master", "contact", "comparison"),
-        only_with=_GAUGED,
+        only_with=("conducts",),
     ),
     Stage(
         "areal",
@@ -215,7 +213,7 @@ _ROWS = (
         inputs=("film",),
         values=_LINES | _CONTACT | {"length": "rollers.length"},
         target="areal_contact",
-        only_with=(*_SURFACE, "follows_master_map"),
+        only_with=(*_SURFACE, "has_master_map"),
         parallel=True,
     ),
     Stage(
@@ -223,7 +221,7 @@ _ROWS = (
         "films from the records, by the surface",
         inputs=("film", "areal", "comparison", "gauge"),
         target="areal_contact",
-        only_with=(*_SURFACE, *_GAUGED),
+        only_with=(*_SURFACE, "has_master_map", "conducts"),
     ),
     Stage(
         "patch",

@@ -1,23 +1,20 @@
 """The gauge stage: from the contact share of a record to the film thickness that explains it.
 
-The master map gives the probability of contact for every film thickness and contact width. Read in
-the other direction it turns a resistance measurement into a film thickness, without running the
-model again. If instead the film thickness is taken from its formula, all records together
+The curve of a record gives the probability of contact for every film thickness at its conditions.
+Read in the other direction it turns a resistance measurement into a film thickness. If instead the film thickness is taken from its formula, all records together
 determine one unknown of the model: the pressure-viscosity coefficient, or the strength of the
 boundary layer.
 
-A record comes from one pair of rollers. How far its share may lie from the mean of the map follows
-from the scatter between the realisations; the interval includes it, and the map's own error.
+A record comes from one pair of rollers. How far its share may lie from the mean follows from the
+scatter between the realisations; the interval includes it, and the error of the mean.
 """
-
-from functools import cache
 
 import numpy as np
 import scipy.special
 import xarray as xr
 
 from lube.inference.fits import fit_alpha, fit_layer_strength, study_strength
-from lube.inference.map_curves import curve_at
+from lube.inference.record_curves import RecordCurves, map_curves, own_curves
 from lube.schema import AT_RECORDS, label, values_with_limits
 from lube.statistics.curves import film_interval
 from lube.statistics.one_pair import quantile, standard_error
@@ -29,15 +26,22 @@ _KEPT = ("film_thickness", "lambda_ratio", "contact_half_width", "comparison_thr
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``gauge.nc``; see `lube.stages`."""
-    return gauge_records(inputs["master"], inputs["contact"], inputs["comparison"])
+    contact, comparison = inputs["contact"], inputs["comparison"]
+    if "master" in inputs:
+        curves = map_curves(inputs["master"], comparison)
+    else:
+        curves = own_curves(study, comparison, threads)
+    return gauge_records(curves, contact, comparison)
 
 
-def gauge_records(master: xr.Dataset, contact: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
+def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
     """Infer films, the pressure-viscosity coefficient and the boundary layer from the records.
 
     Parameters
     ----------
-    master, contact, comparison : xarray.Dataset
+    curves : RecordCurves
+        Of the records of the comparison.
+    contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
     Returns
@@ -48,10 +52,10 @@ def gauge_records(master: xr.Dataset, contact: xr.Dataset, comparison: xr.Datase
     """
     gauged = comparison[[*_KEPT, *AT_RECORDS, "origin", "pairs", "drift"]]
     parts = (
-        gauge_film(master, comparison),
-        gauge_coverage(master, comparison),
-        fit_alpha(master, contact, comparison),
-        fit_layer_strength(master, contact, comparison),
+        gauge_film(curves, comparison),
+        gauge_coverage(curves, comparison),
+        fit_alpha(curves, contact, comparison),
+        fit_layer_strength(curves, contact, comparison),
     )
     for part in parts:
         gauged = gauged.merge(part, join="exact", combine_attrs="drop")
@@ -63,32 +67,31 @@ def gauge_records(master: xr.Dataset, contact: xr.Dataset, comparison: xr.Datase
     return label(gauged.drop_attrs(deep=False), "gauge")
 
 
-def gauge_film(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
+def gauge_film(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
     """Film thickness and lambda ratio that explain the contact share of every record.
 
     Parameters
     ----------
-    master, comparison : xarray.Dataset
-        Datasets of these kinds, of one study.
+    curves, comparison
+        As in `gauge_records`.
 
     Returns
     -------
     xarray.Dataset
         ``gauged_film_thickness`` (m) and ``gauged_lambda_ratio`` with ``_lower`` and ``_upper``
-        over ``record``, NaN without a share. A share below the resolution of the map has no
+        over ``record``, NaN without a share. A share below the resolution of its curve has no
         value, only a lower limit, and infinity as the upper limit; a share above that of the
-        map's thinnest film has only an upper limit, and zero as the lower limit. The 95 %
+        curve's thinnest film has only an upper limit, and zero as the lower limit. The 95 %
         intervals include the scatter of one pair's record and the error of the ensemble. Where
         contact is so frequent that it falls as the film thins, a share belongs to two films: these
         are the thicker one, and ``gauged_thinner_film_thickness`` (m) is the other, NaN where
         there is none.
     """
-    curve, realisations = cache(lambda width: curve_at(master, width)), master.sizes["realisation"]
-    names = ("contact_half_width", "measured_share", "share_error")
-    columns = *(comparison[name].values for name in names), comparison["scatter_ratio"].values[0]
+    realisations, shares = comparison.sizes["realisation"], comparison["measured_share"].values
+    columns = shares, comparison["scatter_ratio"].values[0], comparison["share_error"].values
     films = [
-        film_interval(curve(2.0 * half_width), share, ratio, realisations, noise)
-        for half_width, share, noise, ratio in zip(*columns, strict=True)
+        film_interval(curve, share, ratio, realisations, noise)
+        for curve, share, ratio, noise in zip(curves.of_records, *columns, strict=True)
     ]
     ratios = np.exp(films)
     ratios[:, 0] = np.where(np.isfinite(films)[:, 0], ratios[:, 0], np.nan)
@@ -96,25 +99,23 @@ def gauge_film(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
     thickness = ratios * sigma
     found = values_with_limits("gauged_lambda_ratio", ratios.T)
     found |= values_with_limits("gauged_film_thickness", thickness.T)
-    thinner = [
-        curve(2.0 * half_width).thinner_film_at(share)
-        for half_width, share in zip(*columns[:2], strict=True)
-    ]
+    pairs = zip(curves.of_records, shares, strict=True)
+    thinner = [curve.thinner_film_at(share) for curve, share in pairs]
     found["gauged_thinner_film_thickness"] = sigma * np.exp(thinner)
     return xr.Dataset({name: ("record", values) for name, values in found.items()})
 
 
-def gauge_coverage(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
+def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
     """How often the interval of a gauged film contains the true film thickness.
 
-    Each realisation in turn is left out of the map and gauged with the others, as a record of
+    Each realisation in turn is left out of the ensemble and gauged with the others, as a record of
     one pair of rollers, one revolution long, at the films of the first formula. Its interval
     contains the true film where its share lies within the prediction of the others there.
 
     Parameters
     ----------
-    master, comparison : xarray.Dataset
-        Datasets of these kinds, of one study.
+    curves, comparison
+        As in `gauge_records`.
 
     Returns
     -------
@@ -128,10 +129,8 @@ def gauge_coverage(master: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
     coverage = np.full((4, members.shape[1]), np.nan)
     if len(members) > 2:
         films = np.log(comparison["lambda_ratio"].values[0])
-        widths = 2.0 * comparison["contact_half_width"].values
-        curve = cache(lambda width: curve_at(master, width))
-        for record, (width, film) in enumerate(zip(widths, films, strict=True)):
-            held, closed = _leave_one_out(curve(width), film, members[:, record])
+        for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
+            held, closed = _leave_one_out(curve, film, members[:, record])
             by_side = _mean(held[closed]), _mean(held[~closed])
             coverage[:, record] = np.mean(held), *by_side, np.mean(closed)
     names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.windows import ContactWindows
+from lube.grid.operating_points import at_slip
 from lube.kernels.synthesis import mean_powers
 from lube.schema import MEAN_LIMITS, label, values_with_limits
 from lube.statistics.confidence import probability_interval
@@ -27,8 +28,9 @@ PAIRS = 8
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``height_distribution.nc``; see `lube.stages`."""
-    layer = study.boundary_layer
-    return height_distributions(study.line_spec, inputs["film"], layer, study.seed, threads)
+    film, layer = inputs["film"], study.boundary_layer
+    options = study.seed, threads, study.is_flattened
+    return height_distributions(study.line_spec, film, layer, *options)
 
 
 def height_distributions(
@@ -37,8 +39,13 @@ def height_distributions(
     boundary_layer: BoundaryLayer,
     seed: int,
     threads: int = 1,
+    flattened: bool = False,
 ) -> xr.Dataset:
     """Compute probabilities by skewness and kurtosis of the heights, in pure rolling.
+
+    The contact is that of the largest force. If the film has a shape, or the oil flattens the
+    lines, both are those of this force at the middle speed and temperature and the first lubricant,
+    at all films.
 
     Parameters
     ----------
@@ -52,18 +59,21 @@ def height_distributions(
         Seed of the study.
     threads : int, optional
         Threads that share the work; they do not change the results.
+    flattened : bool, optional
+        Whether the oil flattens the lines.
 
     Returns
     -------
     xarray.Dataset
         The ``height_distribution`` file of `lube.schema`.
     """
-    half_width = film["contact_half_width"].max().item()
+    at = {name: film.sizes[name] // 2 for name in ("speed", "temperature")}
+    at |= {"film_formula": 0, "lubricant": 0, "force": np.argmax(film["contact_half_width"].values)}
+    point = at_slip(film).isel(at)
+    half_width = point["contact_half_width"].item()
     films = LAMBDA_RATIOS * film["composite_rms_roughness"].item()
-    points = film[["reduced_modulus"]].assign(
-        film_thickness=("lambda_ratio", films), contact_half_width=half_width
-    )
-    contact_windows = ContactWindows(spec, points, boundary_layer)
+    points = point.drop_vars("lambda_ratio").assign(film_thickness=("lambda_ratio", films))
+    contact_windows = ContactWindows(spec, points, boundary_layer, flattened)
     levels = [(skewness, kurtosis) for skewness in SKEWNESS for kurtosis in KURTOSIS]
     # Both rollers turn as one, so a revolution of the smaller one shows all of its line.
     windows = np.full(films.size, spec.independent_windows(2.0 * half_width))

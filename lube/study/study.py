@@ -181,8 +181,8 @@ class Study(StrictModel):
         return self.roughness_deformation != "none"
 
     @property
-    def follows_master_map(self) -> bool:
-        """Whether contact depends on the film thickness and the contact width alone."""
+    def has_master_map(self) -> bool:
+        """Whether contact depends on film thickness and contact width alone, so that a map has it."""
         return self.film_shape == "flat" and not self.is_flattened
 
     @property
@@ -208,6 +208,10 @@ class Study(StrictModel):
         extra = [name for name, target in ON_REQUEST.items() if target != "benchmark"]
         made = [name for name in extra if self.has(name) and Path(folder, f"{name}.nc").is_file()]
         return [*self.datasets, *made]
+
+    def inputs_of(self, stage: str) -> tuple[str, ...]:
+        """Names of the stages whose files a stage reads, of those that the study has."""
+        return tuple(name for name in STAGES[stage].inputs if self.has(name))
 
     def has(self, stage: str) -> bool:
         """Whether the study has what a stage is about."""

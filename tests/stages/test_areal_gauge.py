@@ -7,6 +7,7 @@ from experiments import experiment_of
 
 from lube.schema import CONTACT_DIMS, FILES, LIMITS, check, label
 from lube.stages.areal_gauge import gauge_by_surface
+from lube.inference.record_curves import map_curves
 from lube.stages.gauge import gauge_records
 
 NAMES = [f"surface_lambda_ratio{limit}" for limit in LIMITS]
@@ -33,7 +34,7 @@ def read(busy, compared, areal):
 
     def run(shares, force, areal=areal, **values):
         comparison = compared(experiment_of(shares, force, 100.0, 60.0, **values))
-        gauge = gauge_records(busy.master, busy.contact, comparison)
+        gauge = gauge_records(map_curves(busy.master, comparison), busy.contact, comparison)
         return gauge_by_surface(busy.film, areal, comparison, gauge)
 
     return run
@@ -58,9 +59,8 @@ def test_a_share_of_the_surface_is_read_back_to_its_film(busy, read):
 def test_the_line_reads_as_in_the_gauge_and_the_quotient_is_of_both(busy, read, compared):
     shares = [0.3, 0.1]
     found = read(shares, 400.0)
-    gauge = gauge_records(
-        busy.master, busy.contact, compared(experiment_of(shares, 400.0, 100.0, 60.0))
-    )
+    comparison = compared(experiment_of(shares, 400.0, 100.0, 60.0))
+    gauge = gauge_records(map_curves(busy.master, comparison), busy.contact, comparison)
     for limit in LIMITS:
         one, other = found[f"line_lambda_ratio{limit}"], gauge[f"gauged_lambda_ratio{limit}"]
         np.testing.assert_array_equal(one, other)

@@ -8,7 +8,7 @@ from lube.study.study import load_study
 
 begin_job(snakemake.log[0])
 study, stage = load_study(**snakemake.config["study"]), STAGES[snakemake.rule]
-files = {kind: snakemake.input[kind] for kind in stage.inputs}
+files = {kind: snakemake.input[kind] for kind in study.inputs_of(stage.name)}
 inputs = {kind: load(path, kind, study) for kind, path in files.items()}
 batches = [load(path, f"{stage.name}_batch", study) for path in snakemake.input.batches]
 dataset = maker(stage.name)(study, {**inputs, "batches": batches}, snakemake.threads)

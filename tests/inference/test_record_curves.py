@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy.special import expit, logit
 
-from lube.inference.map_curves import curve_at, layer_curve_at, logits_on
+from lube.inference.record_curves import curve_at, layer_curve_at, map_curves
 
 WIDTHS = np.array([0.5e-3, 1e-3, 2e-3])
 RATIOS = np.geomspace(0.5, 2.0, 9)
@@ -63,12 +63,19 @@ def test_what_was_not_seen_in_all_windows_is_not_known(master):
 
 
 def test_each_record_is_read_off_at_its_own_width(master):
-    widths = xr.DataArray([1e-3, 0.7e-3, 1e-3], dims="record")
-    ratios = xr.DataArray(
-        np.array([[0.8, 0.9, 1.0], [1.3, 1.4, 1.5]]), dims=("film_formula", "record")
+    widths = [1e-3, 0.7e-3, 1e-3]
+    ratios = np.array([[0.8, 0.9, 1.0], [1.3, 1.4, 1.5]])
+    records = xr.Dataset(
+        {
+            "contact_half_width": ("record", np.array(widths) / 2.0),
+            "film_thickness": (("film_formula", "record"), ratios),
+        }
     )
-    logits = logits_on(lambda width: curve_at(master, width), widths, ratios.T)
+    layer = master["breakthrough_probability"].expand_dims(layer_strength=[1.0])
+    names = {"lambda_ratio": "layer_lambda_ratio", "contact_width": "layer_contact_width"}
+    whole = master.assign(layer_breakthrough_probability=layer.rename(names))
+    logits = map_curves(whole, records).logits(records["film_thickness"].T)
     assert logits.dims == ("film_formula", "record")
-    for number, width in enumerate(widths.values):
-        expected = curve_at(master, width).logit_at(np.log(ratios.values[:, number]))
+    for number, width in enumerate(widths):
+        expected = curve_at(master, width).logit_at(np.log(ratios[:, number]))
         np.testing.assert_array_equal(logits.values[:, number], expected)

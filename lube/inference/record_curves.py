@@ -1,0 +1,315 @@
+"""Curves of the breakthrough probability against the film, one of each record.
+
+Where contact depends on the film thickness and the contact width alone, they are read from the
+master map. Elsewhere, under a film with a shape or on lines that the oil flattens, every record has
+a curve of its own: the film at its conditions is made thinner and thicker, and contact is counted
+on some of the study's realisations, or sampled where it is rare.
+"""
+
+import dataclasses
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import PchipInterpolator
+from scipy.special import expit, logit
+
+from lube.contact.ensemble import windows_in
+from lube.contact.rough_pair import drawn
+from lube.contact.window_films import film_at_places
+from lube.contact.windows import ContactWindows
+from lube.statistics.curves import Curve, peaked_curve
+from lube.statistics.sample_size import effective_sample_size
+from lube.study.study import Study
+from lube.types import Array
+
+PROBABILITY = "breakthrough_probability"
+
+FILMS = 13
+"""Films of a record at which contact is counted or sampled."""
+FINER = 4
+"""Films of its curve for each of these, interpolated."""
+BEYOND = 0.3, 1.5
+"""Thinnest film of the curves over the thinnest of all records, and thickest over the thickest."""
+PAIRS = 8
+"""Pairs of lines on which contact is counted or sampled."""
+FREQUENT = 0.03
+"""Probability from which contact is counted: there sampling scatters more."""
+LAYER_FACTORS = np.array([1 / 8, 1 / 3, 1.0, 3.0, 8.0])
+"""Strengths of the boundary layer, relative to the study's."""
+LAYER_FILMS, LAYER_PAIRS = 5, 4
+"""Films and pairs of lines for boundary layers of other strengths."""
+_LEAST = 1e-40
+"""Probabilities that are taken for none."""
+
+
+@dataclasses.dataclass(frozen=True)
+class RecordCurves:
+    """Curves of the breakthrough probability of the records of a comparison.
+
+    Their films are the logarithms of the lambda ratio by the study's first film formula.
+
+    Attributes
+    ----------
+    of_records : list of Curve
+        The mean probability for each record.
+    offsets : numpy.ndarray
+        Shape (film_formula, record): logarithm of the lambda ratio by the first formula less that
+        by each formula, of the same film. Under a film with a shape they differ: one formula gives
+        the film at its centre, another at its thinnest place.
+    strengths : numpy.ndarray
+        Strengths tau0 / h_c of boundary layers, Pa/m, rising.
+    of_layers : list of list of Curve
+        For each of these strengths the curves of all records, less exact than `of_records`.
+    """
+
+    of_records: list[Curve]
+    offsets: Array
+    strengths: Array
+    of_layers: list[list[Curve]]
+
+    def logits(self, ratios: xr.DataArray) -> xr.DataArray:
+        """Logits of the mean probability at films of the records.
+
+        Parameters
+        ----------
+        ratios : xarray.DataArray
+            Lambda ratios over film_formula, record and other dimensions.
+
+        Returns
+        -------
+        xarray.DataArray
+            Over the same dimensions, these two last.
+        """
+        return self._read(self.of_records, ratios)
+
+    def layer_logits(self, ratios: xr.DataArray) -> xr.DataArray:
+        """Logits of the mean probability with each of the `strengths` of the boundary layer.
+
+        Parameters
+        ----------
+        ratios : xarray.DataArray
+            As in `logits`.
+
+        Returns
+        -------
+        xarray.DataArray
+            Over layer_strength and the same dimensions.
+        """
+        rows = [self._read(curves, ratios) for curves in self.of_layers]
+        strengths = xr.DataArray(self.strengths, dims="layer_strength", name="layer_strength")
+        return xr.concat(rows, strengths, join="exact")
+
+    def _read(self, curves, ratios):
+        logits = np.log(ratios.transpose(..., "film_formula", "record"))
+        films = logits.values + self.offsets
+        for record, curve in enumerate(curves):
+            logits.values[..., record] = curve.logit_at(films[..., record])
+        return logits
+
+
+# The master map
+
+
+def map_curves(master: xr.Dataset, comparison: xr.Dataset) -> RecordCurves:
+    """Curves of the master map at the contact widths of the records.
+
+    Parameters
+    ----------
+    master, comparison : xarray.Dataset
+        Datasets of these kinds, of one study.
+
+    Returns
+    -------
+    RecordCurves
+        The same curves for records of one width.
+    """
+    widths = 2.0 * comparison["contact_half_width"].values
+    layers = master["layer_breakthrough_probability"].mean("realisation")
+    rows = [cache(lambda width: curve_at(master, width))]
+    for layer in layers.transpose("layer_strength", ...):
+        rows.append(cache(lambda width, layer=layer: layer_curve_at(layer, master, width)))
+    of_records, *of_layers = ([row(width) for width in widths] for row in rows)
+    offsets = np.zeros((comparison["film_thickness"].shape[:-1] + widths.shape))
+    return RecordCurves(of_records, offsets, master["layer_strength"].values, of_layers)
+
+
+def curve_at(master: xr.Dataset, width: float) -> Curve:
+    """Curve of the mean breakthrough probability and of its effective sample size.
+
+    Parameters
+    ----------
+    master : xarray.Dataset
+        A ``master`` dataset.
+    width : float
+        Contact width, m.
+
+    Returns
+    -------
+    Curve
+        Against the logarithm of the lambda ratio.
+    """
+    mean = master[f"{PROBABILITY}_mean"]
+    widths = master["contact_width"].values
+    sample_size = effective_sample_size(master[PROBABILITY].values, windows_in(master, widths))
+    here = np.array([np.interp(width, widths, row) for row in sample_size])
+    return _curve(mean, master, width, here)
+
+
+def layer_curve_at(probability: xr.DataArray, master: xr.Dataset, width: float) -> Curve:
+    """Curve of the mean breakthrough probability of another boundary layer.
+
+    Parameters
+    ----------
+    probability : xarray.DataArray
+        Mean over the realisations, over layer_lambda_ratio and layer_contact_width.
+    master : xarray.Dataset
+        The ``master`` dataset from which it is taken.
+    width : float
+        Contact width, m.
+
+    Returns
+    -------
+    Curve
+        Against the logarithm of the lambda ratio; its sample size is unknown, NaN.
+    """
+    return _curve(probability, master, width, np.full(probability.shape[0], np.nan))
+
+
+def _curve(probability, master, width, sample_size):
+    """Curve through the levels of a map.
+
+    If contacts occur independently along the line, -ln(1 - p) is proportional to the width. It is
+    extrapolated so beyond the map's widths, and interpolated linearly between them.
+    """
+    ratios, widths = (probability[name].values for name in probability.dims)
+    intensity = -np.log1p(-np.minimum(probability.values, 1.0 - 1e-12))
+    nearest = np.clip(width, widths[0], widths[-1])
+    here = np.array([np.interp(width, widths, row) for row in intensity]) * width / nearest
+    resolution = 1.0 / (windows_in(master, width) * master.sizes["realisation"])
+    return peaked_curve(np.log(ratios), -np.expm1(-here), sample_size, resolution)
+
+
+# Curves of the records' own films
+
+
+def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None) -> RecordCurves:
+    """Curves of the films at the records' own conditions, made thinner and thicker.
+
+    The shape of a film, and how much the oil flattens the lines, stay those of the record. As far
+    as the study's realisations know the probability at the record's own film better, the curve is
+    moved there.
+
+    Parameters
+    ----------
+    study : Study
+        Its roughness lines, boundary layer and seed.
+    comparison : xarray.Dataset
+        A ``comparison`` dataset of the study.
+    threads : int, optional
+        Threads that share the work; they do not change the results.
+
+    Returns
+    -------
+    RecordCurves
+        Over the films of all records, and some thinner and thicker ones.
+    """
+    first = comparison.isel(film_formula=0)
+    ratios, layer = first["lambda_ratio"].values, study.boundary_layer
+    _, inverse = _windows(study, first, layer).distinct()
+    records = first.isel(record=np.unique(inverse, return_index=True)[1])
+    ends = BEYOND[0] * np.nanmin(ratios), BEYOND[1] * np.nanmax(ratios)
+    films = np.geomspace(*ends, FILMS)
+    pairs = _on_pairs(study, records, films, layer, PAIRS, threads)
+    curves = [
+        _own_curve(films, pairs[..., number], records.isel(record=number))
+        for number in range(records.sizes["record"])
+    ]
+    strengths, of_layers, few = [], [], films[:: (FILMS - 1) // (LAYER_FILMS - 1)]
+    for factor in LAYER_FACTORS:
+        other = layer.model_copy(update={"shear_strength": factor * layer.shear_strength})
+        pairs = _on_pairs(study, records, few, other, LAYER_PAIRS, threads)
+        row = [_through(few, mean, np.nan) for mean in pairs.mean(axis=0).T]
+        if factor == 1.0 or any(curve.films.size for curve in row):  # others may never break
+            strengths.append(other.shear_strength / layer.critical_thickness)
+            of_layers.append(row)
+    of_records, *of_layers = ([row[number] for number in inverse] for row in (curves, *of_layers))
+    return RecordCurves(of_records, _offsets(comparison), np.array(strengths), of_layers)
+
+
+def _windows(study, film, layer):
+    return ContactWindows(study.line_spec, film, layer, study.is_flattened)
+
+
+def _offsets(comparison):
+    """Logarithms of the films of a shape that the first formula gives, less those of each."""
+    if "film_profile" not in comparison:
+        return np.zeros(comparison["film_thickness"].shape)
+    films = np.log(film_at_places(comparison).transpose("film_formula", "record").values)
+    return films[0] - films
+
+
+def _on_pairs(study, records, films, layer, pairs, threads):
+    """Probability on some pairs at films of each record, shape (pairs, films, records)."""
+    shape = films.size, records.sizes["record"]
+    thickness = np.broadcast_to(films[:, None], shape) * records["composite_rms_roughness"].item()
+    windows = _windows(study, records.assign(film_thickness=(("film", "record"), thickness)), layer)
+    is_rare = np.zeros(windows.size, bool)
+    if study.is_sampled:
+        is_rare = windows.sample(study.line_spec, study.seed, 0)[0][1] < FREQUENT
+
+    def on_one_pair(number):
+        shares = np.empty(windows.size)
+        if is_rare.any():
+            shares[is_rare] = windows[is_rare].sample(study.line_spec, study.seed, number)[0][1]
+        if not is_rare.all():
+            shares[~is_rare] = windows[~is_rare].count(drawn(study, number))[:, 1]
+        return shares
+
+    # Drawing and counting release Python's lock, so threads share the work.
+    with ThreadPoolExecutor(threads) as pool:
+        found = list(pool.map(on_one_pair, range(min(pairs, study.realisations))))
+    return np.reshape(found, (-1, *shape))
+
+
+def _own_curve(films, pairs, record):
+    """Curve of one record, moved to the mean over the realisations as far as that knows more."""
+    realised = record[PROBABILITY].values
+    windows = windows_in(record, 2.0 * record["contact_half_width"].item())
+    size = effective_sample_size(realised, windows).item()
+    curve = _through(films, pairs.mean(axis=0), size)
+    own = np.log(record["lambda_ratio"].item())
+    here = curve.logit_at(own)
+    mean = expit(here)
+    nearest = np.argmin(np.abs(np.log(films) - own))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # Variances of a logit are those of the probability over (p (1 - p))^2.
+        of_pairs = pairs[:, nearest].var(ddof=1) / len(pairs) / (mean * (1.0 - mean)) ** 2
+        of_realisations = 1.0 / (size * realised.size * mean * (1.0 - mean))
+        shift = logit(realised.mean()) - here
+        shift *= of_pairs / (of_pairs + of_realisations)
+    if not np.isfinite(shift):
+        return curve
+    return dataclasses.replace(curve, logits=curve.logits + shift)
+
+
+def _through(films, mean, sample_size):
+    """Curve through probabilities at some films, interpolated between them.
+
+    Over the square of the film, in which the logit of a rare probability is nearly linear.
+    """
+    known = (mean > _LEAST) & (mean < 1.0)
+    if np.count_nonzero(known) < 2:
+        nothing = np.zeros(0)
+        return Curve(nothing, nothing, nothing)
+    films, mean = films[known], mean[known]
+    finer = np.exp(
+        np.interp(_steps(FINER * (films.size - 1)), _steps(films.size - 1), np.log(films))
+    )
+    logits = PchipInterpolator(films**2, logit(mean))(finer**2)
+    return peaked_curve(np.log(finer), expit(logits), np.full(finer.size, sample_size), _LEAST)
+
+
+def _steps(count):
+    return np.linspace(0.0, 1.0, count + 1)
