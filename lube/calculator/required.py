@@ -339,7 +339,7 @@ def _sampled(rollers, half_width, seed, own, ratios, pairs):
     films = [np.full(points, film) for film in steps]
 
     def on_one_pair(number):
-        return rare_contact_under(spec, seed, number, films, factors)[1]
+        return rare_contact_under(spec, seed, number, films, factors)[0][1]
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = np.stack(list(pool.map(on_one_pair, range(pairs))))

@@ -24,7 +24,7 @@ from lube.kernels.shaped import shaped_statistics, shaped_trace
 from lube.kernels.strips import strip_statistics, strip_trace
 from lube.kernels.whole_runs import whole_run_steps
 from lube.physics.flattening import amplitude_ratio
-from lube.surfaces.rare_contact import RUN_NUMBERS, rare_contact, rare_contact_under
+from lube.surfaces.rare_contact import rare_contact, rare_contact_under
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair
 
@@ -203,15 +203,17 @@ class ContactWindows:
         Returns
         -------
         windows, runs : numpy.ndarray
-            As of `lube.surfaces.rare_contact.rare_contact`, shapes (2, P) and (10, P); NaN where
-            the film is not known, and all runs under films that are not flat.
+            As of `lube.surfaces.rare_contact.rare_contact`, shapes (2, P) and (10, P); under films
+            that are not flat as of `lube.surfaces.rare_contact.rare_contact_under`, shapes (2, P)
+            and (4, P), NaN where the film is not known.
         """
         if not self.is_shaped:
             widths = 2 * self.half_windows + 1
             return rare_contact(spec, seed, number, self.thickness, widths, self._factor)
-        windows, runs = np.full((2, self.size), np.nan), np.full((RUN_NUMBERS, self.size), np.nan)
         films = [shape.film.astype(float) for shape in self._shapes[~self.unknown]]
-        windows[:, ~self.unknown] = rare_contact_under(spec, seed, number, films, self._factor)
+        found = rare_contact_under(spec, seed, number, films, self._factor)
+        windows, runs = (np.full((len(each), self.size), np.nan) for each in found)
+        windows[:, ~self.unknown], runs[:, ~self.unknown] = found
         return windows, runs
 
     def _in_contact(self, pair):

@@ -131,7 +131,7 @@ def map_curves(master: xr.Dataset, comparison: xr.Dataset) -> RecordCurves:
     for layer in layers.transpose("layer_strength", ...):
         rows.append(cache(lambda width, layer=layer: layer_curve_at(layer, master, width)))
     of_records, *of_layers = ([row(width) for width in widths] for row in rows)
-    offsets = np.zeros((comparison["film_thickness"].shape[:-1] + widths.shape))
+    offsets = np.zeros(comparison["film_thickness"].shape[:-1] + widths.shape)
     return RecordCurves(of_records, offsets, master["layer_strength"].values, of_layers)
 
 

@@ -193,6 +193,93 @@ def touching_runs(
     return sums
 
 
+@kernel
+def touching_runs_under(
+    lines: Pair,
+    places: Array,
+    correlations: Pair,
+    touching: Pair,
+    film: Array,
+    steps: Array,
+    factor: float,
+) -> Array:
+    """Weigh runs of points above a film that is not flat, each found from one known point.
+
+    Parameters
+    ----------
+    lines, places, correlations, factor
+        As in `touching_runs`.
+    touching : tuple of numpy.ndarray
+        Point of the window in which each known point lies, shape (M,), and the sum of the lines
+        there, float32 height steps.
+    film : numpy.ndarray
+        Shape (W,), float32: film thickness at each point of the window, height steps.
+    steps : numpy.ndarray
+        Shape (S, 2), int64: time steps of different kinds, points by which each line moves through
+        the window in one.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (1 + S,), sums over the M runs of their weights: of those whose boundary layer breaks,
+        and of these without a forerunner one step of each kind earlier.
+    """
+    sums = np.zeros(1 + len(steps))
+    reach = correlations[0].size // 2
+    for m in range(places.size):
+        known = touching[0][m]
+        rise = touching[1][m] - (lines[0][places[m]] + lines[1][places[m]])
+        around = lines, places[m] - known, correlations, reach - known, rise, film
+        start, stop, total = _run_under(around, known, 0, 0)
+        points = max(stop - start, 1)  # rounding may put the known point just below the film
+        if not layer_breaks(points, total, factor):
+            continue
+        sums[0] += 1.0 / points
+        for s in range(len(steps)):
+            first, second = steps[s]
+            # The run's points, as either surface carried them on from one step before.
+            point, end = start + min(first, second), stop + max(first, second)
+            broke = False
+            while point < end and not broke:
+                begin, after, total = _run_under(around, point, first, second)
+                broke = after > begin and layer_breaks(after - begin, total, factor)
+                point = max(after, point) + 1
+            if not broke:
+                sums[1 + s] += 1.0 / points
+    return sums
+
+
+@inlined
+def _overlap_under(around, point, first, second):
+    """Overlap at a point of the window before the lines moved, below zero beyond what is known."""
+    lines, offset, correlations, centre, rise, film = around
+    ahead, behind = point - max(first, second) + centre, point - min(first, second) + centre
+    if point < 0 or point >= film.size or ahead < 0 or behind >= correlations[0].size:
+        return np.float32(-1.0)
+    one = lines[0][offset + point - first] + correlations[0][centre + point - first] * rise
+    other = lines[1][offset + point - second] + correlations[1][centre + point - second] * rise
+    return one + other - film[point]
+
+
+@inlined
+def _run_under(around, point, first, second):
+    """First point, point after the last and sum of the overlaps of the run at a point."""
+    start = stop = point
+    total = 0.0
+    overlap = _overlap_under(around, stop, first, second)
+    if overlap > 0.0:
+        while overlap > 0.0:
+            total += overlap
+            stop += 1
+            overlap = _overlap_under(around, stop, first, second)
+        overlap = _overlap_under(around, start - 1, first, second)
+        while overlap > 0.0:
+            total += overlap
+            start -= 1
+            overlap = _overlap_under(around, start - 1, first, second)
+    return start, stop, total
+
+
 @inlined
 def _overlap(moved, point, step):
     """Overlap at a point, counted from the known one, after a relative step of the first line."""

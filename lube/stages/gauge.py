@@ -1,9 +1,9 @@
 """The gauge stage: from the contact share of a record to the film thickness that explains it.
 
 The curve of a record gives the probability of contact for every film thickness at its conditions.
-Read in the other direction it turns a resistance measurement into a film thickness. If instead the film thickness is taken from its formula, all records together
-determine one unknown of the model: the pressure-viscosity coefficient, or the strength of the
-boundary layer.
+Read in the other direction it turns a resistance measurement into a film thickness. If instead the
+film thickness is taken from its formula, all records together determine one unknown of the model:
+the pressure-viscosity coefficient, or the strength of the boundary layer.
 
 A record comes from one pair of rollers. How far its share may lie from the mean follows from the
 scatter between the realisations; the interval includes it, and the error of the mean.

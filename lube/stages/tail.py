@@ -26,7 +26,7 @@ from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
-from lube.surfaces.rare_contact import check_gaussian
+from lube.surfaces.rare_contact import STEPS, check_gaussian
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import ROLLER_NUMBERS
 from lube.types import Datasets
@@ -91,8 +91,9 @@ def tail_probabilities(
     -------
     xarray.Dataset
         The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty, but where the lines
-        are flattened or not Gaussian: then it says so, and all values are NaN. Under films that
-        are not flat, rates and durations are NaN.
+        are flattened or not Gaussian: then it says so, and all values are NaN. Under films
+        that are not flat, the share of pairs and the first time are NaN: they depend on the pauses
+        between breakthroughs, which are sampled under flat films only.
 
     Raises
     ------
@@ -226,20 +227,13 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
     contact, breakthrough = in_windows.transpose("outcome", ...)
     everywhere, speed = xr.ones_like(slip), film["entrainment_speed"]
     in_window, rate = _in_time(spec, film, runs, slip)
-    perimeter = spec.points[0] * spec.spacing
-    turn = perimeter / surface_speeds(speed, slip)[0]
-    width = 2.0 * film["contact_half_width"]
-    windows = independent_windows(perimeter, width, spec.longest_wavelength)
-    rolling = _in_pure_rolling(runs)
-    groups = rolling.isel(outcome=2, drop=True) * spec.points[0]
-    steps = _first_breakthrough(rolling.mean("pair"), _window_points(spec, film), spec.points[0])
+    turn = spec.points[0] * spec.spacing / surface_speeds(speed, slip)[0]
     values = (breakthrough * everywhere, contact * everywhere, rate)
     table = {
         **pair_limits(xr.Dataset(dict(zip(_OF_PAIRS, values, strict=True)))),
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
-        **_touching_pairs(groups, _in_pure_rolling(breakthrough), windows),
-        "first_breakthrough_time": spec.spacing / speed * steps,
+        **_in_a_revolution(spec, film, _in_pure_rolling(runs), _in_pure_rolling(breakthrough)),
         **_asymptotes(spec, film, boundary_layer),
     }
     return xr.Dataset(table)
@@ -247,6 +241,8 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
 
 def _in_time(spec, film, runs, slip):
     """Broken runs in the window at a time, and new ones per second."""
+    if _is_under_a_shape(runs):
+        return _under_a_shape(spec, film, runs, slip)
     points = _window_points(spec, film)
     _, broken, _, new, broken_points, new_points, *_ = runs.transpose("outcome", ...)
     # A run is in the window if any of its points is.
@@ -256,11 +252,43 @@ def _in_time(spec, film, runs, slip):
     return in_window, speed / spec.spacing * (broken + abs(slip) * new_in_window)
 
 
+def _is_under_a_shape(runs):
+    return runs.sizes["outcome"] == 1 + len(STEPS)
+
+
+def _under_a_shape(spec, film, runs, slip):
+    """As `_in_time`, under a film that is not flat: in time steps as contact is counted in.
+
+    In each the faster surface moves by a point. The other does so in a part of them, and rests in
+    the others.
+    """
+    in_window, with_both, with_first, with_second = runs.transpose("outcome", ...)
+    alone = xr.where(slip >= 0.0, with_first, with_second)
+    slower = 1.0 - 0.5 * abs(slip)
+    in_steps = slower * with_both + abs(slip) * alone  # per step of the entrainment speed
+    return in_window, film["entrainment_speed"] / spec.spacing * in_steps
+
+
 def _in_pure_rolling(values):
     """Values without slip, if they depend on it; NaN if no level is without."""
     if _SLIP not in values.dims:
         return values
     return values.reindex({_SLIP: [0.0]}).isel({_SLIP: 0}, drop=True)
+
+
+def _in_a_revolution(spec, film, runs, breakthrough):
+    """Pairs with a breakthrough in a revolution of pure rolling, and when the first comes."""
+    if _is_under_a_shape(runs):  # how far one is from the next is not sampled
+        unknown = xr.full_like(breakthrough.isel(pair=0, drop=True), np.nan)
+        names = (f"touching_pair_share{end}" for end in LIMITS)
+        return dict.fromkeys([*names, "first_breakthrough_time"], unknown)
+    points = spec.points[0]
+    width = 2.0 * film["contact_half_width"]
+    windows = independent_windows(points * spec.spacing, width, spec.longest_wavelength)
+    groups = runs.isel(outcome=2, drop=True) * points
+    steps = _first_breakthrough(runs.mean("pair"), _window_points(spec, film), points)
+    shares = _touching_pairs(groups, breakthrough, windows)
+    return shares | {"first_breakthrough_time": spec.spacing / film["entrainment_speed"] * steps}
 
 
 def _window_points(spec, film):

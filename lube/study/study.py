@@ -182,7 +182,7 @@ class Study(StrictModel):
 
     @property
     def has_master_map(self) -> bool:
-        """Whether contact depends on film thickness and contact width alone, so that a map has it."""
+        """Whether film thickness and contact width alone decide on contact: a map has it all."""
         return self.film_shape == "flat" and not self.is_flattened
 
     @property

@@ -29,7 +29,7 @@ import numpy as np
 import scipy.special
 
 from lube.errors import StudyError
-from lube.kernels.tail import touching_runs, touching_windows
+from lube.kernels.tail import touching_runs, touching_runs_under, touching_windows
 from lube.surfaces.spectra import autocovariance
 from lube.surfaces.synthetic import ROLLER_NUMBERS, LineSpecLike, draw_gaussian_line
 from lube.types import Array, Pair, Values
@@ -40,6 +40,8 @@ RUNS = 400
 """Runs along each pair of lines."""
 RUN_NUMBERS = 10
 """Numbers that `rare_contact` gives of the runs."""
+STEPS = np.array([(1, 1), (1, 0), (0, 1)])
+"""Kinds of time steps, in points by which each surface moves: both, or the faster one alone."""
 NEGLIGIBLE = 1e-9
 """Likelihood of contact at a point, over that at the thinnest film, that is passed over."""
 
@@ -205,8 +207,8 @@ def rare_contact(
 
 def rare_contact_under(
     spec: LineSpecLike, seed: int, number: int, films: Sequence[Array], factor: Values
-) -> Array:
-    """Estimate probabilities of contact under films that are not flat, from one pair of lines.
+) -> Pair:
+    """Estimate probabilities and rates under films that are not flat, from one pair of lines.
 
     Parameters
     ----------
@@ -220,8 +222,11 @@ def rare_contact_under(
 
     Returns
     -------
-    numpy.ndarray
+    windows : numpy.ndarray
         Shape (2, P): probabilities of geometric contact and of breakthrough in a window.
+    runs : numpy.ndarray
+        Shape (4, P): expected number of runs in a window whose boundary layer breaks; and of those
+        of them that are new, for each kind of time step in `STEPS`.
 
     Raises
     ------
@@ -234,7 +239,7 @@ def rare_contact_under(
     thinnest film are left out.
     """
     drawn = _Drawn(spec, seed, number, max(film.size for film in films))
-    probabilities = np.empty((2, len(films)))
+    windows, runs = np.empty((2, len(films))), np.empty((1 + len(STEPS), len(films)))
     for i, (film, own) in enumerate(zip(films, np.broadcast_to(factor, len(films)), strict=True)):
         log_tails = scipy.special.log_ndtr(-film / drawn.both.rms)
         likely = np.flatnonzero(log_tails > log_tails.max() + np.log(NEGLIGIBLE))
@@ -246,8 +251,11 @@ def rare_contact_under(
         touching = known, drawn.heights(log_tails[known])
         expected = share[-1] * np.exp(log_tails.max())
         shape = film[part].astype(np.float32)
-        probabilities[:, i] = drawn.windows(shape, touching, own) * expected
-    return probabilities
+        windows[:, i] = drawn.windows(shape, touching, own) * expected
+        above = likely[0] + known[:RUNS], touching[1][:RUNS]
+        whole = drawn.lines, drawn.places, drawn.covariances, above, film.astype(np.float32)
+        runs[:, i] = touching_runs_under(*whole, STEPS, own) * (expected / RUNS)
+    return windows, runs
 
 
 class _Drawn:

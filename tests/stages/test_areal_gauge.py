@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 from experiments import experiment_of
 
+from lube.inference.record_curves import map_curves
 from lube.schema import CONTACT_DIMS, FILES, LIMITS, check, label
 from lube.stages.areal_gauge import gauge_by_surface
-from lube.inference.record_curves import map_curves
 from lube.stages.gauge import gauge_records
 
 NAMES = [f"surface_lambda_ratio{limit}" for limit in LIMITS]

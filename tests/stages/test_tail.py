@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 import xarray as xr
+from made import made
 
 from lube import contact_statistics, gather, roughness_lines
+from lube.contact.window_films import window_films
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
 from lube.grid.operating_points import at_slip
@@ -175,12 +177,11 @@ def test_an_ensemble_finds_the_same_probabilities(tail, spec, few, study):
     assert seen >= 8
 
 
-def broken_runs(lines, starts, film, window, factor):
+def broken_runs(lines, starts, film, window, factor, margin=60):
     """Whole runs with a broken boundary layer that reach into a window of the sum of lines.
 
     As sets of points, counted from the window's first point.
     """
-    margin = 60
     points = np.arange(-margin, window + margin)
     first, second = (
         line[(start + points) % line.size] for line, start in zip(lines, starts, strict=True)
@@ -193,25 +194,35 @@ def broken_runs(lines, starts, film, window, factor):
             yield set(points[piece].tolist())
 
 
+@pytest.mark.parametrize("shape", ["flat", "computed"])
 @pytest.mark.parametrize("ratio", [0.0, 0.4])
-def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study, ratio):
+def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study, ratio, shape):
     """A broken run is new unless it overlaps one of the step before, seen from a surface."""
     spec = make_spec(20_000)
     point = few.isel(film_formula=[0], temperature=[1], force=[2])
+    if shape == "computed":
+        at = study.operating_grid.model_copy(
+            update={name: tuple(point[name].values) for name in ("force", "speed", "temperature")}
+        )
+        shaped = study.model_copy(update={"film_shape": shape, "operating_grid": at})
+        point = made(shaped, ("lubricant", "film"))["film"].isel(film_formula=[0])
     weak = study.boundary_layer.model_copy(update={"shear_strength": 3e4})
     tail = tail_probabilities(spec, point, weak, SEED, [ratio]).squeeze()
     factor = layer_factor(
         point["reduced_modulus"].item(), weak.critical_thickness, 3e4, spec.spacing, 1e-12
     )
-    film = point["film_thickness"].item() / spec.height_step
+    film, margin = point["film_thickness"].item() / spec.height_step, 60
     window = 2 * int(point["contact_half_width"].item() / spec.spacing) + 1
+    if shape == "computed":
+        film, margin = window_films(point, spec)[0].film, 0
+        window = film.size
     ratios, counts = speed_ratios(ratio), []
     for number in range(8):
         lines, _ = draw_pair(spec, SEED, 100 + number)
         count, old, starts = 0, None, None
         for step in range(2000):
             moved = [surface_position(step, one) for one in ratios]
-            runs = list(broken_runs(lines, moved, film, window, factor))
+            runs = list(broken_runs(lines, moved, film, window, factor, margin))
             if old is not None:
                 steps = [new - before for new, before in zip(moved, starts, strict=True)]
                 # The points of the step before, as each surface has carried them on.
