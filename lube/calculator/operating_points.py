@@ -1,9 +1,9 @@
 """Film, probability of contact and resistance at operating points."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from typing import get_args
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,7 @@ from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.counted import contact_at
 from lube.contact.ensemble import windows_in
 from lube.contact.rough_pair import roughness_batch
-from lube.errors import LubeError, RangeError, StudyError, shown
+from lube.errors import LubeError, RangeError, StudyError, right_one, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.plausibility import remarks
@@ -27,7 +27,7 @@ from lube.statistics.confidence import probability_interval
 from lube.study.line_spec import check_width
 from lube.study.oil_properties import lubricant_table
 from lube.study.rig_settings import RIG_REALISATIONS
-from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
 
 FORMULA = "pan-hamrock"
 """Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
@@ -101,8 +101,13 @@ def film_in_si(
     speed: Amount,
     temperature: Amount,
     film_formula: str | Sequence[str],
+    film_shape: str = "flat",
 ) -> xr.Dataset:
-    """All variables of the film table in SI units, and the oil's; arguments as in `film`."""
+    """All variables of the film table in SI units, and the oil's.
+
+    Arguments as in `film` and `contact_probability`.
+    """
+    is_shaped = choice("film_shape", film_shape) != "flat"
     force, speed, temperature = _conditions(rollers, force, speed, temperature)
     if not temperature.dims:
         temperature = temperature.assign_coords(temperature=temperature)
@@ -110,16 +115,17 @@ def film_in_si(
     formulas = list(film_formula) if several else [film_formula]
     if not formulas or not all(isinstance(one, str) for one in formulas):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas)
+    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, is_shaped)
     table = table.assign_coords(force=force, speed=speed)
-    table = table.transpose("film_formula", "temperature", "speed", "force", missing_dims="ignore")
+    dims = ("film_formula", "temperature", "speed", "force", "film_position")
+    table = table.transpose(*dims, missing_dims="ignore")
     return table if several else table.isel(film_formula=0)
 
 
-def film_of_oil(oil, pair, force, speed, temperature, formulas) -> xr.Dataset:
+def film_of_oil(oil, pair, force, speed, temperature, formulas, with_shape=False) -> xr.Dataset:
     """Film table with the oil's viscosity; numbers in N, rpm and degC, over any dimensions."""
     properties = oil.at(temperature)
-    table = film_at(properties, pair, force, speed, formulas)
+    table = film_at(properties, pair, force, speed, formulas, with_shape)
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
 
 
@@ -185,6 +191,20 @@ def single(name: str, values: xr.DataArray) -> float:
     return values.item()
 
 
+def choice(name: str, value: str) -> str:
+    """Return a choice of the model, one of those that a study has under the same name.
+
+    Raises
+    ------
+    StudyError
+        If there is no such choice.
+    """
+    options = get_args(Study.model_fields[name].annotation)
+    if value not in options:
+        raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
+    return value
+
+
 def one_formula(name: str) -> str:
     """Return the name of a film formula, of which there must be one.
 
@@ -207,6 +227,8 @@ def contact_probability(
     temperature: Amount,
     *,
     film_formula: str | Sequence[str] = FORMULA,
+    film_shape: str = "flat",
+    roughness_deformation: str = "none",
     slide_to_roll_ratio: float = 0.0,
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -225,6 +247,10 @@ def contact_probability(
     ----------
     rollers, oil, force, speed, temperature, film_formula
         As in `film`.
+    film_shape : str, optional
+        ``"flat"``, or ``"computed"`` from Reynolds' equation, a second for each operating point.
+    roughness_deformation : str, optional
+        ``"none"``, or ``"venner-1997"``: the oil flattens the waves of the roughness.
     slide_to_roll_ratio : float, optional
         Difference of the surface speeds over their mean. It does not change the expected
         probability, only the computing time and the scatter.
@@ -240,8 +266,8 @@ def contact_probability(
         ``geometric_contact_probability`` of each realisation, and ``_mean``, ``_lower`` and
         ``_upper`` of both. By importance sampling ``tail_breakthrough_probability`` and
         ``tail_geometric_contact_probability``, and ``tail_breakthrough_rate``, breakthroughs per
-        hour, with ``_lower`` and ``_upper``. These are NaN where the heights are not Gaussian;
-        then the attribute ``remarks`` says so, before the remarks of `film`.
+        hour, with ``_lower`` and ``_upper``. These are NaN where the heights are not Gaussian, or
+        the oil flattens them; then the attribute ``remarks`` says so, before the remarks of `film`.
 
     Raises
     ------
@@ -260,10 +286,11 @@ def contact_probability(
     >>> bool(found.tail_breakthrough_probability_lower > 0)
     True
     """
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, film_shape)
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    contact = ensemble(table, rollers, realisations, seed, slip)
-    on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip)
+    flattened = choice("roughness_deformation", roughness_deformation) != "none"
+    contact = ensemble(table, rollers, realisations, seed, slip, flattened)
+    on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, flattened)
     return with_remarks(joined(table, contact, on_pairs), table, rollers)
 
 
@@ -276,7 +303,12 @@ def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.D
 
 
 def ensemble(
-    table: xr.Dataset, rollers: Rollers, realisations: int, seed: int, slip: float = 0.0
+    table: xr.Dataset,
+    rollers: Rollers,
+    realisations: int,
+    seed: int,
+    slip: float = 0.0,
+    flattened: bool = False,
 ) -> xr.Dataset:
     """Probabilities at some films and contact widths, and their intervals.
 
@@ -284,77 +316,39 @@ def ensemble(
     ----------
     table : xarray.Dataset
         With ``film_thickness`` and ``contact_half_width`` (m) over any dimensions, and
-        ``reduced_modulus`` (Pa).
+        ``reduced_modulus`` (Pa); as `lube.contact.windows.ContactWindows` needs it.
     rollers : Rollers
         Their lines and boundary layer are used.
     realisations, seed : int
         As in `contact_probability`.
     slip : float, optional
         Slide-to-roll ratio.
+    flattened : bool, optional
+        Whether the oil flattens the lines.
 
     Returns
     -------
     xarray.Dataset
-        From `run_all`.
+        Both probabilities over all realisations and the table's dimensions, and their ``_mean``,
+        ``_lower`` and ``_upper``.
+
+    Raises
+    ------
+    LubeError
+        If the lines are too short for a contact, or the number of realisations or the seed is not
+        a suitable whole number.
     """
     half_width = table["contact_half_width"]
     for width in (2.0 * half_width.min().item(), 2.0 * half_width.max().item()):
         check_width(rollers.lines, width, "force: the contact")
-    run = partial(probabilities, table=table, layer=rollers.layer, slip=slip)
-    return run_all(run, rollers, realisations, seed, half_width, slip)
-
-
-def probabilities(
-    lines: xr.Dataset, table: xr.Dataset, layer: BoundaryLayer, slip: float = 0.0
-) -> xr.Dataset:
-    """Both probabilities of some realisations, over realisation and the table's dimensions."""
-    found = contact_at(lines, table, layer, [slip])
-    return found[list(_PROBABILITIES)].isel(slide_to_roll_ratio=0, drop=True)
-
-
-def run_all(
-    run: Callable[[xr.Dataset], xr.Dataset],
-    rollers: Rollers,
-    realisations: int,
-    seed: int,
-    half_width: xr.DataArray,
-    slip: float = 0.0,
-) -> xr.Dataset:
-    """Both probabilities on the lines of every realisation, with the limits of their mean.
-
-    Parameters
-    ----------
-    run : callable
-        From lines, as `lube.stages.roughness.roughness_batch` gives them, to `probabilities`.
-    rollers : Rollers
-        Their lines are drawn.
-    realisations, seed : int
-        As in `contact_probability`.
-    half_width : xarray.DataArray
-        Contact half-width, m.
-    slip : float, optional
-        Slide-to-roll ratio.
-
-    Returns
-    -------
-    xarray.Dataset
-        Both probabilities over all realisations, and their ``_mean``, ``_lower`` and ``_upper``.
-
-    Raises
-    ------
-    StudyError
-        If the number of realisations or the seed is not a suitable whole number.
-    """
-    for name, number, least in (("realisations", realisations, 1), ("seed", seed, 0)):
-        if isinstance(number, bool) or not isinstance(number, int) or number < least:
-            raise StudyError(f"{name}: got {shown(number)}, need a whole number, at least {least}")
-    if realisations > RIG_REALISATIONS:
-        raise StudyError(f"realisations: got {realisations}, need at most {RIG_REALISATIONS}")
+    check_realisations(realisations, seed)
 
     def of_realisation(number):
-        return run(roughness_batch(rollers.lines, seed, [number]))
+        lines = roughness_batch(rollers.lines, seed, [number])
+        found = contact_at(lines, table, rollers.layer, [slip], flattened=flattened)
+        return found[list(_PROBABILITIES)].isel(slide_to_roll_ratio=0, drop=True)
 
-    # Drawing and running release Python's lock, so threads share the work.
+    # Drawing and counting release Python's lock, so threads share the work.
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         parts = list(pool.map(of_realisation, range(realisations)))
     contact = xr.concat(parts, "realisation", coords="minimal", compat="override", join="exact")
@@ -367,6 +361,22 @@ def run_all(
         found = probability_interval(contact[name].values, windows.transpose(*dims).values)
         contact = contact.assign(values_with_limits(name, found, dims, MEAN_LIMITS))
     return contact
+
+
+def check_realisations(realisations: int, seed: int) -> int:
+    """Return the number of realisations, if it and the seed are suitable whole numbers.
+
+    Raises
+    ------
+    StudyError
+        If one of them is not.
+    """
+    for name, number, least in (("realisations", realisations, 1), ("seed", seed, 0)):
+        if isinstance(number, bool) or not isinstance(number, int) or number < least:
+            raise StudyError(f"{name}: got {shown(number)}, need a whole number, at least {least}")
+    if realisations > RIG_REALISATIONS:
+        raise StudyError(f"realisations: got {realisations}, need at most {RIG_REALISATIONS}")
+    return realisations
 
 
 @with_parts

@@ -17,27 +17,30 @@ from lube.calculator.operating_points import (
     FORMULA,
     REALISATIONS,
     SEED,
+    check_realisations,
+    choice,
     film_in_si,
     one_formula,
-    probabilities,
     rotation_speed,
-    run_all,
     single,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.contact.window_films import shaped_films
+from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError
-from lube.grid.discretise import layer_factor_of
 from lube.schema import values_with_limits
 from lube.stages.tail import PAIRS
-from lube.statistics.confidence import mean_interval
+from lube.statistics.confidence import mean_interval, probability_interval
 from lube.statistics.curves import peaked_curve
 from lube.study.line_spec import check_width
-from lube.surfaces.rare_contact import rare_contact_under
+from lube.surfaces.synthetic import draw_realisation
 
 LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
 """Lambda ratios that are tried at first; even at the last, contact has a probability of 1e-37."""
 NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
 """Lambda ratios that are tried then, over that of the share at first sight."""
+AROUND = np.exp(np.linspace(-1.0, 0.6, 17))
+"""The same where the film has a shape or the oil flattens the lines: at first sight neither has."""
 FALLING = 0.9
 """Share, over the largest there is, below which it lies well on the falling branch."""
 OFTEN = 10.0
@@ -91,7 +94,9 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    return _labelled(_films(rollers, force, share, realisations, seed))
+    force = single("force", amount("force", force, "N", above=0.0))
+    half_width = float(rollers.pair.contact_half_width(force))
+    return _labelled(_Search(rollers, share, realisations, seed).films(half_width))
 
 
 @with_parts
@@ -104,6 +109,8 @@ def required_viscosity(
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
+    film_shape: str = "flat",
+    roughness_deformation: str = "none",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -111,7 +118,7 @@ def required_viscosity(
 
     Parameters
     ----------
-    rollers, oil, force, speed, temperature, film_formula
+    rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one of each. The pressure-viscosity coefficient and the
         density are the oil's at that temperature.
     share, realisations, seed
@@ -129,13 +136,17 @@ def required_viscosity(
         Which argument, what came, what is needed; or that no viscosity is enough.
     """
     rotation = single("speed", rotation_speed(speed, rollers.pair.first.radius))
-    # The film depends on the product of viscosity and speed, so the speed is varied for both.
-    speeds = rotation * FACTORS, "rpm"
-    table = _film(rollers, oil, force, speeds, temperature, film_formula, "speed")
-    properties = oil.at(table["temperature"])
-    films = _films(rollers, force, share, realisations, seed)
+    one = one_formula(film_formula)
+
+    def table(factors, film_shape="flat"):
+        # The film depends on the product of viscosity and speed, so the speed is varied for both.
+        speeds = rotation * factors, "rpm"
+        return film_in_si(rollers, oil, force, speeds, temperature, one, film_shape)
+
+    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
-    factors = np.exp(_reached(films, table, np.log(FACTORS), tried))
+    films, factors = search.along(table, FACTORS, tried)
+    properties = oil.at(table(FACTORS[:1])["temperature"])
     viscosity = properties["dynamic_viscosity"].item() * factors
     kinematic = viscosity / properties["density"].item()
     return _labelled({"dynamic_viscosity": viscosity, "kinematic_viscosity": kinematic} | films)
@@ -150,6 +161,8 @@ def required_speed(
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
+    film_shape: str = "flat",
+    roughness_deformation: str = "none",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -157,7 +170,7 @@ def required_speed(
 
     Parameters
     ----------
-    rollers, oil, force, temperature, film_formula
+    rollers, oil, force, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one of each.
     share, realisations, seed
         As in `required_film`.
@@ -173,10 +186,13 @@ def required_speed(
     LubeError
         Which argument, what came, what is needed; or that no speed is enough.
     """
-    table = _film(rollers, oil, force, (FACTORS, "m/s"), temperature, film_formula, "speed")
-    films = _films(rollers, force, share, realisations, seed)
-    tried = f"speed up to {FACTORS[-1]:g} m/s"
-    speeds = np.exp(_reached(films, table, np.log(FACTORS), tried))
+    one = one_formula(film_formula)
+
+    def table(speeds, film_shape="flat"):
+        return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, film_shape)
+
+    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
+    films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
 
@@ -190,6 +206,8 @@ def required_temperature(
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
+    film_shape: str = "flat",
+    roughness_deformation: str = "none",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -197,7 +215,7 @@ def required_temperature(
 
     Parameters
     ----------
-    rollers, oil, force, speed, film_formula
+    rollers, oil, force, speed, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one of each.
     share, realisations, seed
         As in `required_film`.
@@ -213,10 +231,14 @@ def required_temperature(
     LubeError
         Which argument, what came, what is needed; or that no temperature is low enough.
     """
+    one = one_formula(film_formula)
+
+    def table(temperatures, film_shape="flat"):
+        return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, film_shape)
+
+    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
-    table = _film(rollers, oil, force, speed, (levels, "degC"), film_formula, "temperature")
-    films = _films(rollers, force, share, realisations, seed)
-    found = _reached(films, table, levels, "temperature of this oil")
+    films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
 
 
@@ -230,6 +252,8 @@ def required_roughness(
     *,
     share: float = 0.01,
     film_formula: str = FORMULA,
+    film_shape: str = "flat",
+    roughness_deformation: str = "none",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -241,7 +265,7 @@ def required_roughness(
 
     Parameters
     ----------
-    rollers, oil, force, speed, temperature, film_formula
+    rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one of each.
     share, realisations, seed
         As in `required_film`.
@@ -257,64 +281,141 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    film = _film(rollers, oil, force, speed, temperature, film_formula)
-    own, half_width = film["lambda_ratio"].item(), film["contact_half_width"].item()
-    ratios = _lambda_ratios(rollers, half_width, share, realisations, seed, own)
+    one = one_formula(film_formula)
+    film = film_in_si(rollers, oil, force, speed, temperature, one, film_shape)
+    for name, size in film["film_thickness"].sizes.items():
+        raise StudyError(f"{name}: got {size} values, need one")
+    own = film["lambda_ratio"].item()
+
+    def gap(ratios):
+        # Lines of s times the height break as the given ones do under the film over s.
+        scale = xr.DataArray(ratios / own, dims="film")
+        scaled = {"film_thickness": scale * film["film_thickness"]}
+        if film_shape != "flat":
+            scaled["film_profile"] = scale * shaped_films(film)
+        return film.assign(scaled)
+
+    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
+    found = search.films(film["contact_half_width"].item(), gap, own=own)
+    ratios = found["lambda_ratio"]
     sigma = rollers.pair.composite_rms_roughness * own / ratios
     found = {"roughness_factor": own / ratios, "composite_rms_roughness": sigma}
     return _labelled(found | {"lambda_ratio": ratios})
 
 
-def _film(rollers, oil, force, speed, temperature, film_formula, varied=None):
-    """Film table in SI units by one formula, over `varied`."""
-    table = film_in_si(rollers, oil, force, speed, temperature, one_formula(film_formula))
-    for name, size in table["film_thickness"].sizes.items():
-        if name != varied:
-            raise StudyError(f"{name}: got {size} values, need one")
-    return table
+class _Search:
+    """Search for the films at which contact has a share.
 
-
-def _films(rollers, force, share, realisations, seed):
-    """Films at which the probability, its lower and its upper limit have a share, shape (3,)."""
-    force = single("force", amount("force", force, "N", above=0.0))
-    half_width = float(rollers.pair.contact_half_width(force))
-    ratios = _lambda_ratios(rollers, half_width, share, realisations, seed)
-    films = rollers.pair.composite_rms_roughness * ratios
-    return {"film_thickness": films, "lambda_ratio": films / rollers.pair.composite_rms_roughness}
-
-
-def _lambda_ratios(rollers, half_width, share, realisations, seed, own=None):
-    """Lambda ratios at which the probability, its lower and its upper limit have a share.
-
-    The film changes, or the roughness if its own lambda ratio is given: then so does the layer's
-    strength in proportion, as of `required_roughness`. A first look by sampling says where to look.
+    Contact is counted in the realisations where they see enough of it, else sampled.
     """
-    share = bare_number("share", share, above=0.0, below=1.0)
-    spec, ratios = rollers.lines, LAMBDA_RATIOS
-    check_width(spec, 2.0 * half_width, "force: the contact")
-    windows = spec.independent_windows(2.0 * half_width) * realisations
-    if not spec.is_gaussian and share * windows < 1.0:
-        raise RangeError(
-            f"share: got {share:g}, need at least {1.0 / windows:.2g}: {realisations} realisations "
-            "show no rarer contact, and importance sampling is for Gaussian heights"
+
+    def __init__(self, rollers, share, realisations, seed, film_shape="flat", deformation="none"):
+        self._share = bare_number("share", share, above=0.0, below=1.0)
+        self._rollers, self._realisations, self._seed = rollers, realisations, seed
+        self.film_shape = choice("film_shape", film_shape)
+        self._is_flattened = choice("roughness_deformation", deformation) != "none"
+        self._sigma = rollers.pair.composite_rms_roughness
+
+    def along(self, table, levels, tried):
+        """Films with the share, and the levels of a condition that give them."""
+        whole = table(levels)
+        for name, size in whole["film_thickness"].sizes.items():
+            if size != levels.size:
+                raise StudyError(f"{name}: got {size} values, need one")
+        ratios = whole["lambda_ratio"].values
+        known = np.flatnonzero(np.isfinite(ratios))
+        known = known[np.argsort(ratios[known])]
+
+        def gap(sought):
+            here = np.interp(sought, ratios[known], known)
+            return table(np.interp(here, np.arange(levels.size), levels), self.film_shape)
+
+        ends = ratios[known[[0, -1]]]
+        films = self.films(whole["contact_half_width"].item(), gap, ends)
+        return films, _reached(films, whole, levels, tried)
+
+    def films(self, half_width, gap=None, ends=(0.0, np.inf), own=None):
+        """Films at which the probability, its lower and its upper limit have the share.
+
+        Parameters
+        ----------
+        half_width : float
+            Half-width of the contact, m.
+        gap : callable, optional
+            From lambda ratios to a film table of them, if the film has a shape or the oil flattens
+            the lines; by default flat films.
+        ends : tuple of float, optional
+            Least and greatest lambda ratio of `gap`.
+        own : float, optional
+            Lambda ratio of the rollers if their roughness changes and not the film: so does the
+            layer's strength in proportion then, as of `required_roughness`.
+        """
+        spec = self._rollers.lines
+        check_width(spec, 2.0 * half_width, "force: the contact")
+        windows = spec.independent_windows(2.0 * half_width) * self._realisations
+        can_sample = spec.is_gaussian and not self._is_flattened
+        if not can_sample and self._share * windows < 1.0:
+            raise RangeError(
+                f"share: got {self._share:g}, need at least {1.0 / windows:.2g}: "
+                f"{self._realisations} realisations show no rarer contact, and importance sampling "
+                "is for Gaussian heights as they are drawn"
+            )
+        ratios, is_plain = LAMBDA_RATIOS, self.film_shape == "flat" and not self._is_flattened
+        if spec.is_gaussian or not is_plain:
+            # A first look at flat films, on lines as drawn, says where to look.
+            first = self._windows(self._flat(ratios, half_width), own, False)
+            first = self._sampled(first, FEW_PAIRS) if spec.is_gaussian else self._counted(first)
+            found = max(_crossing(ratios, first[0], self._share), ratios[np.argmax(first[0])])
+            if not is_plain:
+                ratios = np.unique(np.clip(found * AROUND, *ends))
+            elif self._share < FALLING * first[0].max():
+                ratios = found * NEAR
+            else:  # the maximum is flat: to find it takes them all
+                ratios = ratios[ratios < 2.0 * found * NEAR[-1]]
+        table = self._flat(ratios, half_width) if is_plain else gap(ratios)
+        is_seen = self._share * windows >= OFTEN or not can_sample
+        method = self._counted if is_seen else self._sampled
+        limits = method(self._windows(table, own, self._is_flattened))
+        ratios = table["film_thickness"].values / self._sigma
+        found = np.array([_crossing(ratios, each, self._share) for each in limits])
+        if not found[0] > 0.0:
+            peak = np.nanargmax(limits[0])
+            raise RangeError(
+                f"share: got {self._share:g}, which no film has: the largest share is "
+                f"{limits[0][peak]:.3g}, at a lambda ratio of {ratios[peak]:.2g}"
+            )
+        return {"film_thickness": self._sigma * found, "lambda_ratio": found}
+
+    def _flat(self, ratios, half_width):
+        films = {"film_thickness": ("film", ratios * self._sigma), "contact_half_width": half_width}
+        return xr.Dataset(films | {"reduced_modulus": self._rollers.pair.reduced_modulus})
+
+    def _windows(self, table, own, flattened):
+        ratios = table["film_thickness"].values / self._sigma
+        weaker = 1.0 if own is None else own / ratios
+        return ContactWindows(self._rollers.lines, table, self._rollers.layer, flattened, weaker)
+
+    def _sampled(self, windows, pairs=PAIRS):
+        """Mean and limits of the breakthrough probability, by importance sampling."""
+        spec = self._rollers.lines
+        found = _on_pairs(lambda number: windows.sample(spec, self._seed, number)[0], pairs)
+        return np.minimum(mean_interval(found), 1.0)
+
+    def _counted(self, windows):
+        """Mean and limits of the breakthrough probability, counted in realisations."""
+        spec, seed = self._rollers.lines, self._seed
+        found = _on_pairs(
+            lambda number: windows.count(draw_realisation(spec, seed, number)).T,
+            check_realisations(self._realisations, seed),
         )
-    if spec.is_gaussian:
-        first = _sampled(rollers, half_width, seed, own, ratios, FEW_PAIRS)[0]
-        near = max(_crossing(ratios, first, share), ratios[np.argmax(first)]) * NEAR
-        # The maximum is flat: to find it takes them all.
-        is_falling = share < FALLING * first.max()
-        ratios = near if is_falling else ratios[ratios < 2.0 * near[-1]]
-    is_seen = share * windows >= OFTEN or not spec.is_gaussian
-    method, number = (_counted, realisations) if is_seen else (_sampled, PAIRS)
-    limits = method(rollers, half_width, seed, own, ratios, number)
-    found = np.array([_crossing(ratios, each, share) for each in limits])
-    if not found[0] > 0.0:
-        peak = np.argmax(limits[0])
-        raise RangeError(
-            f"share: got {share:g}, which no film has: the largest share is {limits[0][peak]:.3g}, "
-            f"at a lambda ratio of {ratios[peak]:.2g}"
-        )
-    return found
+        widths = 2.0 * spec.spacing * windows.half_windows
+        return probability_interval(found, spec.independent_windows(widths))
+
+
+def _on_pairs(found_on, pairs):
+    """Breakthrough probability on pairs of lines, which share the processors."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return np.stack([found[1] for found in pool.map(found_on, range(pairs))])
 
 
 def _crossing(ratios, probabilities, share):
@@ -327,44 +428,6 @@ def _crossing(ratios, probabilities, share):
     # Over the square, in which the logarithm of a rare probability is nearly linear.
     curve = peaked_curve(ratios**2, probabilities, unknown, _LEAST)
     return np.sqrt(max(curve.film_at(share), 0.0))
-
-
-def _sampled(rollers, half_width, seed, own, ratios, pairs):
-    """Mean and limits of the breakthrough probability, by importance sampling."""
-    spec = rollers.lines
-    factor = layer_factor_of(spec, rollers.pair.reduced_modulus, rollers.layer)
-    factors = factor * (1.0 if own is None else own / ratios)
-    points = 2 * int(half_width / spec.spacing) + 1
-    steps = ratios * rollers.pair.composite_rms_roughness / spec.height_step
-    films = [np.full(points, film) for film in steps]
-
-    def on_one_pair(number):
-        return rare_contact_under(spec, seed, number, films, factors)[0][1]
-
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = np.stack(list(pool.map(on_one_pair, range(pairs))))
-    return np.minimum(mean_interval(found), 1.0)
-
-
-def _counted(rollers, half_width, seed, own, ratios, realisations):
-    """Mean and limits of the breakthrough probability, counted in realisations."""
-    film = xr.DataArray(ratios * rollers.pair.composite_rms_roughness, dims="film")
-    table = xr.Dataset({"film_thickness": film, "contact_half_width": half_width})
-    table["reduced_modulus"] = rollers.pair.reduced_modulus
-    layer = rollers.layer
-
-    def run(lines):
-        if own is None:
-            return probabilities(lines, table, layer)
-        found = []
-        for number, ratio in enumerate(ratios):
-            weaker = {"shear_strength": layer.shear_strength * ratio / own}
-            part = table.isel(film=[number])
-            found.append(probabilities(lines, part, layer.model_copy(update=weaker)))
-        return xr.concat(found, "film", coords="minimal", compat="override")
-
-    contact = run_all(run, rollers, realisations, seed, table["contact_half_width"])
-    return [contact[f"breakthrough_probability_{end}"].values for end in ("mean", "lower", "upper")]
 
 
 def _reached(films, table, levels, tried):

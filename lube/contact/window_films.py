@@ -143,7 +143,8 @@ def window_films(film: xr.Dataset, grid: LineGrid) -> list[WindowFilm | None]:
     shaped = shaped_films(film)
     widths = film["contact_half_width"].broadcast_like(film["film_thickness"])
     widths = widths.transpose(*film["film_thickness"].dims).values.ravel()
-    rows = shaped.stack(point=film["film_thickness"].dims).transpose("point", ...)
+    rows = shaped.expand_dims("one").stack(point=("one", *film["film_thickness"].dims))
+    rows = rows.transpose("point", ...)
     return [_as_far(row, width, grid) for row, width in zip(rows, widths, strict=True)]
 
 

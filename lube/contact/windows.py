@@ -26,7 +26,7 @@ from lube.kernels.whole_runs import whole_run_steps
 from lube.physics.flattening import amplitude_ratio
 from lube.surfaces.rare_contact import rare_contact, rare_contact_under
 from lube.surfaces.synthetic import LineSpecLike
-from lube.types import Array, Pair
+from lube.types import Array, Pair, Values
 
 WINDOWS_PER_WIDTH = 10
 """Windows per width of the contact, under a film that is not flat. More hardly reduce the scatter
@@ -50,6 +50,8 @@ class ContactWindows:
         The boundary layer.
     flattened : bool, optional
         Whether the oil flattens the lines; `film` then has ``moes_load`` and ``moes_material``.
+    weaker : float or numpy.ndarray, optional
+        How many times weaker than `boundary_layer` the layer is, at all points or at each.
 
     Attributes
     ----------
@@ -67,7 +69,12 @@ class ContactWindows:
     """
 
     def __init__(
-        self, grid: LineGrid, film: xr.Dataset, boundary_layer: Layer, flattened: bool = False
+        self,
+        grid: LineGrid,
+        film: xr.Dataset,
+        boundary_layer: Layer,
+        flattened: bool = False,
+        weaker: Values = 1.0,
     ) -> None:
         self.is_shaped, self._flattened = "film_profile" in film, flattened
         names = ["film_thickness", "contact_half_width"]
@@ -83,11 +90,13 @@ class ContactWindows:
         if self.is_shaped:
             self._shapes[:] = window_films(film, grid)
             self.unknown |= [shape is None for shape in self._shapes]
-        self._factor = layer_factor_of(grid, film["reduced_modulus"].item(), boundary_layer)
+        factor = layer_factor_of(grid, film["reduced_modulus"].item(), boundary_layer)
+        self._factors = factor * np.broadcast_to(weaker, thickness.shape)
 
     def __getitem__(self, points: Array | slice) -> "ContactWindows":
         some = copy.copy(self)
-        for name in ("_films", "_shapes", "_contacts", "thickness", "half_windows", "unknown"):
+        names = ("_films", "_shapes", "_contacts", "_factors")
+        for name in (*names, "thickness", "half_windows", "unknown"):
             setattr(some, name, getattr(self, name)[points])
         some.shape = some.unknown.shape
         return some
@@ -100,7 +109,7 @@ class ContactWindows:
     @property
     def keys(self) -> list[tuple]:
         """What decides on contact at each point: where it is the same, contact is the same."""
-        columns = self._films, self.half_windows, *self._contacts.T[1:]
+        columns = self._films, self.half_windows, self._factors, *self._contacts.T[1:]
         return list(zip(*(column.tolist() for column in columns), strict=True))
 
     def distinct(self) -> tuple["ContactWindows", Array]:
@@ -139,8 +148,8 @@ class ContactWindows:
         is_general = self.is_shaped or self._flattened
         if is_general and ratios[0] == ratios[1] and pair[0].size == pair[1].size:
             pair = pair[0] + pair[1], np.zeros(1, np.int32)  # one line passes the contact
-        for lines, here in self._in_contact(pair):
-            counts[here] = run(lines, ratios, steps, here)
+        for lines, factor, here in self._in_contact(pair):
+            counts[here] = run(lines, ratios, steps, here, factor)
         counts[self.unknown] = np.nan
         return counts
 
@@ -160,15 +169,15 @@ class ContactWindows:
         ratios = speed_ratios(slip)
         steps = revolution(pair, ratios)
         broken = np.zeros((self.size, steps), np.int32)
-        for lines, here in self._in_contact(_begun(pair, ratios, begin)):
+        for lines, factor, here in self._in_contact(_begun(pair, ratios, begin)):
             if not self.is_shaped:
                 films = self._films[here], self.half_windows[here]
-                broken[here] = strip_trace(lines, ratios, steps, *films, self._factor)
+                broken[here] = strip_trace(lines, ratios, steps, *films, factor)
                 continue
             for point in here[~self.unknown[here]]:
                 film = self._shapes[point].below(_highest(lines))
                 motion = lines, ratios, steps, steps
-                broken[point] = shaped_trace(*motion, film.film, film.before, self._factor)[:, 1]
+                broken[point] = shaped_trace(*motion, film.film, film.before, factor)[:, 1]
         return broken
 
     def count_uncut(self, pair: Pair) -> Array:
@@ -189,8 +198,11 @@ class ContactWindows:
             where the film is not known.
         """
         line = pair[0] + np.resize(pair[1], pair[0].size)
-        steps = whole_run_steps(line, self._films, self.half_windows, self._factor)
-        return np.where(self.unknown, np.nan, steps / line.size)
+        shares = np.full(self.size, np.nan)
+        for (one,), factor, here in self._in_contact((line,)):
+            films = self._films[here], self.half_windows[here]
+            shares[here] = whole_run_steps(one, *films, factor) / line.size
+        return np.where(self.unknown, np.nan, shares)
 
     def sample(self, spec: LineSpecLike, seed: int, number: int) -> Pair:
         """Estimate probabilities and rates at any rarity, on one pair of Gaussian lines.
@@ -209,33 +221,37 @@ class ContactWindows:
         """
         if not self.is_shaped:
             widths = 2 * self.half_windows + 1
-            return rare_contact(spec, seed, number, self.thickness, widths, self._factor)
+            return rare_contact(spec, seed, number, self.thickness, widths, self._factors)
         films = [shape.film.astype(float) for shape in self._shapes[~self.unknown]]
-        found = rare_contact_under(spec, seed, number, films, self._factor)
+        factors = self._factors[~self.unknown]
+        found = rare_contact_under(spec, seed, number, films, factors)
         windows, runs = (np.full((len(each), self.size), np.nan) for each in found)
         windows[:, ~self.unknown], runs[:, ~self.unknown] = found
         return windows, runs
 
     def _in_contact(self, pair):
-        """Yield the lines, flattened if need be, and the indices of the points that use them."""
+        """Yield the lines, flattened if need be, the layer's factor, and points with both alike."""
         if not self._flattened:
-            yield pair, np.arange(self.size)
+            for factor in np.unique(self._factors):
+                yield pair, factor, np.flatnonzero(self._factors == factor)
             return
         waves = [Waves(line, self._grid) for line in pair]
         contacts, inverse = np.unique(self._contacts, axis=0, return_inverse=True)
         for number, contact in enumerate(contacts):
             lines = tuple(one.flattened(*contact) for one in waves)
-            yield lines, np.flatnonzero(inverse.ravel() == number)
+            for factor in np.unique(self._factors[inverse.ravel() == number]):
+                alike = (inverse.ravel() == number) & (self._factors == factor)
+                yield lines, factor, np.flatnonzero(alike)
 
-    def _under_flat_films(self, lines, ratios, steps, points):
+    def _under_flat_films(self, lines, ratios, steps, points, factor):
         films = np.stack([self._films[points], self.half_windows[points]])
         (films, half_windows), inverse = np.unique(films, axis=1, return_inverse=True)
         if lines[1].size == 1:
             lines = lines[0], np.zeros_like(lines[0])  # read faster than point after point
-        counts = strip_statistics(lines, ratios, steps, films, half_windows, self._factor)
+        counts = strip_statistics(lines, ratios, steps, films, half_windows, factor)
         return (counts / steps)[inverse.ravel()]
 
-    def _under_shaped_films(self, lines, ratios, steps, points):
+    def _under_shaped_films(self, lines, ratios, steps, points, factor):
         known = ~self.unknown[points]
         reached = [self._shapes[point].below(_highest(lines)) for point in points[known]]
         strides = np.maximum(1, (2 * self.half_windows[points[known]] + 1) // WINDOWS_PER_WIDTH)
@@ -244,7 +260,7 @@ class ContactWindows:
         centres = np.array([one.before for one in reached], np.int64)
         counts = np.full((points.size, 4), np.nan)
         counts[known] = shaped_statistics(
-            lines, ratios, steps, -(-steps // strides), (joined, begin, centres), self._factor
+            lines, ratios, steps, -(-steps // strides), (joined, begin, centres), factor
         )
         return counts
 

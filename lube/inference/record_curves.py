@@ -217,29 +217,29 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
     """
     first = comparison.isel(film_formula=0)
     ratios, layer = first["lambda_ratio"].values, study.boundary_layer
-    _, inverse = _windows(study, first, layer).distinct()
+    _, inverse = _windows(study, first).distinct()
     records = first.isel(record=np.unique(inverse, return_index=True)[1])
     ends = BEYOND[0] * np.nanmin(ratios), BEYOND[1] * np.nanmax(ratios)
     films = np.geomspace(*ends, FILMS)
-    pairs = _on_pairs(study, records, films, layer, PAIRS, threads)
+    (pairs,) = _on_pairs(study, records, films, [1.0], PAIRS, threads)
     curves = [
         _own_curve(films, pairs[..., number], records.isel(record=number))
         for number in range(records.sizes["record"])
     ]
     strengths, of_layers, few = [], [], films[:: (FILMS - 1) // (LAYER_FILMS - 1)]
-    for factor in LAYER_FACTORS:
-        other = layer.model_copy(update={"shear_strength": factor * layer.shear_strength})
-        pairs = _on_pairs(study, records, few, other, LAYER_PAIRS, threads)
+    by_layer = _on_pairs(study, records, few, 1.0 / LAYER_FACTORS, LAYER_PAIRS, threads)
+    for factor, pairs in zip(LAYER_FACTORS, by_layer, strict=True):
         row = [_through(few, mean, np.nan) for mean in pairs.mean(axis=0).T]
         if factor == 1.0 or any(curve.films.size for curve in row):  # others may never break
-            strengths.append(other.shear_strength / layer.critical_thickness)
+            strengths.append(factor * layer.shear_strength / layer.critical_thickness)
             of_layers.append(row)
     of_records, *of_layers = ([row[number] for number in inverse] for row in (curves, *of_layers))
     return RecordCurves(of_records, _offsets(comparison), np.array(strengths), of_layers)
 
 
-def _windows(study, film, layer):
-    return ContactWindows(study.line_spec, film, layer, study.is_flattened)
+def _windows(study, film, weaker=1.0):
+    layer, is_flattened = study.boundary_layer, study.is_flattened
+    return ContactWindows(study.line_spec, film, layer, is_flattened, weaker)
 
 
 def _offsets(comparison):
@@ -250,11 +250,12 @@ def _offsets(comparison):
     return films[0] - films
 
 
-def _on_pairs(study, records, films, layer, pairs, threads):
-    """Probability on some pairs at films of each record, shape (pairs, films, records)."""
-    shape = films.size, records.sizes["record"]
+def _on_pairs(study, records, films, weaker, pairs, threads):
+    """Probability at films of each record, shape (layers, pairs, films, records)."""
+    shape = len(weaker), films.size, records.sizes["record"]
     thickness = np.broadcast_to(films[:, None], shape) * records["composite_rms_roughness"].item()
-    windows = _windows(study, records.assign(film_thickness=(("film", "record"), thickness)), layer)
+    table = records.assign(film_thickness=(("layer", "film", "record"), thickness))
+    windows = _windows(study, table, np.repeat(weaker, thickness[0].size))
     is_rare = np.zeros(windows.size, bool)
     if study.is_sampled:
         is_rare = windows.sample(study.line_spec, study.seed, 0)[0][1] < FREQUENT
@@ -270,7 +271,7 @@ def _on_pairs(study, records, films, layer, pairs, threads):
     # Drawing and counting release Python's lock, so threads share the work.
     with ThreadPoolExecutor(threads) as pool:
         found = list(pool.map(on_one_pair, range(min(pairs, study.realisations))))
-    return np.reshape(found, (-1, *shape))
+    return np.moveaxis(np.reshape(found, (-1, *shape)), 1, 0)
 
 
 def _own_curve(films, pairs, record):

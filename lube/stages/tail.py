@@ -124,16 +124,12 @@ def tail_probabilities(
     if not lowest > 0.0:
         raise DataError(f"film thickness: got {lowest:g} m, need above 0")
     levels = np.asarray(slide_to_roll_ratio, float)
-    if flattened:
-        return _unknown(film, levels, _AS_DRAWN)
+    if remark := _why_not(spec, flattened):
+        return _unknown(film, levels, remark)
     if _SLIP in film["film_thickness"].dims:
         film = film.sel({_SLIP: levels})
     else:
         film = film.drop_dims(_SLIP, errors="ignore")
-    try:
-        check_gaussian(spec)
-    except StudyError as error:
-        return _unknown(film, levels, str(error))
     tables = []
     outcomes = _sampled(spec, film, boundary_layer, seed, threads)
     for part, found in zip(_PARTS, outcomes, strict=True):
@@ -152,6 +148,7 @@ def pair_probabilities(
     boundary_layer: BoundaryLayer,
     seed: int,
     slide_to_roll_ratio: xr.DataArray | float,
+    flattened: bool = False,
 ) -> xr.Dataset:
     """Compute probabilities and rate of contact on each pair of lines, on all processors.
 
@@ -164,6 +161,8 @@ def pair_probabilities(
         dimensions, and ``reduced_modulus`` (Pa).
     slide_to_roll_ratio : xarray.DataArray or float
         Over the same dimensions.
+    flattened : bool, optional
+        As in `tail_probabilities`.
 
     Returns
     -------
@@ -173,11 +172,9 @@ def pair_probabilities(
         of several points is first computed on each pair. With the attribute ``remarks``, as
         `tail_probabilities`.
     """
-    try:
-        check_gaussian(spec)
-    except StudyError as error:
+    if remark := _why_not(spec, flattened):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
-        return xr.Dataset(dict.fromkeys(_OF_PAIRS, unknown), attrs={"remarks": str(error)})
+        return xr.Dataset(dict.fromkeys(_OF_PAIRS, unknown), attrs={"remarks": remark})
     # All in the first part, which has most pairs.
     windows, runs = next(_sampled(spec, film.expand_dims("part"), boundary_layer, seed))
     contact, breakthrough = windows.transpose("outcome", ...)
@@ -207,6 +204,17 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
         limits = np.minimum(mean_interval(of_pairs.values), most)
         limited |= values_with_limits(name, [of_pairs[0].copy(data=limit) for limit in limits])
     return xr.Dataset(limited, attrs=values.attrs)
+
+
+def _why_not(spec, flattened):
+    """Say in one line why contact cannot be sampled; nothing if it can."""
+    if flattened:
+        return _AS_DRAWN
+    try:
+        check_gaussian(spec)
+    except StudyError as error:
+        return str(error)
+    return ""
 
 
 def _unknown(film, slide_to_roll_ratio, remark):

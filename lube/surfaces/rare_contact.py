@@ -162,7 +162,7 @@ def draw_pair(spec: LineSpecLike, seed: int, number: int) -> tuple[Pair, np.rand
 
 
 def rare_contact(
-    spec: LineSpecLike, seed: int, number: int, films: Array, widths: Array, factor: float
+    spec: LineSpecLike, seed: int, number: int, films: Array, widths: Array, factor: Values
 ) -> Pair:
     r"""Estimate probabilities and rates of contact from one pair of lines.
 
@@ -174,8 +174,8 @@ def rare_contact(
         Shape (P,), film thickness, height steps, above zero.
     widths : numpy.ndarray
         Shape (P,), points in the contact window.
-    factor : float
-        From `lube.kernels.layer.layer_factor`.
+    factor : float or numpy.ndarray
+        From `lube.kernels.layer.layer_factor`, for all or for each.
 
     Returns
     -------
@@ -194,13 +194,14 @@ def rare_contact(
     """
     drawn = _Drawn(spec, seed, number, int(widths.max()))
     windows, runs = np.empty((2, films.size)), np.empty((RUN_NUMBERS, films.size))
-    for i, (film, width) in enumerate(zip(films, widths, strict=True)):
+    factors = np.broadcast_to(factor, films.shape)
+    for i, (film, width, own) in enumerate(zip(films, widths, factors, strict=True)):
         log_tail = scipy.special.log_ndtr(-film / drawn.both.rms)
         touching = (drawn.place * width).astype(np.int64), drawn.heights(log_tail)
         shape = np.full(width, film, np.float32)
-        windows[:, i] = drawn.windows(shape, touching, factor) * (width * np.exp(log_tail))
+        windows[:, i] = drawn.windows(shape, touching, own) * (width * np.exp(log_tail))
         known = drawn.lines, drawn.places, drawn.covariances, touching[1][:RUNS]
-        found = touching_runs(*known, film, width, factor)
+        found = touching_runs(*known, film, width, own)
         runs[:, i] = found * (np.exp(log_tail) / RUNS)
     return windows, runs
 
@@ -218,7 +219,7 @@ def rare_contact_under(
         Film thickness at each point of a window, height steps, above zero: one array for each
         operating point.
     factor : float or numpy.ndarray
-        As in `rare_contact`, or one for each operating point.
+        As in `rare_contact`.
 
     Returns
     -------

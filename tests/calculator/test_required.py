@@ -13,6 +13,7 @@ from lube.calculator.operating_points import ensemble
 
 RUNS = {"realisations": 32, "seed": 2}
 ONE = {"realisations": 1, "seed": 2}
+FEW = {"realisations": 8, "seed": 2}
 SHARE = 0.05
 POINT = {"force": "400 N", "speed": "100 rpm", "temperature": "60 degC"}
 
@@ -70,17 +71,21 @@ def test_the_viscosity_gives_that_film(rollers, oil, needed):
     assert kinematic == pytest.approx(found["dynamic_viscosity"].item())
 
 
+def of_roughness(rms, spec):
+    """Rollers as those of the tests, but of another rms roughness."""
+    lengths = {
+        "longest_wavelength": f"{2.0 * np.pi / spec.q_min!r} m",
+        "shortest_wavelength": f"{10.0 * spec.spacing!r} m",
+    }
+    return Rollers("50 mm", rms, points=50_000, shear_strength="0.2 MPa", **lengths)
+
+
 def test_the_roughness_has_the_share(rollers, oil, busy):
     """Rollers of that roughness, drawn anew, have the share asked for."""
     found = lube.required_roughness(rollers, oil, **POINT, share=0.02, **RUNS)
     assert found["roughness_factor"].attrs["units"] == "1"
     rms = f"{0.2 * found['roughness_factor'].item()!r} um"
-    spec = busy.study.line_spec
-    lengths = {
-        "longest_wavelength": f"{2.0 * np.pi / spec.q_min!r} m",
-        "shortest_wavelength": f"{10.0 * spec.spacing!r} m",
-    }
-    smoother = Rollers("50 mm", rms, points=50_000, shear_strength="0.2 MPa", **lengths)
+    smoother = of_roughness(rms, busy.study.line_spec)
     assert probability(smoother, oil) == pytest.approx(0.02, rel=0.05)
     assert probability(rollers, oil) > 0.04
 
@@ -100,17 +105,64 @@ def test_a_share_may_be_as_rare_as_one_likes(rollers, oil, share):
 
 def test_the_roughness_may_be_for_a_rare_share(rollers, oil, busy):
     found = lube.required_roughness(rollers, oil, **POINT, share=1e-7, **RUNS)
-    spec = busy.study.line_spec
-    smoother = Rollers(
-        "50 mm",
-        f"{0.2 * found['roughness_factor'].item()!r} um",
-        points=50_000,
-        shear_strength="0.2 MPa",
-        longest_wavelength=f"{2.0 * np.pi / spec.q_min!r} m",
-        shortest_wavelength=f"{10.0 * spec.spacing!r} m",
-    )
+    rms = f"{0.2 * found['roughness_factor'].item()!r} um"
+    smoother = of_roughness(rms, busy.study.line_spec)
     back = lube.contact_probability(smoother, oil, **POINT, realisations=1, seed=2)
     assert back["tail_breakthrough_probability"].item() == pytest.approx(1e-7, rel=0.05)
+
+
+CHOICES = {"film_shape": "computed", "roughness_deformation": "venner-1997"}
+
+
+@pytest.mark.parametrize(
+    ("inverse", "name", "unit", "chosen"),
+    [
+        (lube.required_speed, "speed", "rpm", ["film_shape"]),
+        (lube.required_viscosity, "speed", "rpm", ["roughness_deformation"]),
+        (lube.required_temperature, "temperature", "degC", list(CHOICES)),
+    ],
+)
+def test_under_any_film_what_is_found_has_the_share(rollers, oil, inverse, name, unit, chosen):
+    """Put in again: its own shape and flattening are those of the condition found."""
+    choices = {one: CHOICES[one] for one in chosen} | (FEW if "film_shape" in chosen else RUNS)
+    if inverse is lube.required_viscosity:
+        found = inverse(rollers, oil, **POINT, share=0.02, **choices)
+        ratio = found["dynamic_viscosity"] / oil.properties("60 degC")["dynamic_viscosity"]
+        level = 100.0 * ratio.item()
+    else:
+        found = inverse(rollers, oil, **without(name), share=0.02, **choices)
+        level = found[name].item()
+    back = lube.contact_probability(rollers, oil, **POINT | {name: (level, unit)}, **choices)
+    assert back["breakthrough_probability_mean"].item() == pytest.approx(0.02, rel=0.05)
+    assert found["lambda_ratio"].item() == pytest.approx(back["lambda_ratio"].item(), rel=1e-3)
+
+
+def test_under_any_film_the_roughness_has_the_share(rollers, oil, busy):
+    """Rollers of that roughness, drawn anew."""
+    choices = CHOICES | FEW
+    found = lube.required_roughness(rollers, oil, **POINT, share=0.02, **choices)
+    rms = f"{0.2 * found['roughness_factor'].item()!r} um"
+    smoother = of_roughness(rms, busy.study.line_spec)
+    back = lube.contact_probability(smoother, oil, **POINT, **choices)
+    assert back["breakthrough_probability_mean"].item() == pytest.approx(0.02, rel=0.05)
+
+
+def test_a_rare_share_under_a_shape_is_sampled_and_on_flattened_lines_refused(rollers, oil):
+    given = without("speed") | {"share": 1e-9}
+    found = lube.required_speed(rollers, oil, **given, film_shape="computed", **ONE)
+    speed = (found["speed"].item(), "rpm")
+    back = lube.contact_probability(
+        rollers, oil, **POINT | {"speed": speed}, film_shape="computed", **ONE
+    )
+    assert back["tail_breakthrough_probability"].item() == pytest.approx(1e-9, rel=0.05)
+    with pytest.raises(LubeError, match=r"^share: got 1e-09, need at least .* as they are drawn$"):
+        lube.required_speed(rollers, oil, **given, roughness_deformation="venner-1997", **ONE)
+
+
+def test_a_choice_that_no_study_has_is_refused(rollers, oil):
+    for name in CHOICES:
+        with pytest.raises(LubeError, match=f"^{name}: got 'curved', "):
+            lube.required_speed(rollers, oil, **without("speed"), **{name: "curved"})
 
 
 def test_counting_and_sampling_agree_where_both_see(rollers, oil, monkeypatch):

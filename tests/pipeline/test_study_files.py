@@ -20,7 +20,7 @@ def test_a_target_that_the_study_lacks_is_refused_in_one_line(paper_with):
     path = paper_with(("film_shape", "computed"), ("name", "mine"))
     files = StudyFiles(load_study(path), path, {})
     files.check_targets(["computed", "-n", "archive", "results/mine/contact.nc"])
-    for target in ("areal_contact", "gauge", "./results/mine/gauge.nc", "results/mine/master.nc"):
+    for target in ("areal_contact", "master", "./results/mine/areal.nc", "results/mine/master.nc"):
         with pytest.raises(SystemExit, match=f"got the target {target}, need .*film_shape: flat"):
             files.check_targets(["--cores", "2", target])
     with pytest.raises(SystemExit, match="need a measured topography of a roller"):

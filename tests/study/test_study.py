@@ -150,7 +150,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("rollers.first.radius", "60 mm", SPECTRUM | {"film"}),
         ("film_formulas", ["paper"], {"film"}),
         ("film_shape", "computed", {"film"}),
-        ("roughness_deformation", "venner-1997", MECHANICS | {"variants"}),
+        ("roughness_deformation", "venner-1997", MECHANICS | {"variants", "height_distribution"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
         ("traces.1.temperature", "60 degC", {"trace", "rig"}),
@@ -171,9 +171,9 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
 @pytest.mark.parametrize(
     "change", [("film_shape", "computed"), ("roughness_deformation", "venner-1997")]
 )
-def test_what_reads_the_master_map_needs_flat_films_and_lines_as_drawn(paper_with, change):
+def test_the_master_map_and_the_surface_need_flat_films_and_lines_as_drawn(paper_with, change):
     paper, study = load_study(PAPER), load_study(paper_with(change))
-    mapped = {"master", "gauge", "areal", "areal_gauge", "height_distribution"}
+    mapped = {"master", "areal", "areal_gauge"}
     assert all(paper.has(stage) for stage in mapped)
     assert {stage for stage in STAGES if paper.has(stage) and not study.has(stage)} == mapped
 
