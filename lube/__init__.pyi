@@ -1,4 +1,4 @@
-"""The public names of `lube`, for editors and type checkers."""
+"""The public names of `lube`: answers with units, and the results of studies."""
 
 from lube.archive.explain import explain as explain
 from lube.calculator.answers import Answer as Answer
@@ -14,48 +14,14 @@ from lube.calculator.required import required_roughness as required_roughness
 from lube.calculator.required import required_speed as required_speed
 from lube.calculator.required import required_temperature as required_temperature
 from lube.calculator.required import required_viscosity as required_viscosity
-from lube.contact.ensemble import gather as gather
-from lube.contact.ensemble import gather_map as gather_map
-from lube.contact.ensemble import with_intervals as with_intervals
 from lube.ehl.film_formulas import FORMULAS as FORMULAS
 from lube.errors import DataError as DataError
 from lube.errors import LubeError as LubeError
 from lube.errors import RangeError as RangeError
 from lube.errors import RecordError as RecordError
 from lube.errors import StudyError as StudyError
-from lube.inference.fits import fit_alpha as fit_alpha
-from lube.inference.fits import fit_layer_strength as fit_layer_strength
 from lube.inference.study_shares import over_grid as over_grid
-from lube.physics.electrical import contact_resistance as contact_resistance
 from lube.pipeline.results import results_folder as results_folder
-from lube.recordings.manifest import read_manifest as read_manifest
-from lube.recordings.reader import Recording as Recording
-from lube.recordings.reader import open_recording as open_recording
-from lube.rig.contact_share import ContactShare as ContactShare
-from lube.rig.contact_share import share_interval as share_interval
-from lube.stages.comparison import compare as compare
-from lube.stages.contact import contact_statistics as contact_statistics
-from lube.stages.film import film_table as film_table
-from lube.stages.gauge import gauge_film as gauge_film
-from lube.stages.gauge import gauge_records as gauge_records
-from lube.stages.master import contact_map as contact_map
-from lube.stages.roughness import roughness_lines as roughness_lines
-from lube.stages.trace import contact_trace as contact_trace
-from lube.stages.trace import contact_window as contact_window
 from lube.storage.netcdf import load as load
-from lube.storage.netcdf import save as save
-from lube.study.line_spec import LineSpec as LineSpec
-from lube.study.line_spec import RoughLine as RoughLine
-from lube.study.line_spec import line_spec as line_spec
-from lube.study.lubricant_record import load_record as load_record
-from lube.study.lubricant_record import shipped_records as shipped_records
-from lube.study.oil_properties import lubricant_table as lubricant_table
-from lube.study.rollers import BoundaryLayer as BoundaryLayer
-from lube.study.rollers import Roller as Roller
-from lube.study.rollers import RollerPair as RollerPair
-from lube.study.rollers import Roughness as Roughness
-from lube.study.study import Study as Study
-from lube.study.study import load_study as load_study
-from lube.surfaces.spectra import power_spectrum as power_spectrum
 
 __version__: str

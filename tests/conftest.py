@@ -11,9 +11,9 @@ from every_kind import datasets_of_every_kind
 from hypothesis import settings
 from studies import PAPER_CONTENT, SMOKE, with_value
 
-from lube import film_table, line_spec, load_study, roughness_lines
 from lube.contact.ensemble import gather, gather_map
 from lube.contact.rough_pair import roughness_batch
+from lube.stages import film_table, line_spec, load_study, roughness_lines
 from lube.stages.contact import contact_statistics
 from lube.stages.master import contact_map
 from lube.storage.netcdf import save

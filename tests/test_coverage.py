@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 from studies import PAPER
 
-from lube import load_study
 from lube.contact.rough_pair import drawn
+from lube.stages import load_study
 
 ENSEMBLES, REALISATIONS = 2, 32
 PAIRS = {"rolling": 120, "slipping": 60}

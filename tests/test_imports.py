@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 import lube
+import lube.stages
+from lube.lazy import homes
 
 PACKAGE = Path(lube.__file__).parent
 MODULES = {
@@ -19,7 +21,7 @@ MODULES = {
 
 # A folder, or a module beside them, imports from those of the floors before its own.
 FLOORS = [
-    {"errors", "types"},
+    {"errors", "types", "lazy"},
     {"kernels"},
     {"units", "schema", "physics", "statistics", "surfaces"},
     {"ehl"},
@@ -116,15 +118,17 @@ def test_what_is_imported_at_every_start_is_light(statement, heavy):
     assert not loaded_after(statement) & heavy
 
 
-def test_every_public_name_resolves_and_explains_itself():
-    for name in lube.__all__:
-        public = getattr(lube, name)
-        assert name in dir(lube)
+@pytest.mark.parametrize("package", [lube, lube.stages])
+def test_every_public_name_resolves_and_explains_itself(package):
+    known = homes(package.__name__)
+    assert dir(package) == sorted(known)
+    for name, home in known.items():
+        public = getattr(package, name)
         if callable(public):
             assert inspect.getdoc(public), name
-            assert public.__module__ == lube._HOME_OF[name]
+            assert public.__module__ == home
     with pytest.raises(AttributeError, match="no attribute 'nope'"):
-        _ = lube.nope
+        _ = package.nope
 
 
 def test_every_module_explains_itself():

@@ -244,7 +244,7 @@ class Oil:
     Parameters
     ----------
     name : str or Path, optional
-        Name of a shipped lubricant record (`lube.shipped_records`), or path of a YAML file.
+        Name of a shipped lubricant record (`lube.stages.shipped_records`), or path of a YAML file.
     viscosity : dict or str, optional
         Without a record: viscosities, kinematic or dynamic, at two temperatures or more, such as
         ``{"40 degC": "320 mm^2/s", "100 degC": "38 mm^2/s"}``; or the path of a CSV file with the

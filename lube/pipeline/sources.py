@@ -9,10 +9,12 @@ import functools
 import os
 from pathlib import Path
 
-import lube
+from lube.lazy import homes
 from lube.storage.git import ROOT
 from lube.types import File
 
+_PACKAGES = {"lube", "lube.stages"}
+"""Packages with names from other modules."""
 _BY_VALUE = {"lube.study.study", "lube.schema.stages"}
 """Modules that reach a stage by the values they give it, which are parameters of its rule."""
 
@@ -47,7 +49,7 @@ def imported_modules(code: str) -> tuple[str, ...]:
     -------
     tuple of str
         Full names of all that may be modules: for ``from lube.stages import film`` both
-        ``lube.stages`` and ``lube.stages.film``. For a public name of the package, such as
+        ``lube.stages`` and ``lube.stages.film``. For a name from another module, such as
         ``from lube import load``, the module that defines it.
 
     Examples
@@ -63,11 +65,14 @@ def imported_modules(code: str) -> tuple[str, ...]:
         if isinstance(node, ast.ImportFrom) and node.module:
             names = [alias.name for alias in node.names]
             found += [node.module, *(f"{node.module}.{name}" for name in names)]
-            if node.module == "lube":
-                found += [lube._HOME_OF[name] for name in names if name in lube._HOME_OF]
+            if node.module in _PACKAGES:
+                known = homes(node.module)
+                found += [known[name] for name in names if name in known]
         elif isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
-            found += [*names, *(lube._HOMES if "lube" in names else ())]  # any may be used
+            for package in _PACKAGES.intersection(names):  # any may be used
+                found += homes(package).values()
+            found += names
     return tuple(found)
 
 

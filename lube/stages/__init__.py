@@ -5,12 +5,19 @@ A stage is a row of `lube.schema.stages` and a module of its name with a functio
 and the number of threads that it may use, which does not change the result; it returns the dataset.
 Stages that run in batches of realisations find these datasets in ``inputs["batches"]``; their
 modules have ``make_batch(study, film, lines)`` besides, for some realisations of the lines.
+
+The functions behind them, and what they take, are names of this package, in ``__init__.pyi``. They
+are in SI units but for the operating variables: force in N, speed in r/min, temperature in degC.
 """
 
 import importlib
 from collections.abc import Callable
 
 import xarray as xr
+
+from lube.lazy import attach
+
+__getattr__, __dir__ = attach("lube.stages")
 
 
 def maker(stage: str, name: str = "make") -> Callable[..., xr.Dataset]:

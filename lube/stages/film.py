@@ -83,7 +83,7 @@ def film_table(
 
     Examples
     --------
-    >>> from lube import film_table, load_study, lubricant_table
+    >>> from lube.stages import film_table, load_study, lubricant_table
     >>> study = load_study("workflow/config/paper.yaml")
     >>> oil = lubricant_table(study.lubricants, [40.0])
     >>> film = film_table(oil, study.rollers, [800.0], [100.0], ["paper"])

@@ -173,7 +173,7 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
 
     Examples
     --------
-    >>> from lube import load_record
+    >>> from lube.stages import load_record
     >>> table = lubricant_table([load_record("mobilgear-shc-xmp-320")], [40.0, 80.0])
     >>> [f"{viscosity:.4f} Pa s" for viscosity in table.dynamic_viscosity.values[0]]
     ['0.2835 Pa s', '0.0564 Pa s']

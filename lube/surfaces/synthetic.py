@@ -131,7 +131,7 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
 
     Examples
     --------
-    >>> from lube import LineSpec, RoughLine
+    >>> from lube.stages import LineSpec, RoughLine
     >>> band = {"q_min": 2 * np.pi / 1e-4, "q_max": 2 * np.pi / 1e-5}
     >>> line = RoughLine(points=1000, rms_height=2e-7, hurst_exponent=0.7, **band)
     >>> spec = LineSpec(lines=(line, line), spacing=1e-6, height_step=1e-12)
@@ -278,7 +278,7 @@ def draw_realisation(
 
     Examples
     --------
-    >>> from lube import LineSpec, RoughLine
+    >>> from lube.stages import LineSpec, RoughLine
     >>> band = {"q_min": 2 * np.pi / 1e-4, "q_max": 2 * np.pi / 1e-5}
     >>> one = RoughLine(points=1000, rms_height=2e-7, hurst_exponent=0.7, **band)
     >>> other = RoughLine(points=800, rms_height=1e-7, hurst_exponent=0.8, **band)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from studies import CONFIG, OIL
 
-from lube import LubeError, Oil, Rollers, load_record
+from lube import LubeError, Oil, Rollers
+from lube.stages import load_record
 
 TWO = {"40 degC": "335 mm^2/s", "100 degC": "38.3 mm^2/s"}
 

@@ -6,19 +6,17 @@ import pytest
 from editors import complaints
 from studies import PAPER_CONTENT
 
-from lube import (
-    Oil,
-    Rollers,
-    contact_probability,
+from lube import Oil, Rollers, contact_probability
+from lube.cli import main
+from lube.errors import LubeError
+from lube.recordings.manifest import read_manifest
+from lube.stages import (
     contact_statistics,
     film_table,
     lubricant_table,
     roughness_lines,
     with_intervals,
 )
-from lube.cli import main
-from lube.errors import LubeError
-from lube.recordings.manifest import read_manifest
 from lube.study.resolve import resolved_content
 from lube.study.study import load_study
 from lube.study.text_files import read_yaml

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lube import contact_statistics, gather, roughness_lines, with_intervals
 from lube.contact.ensemble import PROBABILITIES, windows_by_force
 from lube.errors import DataError
+from lube.stages import contact_statistics, gather, roughness_lines, with_intervals
 from lube.statistics.confidence import probability_interval
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from literal_scan import scan_statistics
 
-from lube import roughness_lines
 from lube.contact.windows import WINDOWS_PER_WIDTH, ContactWindows, Waves
 from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, whole_numbers
 from lube.physics.flattening import amplitude_ratio
+from lube.stages import roughness_lines
 
 RATIOS = (1.0, 1.0)
 

@@ -6,9 +6,9 @@ import xarray as xr
 from scipy.integrate import quad
 from scipy.stats import norm
 
-from lube import contact_statistics, roughness_lines
 from lube.grid.plausibility import expected_load_share
 from lube.physics.excursions import mean_overlap
+from lube.stages import contact_statistics, roughness_lines
 
 
 @pytest.mark.parametrize("level", [0.0, 0.3, 2.0, 5.0])

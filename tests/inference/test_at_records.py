@@ -9,10 +9,10 @@ from experiments import experiment_at, experiment_of, model_of_records
 from literal_scan import scan_statistics
 from studies import OIL
 
-from lube import contact_statistics, film_table
 from lube.contact.rough_pair import roughness_batch
 from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
 from lube.inference.record_scatter import combined_deviations
+from lube.stages import contact_statistics, film_table
 from lube.statistics.one_pair import repeat_factor
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.lubricant_record import load_record

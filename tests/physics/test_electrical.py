@@ -5,8 +5,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from lube import contact_resistance
 from lube.physics.electrical import divider_voltage, film_capacitance, resistance_from_voltage
+from lube.stages import contact_resistance
 from lube.study.rig_settings import Rig
 
 lengths = st.lists(st.floats(1e-9, 1e-3), min_size=1, max_size=6)

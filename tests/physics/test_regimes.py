@@ -9,11 +9,11 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from studies import PAPER
 
-from lube import load_study
 from lube.ehl import film_formulas
 from lube.physics import dimensionless
 from lube.physics.regimes import moes_asymptotes, regime
 from lube.schema import REGIMES
+from lube.stages import load_study
 from lube.stages.film import film_table
 from lube.study.oil_properties import lubricant_table
 

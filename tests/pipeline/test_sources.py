@@ -31,7 +31,7 @@ def test_imports_are_found_wherever_they_are():
 
 
 def test_a_public_name_means_the_module_that_defines_it():
-    assert "lube/contact/ensemble.py" in sources("from lube import gather")
+    assert "lube/contact/ensemble.py" in sources("from lube.stages import gather")
     assert "lube/contact/ensemble.py" in sources("import lube\nlube.gather([])")
 
 

@@ -9,12 +9,12 @@ import pytest
 import scipy.stats
 import xarray as xr
 
-from lube import BoundaryLayer, contact_map, contact_statistics, gather_map, roughness_lines
 from lube.grid.discretise import line_pair
 from lube.grid.operating_points import at_slip
 from lube.kernels.layer import layer_factor
 from lube.kernels.strips import strip_statistics
 from lube.schema import OPERATING_DIMS
+from lube.stages import BoundaryLayer, contact_map, contact_statistics, gather_map, roughness_lines
 from lube.surfaces.synthetic import draw_realisation
 
 MEANS = (

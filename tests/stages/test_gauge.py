@@ -6,12 +6,12 @@ import xarray as xr
 from experiments import experiment_at, experiment_of
 from made import made
 
-from lube import contact_statistics, film_table
 from lube.contact.rough_pair import drawn
 from lube.contact.windows import ContactWindows
 from lube.inference.fits import fit_alpha, fit_layer_strength
 from lube.inference.record_curves import curve_at, map_curves, own_curves
 from lube.schema import LIMITS, check, label
+from lube.stages import contact_statistics, film_table
 from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
 from lube.study.oil_properties import lubricant_table
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lube import roughness_lines
 from lube.contact.rough_pair import PADDING, roughness_batch
 from lube.grid.discretise import line_pair
+from lube.stages import roughness_lines
 from lube.surfaces.spectra import line_moments, spectrum_moments
 from lube.surfaces.synthetic import draw_realisation
 

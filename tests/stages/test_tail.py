@@ -5,7 +5,6 @@ import pytest
 import xarray as xr
 from made import made
 
-from lube import contact_statistics, gather, roughness_lines
 from lube.contact.window_films import window_films
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
@@ -13,6 +12,7 @@ from lube.grid.operating_points import at_slip
 from lube.kernels.layer import layer_factor
 from lube.kernels.motion import surface_position
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS
+from lube.stages import contact_statistics, gather, roughness_lines
 from lube.stages.tail import tail_probabilities
 from lube.surfaces.rare_contact import draw_pair
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from lube import BoundaryLayer, contact_statistics, contact_trace, contact_window
 from lube.errors import DataError
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS
+from lube.stages import BoundaryLayer, contact_statistics, contact_trace, contact_window
 
 RESISTIVITY = 0.2e-6
 

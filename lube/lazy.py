@@ -1,0 +1,57 @@
+"""Names that are imported on first use, so that importing their package takes no time."""
+
+import ast
+import functools
+import importlib
+from collections.abc import Callable
+from pathlib import Path
+
+
+@functools.cache
+def homes(package: str) -> dict[str, str]:
+    """Names that a package has from other modules, each with its module.
+
+    Parameters
+    ----------
+    package : str
+        ``lube``, or one of its rooms whose folder has an ``__init__.pyi``.
+
+    Returns
+    -------
+    dict of str to str
+        From the imports of that file, which editors and type checkers read as well.
+
+    Examples
+    --------
+    >>> homes("lube")["Oil"]
+    'lube.calculator.parts'
+    """
+    stub = Path(__file__).parents[1].joinpath(*package.split("."), "__init__.pyi")
+    return {
+        alias.name: node.module
+        for node in ast.parse(stub.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.ImportFrom) and node.module.startswith("lube.")
+        for alias in node.names
+    }
+
+
+def attach(package: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
+    """Return ``__getattr__`` and ``__dir__`` of a package with these names.
+
+    Parameters
+    ----------
+    package : str
+        As in `homes`.
+
+    Returns
+    -------
+    getter, lister : callable
+        The first raises AttributeError for a name that the package does not have.
+    """
+
+    def getter(name):
+        if name not in homes(package):
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        return getattr(importlib.import_module(homes(package)[name]), name)
+
+    return getter, lambda: sorted(homes(package))
