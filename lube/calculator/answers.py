@@ -33,7 +33,7 @@ class Answer(xr.Dataset):
     __slots__ = ()
 
     @property
-    def plot(self) -> xr.Dataset.plot:
+    def plot(self) -> _Plots:
         """Draw the answer: ``plot()``, or ``plot(x=..., y=...)``.
 
         Probabilities come with their 95 % intervals and, as a curve, by importance sampling. They

@@ -9,7 +9,7 @@ import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import NonNegativeInt, model_validator
 
@@ -21,7 +21,7 @@ from lube.study.small_csv import read_cells
 from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
 
-Share = pure_number(least=0.0, most=1.0)
+Share = Annotated[float, pure_number(least=0.0, most=1.0)]
 
 _UNITS = (
     dict.fromkeys(("force", "force_tolerance"), "N")
@@ -45,19 +45,23 @@ class Row(StrictModel):
     """name, without its unit, of the column, variable or channel to read; in TDMS also
     `group/channel`; by default the first voltage or resistance
     """
-    unit: checked_text(electrical_quantity, "unit of voltage or resistance") | None = None
+    unit: (
+        Annotated[str, checked_text(electrical_quantity, "unit of voltage or resistance")] | None
+    ) = None
     """unit of that channel; overrides the one in the file, and decides between voltage and
     resistance where the channel's name does not
     """
-    gain: pure_number(other_than=0.0) = 1.0
+    gain: Annotated[float, pure_number(other_than=0.0)] = 1.0
     """factor of an amplifier between rig and recorder, below 0 if it inverts: recorded = gain ×
     true + offset
     """
-    offset: checked_text(parse_electrical, "quantity in V or ohm, as the record is") = 0.0
+    offset: Annotated[
+        str, checked_text(parse_electrical, "quantity in V or ohm, as the record is")
+    ] = 0.0
     """recorded value when the true value is 0, a voltage or a resistance as the channel is:
     true = (recorded - offset) / gain
     """
-    sampling_interval: quantity("s", above=0.0) | None = None
+    sampling_interval: Annotated[float, quantity("s", above=0.0)] | None = None
     """time between samples, for a file that does not state it"""
     skip: NonNegativeInt | None = None
     """number of lines of a CSV file before its column names, where they are not found"""
@@ -67,21 +71,21 @@ class Row(StrictModel):
     """lower limit of that share"""
     upper: Share | None = None
     """upper limit of that share"""
-    force: quantity("N", above=0.0)
+    force: Annotated[float, quantity("N", above=0.0)]
     """normal force"""
-    speed: quantity("rpm", above=0.0)
+    speed: Annotated[float, quantity("rpm", above=0.0)]
     """rotation speed, as in the study; `1/min` and `Hz` count turns"""
-    temperature: quantity("degC", above=-273.15)
+    temperature: Annotated[float, quantity("degC", above=-273.15)]
     """of rollers and oil"""
-    force_tolerance: quantity("N", above=0.0) | None = None
+    force_tolerance: Annotated[float, quantity("N", above=0.0)] | None = None
     """how far the true force may be from the one stated"""
-    speed_tolerance: quantity("rpm", above=0.0) | None = None
+    speed_tolerance: Annotated[float, quantity("rpm", above=0.0)] | None = None
     """how far the true speed may be from the one stated"""
-    temperature_tolerance: quantity("K", above=0.0) | None = None
+    temperature_tolerance: Annotated[float, quantity("K", above=0.0)] | None = None
     """how far the true temperature may be from the one stated; 1 degC is 1 K here"""
     lubricant: Text | None = None
     """a lubricant of the study; by default its first"""
-    slide_to_roll_ratio: pure_number(least=-2.0, most=2.0) | None = None
+    slide_to_roll_ratio: Annotated[float, pure_number(least=-2.0, most=2.0)] | None = None
     """a ratio of the study; by default 0, or the study's first if 0 is not among them"""
     pair: Text | None = None
     """label of the pair of rollers measured; all rows without a label are of one pair"""

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import BaseModel, BeforeValidator, StringConstraints, ValidationError
+from pydantic import BaseModel, StringConstraints, ValidationError
+from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
 
 from lube.errors import LubeError, right_one, shown
 from lube.types import File
@@ -135,9 +136,25 @@ def bounded(number: float, units: str | None, came: object = None, **limits: flo
     raise LubeError(f"got {came}, need a {needed} {units or ''}".rstrip())
 
 
-def _field(kept, parse, written, hint=""):
-    """Field type: what is kept, its parser, and how it is written."""
-    return Annotated[kept, BeforeValidator(collected(hint=hint)(parse)), Written(written)]
+@dataclass(frozen=True, eq=False)
+class Read(Written):
+    """Tell pydantic how a field is read, too.
+
+    Attributes
+    ----------
+    parse : callable
+        From what people write to what is kept; raises LubeError.
+    hint : str
+        Added to its message.
+    """
+
+    parse: Callable[[Any], object]
+    hint: str = ""
+
+    def __get_pydantic_core_schema__(self, source: object, handler: Callable) -> CoreSchema:
+        """Answer pydantic."""
+        parse = collected(hint=self.hint)(self.parse)
+        return no_info_before_validator_function(parse, handler(source))
 
 
 def _needed(kind, limits):
@@ -149,8 +166,8 @@ def _form(form, needed, units, limits):
     return {"form": form, "format": needed, "units": units, "limits": limits}
 
 
-def quantity(units: str, **limits: float) -> Any:
-    """Make a field type for a number written with its unit and kept in `units`.
+def quantity(units: str, **limits: float) -> Read:
+    """Say how to read a number written with its unit and kept in `units`.
 
     Parameters
     ----------
@@ -161,19 +178,19 @@ def quantity(units: str, **limits: float) -> Any:
 
     Returns
     -------
-    type
-        An annotated float.
+    Read
+        Metadata of an annotated float.
     """
 
     def parse(value):
         return bounded(parse_quantity(value, units), units, value, **limits)
 
     needed = _needed(f"quantity in {units}", limits)
-    return _field(float, parse, _form("quantity", needed, units, limits))
+    return Read(_form("quantity", needed, units, limits), parse)
 
 
-def pure_number(**limits: float) -> Any:
-    """Make a field type for a number without dimension; also a fraction such as ``600/7``.
+def pure_number(**limits: float) -> Read:
+    """Say how to read a number without dimension; also a fraction such as ``600/7``.
 
     Parameters
     ----------
@@ -182,18 +199,18 @@ def pure_number(**limits: float) -> Any:
 
     Returns
     -------
-    type
-        An annotated float.
+    Read
+        Metadata of an annotated float.
     """
 
     def parse(value):
         return bounded(parse_number(value), None, value, **limits)
 
-    return _field(float, parse, _form("number", _needed("number", limits), None, limits))
+    return Read(_form("number", _needed("number", limits), None, limits), parse)
 
 
-def checked_text(check: Callable[[str], object], kind: str) -> Any:
-    """Make a field type for a text that a function accepts; it is kept as written.
+def checked_text(check: Callable[[str], object], kind: str) -> Read:
+    """Say how to read a text that a function accepts; it is kept as written.
 
     Parameters
     ----------
@@ -204,19 +221,19 @@ def checked_text(check: Callable[[str], object], kind: str) -> Any:
 
     Returns
     -------
-    type
-        An annotated str.
+    Read
+        Metadata of an annotated str.
     """
 
     def parse(value):
         check(value)
         return value
 
-    return _field(str, parse, {"type": "string", "format": kind})
+    return Read({"type": "string", "format": kind}, parse)
 
 
-def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, pattern: str) -> Any:
-    """Make a field type for a quantity or, in its place, certain words, which are kept as written.
+def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, pattern: str) -> Read:
+    """Say how to read a quantity or, in its place, certain words, which are kept as written.
 
     Parameters
     ----------
@@ -231,8 +248,8 @@ def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, patt
 
     Returns
     -------
-    type
-        An annotated float or str.
+    Read
+        Metadata of an annotated float or str.
     """
 
     def parse(value):
@@ -241,11 +258,11 @@ def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, patt
 
     needed = f"quantity in {units}, or {words}"
     written = _form("words", needed, units, {"above": 0.0}) | {"pattern": pattern}
-    return _field(float | str, parse, written, hint=f", or {words}")
+    return Read(written, parse, hint=f", or {words}")
 
 
-def levels(units: str | None, **limits: float) -> Any:
-    """Make a field type for the levels of an operating variable.
+def levels(units: str | None, **limits: float) -> Read:
+    """Say how to read the levels of an operating variable.
 
     With a unit they are written ``{values: [40, 50], units: degC}``, without as a list.
 
@@ -258,8 +275,8 @@ def levels(units: str | None, **limits: float) -> Any:
 
     Returns
     -------
-    type
-        An annotated tuple of floats: not empty, rising, each level once.
+    Read
+        Metadata of an annotated tuple of floats: not empty, rising, each level once.
     """
 
     def parse(value):
@@ -272,7 +289,7 @@ def levels(units: str | None, **limits: float) -> Any:
         return numbers
 
     needed = _needed("list of numbers" if units is None else f"values and units in {units}", limits)
-    return _field(tuple[float, ...], parse, _form("levels", needed, units, limits))
+    return Read(_form("levels", needed, units, limits), parse)
 
 
 def _level_list(value, target):
@@ -315,8 +332,8 @@ Slug = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9_-]{0,62}$")]
 """Name of a folder and label in files: lower-case letters, digits, ``-`` and ``_``."""
 
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
-Length = quantity("m", above=0.0)
-Pressure = quantity("Pa", above=0.0)
+Length = Annotated[float, quantity("m", above=0.0)]
+Pressure = Annotated[float, quantity("Pa", above=0.0)]
 
 
 Model = TypeVar("Model", bound=StrictModel)

@@ -56,7 +56,7 @@ class Viscosity(Sourced):
     """CSV file in the record's folder"""
     iso_vg: Literal[ISO_GRADES] | None = None
     """ISO viscosity grade, with `viscosity_index`"""
-    viscosity_index: pure_number(least=0.0, most=400.0) | None = None
+    viscosity_index: Annotated[float, pure_number(least=0.0, most=400.0)] | None = None
     """viscosity index (ASTM D2270) of an oil of that grade"""
     coolprop_fluid: Text | None = None
     """CoolProp's name of a pure fluid"""
@@ -75,13 +75,14 @@ class Viscosity(Sourced):
 class Density(Sourced):
     """Density falling linearly with temperature about 15 degC."""
 
-    at_15_degC: quantity("kg/m^3", above=0.0)
+    at_15_degC: Annotated[float, quantity("kg/m^3", above=0.0)]
     """density at 15 degC"""
-    thermal_coefficient: quantity("1/K", least=0.0, below=2e-3)
+    thermal_coefficient: Annotated[float, quantity("1/K", least=0.0, below=2e-3)]
     """relative fall of the density per kelvin"""
 
 
-_COEFFICIENT = quantity("1/GPa", least=1.0, most=100.0)  # of all liquids that lubricate
+# Of all liquids that lubricate.
+_COEFFICIENT = Annotated[float, quantity("1/GPa", least=1.0, most=100.0)]
 
 
 class CoefficientPoint(StrictModel):
@@ -118,7 +119,7 @@ class PressureViscosity(Sourced):
     """measured coefficients; between them its logarithm is linear in temperature"""
     definition: Literal[tuple(DEFINITIONS)] | None = None
     """definition of the measured coefficient, or of that from viscosities under pressure"""
-    pressure: quantity("Pa", above=ATMOSPHERIC_PRESSURE) | None = None
+    pressure: Annotated[float, quantity("Pa", above=ATMOSPHERIC_PRESSURE)] | None = None
     """pressure to which the secant runs"""
 
     @model_validator(mode="after")
@@ -160,7 +161,7 @@ class PressureViscosity(Sourced):
 class ThermalConductivity(Sourced):
     """Thermal conductivity, the same at all temperatures."""
 
-    value: quantity("W/m/K", above=0.0)
+    value: Annotated[float, quantity("W/m/K", above=0.0)]
     """thermal conductivity"""
 
 

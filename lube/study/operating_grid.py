@@ -1,5 +1,7 @@
 """The operating points of a study, and those of them that are traced."""
 
+from typing import Annotated
+
 from lube.study.field_types import StrictModel, levels, pure_number, quantity
 
 TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "speed", "force")
@@ -9,28 +11,28 @@ TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "sp
 class OperatingGrid(StrictModel):
     """Levels of the operating variables; every combination is an operating point."""
 
-    force: levels("N", above=0.0)
+    force: Annotated[tuple[float, ...], levels("N", above=0.0)]
     """normal forces"""
-    speed: levels("rpm", above=0.0)
+    speed: Annotated[tuple[float, ...], levels("rpm", above=0.0)]
     """rotation speeds of the first roller when it rolls without slip"""
-    temperature: levels("degC", above=-273.15)
+    temperature: Annotated[tuple[float, ...], levels("degC", above=-273.15)]
     """temperatures of rollers and oil"""
-    slide_to_roll_ratio: levels(None, least=-2.0, most=2.0)
+    slide_to_roll_ratio: Annotated[tuple[float, ...], levels(None, least=-2.0, most=2.0)]
     """(v1 - v2) / mean surface speed; 0 is pure rolling"""
 
 
 class TracePoint(StrictModel):
     """An operating point whose contact is kept at every time step of a revolution."""
 
-    force: quantity("N")
+    force: Annotated[float, quantity("N")]
     """a force of the grid"""
-    speed: quantity("rpm")
+    speed: Annotated[float, quantity("rpm")]
     """a speed of the grid, the same for all traces"""
-    temperature: quantity("degC")
+    temperature: Annotated[float, quantity("degC")]
     """a temperature of the grid"""
     lubricant: str | None = None
     """a lubricant of the study; by default its first"""
     film_formula: str | None = None
     """a formula of the study; by default its first"""
-    slide_to_roll_ratio: pure_number() | None = None
+    slide_to_roll_ratio: Annotated[float, pure_number()] | None = None
     """a ratio of the grid; by default its first"""

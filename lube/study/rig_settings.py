@@ -13,39 +13,39 @@ from lube.study.field_types import StrictModel, levels, pure_number, quantity
 RIG_REALISATIONS = 1_000_000
 """First realisation of the simulated rig's own rollers; those of a study are below it."""
 
-_Resistance = quantity("ohm", above=0.0)
+_Resistance = Annotated[float, quantity("ohm", above=0.0)]
 
 
 class Rig(StrictModel, validate_default=True):
     """Circuit, amplifier and sampling of a simulated twin-disc rig."""
 
-    bias_voltage: quantity("V", above=0.0) = "50 mV"
+    bias_voltage: Annotated[float, quantity("V", above=0.0)] = "50 mV"
     """voltage across rollers and series resistor"""
     series_resistance: _Resistance = "100 ohm"
     """resistor in series with the rollers"""
-    lead_resistance: quantity("ohm", least=0.0) = "0.2 ohm"
+    lead_resistance: Annotated[float, quantity("ohm", least=0.0)] = "0.2 ohm"
     """leads and slip rings, known and subtracted"""
     leak_resistance: _Resistance = "1 Mohm"
     """insulation in parallel with the contact"""
-    oil_permittivity: pure_number(least=1.0) = 2.2
+    oil_permittivity: Annotated[float, pure_number(least=1.0)] = 2.2
     """relative permittivity, for the film's capacitance; typical of PAO"""
-    amplifier_range: quantity("V", above=0.0) = "100 mV"
+    amplifier_range: Annotated[float, quantity("V", above=0.0)] = "100 mV"
     """largest voltage of either sign before saturation"""
-    bandwidth: quantity("Hz", above=0.0) = "50 kHz"
+    bandwidth: Annotated[float, quantity("Hz", above=0.0)] = "50 kHz"
     """-3 dB frequency of the first-order low-pass"""
-    sampling_rate: quantity("Hz", above=0.0) = "100 kHz"
+    sampling_rate: Annotated[float, quantity("Hz", above=0.0)] = "100 kHz"
     """samples per second"""
     resolution: Annotated[StrictInt, Field(ge=2, le=32)] = 16
     """bits of the converter, over the range of both signs"""
-    noise: quantity("V", least=0.0) = "20 uV"
+    noise: Annotated[float, quantity("V", least=0.0)] = "20 uV"
     """rms noise at the amplifier's input"""
-    revolutions: pure_number(least=0.01, most=1000.0) = 12
+    revolutions: Annotated[float, pure_number(least=0.01, most=1000.0)] = 12
     """of the roller with the faster surface in each simulated record"""
     pairs: Annotated[StrictInt, Field(ge=1, le=1000)] = 1
     """pairs of rollers that the simulated rig runs, one after the other; each makes a record at
     every operating point
     """
-    drift: pure_number(least=0.0, most=1.0) = 0
+    drift: Annotated[float, pure_number(least=0.0, most=1.0)] = 0
     """share of the variance of the roughness that each revolution renews, of the simulated
     rollers and, as an assumption, of measured ones; at 0 the roughness stays the same
     """
@@ -61,21 +61,21 @@ class Experiment(StrictModel, validate_default=True):
 
     manifest: str | None = None
     """CSV or YAML list of measured records; without it the rig is simulated"""
-    thresholds: levels("ohm", above=0.0) = Field(
+    thresholds: Annotated[tuple[float, ...], levels("ohm", above=0.0)] = Field(
         {"values": [10, 30, 100, 300, 1000], "units": "ohm"}
     )
     """resistances below which a record shows contact"""
     threshold: _Resistance = "100 ohm"
     """the one of `thresholds` that is compared with the simulation (the paper's)"""
-    force_tolerance: pure_number(above=0.0, most=1.0) = 0.01
+    force_tolerance: Annotated[float, pure_number(above=0.0, most=1.0)] = 0.01
     """relative deviation of a record's force from a level of the grid, at most"""
-    speed_tolerance: pure_number(above=0.0, most=1.0) = 0.01
+    speed_tolerance: Annotated[float, pure_number(above=0.0, most=1.0)] = 0.01
     """the same for its rotation speed; also the largest relative deviation of that speed from the
     one at which the record repeats itself
     """
-    temperature_tolerance: quantity("K", above=0.0) = "1 K"
+    temperature_tolerance: Annotated[float, quantity("K", above=0.0)] = "1 K"
     """deviation of a record's temperature from a level of the grid, at most"""
-    release_ratio: pure_number(least=1.0) = 1
+    release_ratio: Annotated[float, pure_number(least=1.0)] = 1
     """contact ends at this multiple of the threshold; 1 is no hysteresis"""
-    debounce: quantity("s", least=0.0) = "0 s"
+    debounce: Annotated[float, quantity("s", least=0.0)] = "0 s"
     """shortest time that a change must last to count"""

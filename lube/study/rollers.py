@@ -74,18 +74,22 @@ def _points_of(wavelength):
     return bounded(number, "points", least=2.0, most=MOST_POINTS)
 
 
-_LongestWavelength = quantity_or_words(
-    "m",
-    lambda text: text == AUTOMATIC_WAVELENGTH,
-    f"the words `{AUTOMATIC_WAVELENGTH}`",
-    f"^{AUTOMATIC_WAVELENGTH}$",
-)
-_ShortestWavelength = quantity_or_words(
-    "m", _is_points, "a number of grid points such as `10 points`", " points$"
-)
-_Hurst = pure_number(above=0.0, below=1.0)
-_Skewness = pure_number(least=-3.0, most=3.0)
-_Kurtosis = pure_number(above=1.0, most=20.0)
+_LongestWavelength = Annotated[
+    float | str,
+    quantity_or_words(
+        "m",
+        lambda text: text == AUTOMATIC_WAVELENGTH,
+        f"the words `{AUTOMATIC_WAVELENGTH}`",
+        f"^{AUTOMATIC_WAVELENGTH}$",
+    ),
+]
+_ShortestWavelength = Annotated[
+    float | str,
+    quantity_or_words("m", _is_points, "a number of grid points such as `10 points`", " points$"),
+]
+_Hurst = Annotated[float, pure_number(above=0.0, below=1.0)]
+_Skewness = Annotated[float, pure_number(least=-3.0, most=3.0)]
+_Kurtosis = Annotated[float, pure_number(above=1.0, most=20.0)]
 
 
 class _Cutoffs(StrictModel):
@@ -127,7 +131,7 @@ class Roller(StrictModel):
     """radius of the cylinder"""
     young_modulus: Pressure
     """Young's modulus"""
-    poisson_ratio: pure_number(least=0.0, most=0.5)
+    poisson_ratio: Annotated[float, pure_number(least=0.0, most=0.5)]
     """Poisson's ratio"""
     rms_roughness: Length | None = None
     """rms height Rq of the roughness"""

@@ -58,10 +58,13 @@ _Formula = Annotated[
 ]
 
 
-_Meniscus = quantity_or_words("m", lambda value: value == "none", "none", "^none$")
-_Resistivity = quantity_or_words(
-    "ohm*m", lambda value: value == INSULATOR, INSULATOR, f"^{INSULATOR}$"
-)
+_Meniscus = Annotated[
+    float | str, quantity_or_words("m", lambda value: value == "none", "none", "^none$")
+]
+_Resistivity = Annotated[
+    float | str,
+    quantity_or_words("ohm*m", lambda value: value == INSULATOR, INSULATOR, f"^{INSULATOR}$"),
+]
 
 
 class Study(StrictModel):

@@ -1,5 +1,7 @@
 """Measured viscosities: one point, and CSV files of them."""
 
+from typing import Annotated
+
 from pydantic import model_validator
 
 from lube.errors import RecordError, shown
@@ -13,7 +15,7 @@ from lube.types import File
 # viscosity by less than 1 %, so it does not matter whether pressures are absolute.
 _AMBIENT = 2.0 * ATMOSPHERIC_PRESSURE
 
-OilTemperature = quantity("degC", above=-ZERO_CELSIUS, most=1000.0)
+OilTemperature = Annotated[float, quantity("degC", above=-ZERO_CELSIUS, most=1000.0)]
 
 
 class ViscosityPoint(StrictModel):
@@ -21,11 +23,11 @@ class ViscosityPoint(StrictModel):
 
     temperature: OilTemperature
     """temperature of the value"""
-    kinematic_viscosity: quantity("m^2/s", above=0.0) | None = None
+    kinematic_viscosity: Annotated[float, quantity("m^2/s", above=0.0)] | None = None
     """kinematic viscosity; this or `dynamic_viscosity`, or both if they agree"""
-    dynamic_viscosity: quantity("Pa*s", above=0.0) | None = None
+    dynamic_viscosity: Annotated[float, quantity("Pa*s", above=0.0)] | None = None
     """dynamic viscosity"""
-    pressure: quantity("Pa", least=0.0, most=1e10) | None = None
+    pressure: Annotated[float, quantity("Pa", least=0.0, most=1e10)] | None = None
     """pressure of a dynamic viscosity, by default atmospheric"""
 
     @model_validator(mode="after")

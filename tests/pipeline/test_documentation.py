@@ -65,6 +65,17 @@ def test_examples_run_and_print_what_follows_them(page, folder):
             assert OutputChecker().check_output(content, printed, NORMALIZE_WHITESPACE), printed
 
 
+def test_examples_have_the_types_that_the_package_promises(tmp_path):
+    for page in PAGES:
+        blocks = [content for language, content in code_blocks(page) if language == "python"]
+        if blocks:
+            (tmp_path / f"{page.stem.replace('-', '_')}.py").write_text("\n".join(blocks), "utf-8")
+    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "pyproject.toml", tmp_path]
+    command += ["--no-incremental"]
+    checked = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert checked.returncode == 0, checked.stdout
+
+
 @pages_with("yaml")
 def test_studies_are_valid(page, folder):
     for language, content in code_blocks(page):

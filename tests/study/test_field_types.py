@@ -1,5 +1,7 @@
 """Fields of the YAML files: SI inside, units outside, mistakes reported in one line."""
 
+from typing import Annotated
+
 import pytest
 from pydantic import create_model
 
@@ -7,6 +9,7 @@ from lube.errors import LubeError, RecordError, StudyError
 from lube.study.field_types import (
     Length,
     Pressure,
+    Read,
     Slug,
     StrictModel,
     bounded,
@@ -25,7 +28,8 @@ def model_of(**fields):
 
 def value_of(field, written):
     """What a model keeps of one written value."""
-    model = model_of(field=(field, ...))
+    kind = Annotated[object, field] if isinstance(field, Read) else field
+    model = model_of(field=(kind, ...))
     return validate(model, {"field": written}, "file.yaml", StudyError).field
 
 
