@@ -2,11 +2,12 @@
 
 import logging
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
-from lube.ehl.film_formulas import formula
+from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile
 from lube.grid.film_profiles import film_positions, profiles_of, sampled
 from lube.physics import dimensionless, hertz
@@ -60,9 +61,9 @@ def film_at(
     # "exact": coordinates that differ in one value would otherwise be cut to their intersection.
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = hertz_contact(rollers, force, speed)
-        groups = film_groups(lubricant, rollers, force, contact)
-        table = contact.merge(_regime(*groups[:3]), join="exact")
-        table = table.merge(_film(chosen, rollers, groups, table, inlet_meniscus), join="exact")
+        groups = FilmGroups.at(lubricant, rollers, force, contact, inlet_meniscus)
+        table = contact.merge(_regime(groups), join="exact")
+        table = table.merge(_film(chosen, rollers, groups, table), join="exact")
         factor = _heating_factor(lubricant, contact, slide_to_roll_ratio)
         if inlet_shear_heating != "none":
             for name in ("film_thickness", "lambda_ratio"):
@@ -70,8 +71,7 @@ def film_at(
             _warn(factor)
         table["inlet_shear_heating_factor"] = factor
         if with_shape:
-            solved = solved_profiles(groups, rollers, inlet_meniscus)
-            profile = over_positions(solved, FilmProfile.film_at, rollers, contact)
+            profile = over_positions(groups.profiles(), FilmProfile.film_at, rollers, contact)
             table["film_profile"] = profile * rollers.reduced_radius
     return table
 
@@ -101,14 +101,80 @@ def _warn(factor):
         )
 
 
-def solved_profiles(groups: tuple, rollers, inlet_meniscus: float | None) -> xr.DataArray:
-    """Film profile of each operating point."""
-    meniscus = {"meniscus": _over_radius(inlet_meniscus, rollers)}
-    return xr.apply_ufunc(profiles_of, *groups, join="exact", kwargs=meniscus)
+@dataclass(frozen=True)
+class FilmGroups:
+    """What the film over R* depends on, at some operating points.
 
+    Attributes
+    ----------
+    load, speed, material : xarray.DataArray
+        W, U and G of `lube.physics.dimensionless`.
+    viscosity : xarray.DataArray
+        Viscosity of the oil at ambient pressure, Pa s.
+    film_modulus : float or xarray.DataArray
+        E' = 2 E*, Pa.
+    meniscus : float or None
+        Distance over R* at which the oil begins; None if the contact is fully flooded.
+    """
 
-def _over_radius(inlet_meniscus, rollers):
-    return None if inlet_meniscus is None else inlet_meniscus / rollers.reduced_radius
+    load: xr.DataArray
+    speed: xr.DataArray
+    material: xr.DataArray
+    viscosity: xr.DataArray
+    film_modulus: float | xr.DataArray
+    meniscus: float | None
+
+    @classmethod
+    def at(
+        cls, lubricant: xr.Dataset, rollers, force, contact: xr.Dataset, inlet_meniscus=None
+    ) -> "FilmGroups":
+        """Form the groups of an oil in the contact of `hertz_contact`; others as in `film_at`."""
+        film_modulus = 2.0 * rollers.reduced_modulus
+        scale = film_modulus, rollers.reduced_radius
+        viscosity = lubricant["dynamic_viscosity"]
+        alpha = lubricant["pressure_viscosity_coefficient"]
+        return cls(
+            dimensionless.dimensionless_load(force / rollers.length, *scale),
+            dimensionless.dimensionless_speed(viscosity, contact["entrainment_speed"], *scale),
+            dimensionless.dimensionless_material(alpha, film_modulus),
+            viscosity,
+            film_modulus,
+            None if inlet_meniscus is None else inlet_meniscus / rollers.reduced_radius,
+        )
+
+    @classmethod
+    def of(cls, film: xr.Dataset) -> "FilmGroups":
+        """Find the groups of known films, such as those of a comparison.
+
+        W = pi/8 (a / R*)^2 follows from Hertz' half-width, U and G from Moes' numbers
+        M = W (2U)^(-1/2) and L = G (2U)^(1/4).
+        """
+        radius = film["reduced_radius"]
+        load = np.pi / 8.0 * (film["contact_half_width"] / radius) ** 2
+        speed = 0.5 * (load / film["moes_load"]) ** 2
+        material = film["moes_material"] / (2.0 * speed) ** 0.25
+        known = "inlet_meniscus" in film
+        meniscus = (film["inlet_meniscus"] / radius).item() if known else None
+        oil = film["dynamic_viscosity"], 2.0 * film["reduced_modulus"]
+        return cls(load, speed, material, *oil, meniscus)
+
+    @property
+    def moes_numbers(self) -> tuple[xr.DataArray, xr.DataArray]:
+        """M and L."""
+        return dimensionless.moes_numbers(self.load, self.speed, self.material)
+
+    def film(self, row: Formula) -> xr.DataArray:
+        """Film over R* by a film formula."""
+        return self._applied(row.film)
+
+    def profiles(self) -> xr.DataArray:
+        """Solve for the profile of each film; None where it did not converge."""
+        return self._applied(profiles_of)
+
+    def _applied(self, function):
+        groups = self.load, self.speed, self.material, self.viscosity, self.film_modulus
+        options = {"join": "exact", "kwargs": {"meniscus": self.meniscus}}
+        return xr.apply_ufunc(function, *groups, **options)
 
 
 def hertz_contact(rollers, force: xr.DataArray, speed: xr.DataArray) -> xr.Dataset:
@@ -126,38 +192,23 @@ def hertz_contact(rollers, force: xr.DataArray, speed: xr.DataArray) -> xr.Datas
     )
 
 
-def film_groups(lubricant: xr.Dataset, rollers, force, contact: xr.Dataset) -> tuple:
-    """W, U and G of each operating point, with the oil's viscosity and E'."""
-    film_modulus = 2.0 * rollers.reduced_modulus
-    scale = film_modulus, rollers.reduced_radius
-    viscosity, alpha = lubricant["dynamic_viscosity"], lubricant["pressure_viscosity_coefficient"]
-    return (
-        dimensionless.dimensionless_load(force / rollers.length, *scale),
-        dimensionless.dimensionless_speed(viscosity, contact["entrainment_speed"], *scale),
-        dimensionless.dimensionless_material(alpha, film_modulus),
-        viscosity,
-        film_modulus,
-    )
-
-
-def _regime(load, speed, material):
-    moes_load, moes_material = dimensionless.moes_numbers(load, speed, material)
+def _regime(groups):
+    moes_load, moes_material = groups.moes_numbers
     flag = xr.apply_ufunc(regime, moes_load, moes_material, join="exact")
     flag = flag.astype("int8")  # the type of its flag_values, as CF requires
     return xr.Dataset({"moes_load": moes_load, "moes_material": moes_material, "regime": flag})
 
 
-def _film(formulas, rollers, groups, table, inlet_meniscus):
+def _film(formulas, rollers, groups, table):
     names = xr.DataArray([row.name for row in formulas], dims="film_formula", name="film_formula")
-    meniscus = _over_radius(inlet_meniscus, rollers)
 
-    def films(meniscus):
-        options = {"join": "exact", "kwargs": {"meniscus": meniscus}}
-        of_formulas = [xr.apply_ufunc(row.film, *groups, **options) for row in formulas]
+    def films(groups):
+        of_formulas = [groups.film(row) for row in formulas]
         return xr.concat(of_formulas, dim=names, join="exact") * rollers.reduced_radius
 
-    film = films(meniscus)
-    starved = {} if meniscus is None else {"starvation_factor": film / films(None)}
+    film, starved = films(groups), {}
+    if groups.meniscus is not None:
+        starved["starvation_factor"] = film / films(replace(groups, meniscus=None))
     valid = [row.holds(table["moes_load"], table["moes_material"]) for row in formulas]
     return xr.Dataset(
         {

@@ -4,6 +4,8 @@ The film thickness is taken from its formula and the probability from the record
 varies the pressure-viscosity coefficient, or the strength of the boundary layer.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import scipy.interpolate
 import scipy.special
@@ -11,6 +13,7 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.ehl.film_formulas import formula
+from lube.grid.films import FilmGroups
 from lube.inference.record_curves import RecordCurves
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.curves import fit_factor, realisation_correlation
@@ -149,39 +152,28 @@ def study_strength(contact: Data) -> float:
 def _lambda_ratios(comparison, factor):
     """Lambda ratios with the pressure-viscosity coefficient multiplied by a factor.
 
-    The dimensionless groups follow from the film at the records: W = pi/8 (a / R*)^2 from Hertz'
-    half-width, U and G from Moes' numbers M = W (2U)^(-1/2) and L = G (2U)^(1/4). How much inlet
+    How much inlet
     shear heating thins the film does not depend on the coefficient; starvation depends on the film.
     """
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
-        load = np.pi / 8.0 * (comparison["contact_half_width"] / comparison["reduced_radius"]) ** 2
-        speed = 0.5 * (load / comparison["moes_load"]) ** 2
-        material = comparison["moes_material"] / (2.0 * speed) ** 0.25
-        film_modulus = 2.0 * comparison["reduced_modulus"]
-        groups = load, speed, material, comparison["dynamic_viscosity"], film_modulus
-        names, radius = comparison["film_formula"], comparison["reduced_radius"]
-        meniscus = None
-        if "inlet_meniscus" in comparison:
-            meniscus = (comparison["inlet_meniscus"] / radius).item()
-        films = [_films(formula(name), groups, factor, meniscus) for name in names.values]
-        scale = radius / comparison["composite_rms_roughness"]
+        groups, names = FilmGroups.of(comparison), comparison["film_formula"]
+        films = [_films(formula(name), groups, factor) for name in names.values]
+        scale = comparison["reduced_radius"] / comparison["composite_rms_roughness"]
         scale = scale * comparison.get("inlet_shear_heating_factor", 1.0)
         return xr.concat(films, names, join="exact") * scale
 
 
-def _films(row, groups, factor, meniscus):
+def _films(row, groups, factor):
     """Films over R* with G multiplied by factors."""
-    load, speed, material, *oil = groups
-    options = {"join": "exact", "kwargs": {"meniscus": meniscus}}
+
+    def film(factors):
+        return replace(groups, material=factors * groups.material).film(row)
+
     if not row.depends_on_oil:
         # Some factors at a time: the integral of starvation takes a hundred times their memory.
-        films = [
-            xr.apply_ufunc(row.film, load, speed, factor[some] * material, *oil, **options)
-            for some in np.array_split(range(factor.size), 1 + factor.size // 20)
-        ]
-        return xr.concat(films, "factor", join="exact")
-    nodes = xr.DataArray(COMPUTED_FACTORS, dims="factor")
-    films = xr.apply_ufunc(row.film, load, speed, nodes * material, *oil, **options)
+        parts = np.array_split(range(factor.size), 1 + factor.size // 20)
+        return xr.concat([film(factor[some]) for some in parts], "factor", join="exact")
+    films = film(xr.DataArray(COMPUTED_FACTORS, dims="factor"))
     return xr.apply_ufunc(
         _between_nodes,
         films.rename(factor="node"),

@@ -5,7 +5,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from lube.ehl.line_contact import FilmProfile
-from lube.grid.films import film_groups, hertz_contact, over_positions, solved_profiles
+from lube.grid.films import FilmGroups, hertz_contact, over_positions
 from lube.schema import POINT_DIMS, label
 from lube.study.rollers import RollerPair
 from lube.study.study import Study
@@ -50,8 +50,8 @@ def film_profile_table(
     axes = xr.Dataset(coords={"force": np.asarray(force, float), "speed": np.asarray(speed, float)})
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = hertz_contact(rollers, axes["force"], axes["speed"])
-        groups = film_groups(lubricant, rollers, axes["force"], contact)
-        solved = solved_profiles(groups, rollers, inlet_meniscus).transpose(*POINT_DIMS)
+        groups = FilmGroups.at(lubricant, rollers, axes["force"], contact, inlet_meniscus)
+        solved = groups.profiles().transpose(*POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
     table["film"] = (
         over_positions(solved, FilmProfile.film_at, rollers, contact) * rollers.reduced_radius
