@@ -20,12 +20,12 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import numpy as np
+from literal import scan_trace
 
 from lube.contact.rough_pair import roughness_batch
 from lube.contact.window_films import window_films
 from lube.contact.windows import WINDOWS_PER_WIDTH
 from lube.grid.discretise import layer_factor_of, line_pair
-from lube.kernels.scan import scan_trace
 from lube.kernels.shaped import shaped_statistics
 from lube.schema import OPERATING_DIMS
 from lube.stages.contact import contact_statistics

@@ -19,10 +19,10 @@ from functools import partial
 import numpy as np
 import scipy.fft
 import xarray as xr
+from literal import scan_trace
 
 from lube.grid.discretise import revolution, speed_ratios
 from lube.kernels.layer import layer_factor
-from lube.kernels.scan import scan_trace
 from lube.kernels.strips import strip_statistics
 from lube.schema import label
 from lube.stages.film import film_table

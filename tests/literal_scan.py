@@ -1,8 +1,8 @@
 """Contact statistics by the literal scan, which the fast kernels are compared with."""
 
 import numpy as np
+from literal import scan_trace
 
-from lube.kernels.scan import scan_trace
 from lube.types import Array, Pair, Ratios
 
 
@@ -14,7 +14,7 @@ def scan_statistics(
     Parameters
     ----------
     lines, speed_ratios, steps, factor
-        As in `lube.kernels.scan.scan_trace`.
+        As in `benchmarks/literal.py`.
     films, half_windows : numpy.ndarray
         Film thickness (height steps) and points on either side of the window's centre, shape
         (P,), int64.

@@ -4,7 +4,6 @@ import difflib
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,6 @@ from lube.calculator.operating_points import (
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.ensemble import windows_in
 from lube.errors import DataError, LubeError, right_one, shown
-from lube.physics.hertz import reduced_radius
 from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
@@ -152,12 +150,12 @@ def _film(columns, rollers, oil, film_formula):
     pair = rollers.pair
     first = columns.get("radius", pair.first.radius)
     second = columns.get("second_radius", pair.second.radius)
-    own = SimpleNamespace(
-        first=SimpleNamespace(radius=first),
-        length=pair.length,
-        reduced_radius=reduced_radius(first, second),
-        reduced_modulus=pair.reduced_modulus,
-        composite_rms_roughness=pair.composite_rms_roughness,
+    radii = {"first": first, "second": second}
+    own = pair.model_copy(
+        update={
+            name: getattr(pair, name).model_copy(update={"radius": radius})
+            for name, radius in radii.items()
+        }
     )
     if (rotation := columns.get("speed")) is None:
         if (entrainment := columns.get("entrainment_speed")) is None:

@@ -19,6 +19,7 @@ from lube.study.line_spec import LineSpec, band_in_words, line_spec
 from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_oil, load_record
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import (
+    AUTOMATIC_WAVELENGTH,
     INSULATOR,
     LONGEST_WAVELENGTH,
     SHORTEST_WAVELENGTH,
@@ -50,6 +51,8 @@ _MODELS = (
     ),
 )
 """Arguments that a roller, the heights of its roughness and the roughness of both are made of."""
+_LENGTHS = ("longest_wavelength", "shortest_wavelength")
+_LAYER = ("critical_thickness", "shear_strength")
 _Function = TypeVar("_Function", bound=Callable)
 
 
@@ -124,6 +127,11 @@ class Rollers:
         Grid points around the first roller; by default about ten in the shortest wavelength.
     critical_thickness, shear_strength : str, optional
         Of the boundary layer; the paper's.
+    roughness : Roughness, optional
+        That of a study, such as ``study.roughness``, in place of the arguments on it but the
+        heights.
+    boundary_layer : BoundaryLayer, optional
+        That of a study, in place of the arguments on it.
     resistivity : str, optional
         Of the rollers' material; by default hardened bearing steel. ``"insulator"`` if either does
         not conduct: contact then has no resistance.
@@ -183,10 +191,19 @@ class Rollers:
         points: int | None = None,
         critical_thickness: str = "5 nm",
         shear_strength: str = "1 MPa",
+        roughness: Roughness | None = None,
+        boundary_layer: BoundaryLayer | None = None,
         resistivity: str = "0.2 uohm*m",
     ) -> None:
         given = dict(locals())
-        first, heights, roughness = ({name: given[name] for name in names} for names in _MODELS)
+        for name, kind in (("roughness", Roughness), ("boundary_layer", BoundaryLayer)):
+            if not isinstance(given[name], kind | None):
+                needed = f"need a lube.stages.{kind.__name__}"
+                needed += "; did you mean rms_roughness or ra_roughness?" * (name == "roughness")
+                raise StudyError(f"Rollers: {name}: got {shown(given[name])}, {needed}")
+        _one_of_two(given, roughness, "roughness", (*_MODELS[2], *_LENGTHS, "points"))
+        _one_of_two(given, boundary_layer, "boundary_layer", _LAYER)
+        first, heights, waves = ({name: given[name] for name in names} for names in _MODELS)
         if not isinstance(second, Mapping | None):
             needed = "need what differs, such as {'radius': '30 mm'}"
             raise StudyError(f"Rollers: second: got {shown(second)}, {needed}")
@@ -201,19 +218,23 @@ class Rollers:
         self.pair = validate(RollerPair, pair, "Rollers", StudyError)
         for rms in filter(None, self.pair.rms_heights):
             bare_number("Rollers: rms_roughness", rms, "m", **_ROUGHNESS)
-        layer = {"critical_thickness": critical_thickness, "shear_strength": shear_strength}
-        self.layer = validate(BoundaryLayer, layer, "Rollers", StudyError)
+        layer = {name: given[name] for name in _LAYER}
+        self.layer = boundary_layer or validate(BoundaryLayer, layer, "Rollers", StudyError)
         self.resistivity = math.nan
         if resistivity != INSULATOR:
             self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
-        if points is None:
-            shortest = amount("shortest_wavelength", shortest_wavelength, "m", above=0.0).item()
-            points = grid_points(self.pair.first.radius, shortest)
         # Lengths only: the other choices of a study depend on its grid.
-        for name in ("longest_wavelength", "shortest_wavelength"):
-            roughness[name] = _metres(name, given[name])
-        roughness |= {"points": points, "height_step": _HEIGHT_STEP}
-        shared = validate(Roughness, roughness, "Rollers", StudyError)
+        waves |= {name: _metres(name, given[name]) for name in _LENGTHS}
+        if points is None:
+            shortest = parse_quantity(waves["shortest_wavelength"], "m")
+            points = grid_points(self.pair.first.radius, shortest)
+        waves |= {"points": points, "height_step": _HEIGHT_STEP}
+        shared = roughness or validate(Roughness, waves, "Rollers", StudyError)
+        if shared.longest_wavelength == AUTOMATIC_WAVELENGTH:
+            raise StudyError(
+                "Rollers: roughness.longest_wavelength: got "
+                f"{AUTOMATIC_WAVELENGTH!r}, need a length"
+            )
         self.lines = line_spec(self.pair, shared, largest_force=math.nan)
         self.band = band_in_words(self.pair, shared, self.lines)
         self.pair = self.pair.with_rms_heights(self.lines.rms_height)
@@ -231,6 +252,15 @@ class Rollers:
             f"<Rollers: radii {radii} mm, rms roughness {rms} um, {1e3 * pair.length:.4g} mm long, "
             f"{self.band}>"
         )
+
+
+def _one_of_two(given, model, name, short):
+    """Refuse short arguments beside the model that has their values."""
+    usual = inspect.signature(Rollers).parameters
+    for argument in short if model is not None else ():
+        if given[argument] != usual[argument].default:
+            came = f"{argument}: got {shown(given[argument])} beside `{name}`"
+            raise StudyError(f"Rollers: {came}, which has its own, need one of the two")
 
 
 def _metres(name, length):

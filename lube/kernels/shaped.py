@@ -63,7 +63,7 @@ def _least_by_block(film):
 
 @kernel
 def _window(lines, highest, first_1, first_2, films, factor):
-    """Contact points, broken points and overlap in one window, as `scan.scan_window`."""
+    """Contact points, broken points and overlap in one window, as in the literal scan."""
     film, least = films
     line_1, line_2 = lines
     contact_points = broken_points = total_overlap = 0

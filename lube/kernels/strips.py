@@ -264,7 +264,7 @@ def strip_statistics(
 ) -> Array:
     """Compute the contact statistics of many operating points at any slip.
 
-    Equal to the literal scan, `lube.kernels.scan`, to the last bit.
+    Equal to the literal scan, `benchmarks/literal.py`, to the last bit.
 
     Parameters
     ----------
@@ -304,7 +304,7 @@ def strip_trace(
 ) -> Array:
     """Count the broken points at every time step of many operating points, at any slip.
 
-    Equal to the broken points of `lube.kernels.scan.scan_trace`.
+    Equal to the broken points of `benchmarks/literal.py`.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from lube.types import Array
 def whole_run_steps(line: Array, films: Array, half_windows: Array, factor: float) -> Array:
     """Count the windows that hold a part of a run whose boundary layer breaks as a whole.
 
-    In `lube.kernels.scan` the edges of the window cut a run, and the piece inside is judged.
+    In `benchmarks/literal.py` the edges of the window cut a run, and the piece inside is judged.
 
     Parameters
     ----------

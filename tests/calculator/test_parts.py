@@ -66,6 +66,27 @@ def test_rollers_take_ra_a_composite_or_a_roughness_of_each():
         assert 2.0 * np.pi / line.q_roll_off == pytest.approx(1e-4)
 
 
+def test_rollers_take_the_roughness_and_the_layer_of_a_study(study):
+    """As they stand in a study, in place of the short arguments on them."""
+    parts = {"roughness": study.roughness, "boundary_layer": study.boundary_layer}
+    radius, rms = "50 mm", "0.2 um"
+    with pytest.raises(LubeError, match=r"^Rollers: roughness.longest_wavelength: got 'contact"):
+        Rollers(radius, rms, **parts)
+    fixed = study.roughness.model_copy(update={"longest_wavelength": 5e-4})
+    found = Rollers(radius, rms, roughness=fixed, boundary_layer=study.boundary_layer)
+    points = study.roughness.points
+    shortest = f"{2.0 * np.pi / found.lines.q_max!r} m"
+    lengths = {"longest_wavelength": "0.5 mm", "shortest_wavelength": shortest}
+    short = Rollers(radius, rms, **lengths, points=points)
+    assert found.lines.points == short.lines.points == (points, points)
+    for name in ("q_min", "q_max", "spacing"):
+        assert getattr(found.lines, name) == pytest.approx(getattr(short.lines, name), rel=1e-12)
+    assert found.layer == study.boundary_layer
+    for name, value in (("skewness", -1.0), ("shear_strength", "2 MPa"), ("points", 5000)):
+        with pytest.raises(LubeError, match=f"^Rollers: {name}: got .* beside `"):
+            Rollers(radius, rms, **(parts | {name: value}))
+
+
 def test_a_height_measured_within_cutoffs_is_that_of_the_waves_within_them():
     whole = Rollers("50 mm", "0.2 um")
     assert whole.lines == Rollers("50 mm", "0.2 um", long_cutoff="0.8 mm").lines
@@ -169,7 +190,7 @@ def test_both_show_themselves_and_travel_between_processes():
         (lambda: Oil(viscosity=TWO, base=["PAO"]), "Oil: base: got ['PAO'], need one of mineral"),
         (
             lambda: Rollers("50 mm", roughness="0.2 um"),
-            "Rollers: roughness: unknown argument, did you mean rms_roughness or ra_roughness",
+            "Rollers: roughness: got '0.2 um', need a lube.stages.Roughness; did you mean rms_roughness",
         ),
         (
             lambda: Rollers("50 mm", "0.2 um", longest_wavelenght="1 mm"),

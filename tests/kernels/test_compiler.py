@@ -14,9 +14,9 @@ from lube.kernels.layer import layer_breaks
 
 SCAN = """
 import numpy as np
-from lube.kernels.scan import scan_window
+from lube.kernels.shaped import shaped_trace
 line = np.array([3, 3, 0], np.int32)
-print(*scan_window((line, line), 0, 0, np.zeros(3, np.int64), 1.0))
+print(*shaped_trace((line, line), (1.0, 1.0), 1, 1, np.zeros(3, np.int64), 0, 1.0)[0])
 """
 
 

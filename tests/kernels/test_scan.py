@@ -7,10 +7,10 @@ from itertools import groupby
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+from literal import scan_trace
 from literal_scan import scan_statistics
 
 from lube.kernels.motion import surface_position
-from lube.kernels.scan import scan_trace
 
 small_lines = st.lists(st.integers(-3, 3), min_size=1, max_size=12)
 eighths = st.integers(0, 40).map(lambda number: Fraction(number, 8))  # exact as floats

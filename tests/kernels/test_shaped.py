@@ -3,8 +3,8 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+from literal import scan_trace
 
-from lube.kernels.scan import scan_trace
 from lube.kernels.shaped import BLOCK, highest_ahead, shaped_statistics, shaped_trace
 
 seeds = st.integers(0, 2**32 - 1)

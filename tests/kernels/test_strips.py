@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from literal import scan_trace
 from literal_scan import scan_statistics
 
 from lube.kernels.layer import layer_factor
 from lube.kernels.motion import surface_position
-from lube.kernels.scan import scan_trace
 from lube.kernels.strips import LONGEST_STRIP, strip_end, strip_statistics, strip_trace
 from lube.surfaces.synthetic import draw_realisation
 
