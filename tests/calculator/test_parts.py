@@ -190,7 +190,7 @@ def test_both_show_themselves_and_travel_between_processes():
         (lambda: Oil(viscosity=TWO, base=["PAO"]), "Oil: base: got ['PAO'], need one of mineral"),
         (
             lambda: Rollers("50 mm", roughness="0.2 um"),
-            "Rollers: roughness: got '0.2 um', need a lube.stages.Roughness; did you mean rms_roughness",
+            "need a lube.stages.Roughness; did you mean rms_roughness",
         ),
         (
             lambda: Rollers("50 mm", "0.2 um", longest_wavelenght="1 mm"),
