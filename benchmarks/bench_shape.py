@@ -26,6 +26,7 @@ from lube.contact.rough_pair import roughness_batch
 from lube.contact.window_films import window_films
 from lube.contact.windows import WINDOWS_PER_WIDTH
 from lube.grid.discretise import layer_factor_of, line_pair
+from lube.grid.gap import Gap
 from lube.kernels.shaped import shaped_statistics
 from lube.schema import OPERATING_DIMS
 from lube.stages.contact import contact_statistics
@@ -50,19 +51,19 @@ def prepared(study_file):
 
 def print_ensemble(study, film, lines):
     """Time all operating points on all cores."""
-    flat, layer = film.drop_vars("film_profile"), study.boundary_layer
-    for name, table, flattened in (
-        ("flat", flat, False),
-        ("computed shape", film, False),
-        ("flat, flattened lines", flat, True),
+    layer = study.boundary_layer
+    for name, gap in (
+        ("flat", Gap()),
+        ("computed shape", Gap("computed")),
+        ("flat, flattened lines", Gap("flat", "venner-1997")),
     ):
-        run = partial(contact_statistics, film=table, boundary_layer=layer, flattened=flattened)
-        run(lines[0], film=table.isel(force=[0]))  # compile
+        run = partial(contact_statistics, film=film, boundary_layer=layer, gap=gap)
+        run(lines[0], film=film.isel(force=[0]))  # compile
         start = time.perf_counter(), time.process_time()
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(run, lines))
         passed = time.perf_counter() - start[0], time.process_time() - start[1]
-        points = table["film_thickness"].size
+        points = film["film_thickness"].size
         print(f"{name}: {points} points, {len(lines)} realisations: {passed[0]:.1f} s", end="")
         print(f" on {os.cpu_count()} cores, {passed[1]:.1f} s of processor time")
 

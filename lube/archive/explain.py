@@ -13,6 +13,7 @@ import xarray as xr
 from lube.contact.ensemble import with_intervals
 from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError
+from lube.grid.gap import Gap
 from lube.grid.levels import format_levels, level_index
 from lube.report.pages import render
 from lube.schema import CONTACT_DIMS
@@ -98,7 +99,7 @@ def explain(path: File, realisation: int | None = 0, **levels: float | str) -> E
         for table in (film, lubricant)
     )
     values = json_attribute(contact, "config", path)
-    again = _computed_again(stored, point, values["contact"])
+    again = _computed_again(stored, point, values["film"] | values["contact"])
     if realisation is None:
         again = with_intervals(again, point)
     return Explanation(stored, properties, point, values, again)
@@ -142,12 +143,12 @@ def _computed_again(stored, film, run):
             "its heights are in roughness.nc alone"
         )
     spec, layer = LineSpec(**run["lines"]), BoundaryLayer.model_construct(**run["boundary_layer"])
-    flattened = run["roughness_deformation"] != "none"
+    gap = Gap(run["film_shape"], run["roughness_deformation"])
     ratios, parts = stored["slide_to_roll_ratio"].values.tolist(), []
     numbers = stored["realisation"].values.tolist()
     for first in range(0, len(numbers), 8):  # a few at a time, for the memory that lines take
         lines = roughness_batch(spec, run["seed"], numbers[first : first + 8])
-        parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"], flattened))
+        parts.append(contact_statistics(lines, film, layer, ratios, run["revolutions"], gap))
     options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
     return xr.concat(parts, "realisation", **options)
 

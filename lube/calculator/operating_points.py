@@ -17,6 +17,7 @@ from lube.contact.rough_pair import roughness_batch
 from lube.errors import LubeError, RangeError, StudyError, right_one, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
+from lube.grid.gap import PLAIN, Gap
 from lube.grid.plausibility import remarks
 from lube.schema import MEAN_LIMITS, OPERATING_DIMS, POINT_DIMS, values_with_limits
 from lube.stages.film import film_table
@@ -107,7 +108,7 @@ def film_in_si(
 
     Arguments as in `film` and `contact_probability`.
     """
-    is_shaped = choice("film_shape", film_shape) != "flat"
+    gap = gap_of(film_shape)
     force, speed, temperature = _conditions(rollers, force, speed, temperature)
     if not temperature.dims:
         temperature = temperature.assign_coords(temperature=temperature)
@@ -115,7 +116,7 @@ def film_in_si(
     formulas = list(film_formula) if several else [film_formula]
     if not formulas or not all(isinstance(one, str) for one in formulas):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, is_shaped)
+    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, gap.has_shape)
     table = table.assign_coords(force=force, speed=speed)
     dims = ("film_formula", "temperature", "speed", "force", "film_position")
     table = table.transpose(*dims, missing_dims="ignore")
@@ -191,18 +192,20 @@ def single(name: str, values: xr.DataArray) -> float:
     return values.item()
 
 
-def choice(name: str, value: str) -> str:
-    """Return a choice of the model, one of those that a study has under the same name.
+def gap_of(film_shape: str = "flat", roughness_deformation: str = "none") -> Gap:
+    """How film and roughness make up the gap, by the words that a study has for it.
 
     Raises
     ------
     StudyError
-        If there is no such choice.
+        If a study has no such choice.
     """
-    options = get_args(Study.model_fields[name].annotation)
-    if value not in options:
-        raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
-    return value
+    given = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
+    for name, value in given.items():
+        options = get_args(Study.model_fields[name].annotation)
+        if value not in options:
+            raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
+    return Gap(**given)
 
 
 def one_formula(name: str) -> str:
@@ -288,9 +291,9 @@ def contact_probability(
     """
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, film_shape)
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    flattened = choice("roughness_deformation", roughness_deformation) != "none"
-    contact = ensemble(table, rollers, realisations, seed, slip, flattened)
-    on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, flattened)
+    gap = gap_of(film_shape, roughness_deformation)
+    contact = ensemble(table, rollers, realisations, seed, slip, gap)
+    on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
     return with_remarks(joined(table, contact, on_pairs), table, rollers)
 
 
@@ -308,7 +311,7 @@ def ensemble(
     realisations: int,
     seed: int,
     slip: float = 0.0,
-    flattened: bool = False,
+    gap: Gap = PLAIN,
 ) -> xr.Dataset:
     """Probabilities at some films and contact widths, and their intervals.
 
@@ -323,8 +326,8 @@ def ensemble(
         As in `contact_probability`.
     slip : float, optional
         Slide-to-roll ratio.
-    flattened : bool, optional
-        Whether the oil flattens the lines.
+    gap : Gap, optional
+        How film and roughness make up the gap; by default flat films, and lines as drawn.
 
     Returns
     -------
@@ -345,7 +348,7 @@ def ensemble(
 
     def of_realisation(number):
         lines = roughness_batch(rollers.lines, seed, [number])
-        found = contact_at(lines, table, rollers.layer, [slip], flattened=flattened)
+        found = contact_at(lines, table, rollers.layer, [slip], gap=gap)
         return found[list(_PROBABILITIES)].isel(slide_to_roll_ratio=0, drop=True)
 
     # Drawing and counting release Python's lock, so threads share the work.

@@ -18,8 +18,8 @@ from lube.calculator.operating_points import (
     REALISATIONS,
     SEED,
     check_realisations,
-    choice,
     film_in_si,
+    gap_of,
     one_formula,
     rotation_speed,
     single,
@@ -28,6 +28,7 @@ from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.window_films import shaped_films
 from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError
+from lube.grid.gap import PLAIN
 from lube.schema import values_with_limits
 from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval, probability_interval
@@ -143,7 +144,7 @@ def required_viscosity(
         speeds = rotation * factors, "rpm"
         return film_in_si(rollers, oil, force, speeds, temperature, one, film_shape)
 
-    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
+    search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors = search.along(table, FACTORS, tried)
     properties = oil.at(table(FACTORS[:1])["temperature"])
@@ -191,7 +192,7 @@ def required_speed(
     def table(speeds, film_shape="flat"):
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, film_shape)
 
-    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
+    search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
@@ -236,7 +237,7 @@ def required_temperature(
     def table(temperatures, film_shape="flat"):
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, film_shape)
 
-    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
+    search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
@@ -286,16 +287,16 @@ def required_roughness(
     for name, size in film["film_thickness"].sizes.items():
         raise StudyError(f"{name}: got {size} values, need one")
     own = film["lambda_ratio"].item()
+    search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
 
     def gap(ratios):
         # Lines of s times the height break as the given ones do under the film over s.
         scale = xr.DataArray(ratios / own, dims="film")
         scaled = {"film_thickness": scale * film["film_thickness"]}
-        if film_shape != "flat":
+        if search.gap.has_shape:
             scaled["film_profile"] = scale * shaped_films(film)
         return film.assign(scaled)
 
-    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
     found = search.films(film["contact_half_width"].item(), gap, own=own)
     ratios = found["lambda_ratio"]
     sigma = rollers.pair.composite_rms_roughness * own / ratios
@@ -309,11 +310,10 @@ class _Search:
     Contact is counted in the realisations where they see enough of it, else sampled.
     """
 
-    def __init__(self, rollers, share, realisations, seed, film_shape="flat", deformation="none"):
+    def __init__(self, rollers, share, realisations, seed, gap=PLAIN):
         self._share = bare_number("share", share, above=0.0, below=1.0)
         self._rollers, self._realisations, self._seed = rollers, realisations, seed
-        self.film_shape = choice("film_shape", film_shape)
-        self._is_flattened = choice("roughness_deformation", deformation) != "none"
+        self.gap = gap
         self._sigma = rollers.pair.composite_rms_roughness
 
     def along(self, table, levels, tried):
@@ -328,7 +328,7 @@ class _Search:
 
         def gap(sought):
             here = np.interp(sought, ratios[known], known)
-            return table(np.interp(here, np.arange(levels.size), levels), self.film_shape)
+            return table(np.interp(here, np.arange(levels.size), levels), self.gap.film_shape)
 
         ends = ratios[known[[0, -1]]]
         films = self.films(whole["contact_half_width"].item(), gap, ends)
@@ -353,17 +353,17 @@ class _Search:
         spec = self._rollers.lines
         check_width(spec, 2.0 * half_width, "force: the contact")
         windows = spec.independent_windows(2.0 * half_width) * self._realisations
-        can_sample = spec.is_gaussian and not self._is_flattened
+        can_sample = spec.is_gaussian and not self.gap.is_flattened
         if not can_sample and self._share * windows < 1.0:
             raise RangeError(
                 f"share: got {self._share:g}, need at least {1.0 / windows:.2g}: "
                 f"{self._realisations} realisations show no rarer contact, and importance sampling "
                 "is for Gaussian heights as they are drawn"
             )
-        ratios, is_plain = LAMBDA_RATIOS, self.film_shape == "flat" and not self._is_flattened
+        ratios, is_plain = LAMBDA_RATIOS, self.gap.is_plain
         if spec.is_gaussian or not is_plain:
             # A first look at flat films, on lines as drawn, says where to look.
-            first = self._windows(self._flat(ratios, half_width), own, False)
+            first = self._windows(self._flat(ratios, half_width), own, PLAIN)
             first = self._sampled(first, FEW_PAIRS) if spec.is_gaussian else self._counted(first)
             found = max(_crossing(ratios, first[0], self._share), ratios[np.argmax(first[0])])
             if not is_plain:
@@ -375,7 +375,7 @@ class _Search:
         table = self._flat(ratios, half_width) if is_plain else gap(ratios)
         is_seen = self._share * windows >= OFTEN or not can_sample
         method = self._counted if is_seen else self._sampled
-        limits = method(self._windows(table, own, self._is_flattened))
+        limits = method(self._windows(table, own, self.gap))
         ratios = table["film_thickness"].values / self._sigma
         found = np.array([_crossing(ratios, each, self._share) for each in limits])
         if not found[0] > 0.0:
@@ -390,10 +390,10 @@ class _Search:
         films = {"film_thickness": ("film", ratios * self._sigma), "contact_half_width": half_width}
         return xr.Dataset(films | {"reduced_modulus": self._rollers.pair.reduced_modulus})
 
-    def _windows(self, table, own, flattened):
+    def _windows(self, table, own, gap):
         ratios = table["film_thickness"].values / self._sigma
         weaker = 1.0 if own is None else own / ratios
-        return ContactWindows(self._rollers.lines, table, self._rollers.layer, flattened, weaker)
+        return ContactWindows(self._rollers.lines, table, self._rollers.layer, gap, weaker)
 
     def _sampled(self, windows, pairs=PAIRS):
         """Mean and limits of the breakthrough probability, by importance sampling."""

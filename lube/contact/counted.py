@@ -14,6 +14,7 @@ import xarray as xr
 
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import LineGrid, line_pair
+from lube.grid.gap import PLAIN, Gap
 from lube.study.rollers import BoundaryLayer
 
 log = logging.getLogger(__name__)
@@ -25,13 +26,13 @@ def contact_at(
     boundary_layer: BoundaryLayer,
     slide_to_roll_ratio: Sequence[float] = (0.0,),
     revolutions: int = 1,
-    flattened: bool = False,
+    gap: Gap = PLAIN,
 ) -> xr.Dataset:
     """Run the contact model over the dimensions that the films and contact widths have.
 
     Parameters
     ----------
-    lines, boundary_layer, slide_to_roll_ratio, revolutions, flattened
+    lines, boundary_layer, slide_to_roll_ratio, revolutions, gap
         As in `contact_statistics`.
     film : xarray.Dataset
         With ``film_thickness`` and ``contact_half_width``, m, over any dimensions, and
@@ -46,7 +47,7 @@ def contact_at(
         Its own are ``travel`` and ``longest_wavelength``, both m, of a realisation.
     """
     thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    windows = ContactWindows(LineGrid.of(lines), film, boundary_layer, flattened)
+    windows = ContactWindows(LineGrid.of(lines), film, boundary_layer, gap)
     counts = np.empty((lines.sizes["realisation"], len(slide_to_roll_ratio), thickness.size, 4))
     for r, realisation in enumerate(lines["realisation"].values):
         pair = line_pair(lines, realisation)

@@ -19,6 +19,7 @@ from lube.grid.discretise import (
     speed_ratios,
     whole_numbers,
 )
+from lube.grid.gap import PLAIN, Gap
 from lube.kernels.motion import surface_position
 from lube.kernels.shaped import shaped_statistics, shaped_trace
 from lube.kernels.strips import strip_statistics, strip_trace
@@ -48,8 +49,8 @@ class ContactWindows:
         flat and ends at the edges of the contact.
     boundary_layer : Layer
         The boundary layer.
-    flattened : bool, optional
-        Whether the oil flattens the lines; `film` then has ``moes_load`` and ``moes_material``.
+    gap : Gap, optional
+        How film and roughness make up the gap; by default flat films, and lines as drawn.
     weaker : float or numpy.ndarray, optional
         How many times weaker than `boundary_layer` the layer is, at all points or at each.
 
@@ -64,8 +65,6 @@ class ContactWindows:
         Points on either side of the contact's centre.
     unknown : numpy.ndarray of bool, shape (P,)
         Where the film is not known.
-    is_shaped : bool
-        Whether the films have the computed shape.
     """
 
     def __init__(
@@ -73,13 +72,13 @@ class ContactWindows:
         grid: LineGrid,
         film: xr.Dataset,
         boundary_layer: Layer,
-        flattened: bool = False,
+        gap: Gap = PLAIN,
         weaker: Values = 1.0,
     ) -> None:
-        self.is_shaped, self._flattened = "film_profile" in film, flattened
+        self._gap = gap
         names = ["film_thickness", "contact_half_width"]
         # Where more than film and width decides on contact, Moes' numbers tell the points apart.
-        names += ["moes_load", "moes_material"] if self.is_shaped or flattened else []
+        names += ["moes_load", "moes_material"] if not gap.is_plain else []
         spread = xr.broadcast(*(film[name] for name in names))
         self.shape = spread[0].shape
         thickness, half_width, *moes = (each.values.ravel() for each in spread)
@@ -87,7 +86,7 @@ class ContactWindows:
         self.thickness, self.unknown = thickness / grid.height_step, np.isnan(thickness)
         self._films, self.half_windows = whole_numbers(thickness, half_width, grid)
         self._shapes = np.full(thickness.size, None)
-        if self.is_shaped:
+        if gap.has_shape:
             self._shapes[:] = window_films(film, grid)
             self.unknown |= [shape is None for shape in self._shapes]
         factor = layer_factor_of(grid, film["reduced_modulus"].item(), boundary_layer)
@@ -143,9 +142,9 @@ class ContactWindows:
         ratios = speed_ratios(slip)
         steps = max(round(turns * revolution(pair, ratios)), 1)
         pair = _begun(pair, ratios, begin)
-        run = self._under_shaped_films if self.is_shaped else self._under_flat_films
+        run = self._under_shaped_films if self._gap.has_shape else self._under_flat_films
         counts = np.empty((self.size, 4))
-        is_general = self.is_shaped or self._flattened
+        is_general = not self._gap.is_plain
         if is_general and ratios[0] == ratios[1] and pair[0].size == pair[1].size:
             pair = pair[0] + pair[1], np.zeros(1, np.int32)  # one line passes the contact
         for lines, factor, here in self._in_contact(pair):
@@ -170,7 +169,7 @@ class ContactWindows:
         steps = revolution(pair, ratios)
         broken = np.zeros((self.size, steps), np.int32)
         for lines, factor, here in self._in_contact(_begun(pair, ratios, begin)):
-            if not self.is_shaped:
+            if not self._gap.has_shape:
                 films = self._films[here], self.half_windows[here]
                 broken[here] = strip_trace(lines, ratios, steps, *films, factor)
                 continue
@@ -219,7 +218,7 @@ class ContactWindows:
             that are not flat as of `lube.surfaces.rare_contact.rare_contact_under`, shapes (2, P)
             and (4, P), NaN where the film is not known.
         """
-        if not self.is_shaped:
+        if not self._gap.has_shape:
             widths = 2 * self.half_windows + 1
             return rare_contact(spec, seed, number, self.thickness, widths, self._factors)
         films = [shape.film.astype(float) for shape in self._shapes[~self.unknown]]
@@ -231,7 +230,7 @@ class ContactWindows:
 
     def _in_contact(self, pair):
         """Yield the lines, flattened if need be, the layer's factor, and points with both alike."""
-        if not self._flattened:
+        if not self._gap.is_flattened:
             for factor in np.unique(self._factors):
                 yield pair, factor, np.flatnonzero(self._factors == factor)
             return

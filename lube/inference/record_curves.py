@@ -234,17 +234,17 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
             strengths.append(factor * layer.shear_strength / layer.critical_thickness)
             of_layers.append(row)
     of_records, *of_layers = ([row[number] for number in inverse] for row in (curves, *of_layers))
-    return RecordCurves(of_records, _offsets(comparison), np.array(strengths), of_layers)
+    offsets = _offsets(comparison, study.gap.has_shape)
+    return RecordCurves(of_records, offsets, np.array(strengths), of_layers)
 
 
 def _windows(study, film, weaker=1.0):
-    layer, is_flattened = study.boundary_layer, study.is_flattened
-    return ContactWindows(study.line_spec, film, layer, is_flattened, weaker)
+    return ContactWindows(study.line_spec, film, study.boundary_layer, study.gap, weaker)
 
 
-def _offsets(comparison):
+def _offsets(comparison, has_shape):
     """Logarithms of the films of a shape that the first formula gives, less those of each."""
-    if "film_profile" not in comparison:
+    if not has_shape:
         return np.zeros(comparison["film_thickness"].shape)
     films = np.log(film_at_places(comparison).transpose("film_formula", "record").values)
     return films[0] - films

@@ -45,7 +45,7 @@ the interpolation between them makes the effects of lines alone at neighbouring 
 
 def study_windows(study: Study, film: Data) -> ContactWindows:
     """Contact windows of the films of a study, such as those at the records."""
-    return ContactWindows(study.line_spec, film, study.boundary_layer, study.is_flattened)
+    return ContactWindows(study.line_spec, film, study.boundary_layer, study.gap)
 
 
 def record_scatter(

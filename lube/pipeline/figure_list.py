@@ -88,7 +88,7 @@ class Figure:
             return False
         if GAUSSIAN in self.tags and not study.is_sampled:
             return False
-        if MAPPED in self.tags and not study.has_master_map:
+        if MAPPED in self.tags and not study.gap.is_plain:
             return False
         if ENSEMBLE in self.tags and study.line_spec.is_one_pair:
             return False

@@ -109,8 +109,8 @@ class SimulatedRig:
         rows = [self._points[number].row for number in numbers]
         film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
         film["reduced_modulus"] = rows[0]["reduced_modulus"]  # the same at all
-        layer, flattened = self._study.boundary_layer, self._study.is_flattened
-        return ContactWindows(LineGrid.of(self._lines), film, layer, flattened)
+        layer, gap = self._study.boundary_layer, self._study.gap
+        return ContactWindows(LineGrid.of(self._lines), film, layer, gap)
 
     def _revolution(self, contact, number, seed):
         point, spacing = self._points[number], self._lines.attrs["spacing"]

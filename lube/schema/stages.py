@@ -157,7 +157,7 @@ _ROWS = (
         values=_LINES | _LAYER,
         same_values=("roughness",),
         in_batches=True,
-        only_with=("has_master_map",),
+        only_with=("gap.is_plain",),
     ),
     Stage(
         "trace",
@@ -213,7 +213,7 @@ _ROWS = (
         inputs=("film",),
         values=_LINES | _CONTACT | {"length": "rollers.length"},
         target="areal_contact",
-        only_with=(*_SURFACE, "has_master_map"),
+        only_with=(*_SURFACE, "gap.is_plain"),
         parallel=True,
     ),
     Stage(
@@ -221,7 +221,7 @@ _ROWS = (
         "films from the records, by the surface",
         inputs=("film", "areal", "comparison", "gauge"),
         target="areal_contact",
-        only_with=(*_SURFACE, "has_master_map", "conducts"),
+        only_with=(*_SURFACE, "gap.is_plain", "conducts"),
     ),
     Stage(
         "patch",

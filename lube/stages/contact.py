@@ -13,6 +13,7 @@ import xarray as xr
 
 from lube.contact.counted import contact_at
 from lube.contact.ensemble import gather
+from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import at_slip
 from lube.schema import OPERATING_DIMS, label
 from lube.study.rollers import BoundaryLayer
@@ -27,7 +28,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 def make_batch(study: Study, film: xr.Dataset, lines: xr.Dataset) -> xr.Dataset:
     """Make a batch of ``contact.nc``; see `lube.stages`."""
-    run = study.operating_grid.slide_to_roll_ratio, study.revolutions, study.is_flattened
+    run = study.operating_grid.slide_to_roll_ratio, study.revolutions, study.gap
     return contact_statistics(lines, film, study.boundary_layer, *run)
 
 
@@ -37,7 +38,7 @@ def contact_statistics(
     boundary_layer: BoundaryLayer,
     slide_to_roll_ratio: Sequence[float] = (0.0,),
     revolutions: int = 1,
-    flattened: bool = False,
+    gap: Gap = PLAIN,
 ) -> xr.Dataset:
     r"""Run the contact model for all realisations and operating points.
 
@@ -53,8 +54,8 @@ def contact_statistics(
         Levels of the slide-to-roll ratio; the default is pure rolling.
     revolutions : int, optional
         Revolutions of the roller with the faster surface.
-    flattened : bool, optional
-        Whether the oil flattens the lines (`lube.physics.flattening`).
+    gap : Gap, optional
+        How film and roughness make up the gap; by default flat films, and lines as drawn.
 
     Returns
     -------
@@ -76,7 +77,7 @@ def contact_statistics(
     share is not small, film and asperities together carry more than the applied load.
     """
     film = film.transpose(*OPERATING_DIMS, ...)
-    results = _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, revolutions, flattened)
+    results = _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, revolutions, gap)
     # F_N 2a/L' by Hertz: the maximum pressure is 4/pi times the mean one, F_N / (2a L').
     width = 2.0 * film["contact_half_width"]
     patch_load = np.pi / 4.0 * film["hertz_pressure"] * width * width

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.windows import ContactWindows
+from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import at_slip
 from lube.kernels.synthesis import mean_powers
 from lube.schema import MEAN_LIMITS, label, values_with_limits
@@ -29,7 +30,7 @@ PAIRS = 8
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``height_distribution.nc``; see `lube.stages`."""
     film, layer = inputs["film"], study.boundary_layer
-    options = study.seed, threads, study.is_flattened
+    options = study.seed, threads, study.gap
     return height_distributions(study.line_spec, film, layer, *options)
 
 
@@ -39,7 +40,7 @@ def height_distributions(
     boundary_layer: BoundaryLayer,
     seed: int,
     threads: int = 1,
-    flattened: bool = False,
+    gap: Gap = PLAIN,
 ) -> xr.Dataset:
     """Compute probabilities by skewness and kurtosis of the heights, in pure rolling.
 
@@ -59,8 +60,8 @@ def height_distributions(
         Seed of the study.
     threads : int, optional
         Threads that share the work; they do not change the results.
-    flattened : bool, optional
-        Whether the oil flattens the lines.
+    gap : Gap, optional
+        How film and roughness make up the gap; by default flat films, and lines as drawn.
 
     Returns
     -------
@@ -73,7 +74,7 @@ def height_distributions(
     half_width = point["contact_half_width"].item()
     films = LAMBDA_RATIOS * film["composite_rms_roughness"].item()
     points = point.drop_vars("lambda_ratio").assign(film_thickness=("lambda_ratio", films))
-    contact_windows = ContactWindows(spec, points, boundary_layer, flattened)
+    contact_windows = ContactWindows(spec, points, boundary_layer, gap)
     levels = [(skewness, kurtosis) for skewness in SKEWNESS for kurtosis in KURTOSIS]
     # Both rollers turn as one, so a revolution of the smaller one shows all of its line.
     windows = np.full(films.size, spec.independent_windows(2.0 * half_width))

@@ -10,6 +10,7 @@ import xarray as xr
 from lube.contact.window_films import shaped_films
 from lube.contact.windows import ContactWindows
 from lube.errors import DataError, StudyError
+from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
 from lube.schema import (
@@ -26,7 +27,7 @@ from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
-from lube.surfaces.rare_contact import STEPS, check_gaussian
+from lube.surfaces.rare_contact import check_gaussian
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import ROLLER_NUMBERS
 from lube.types import Datasets
@@ -55,7 +56,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         study.seed,
         study.operating_grid.slide_to_roll_ratio,
         threads,
-        study.is_flattened,
+        study.gap,
     )
 
 
@@ -66,7 +67,7 @@ def tail_probabilities(
     seed: int,
     slide_to_roll_ratio: Sequence[float] = (0.0,),
     threads: int = 1,
-    flattened: bool = False,
+    gap: Gap = PLAIN,
 ) -> xr.Dataset:
     r"""Compute probability and rate of contact at all operating points, at any rarity.
 
@@ -84,8 +85,8 @@ def tail_probabilities(
         Levels of the slide-to-roll ratio S; the default is pure rolling.
     threads : int, optional
         Threads that share the work; they do not change the results.
-    flattened : bool, optional
-        Whether the oil flattens the lines, so that they differ from one operating point to another.
+    gap : Gap, optional
+        How film and roughness make up the gap; by default flat films, and lines as drawn.
 
     Returns
     -------
@@ -124,18 +125,18 @@ def tail_probabilities(
     if not lowest > 0.0:
         raise DataError(f"film thickness: got {lowest:g} m, need above 0")
     levels = np.asarray(slide_to_roll_ratio, float)
-    if remark := _why_not(spec, flattened):
+    if remark := _why_not(spec, gap):
         return _unknown(film, levels, remark)
     if _SLIP in film["film_thickness"].dims:
         film = film.sel({_SLIP: levels})
     else:
         film = film.drop_dims(_SLIP, errors="ignore")
     tables = []
-    outcomes = _sampled(spec, film, boundary_layer, seed, threads)
+    outcomes = _sampled(spec, film, boundary_layer, seed, gap, threads)
     for part, found in zip(_PARTS, outcomes, strict=True):
         if film["film_formula"][part].size:
             some = film.isel(film_formula=part)
-            tables.append(_table(spec, some, boundary_layer, found, levels))
+            tables.append(_table(spec, some, boundary_layer, found, levels, gap))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
     table = table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
@@ -148,7 +149,7 @@ def pair_probabilities(
     boundary_layer: BoundaryLayer,
     seed: int,
     slide_to_roll_ratio: xr.DataArray | float,
-    flattened: bool = False,
+    gap: Gap = PLAIN,
 ) -> xr.Dataset:
     """Compute probabilities and rate of contact on each pair of lines, on all processors.
 
@@ -161,7 +162,7 @@ def pair_probabilities(
         dimensions, and ``reduced_modulus`` (Pa).
     slide_to_roll_ratio : xarray.DataArray or float
         Over the same dimensions.
-    flattened : bool, optional
+    gap : Gap, optional
         As in `tail_probabilities`.
 
     Returns
@@ -172,13 +173,13 @@ def pair_probabilities(
         of several points is first computed on each pair. With the attribute ``remarks``, as
         `tail_probabilities`.
     """
-    if remark := _why_not(spec, flattened):
+    if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
         return xr.Dataset(dict.fromkeys(_OF_PAIRS, unknown), attrs={"remarks": remark})
     # All in the first part, which has most pairs.
-    windows, runs = next(_sampled(spec, film.expand_dims("part"), boundary_layer, seed))
+    windows, runs = next(_sampled(spec, film.expand_dims("part"), boundary_layer, seed, gap))
     contact, breakthrough = windows.transpose("outcome", ...)
-    rate = _in_time(spec, film, runs, slide_to_roll_ratio)[1]
+    rate = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
     values = dict(zip(_OF_PAIRS, (breakthrough, contact, rate), strict=True))
     table = xr.Dataset(values, attrs={"remarks": ""}).isel(part=0)
     return table.transpose("pair", *film["film_thickness"].dims)
@@ -206,9 +207,9 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
     return xr.Dataset(limited, attrs=values.attrs)
 
 
-def _why_not(spec, flattened):
+def _why_not(spec, gap):
     """Say in one line why contact cannot be sampled; nothing if it can."""
-    if flattened:
+    if gap.is_flattened:
         return _AS_DRAWN
     try:
         check_gaussian(spec)
@@ -228,28 +229,28 @@ def _unknown(film, slide_to_roll_ratio, remark):
     return label(xr.Dataset(empty, coordinates, {"remarks": remark}), "tail")
 
 
-def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio):
+def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
     """Variables of some film formulas, unlabelled."""
     slip = xr.DataArray(slide_to_roll_ratio, dims=_SLIP).assign_coords({_SLIP: slide_to_roll_ratio})
     in_windows, runs = outcomes
     contact, breakthrough = in_windows.transpose("outcome", ...)
     everywhere, speed = xr.ones_like(slip), film["entrainment_speed"]
-    in_window, rate = _in_time(spec, film, runs, slip)
+    in_window, rate = _in_time(spec, film, runs, slip, gap)
     turn = spec.points[0] * spec.spacing / surface_speeds(speed, slip)[0]
     values = (breakthrough * everywhere, contact * everywhere, rate)
     table = {
         **pair_limits(xr.Dataset(dict(zip(_OF_PAIRS, values, strict=True)))),
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
-        **_in_a_revolution(spec, film, _in_pure_rolling(runs), _in_pure_rolling(breakthrough)),
-        **_asymptotes(spec, film, boundary_layer),
+        **_in_a_revolution(spec, film, *map(_in_pure_rolling, (runs, breakthrough)), gap),
+        **_asymptotes(spec, film, boundary_layer, gap),
     }
     return xr.Dataset(table)
 
 
-def _in_time(spec, film, runs, slip):
+def _in_time(spec, film, runs, slip, gap):
     """Broken runs in the window at a time, and new ones per second."""
-    if _is_under_a_shape(runs):
+    if gap.has_shape:
         return _under_a_shape(spec, film, runs, slip)
     points = _window_points(spec, film)
     _, broken, _, new, broken_points, new_points, *_ = runs.transpose("outcome", ...)
@@ -258,10 +259,6 @@ def _in_time(spec, film, runs, slip):
     new_in_window = new * (points - 1.0) + new_points
     speed = film["entrainment_speed"]
     return in_window, speed / spec.spacing * (broken + abs(slip) * new_in_window)
-
-
-def _is_under_a_shape(runs):
-    return runs.sizes["outcome"] == 1 + len(STEPS)
 
 
 def _under_a_shape(spec, film, runs, slip):
@@ -284,9 +281,9 @@ def _in_pure_rolling(values):
     return values.reindex({_SLIP: [0.0]}).isel({_SLIP: 0}, drop=True)
 
 
-def _in_a_revolution(spec, film, runs, breakthrough):
+def _in_a_revolution(spec, film, runs, breakthrough, gap):
     """Pairs with a breakthrough in a revolution of pure rolling, and when the first comes."""
-    if _is_under_a_shape(runs):  # how far one is from the next is not sampled
+    if gap.has_shape:  # how far one is from the next is not sampled
         unknown = xr.full_like(breakthrough.isel(pair=0, drop=True), np.nan)
         names = (f"touching_pair_share{end}" for end in LIMITS)
         return dict.fromkeys([*names, "first_breakthrough_time"], unknown)
@@ -303,13 +300,13 @@ def _window_points(spec, film):
     return 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
 
 
-def _sampled(spec, film, boundary_layer, seed, threads=None):
+def _sampled(spec, film, boundary_layer, seed, gap, threads=None):
     """Probabilities of windows and numbers of runs, for each of `_PARTS` of the film formulas.
 
     Over (pair, outcome, film formula, other operating dimensions).
     """
     thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    points = ContactWindows(spec, film, boundary_layer)
+    points = ContactWindows(spec, film, boundary_layer, gap)
     # The other film formulas have the first 8 of the 40 pairs.
     first = points[: points.size // thickness.shape[0]]
 
@@ -375,7 +372,7 @@ def _first_breakthrough(runs, points, revolution):
     return revolution * free * xr.where(turns < 1e-4, 0.5 - turns / 12.0, exact)
 
 
-def _asymptotes(spec, film, boundary_layer):
+def _asymptotes(spec, film, boundary_layer, gap):
     """Theory for high films: the window's first point touches, or a crossing lies in the window.
 
     The boundary layer breaks if the summit behind is sharp enough.
@@ -385,7 +382,7 @@ def _asymptotes(spec, film, boundary_layer):
     moments = [sum(line[name] ** 2 for line in lines) for name in names]
     strength = layer.critical_thickness, layer.shear_strength
     curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
-    if "film_profile" in film:
+    if gap.has_shape:
         return _shaped_asymptotes(film, moments, curvature)
     thickness = film["film_thickness"]
     first = scipy.special.ndtr(-thickness / moments[0] ** 0.5)

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
@@ -10,6 +11,7 @@ from lube.contact.window_films import film_on_points, shaped_films
 from lube.contact.windows import ContactWindows, Waves
 from lube.errors import DataError
 from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, speed_ratios, whole_numbers
+from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import at_slip, known_films, surface_speeds
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
@@ -34,7 +36,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         study.trace_points,
         study.boundary_layer,
         study.resistivity if study.conducts else np.nan,
-        study.is_flattened,
+        study.gap,
     )
 
 
@@ -44,7 +46,7 @@ def contact_trace(
     points: Sequence[Mapping[str, float | str]],
     boundary_layer: BoundaryLayer,
     resistivity: float,
-    flattened: bool = False,
+    gap: Gap = PLAIN,
 ) -> xr.Dataset:
     """Contact at every time step of one revolution, at some operating points.
 
@@ -61,8 +63,8 @@ def contact_trace(
         With attributes ``critical_thickness`` (m) and ``shear_strength`` (Pa).
     resistivity : float
         Resistivity of the rollers' material, ohm m; NaN if either does not conduct.
-    flattened : bool, optional
-        Whether the oil flattens the lines (`lube.physics.flattening`).
+    gap : Gap, optional
+        How film and roughness make up the gap; by default flat films, and lines as drawn.
 
     Returns
     -------
@@ -77,7 +79,7 @@ def contact_trace(
         If the film is known at none of the points.
     """
     table = _known_rows(film, points)
-    windows = ContactWindows(LineGrid.of(lines), table, boundary_layer, flattened)
+    windows = ContactWindows(LineGrid.of(lines), table, boundary_layer, gap)
     ratio, spacing = points[0]["slide_to_roll_ratio"], lines.attrs["spacing"]
     length = windows.trace(line_pair(lines, REALISATION), ratio) * spacing
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
@@ -90,9 +92,10 @@ def contact_trace(
         shear_strength=boundary_layer.shear_strength,
         resistivity=resistivity,
     )
-    if windows.is_shaped:
+    trace = trace.assign_attrs(asdict(gap))
+    if gap.has_shape:
         trace["film_profile"] = shaped_films(table)
-    if flattened:
+    if gap.is_flattened:
         trace = trace.assign({name: table[name] for name in _MOES})
     time = spacing / faster_surface * np.arange(length.shape[1])
     return label(trace.assign_coords(time=time), "trace")
@@ -158,15 +161,16 @@ def contact_window(
     point = trace.isel(operating_point=operating_point)
     grid = LineGrid.of(lines)
     spacing, height_step = grid.spacing, grid.height_step
-    half_width, shaped = point["contact_half_width"].item(), "film_profile" in point
-    widest = half_width * (point["film_position"].values[-1] if shaped else 1.0)
+    gap = Gap(trace.attrs["film_shape"], trace.attrs["roughness_deformation"])
+    half_width = point["contact_half_width"].item()
+    widest = half_width * (point["film_position"].values[-1] if gap.has_shape else 1.0)
     film, half_window = whole_numbers(point["film_thickness"], reach or widest, grid)
     window = np.arange(-half_window, half_window + 1)
-    if shaped:
+    if gap.has_shape:
         film = film_on_points(point["film_profile"], half_width, window, grid)
     ratios = speed_ratios(point["slide_to_roll_ratio"].item())
     pair = line_pair(lines, REALISATION)
-    if "moes_load" in point:
+    if gap.is_flattened:
         contact = [point[name].item() for name in ("contact_half_width", *_MOES)]
         pair = [Waves(line, grid).flattened(*contact) for line in pair]
     moving = zip(pair, ratios, strict=True)

@@ -12,6 +12,7 @@ import xarray as xr
 
 from lube.contact.windows import ContactWindows
 from lube.grid.films import film_at
+from lube.grid.gap import Gap
 from lube.grid.operating_points import at_slip
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
@@ -59,9 +60,9 @@ class Variant:
         )
 
     @property
-    def is_flattened(self) -> bool:
-        """Whether the oil flattens the lines."""
-        return self.roughness_deformation != "none"
+    def gap(self) -> Gap:
+        """How film and roughness make up the gap."""
+        return Gap("flat" if self.film_shape == "flat" else "computed", self.roughness_deformation)
 
 
 STUDY = "study"
@@ -89,11 +90,13 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     own, spec = chosen[STUDY], study.line_spec
     films = {each: _film(each, study, inputs) for each in dict.fromkeys(chosen.values())}
     windows = {
-        each: ContactWindows(spec, film, study.boundary_layer, each.is_flattened)
+        each: ContactWindows(spec, film, study.boundary_layer, each.gap)
         for each, film in films.items()
     }
     is_sampled = study.is_sampled
-    sampled = [each for each in films if is_sampled and not (each.is_flattened or each.is_uncut)]
+    sampled = [
+        each for each in films if is_sampled and not (each.gap.is_flattened or each.is_uncut)
+    ]
     counted = [own, *(each for each in films if each not in sampled and each != own)]
     found = _counted(counted, windows, study, threads)
     if sampled:
@@ -192,7 +195,7 @@ def _with_limits(variants, values, means):
 
 def _roughness_ratio(variant, spec, film):
     """Rms height of both lines together, as the oil leaves it, over that as drawn."""
-    if not variant.is_flattened:
+    if not variant.gap.is_flattened:
         return np.ones(film["film_thickness"].shape)
     waves = [wave_amplitudes(spec, roller) for roller in range(len(spec.lines))]
     power = np.concatenate([amplitudes**2 for _, amplitudes in waves])

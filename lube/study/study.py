@@ -16,6 +16,7 @@ from pydantic_core import to_jsonable_python
 
 from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, shown
+from lube.grid.gap import Gap
 from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
@@ -179,19 +180,14 @@ class Study(StrictModel):
         return [record.model_dump(**options) for record in self.lubricants]
 
     @property
-    def is_flattened(self) -> bool:
-        """Whether the oil flattens the roughness lines."""
-        return self.roughness_deformation != "none"
-
-    @property
-    def has_master_map(self) -> bool:
-        """Whether film thickness and contact width alone decide on contact: a map has it all."""
-        return self.film_shape == "flat" and not self.is_flattened
+    def gap(self) -> Gap:
+        """How film and roughness make up the gap."""
+        return Gap(self.film_shape, self.roughness_deformation)
 
     @property
     def is_sampled(self) -> bool:
         """Whether rare contact can be sampled: lines that are Gaussian, and stay as drawn."""
-        return self.line_spec.is_gaussian and not self.is_flattened
+        return self.line_spec.is_gaussian and not self.gap.is_flattened
 
     @property
     def readings(self) -> dict[str, dict]:
@@ -286,7 +282,7 @@ class Study(StrictModel):
         StudyError
             With the ratio, and what is needed.
         """
-        if self.is_flattened and slide_to_roll_ratio:
+        if self.gap.is_flattened and slide_to_roll_ratio:
             raise StudyError(
                 f"roughness_deformation: got {self.roughness_deformation} with a slide-to-roll "
                 f"ratio of {slide_to_roll_ratio:g}, need none, or a ratio of 0: its formula is for "

@@ -8,6 +8,7 @@ from literal_scan import scan_statistics
 
 from lube.contact.windows import WINDOWS_PER_WIDTH, ContactWindows, Waves
 from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, whole_numbers
+from lube.grid.gap import Gap
 from lube.physics.flattening import amplitude_ratio
 from lube.stages import roughness_lines
 
@@ -24,12 +25,13 @@ def weak(study):
     return study.boundary_layer.model_copy(update={"shear_strength": 2e5})
 
 
-@pytest.fixture(scope="module", params=itertools.product((False, True), (False, True)))
+GAPS = [Gap(*each) for each in itertools.product(("flat", "computed"), ("none", "venner-1997"))]
+
+
+@pytest.fixture(scope="module", params=GAPS)
 def case(request, shaped_film, coarse, weak):
     """Flat and shaped films, lines as drawn and flattened."""
-    with_shape, flattened = request.param
-    film = shaped_film if with_shape else shaped_film.drop_vars("film_profile")
-    return film, flattened, ContactWindows(LineGrid.of(coarse), film, weak, flattened)
+    return request.param, ContactWindows(LineGrid.of(coarse), shaped_film, weak, request.param)
 
 
 # One wave
@@ -59,7 +61,7 @@ def test_waves_beyond_the_band_are_left_out(coarse):
 
 
 def test_some_operating_points_are_rows_of_all(case, coarse):
-    _, _, windows = case
+    _, windows = case
     pair, some = line_pair(coarse, 0), np.array([6, 1, 1, 3])
     every = windows.count(pair)
     np.testing.assert_array_equal(windows[some].count(pair), every[some])
@@ -72,10 +74,10 @@ def test_some_operating_points_are_rows_of_all(case, coarse):
 def test_statistics_are_means_of_the_traces(case, coarse):
     """To the bit under flat films and lines as drawn; flattened ones are rounded otherwise, and
     under a shape one window in some is looked at."""
-    film, flattened, windows = case
+    gap, windows = case
     pair = line_pair(coarse, 0)
     found, trace = windows.count(pair), windows.trace(pair)
-    exact = not flattened and "film_profile" not in film
+    exact = gap.is_plain
     np.testing.assert_allclose(
         found[:, 1], np.mean(trace > 0, axis=1), rtol=1e-12 if exact else 0.1, atol=2e-4
     )
@@ -83,7 +85,7 @@ def test_statistics_are_means_of_the_traces(case, coarse):
 
 def test_a_film_with_a_shape_is_looked_at_in_evenly_spread_windows(shaped_film, coarse, weak):
     grid, pair = LineGrid.of(coarse), line_pair(coarse, 0)
-    windows = ContactWindows(grid, shaped_film, weak)
+    windows = ContactWindows(grid, shaped_film, weak, Gap("computed"))
     found, trace = windows.count(pair), windows.trace(pair)
     for point, half_window in enumerate(windows.half_windows):
         count = -(-30_000 // max(1, (2 * half_window + 1) // WINDOWS_PER_WIDTH))
@@ -99,9 +101,9 @@ def test_flattened_lines_under_flat_films_by_a_plain_filter_and_the_literal_scan
     """Each line by a plain transform; unequal lines, which are not added before, are the same to
     the bit."""
     lines = roughness_lines(make_spec(12_000, second_radius), 11, [0])
-    pair, film = line_pair(lines, 0), shaped_film.drop_vars("film_profile").isel(film_formula=[0])
+    pair, film = line_pair(lines, 0), shaped_film.isel(film_formula=[0])
     grid = LineGrid.of(lines)
-    found = ContactWindows(grid, film, weak, flattened=True).count(pair)
+    found = ContactWindows(grid, film, weak, Gap("flat", "venner-1997")).count(pair)
     factor = layer_factor_of(grid, film["reduced_modulus"].item(), weak)
     for number, index in enumerate(np.ndindex(film["film_thickness"].shape)):
         here = film.isel(dict(zip(film["film_thickness"].dims, index, strict=True)))
@@ -129,24 +131,19 @@ def test_flattened_lines_under_flat_films_by_a_plain_filter_and_the_literal_scan
 def test_flattened_lines_touch_less_and_a_shape_that_is_thinner_more(shaped_film, coarse, weak):
     pair = line_pair(coarse, 0)
     share = {
-        (with_shape, flattened): ContactWindows(
-            LineGrid.of(coarse),
-            shaped_film if with_shape else shaped_film.drop_vars("film_profile"),
-            weak,
-            flattened,
-        ).count(pair)[:, 0]
-        for with_shape, flattened in itertools.product((False, True), (False, True))
+        gap: ContactWindows(LineGrid.of(coarse), shaped_film, weak, gap).count(pair)[:, 0]
+        for gap in GAPS
     }
-    for with_shape in (False, True):
-        assert np.all(share[with_shape, True] < share[with_shape, False])
+    for shape in ("flat", "computed"):
+        assert np.all(share[Gap(shape, "venner-1997")] < share[Gap(shape)])
 
 
 def test_where_a_shape_is_not_known_contact_is_not_either(shaped_film, coarse, weak):
     holed = shaped_film.copy(deep=True)
     holed["film_profile"][0, 1, 0, 0] = np.nan
     grid, pair = LineGrid.of(coarse), line_pair(coarse, 0)
-    windows = ContactWindows(grid, holed, weak)
-    whole = ContactWindows(grid, shaped_film, weak).count(pair)
+    windows = ContactWindows(grid, holed, weak, Gap("computed"))
+    whole = ContactWindows(grid, shaped_film, weak, Gap("computed")).count(pair)
     found = windows.count(pair).reshape(2, 2, 2, 4)
     assert np.isnan(found[:, 1, 0]).all()  # of both film formulas
     assert windows.unknown.reshape(2, 2, 2)[:, 1, 0].all() and windows.unknown.sum() == 2

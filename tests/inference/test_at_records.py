@@ -107,8 +107,7 @@ def test_records_under_films_with_a_shape_are_those_of_contact_statistics(
         }
     )
     lines = roughness_batch(study.line_spec, study.seed, range(3))
-    flattened = deformation != "none"
-    contact = contact_statistics(lines, shaped_film, study.boundary_layer, flattened=flattened)
+    contact = contact_statistics(lines, shaped_film, study.boundary_layer, gap=study.gap)
     experiment = experiment_at(shaped_film, np.zeros(4))
     expected = contact[PROBABILITY].squeeze(["slide_to_roll_ratio", "lubricant"])
     expected = expected.stack(record=["temperature", "speed", "force"]).transpose(

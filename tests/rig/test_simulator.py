@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lube.contact.rough_pair import roughness_batch
+from lube.grid.gap import Gap
 from lube.grid.operating_points import operating_points
 from lube.physics.electrical import divider_voltage, resistance_from_voltage
 from lube.rig import simulator as module
@@ -131,10 +132,11 @@ def test_its_contacts_are_those_of_the_contact_stage(
 def test_under_films_with_a_shape_too(lines_of, study, with_rig, shaped_film, deformation):
     """The contact stage looks at some windows, and rounds flattened lines otherwise."""
     changed = with_rig(
-        study.model_copy(update={"roughness_deformation": deformation}), revolutions=1
+        study.model_copy(update={"film_shape": "computed", "roughness_deformation": deformation}),
+        revolutions=1,
     )
-    lines, flattened = lines_of(changed), deformation != "none"
-    found = contact_statistics(lines, shaped_film, study.boundary_layer, flattened=flattened)[
+    lines, gap = lines_of(changed), Gap("computed", deformation)
+    found = contact_statistics(lines, shaped_film, study.boundary_layer, gap=gap)[
         "breakthrough_probability"
     ]
     points = operating_points(shaped_film.isel(film_formula=0), 0.0)

@@ -60,7 +60,7 @@ def test_what_the_registry_promises_is_what_the_stages_can_make(name, tmp_path):
     study = load_study(write_study(STUDIES[name], tmp_path / name))
     spec, layer = study.line_spec, study.boundary_layer
     areal = refuses(strip_contacts, spec, None, layer, 0.01, 1)
-    assert study.has("areal") == (not areal and study.has_master_map)
+    assert study.has("areal") == (not areal and study.gap.is_plain)
     assert study.has("areal_gauge") == (study.has("areal") and study.has("gauge"))
     assert study.has("patch") == (not refuses(patch_contact, spec, None, None))
     assert study.has("surface") == bool(study.topographies)

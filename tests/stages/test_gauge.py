@@ -155,8 +155,7 @@ def test_another_film_of_any_shape_is_gauged_from_what_is_counted_under_it(busy,
     for factor in (0.8, 1.15):
         first = comparison.isel(film_formula=0)
         thinner = first.assign(film_thickness=factor * first["film_thickness"])
-        layer, is_flattened = study.boundary_layer, study.is_flattened
-        windows = ContactWindows(study.line_spec, thinner, layer, is_flattened)
+        windows = ContactWindows(study.line_spec, thinner, study.boundary_layer, study.gap)
         counted = [windows.count(drawn(study, number))[:, 1] for number in range(32)]
         shares = first["measured_share"].copy(data=np.mean(counted, axis=0))
         curves = own_curves(study, comparison)

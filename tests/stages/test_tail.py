@@ -8,6 +8,7 @@ from made import made
 from lube.contact.window_films import window_films
 from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
+from lube.grid.gap import Gap
 from lube.grid.operating_points import at_slip
 from lube.kernels.layer import layer_factor
 from lube.kernels.motion import surface_position
@@ -49,7 +50,9 @@ def rare(spec, few, study):
 
 
 def test_lines_that_the_oil_flattens_are_refused_in_words(few, spec, study):
-    found = tail_probabilities(spec, few, study.boundary_layer, SEED, RATIOS, 1, flattened=True)
+    found = tail_probabilities(
+        spec, few, study.boundary_layer, SEED, RATIOS, 1, Gap(roughness_deformation="venner-1997")
+    )
     assert found.attrs["remarks"].startswith("roughness_deformation: got lines that the oil")
     assert all(np.isnan(found[name]).all() for name in found.data_vars)
 
@@ -207,7 +210,7 @@ def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study
         shaped = study.model_copy(update={"film_shape": shape, "operating_grid": at})
         point = made(shaped, ("lubricant", "film"))["film"].isel(film_formula=[0])
     weak = study.boundary_layer.model_copy(update={"shear_strength": 3e4})
-    tail = tail_probabilities(spec, point, weak, SEED, [ratio]).squeeze()
+    tail = tail_probabilities(spec, point, weak, SEED, [ratio], 1, Gap(shape)).squeeze()
     factor = layer_factor(
         point["reduced_modulus"].item(), weak.critical_thickness, 3e4, spec.spacing, 1e-12
     )

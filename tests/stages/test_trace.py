@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from lube.errors import DataError
+from lube.grid.gap import Gap
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS
 from lube.stages import BoundaryLayer, contact_statistics, contact_trace, contact_window
 
@@ -97,13 +98,13 @@ def test_window_explains_the_trace_at_every_step(case):
             assert broken == pytest.approx(length[step], rel=1e-12, abs=1e-300)
 
 
-@pytest.mark.parametrize("flattened", [False, True])
-def test_window_explains_the_trace_under_a_film_with_a_shape(lines, shaped_film, study, flattened):
+@pytest.mark.parametrize("deformation", ["none", "venner-1997"])
+def test_window_explains_the_trace_under_a_shape(lines, shaped_film, study, deformation):
     """No segment is cut: where lines touch beyond the contact, the window is wider."""
     place = {"film_formula": 0, "speed": 0, "temperature": 1, "force": 1}
     points = [point(shaped_film, 0.0, **place)]
-    layer = study.boundary_layer
-    trace = contact_trace(lines, shaped_film, points, layer, RESISTIVITY, flattened)
+    layer, gap = study.boundary_layer, Gap("computed", deformation)
+    trace = contact_trace(lines, shaped_film, points, layer, RESISTIVITY, gap)
     length, widths = trace["contact_length"].values[0], set()
     for step in np.unique(np.concatenate([np.argsort(length)[-20:], np.arange(0, 100_000, 2500)])):
         window = contact_window(lines, trace, 0, int(step))
@@ -112,7 +113,7 @@ def test_window_explains_the_trace_under_a_film_with_a_shape(lines, shaped_film,
         broken = window["contact_length"].values[window["broken"].values].sum()
         assert broken == pytest.approx(length[step], rel=1e-12, abs=1e-300)
     assert length.max() > 0.0 and len(widths) > 1
-    assert ("moes_load" in trace) == flattened
+    assert ("moes_load" in trace) == gap.is_flattened
 
 
 def test_window_lies_within_the_half_width_and_holds_the_heights(case):
