@@ -1,5 +1,7 @@
 """Make the dataset of a stage, by the function `make` of its module in `lube/stages`."""
 
+from pathlib import Path
+
 from lube.pipeline.jobs import begin_job
 from lube.schema import STAGES
 from lube.stages import maker
@@ -7,7 +9,9 @@ from lube.storage.netcdf import load, save
 from lube.study.study import load_study
 
 begin_job(snakemake.log[0])
-study, stage = load_study(**snakemake.config["study"]), STAGES[snakemake.rule]
+study = load_study(**snakemake.config["study"])
+# By its file: as a module of another workflow, the rule has a prefix.
+stage = STAGES[Path(snakemake.output[0]).stem]
 files = {kind: snakemake.input[kind] for kind in study.inputs_of(stage.name)}
 inputs = {kind: load(path, kind, study) for kind, path in files.items()}
 batches = [load(path, f"{stage.name}_batch", study) for path in snakemake.input.batches]
