@@ -147,12 +147,13 @@ def _variance_ratio(slipping, rolling):
 def _components(study, slip, turns, persistent):
     """Scatter ratios due to each line alone, and due to both together, two of shape (P,)."""
     spec = study.line_spec
-    reach = 2.0 * np.pi / spec.q_min / spec.spacing  # a longest wavelength, in grid points
-    motion = speed_ratios(slip), spec.points, reach
+    reach, ratios = spec.longest_wavelength / spec.spacing, speed_ratios(slip)
     alone, together = np.empty((2, turns.size))
     for point, (length, part) in enumerate(zip(turns, persistent, strict=True)):
-        whole = scatter_ratio(length, *motion, part, study.rig.drift)
-        renewed = scatter_ratio(length, *motion, 0.0, study.rig.drift)
+        whole, renewed = (
+            scatter_ratio(length, ratios, spec.points, reach, kept, study.rig.drift)
+            for kept in (part, 0.0)
+        )
         together[point] = min((1.0 - part) * renewed, whole)
         alone[point] = whole - together[point]
     return alone, together

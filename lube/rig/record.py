@@ -188,7 +188,7 @@ class Record:
         """Count the windows in the record that share no roughness."""
         spec, ratios = self._study.line_spec, self._ratios
         reach = 2.0 * self._study.rollers.contact_half_width(self.conditions.force)
-        reach = (reach + 2.0 * np.pi / spec.q_min) / spec.spacing
+        reach = (reach + spec.longest_wavelength) / spec.spacing
         faster, slower = self._faster, 1 - self._faster
         shift = round(spec.points[faster] * ratios[slower])
         alignments = distinct_alignments(revolutions, shift, spec.points[slower], reach)
