@@ -23,7 +23,6 @@ from lube.calculator.operating_points import (
     with_remarks,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.contact.ensemble import windows_in
 from lube.errors import DataError, LubeError, right_one, shown
 from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
@@ -118,7 +117,8 @@ def duty(
     contact = ensemble(table, rollers, realisations, seed)
     on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, _slip(columns))
     share = share / share.sum()
-    whole = _whole(contact, on_pairs, share, 2.0 * table["contact_half_width"].max().item())
+    width = 2.0 * table["contact_half_width"].max().item()
+    whole = _whole(contact, on_pairs, share, rollers.lines.independent_windows(width))
     parts = joined(table, contact, on_pairs)
     found = columns | {"share": share} | dict(parts.data_vars) | whole
     found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers)
@@ -132,10 +132,10 @@ def _slip(columns):
     return 2.0 * (first - second) / (first + second)
 
 
-def _whole(contact, on_pairs, share, width):
+def _whole(contact, on_pairs, share, windows):
     """Probabilities and rate of the whole cycle, with their intervals."""
     counted = (contact["breakthrough_probability"] * share).sum("point")
-    limits = probability_interval(counted.values, windows_in(contact, width))
+    limits = probability_interval(counted.values, windows)
     # On each pair of lines first: at all points the lines are the same.
     sampled = pair_limits((on_pairs * share).sum("point", skipna=False))
     whole = values_with_limits("whole_probability", limits)

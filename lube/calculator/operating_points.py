@@ -11,9 +11,8 @@ import xarray as xr
 from lube.calculator.amounts import Amount, amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.contact.counted import contact_at
-from lube.contact.ensemble import windows_in
 from lube.contact.rough_pair import roughness_batch
+from lube.contact.windows import ContactWindows
 from lube.errors import LubeError, RangeError, StudyError, right_one, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
@@ -25,10 +24,12 @@ from lube.stages.film_profile import film_profile_table
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.stages.trace import contact_trace
 from lube.statistics.confidence import probability_interval
+from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import check_width
 from lube.study.oil_properties import lubricant_table
 from lube.study.rig_settings import RIG_REALISATIONS
 from lube.study.study import Study
+from lube.surfaces.synthetic import draw_realisation
 
 FORMULA = "pan-hamrock"
 """Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
@@ -39,7 +40,7 @@ FILM_VARIABLES = (
     *("film_thickness", "lambda_ratio", "regime", "in_validity_range", "hertz_pressure"),
     *("contact_half_width", "entrainment_speed", "dynamic_viscosity"),
 )
-_PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
+_PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 
 
 @with_parts
@@ -346,24 +347,25 @@ def ensemble(
         check_width(rollers.lines, width, "force: the contact")
     check_realisations(realisations, seed)
 
+    spec = rollers.lines
+    thickness, width = xr.broadcast(table["film_thickness"], 2.0 * half_width)
+    windows = ContactWindows(spec, table, rollers.layer, gap)
+
     def of_realisation(number):
-        lines = roughness_batch(rollers.lines, seed, [number])
-        found = contact_at(lines, table, rollers.layer, [slip], gap=gap)
-        return found[list(_PROBABILITIES)].isel(slide_to_roll_ratio=0, drop=True)
+        return windows.count(draw_realisation(spec, seed, number), slip)[:, :2]
 
     # Drawing and counting release Python's lock, so threads share the work.
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        parts = list(pool.map(of_realisation, range(realisations)))
-    contact = xr.concat(parts, "realisation", coords="minimal", compat="override", join="exact")
-    contact.attrs["seed"] = seed
-    moved = contact.attrs["travel"] * min(speed_ratios(slip))
-    windows = windows_in(contact.assign_attrs(travel=moved), 2.0 * half_width)
-    windows = windows.broadcast_like(contact[_PROBABILITIES[0]][0])
-    for name in _PROBABILITIES:
-        dims = contact[name].dims[1:]
-        found = probability_interval(contact[name].values, windows.transpose(*dims).values)
-        contact = contact.assign(values_with_limits(name, found, dims, MEAN_LIMITS))
-    return contact
+        counts = np.stack(list(pool.map(of_realisation, range(realisations))))
+    moved = spec.travel * min(speed_ratios(slip))
+    independent = independent_windows(moved, width.values, spec.longest_wavelength)
+    contact = xr.Dataset(coords=thickness.coords, attrs={"seed": seed})
+    for name, shares in zip(_PROBABILITIES, np.moveaxis(counts, -1, 0), strict=True):
+        shares = shares.reshape(-1, *thickness.shape)
+        contact[name] = ("realisation", *thickness.dims), shares
+        limits = probability_interval(shares, independent)
+        contact = contact.assign(values_with_limits(name, limits, thickness.dims, MEAN_LIMITS))
+    return contact.assign_coords(realisation=np.arange(realisations))
 
 
 def check_realisations(realisations: int, seed: int) -> int:

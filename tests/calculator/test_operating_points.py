@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import lube
 from lube import LubeError
@@ -133,6 +134,15 @@ def test_the_trace_is_that_of_the_first_realisation(rollers, oil):
     assert touching.mean().item() == share["breakthrough_probability"].item()
     assert 0.0 < touching.mean() < 1.0
     np.testing.assert_allclose(found["time"][-1] / 600.0, 1.0, rtol=1e-3)  # ms in a revolution
+
+
+def test_threads_leave_the_options_of_xarray_as_they_were(rollers, oil):
+    """They are the whole process's: set by several threads at once, they would stay changed."""
+    before = dict(xr.get_options())
+    lube.contact_probability(
+        rollers, oil, "400 N", "100 rpm", "60 degC", film_shape="computed", realisations=8
+    )
+    assert dict(xr.get_options()) == before
 
 
 def test_a_profile_is_that_of_the_film_profile_stage(rollers, oil, busy):

@@ -22,7 +22,9 @@ def write(tmp_path):
 
 
 def test_a_figure_says_what_it_needs(write, study):
-    code = "%matplotlib inline\nfrom lube import gather\nfilm = '../film.nc'\nx = 'contact.nc'"
+    code = (
+        "%matplotlib inline\nfrom lube.stages import gather\nfilm = '../film.nc'\nx = 'contact.nc'"
+    )
     figure = study_figures(study, write("fig01_mine", code))["fig01_mine"]
     assert figure.datasets == ["contact", "film"]
     assert {"lube/contact/ensemble.py", "lube/pipeline/notebooks.py"} <= set(figure.sources)
