@@ -46,6 +46,8 @@ def write_csv(path, heights):
 def study_file(tmp_path):
     """Write a study of small rollers with topographies, and return its file."""
     shutil.copy(CONFIG / "surfaces/example.x3p", tmp_path)
+    # Not a study's file: whether a reader takes that for a table depends on the paths in it.
+    (tmp_path / "notes.txt").write_text("measured on Monday", encoding="utf-8")
     write_csv(tmp_path / "turn.csv", profile(TURN))
     write_csv(tmp_path / "scan.csv", profile(6e-3)[:2600] + np.linspace(0, 5e-6, 2600))
 
@@ -205,7 +207,7 @@ REFUSED = {
         BAND,
         "none.x3p: no such file, need a measured profile",
     ),
-    "unreadable": (MAP | {"file": "study.yaml"}, BAND, "cannot be read as a topography: no known"),
+    "unreadable": (MAP | {"file": "notes.txt"}, BAND, "cannot be read as a topography: no known"),
     "unknown key": (MAP | {"hole": "refuse"}, BAND, "did you mean 'holes'?"),
     "no texture": ({"file": "scan.csv"}, BAND, "topography.texture: missing"),
     "holes": (MAP | {"holes": "refuse"}, BAND, "example.x3p: got holes, 0.07% of the points, need"),
