@@ -46,8 +46,8 @@ def write_csv(path, heights):
 def study_file(tmp_path):
     """Write a study of small rollers with topographies, and return its file."""
     shutil.copy(CONFIG / "surfaces/example.x3p", tmp_path)
-    # Not a study's file: whether a reader takes that for a table depends on the paths in it.
-    (tmp_path / "notes.txt").write_text("measured on Monday", encoding="utf-8")
+    # Of an odd number of bytes: one reader takes any file of 2, 8, 18, ... bytes for a map.
+    (tmp_path / "notes.txt").write_text("measured on a Monday.", encoding="utf-8")
     write_csv(tmp_path / "turn.csv", profile(TURN))
     write_csv(tmp_path / "scan.csv", profile(6e-3)[:2600] + np.linspace(0, 5e-6, 2600))
 
