@@ -280,6 +280,8 @@ def _own_curve(films, pairs, record):
     windows = windows_in(record, 2.0 * record["contact_half_width"].item())
     size = effective_sample_size(realised, windows).item()
     curve = _through(films, pairs.mean(axis=0), size)
+    if len(pairs) == 1:  # it is all that the realisations know
+        return curve
     own = np.log(record["lambda_ratio"].item())
     here = curve.logit_at(own)
     mean = expit(here)
