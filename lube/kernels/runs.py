@@ -41,8 +41,8 @@ def add_lines(lines: Pair, first_1: int, first_2: int, line: Array) -> None:
     done = 0
     while done < line.size:  # in pieces without wrap-around, which the compiler vectorises
         stretch = min(line_1.size - i, line_2.size - k, line.size - done)
-        for n in range(stretch):
-            line[done + n] = line_1[i + n] + line_2[k + n]
+        for n in range(np.uint64(stretch)):
+            line[np.uint64(done) + n] = line_1[np.uint64(i) + n] + line_2[np.uint64(k) + n]
         done += stretch
         i = (i + stretch) % line_1.size
         k = (k + stretch) % line_2.size

@@ -68,7 +68,7 @@ def strip_end(step: int, steps: int, speed_ratios: Ratios) -> int:
 def _overlap_sum(line, start, stop, film):
     """Sum the overlaps of the points start .. stop - 1, in height steps."""
     total = np.int64(0)
-    for i in range(start, stop):
+    for i in range(np.uint64(start), np.uint64(stop)):
         total += line[i]
     return total - (stop - start) * film
 
@@ -76,7 +76,7 @@ def _overlap_sum(line, start, stop, film):
 @kernel
 def _mark_step(step, points, broken, lengths):
     """Mark a time step at which the layer on a segment of n points is broken; return n."""
-    broken[step] = 1
+    broken[np.uint64(step)] = 1
     if lengths is not None:
         lengths[step] += points
     return points
@@ -86,7 +86,7 @@ def _mark_step(step, points, broken, lengths):
 def _mark_steps(first, last, points, broken, lengths):
     """Mark the time steps first .. last in the same way; return n times their number."""
     # Numba takes seconds to compile the same with slices.
-    for step in range(first, last + 1):
+    for step in range(np.uint64(first), np.uint64(last + 1)):
         _mark_step(step, points, broken, lengths)
     return points * (last - first + 1)
 
@@ -137,7 +137,7 @@ def _visit_run(line, start, stop, film, width, factor, broken, lengths):
     least, most = max(1, width - start), min(points - 1, steps - 1 + width - start)
     overlap = _overlap_sum(line, start, start + least - 1, film) if least <= most else 0
     for i in range(least, most + 1):
-        overlap += line[start + i - 1] - film
+        overlap += line[np.uint64(start + i - 1)] - film
         if layer_breaks(i, overlap, factor):
             total += _mark_step(start + i - width, i, broken, lengths)
 
@@ -159,7 +159,7 @@ def _visit_run(line, start, stop, film, width, factor, broken, lengths):
     for i in range(most, least - 1, -1):
         if layer_breaks(i, overlap, factor):
             total += _mark_step(stop - i, i, broken, lengths)
-        overlap -= line[stop - i] - film
+        overlap -= line[np.uint64(stop - i)] - film
     return total
 
 
@@ -212,7 +212,10 @@ def _strip_point(line, runs, found, film, width, factor, broken, lengths, counts
         contact_until = last
         counts[2] += _visit_run(line, start, stop, film, width, factor, broken, lengths)
         counts[3] += _windowed_overlap(line, start, stop, film, width, steps)
-    counts[1] += np.sum(broken)
+    marked = np.uint32(0)
+    for step in range(steps):
+        marked = np.uint32(marked + broken[step])
+    counts[1] += marked
 
 
 @kernel
@@ -244,14 +247,17 @@ def _run_strips(
         position_1, position_2 = _positions(begin, speed_ratios)
         first_1 = (position_1 - margin) % lines[0].size
         first_2 = (position_2 - margin) % lines[1].size
-        thinnest = films[thinnest_first[0]]
-        found = fill_high_stretches(lines, maxima, first_1, first_2, thinnest, line, runs)
+        searched = films[thinnest_first[0]]
+        found = fill_high_stretches(lines, maxima, first_1, first_2, searched, line, runs)
+        searched -= 1  # the stretches are no runs yet
         for point in thinnest_first:
             if found == 0:  # a thicker film has none either
                 break
             film, width = films[point], 2 * half_windows[point] + 1
-            runs, found_before = found_before, runs
-            found = find_runs(line, film, found_before, found, runs)
+            if film > searched:
+                runs, found_before = found_before, runs
+                found = find_runs(line, film, found_before, found, runs)
+                searched = film
             kept = _steps_of(lengths, point, begin, end)
             counts = statistics[point]
             _strip_point(line, runs, found, film, width, factor, broken, kept, counts)
