@@ -535,11 +535,13 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     _fold_labels(figure)
     if stem is None:
         return
-    # Without clock time or software version, so that the bytes are the same each time.
-    png = _picture(figure, "png", {"Software": None, "Description": line})
-    # The PDF gets the same layout, which takes as long to find as the picture to draw.
-    figure.set_layout_engine("none")
-    pdf = _picture(figure, "pdf", {"CreationDate": None, "Producer": None, "Subject": line})
+    # The layout is found: to find it again takes as long as to draw the picture. What `"none"`
+    # leaves behind would make Matplotlib draw every picture twice.
+    with plt.rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
+        figure.set_layout_engine(None)
+        # Without clock time or software version, so that the bytes are the same each time.
+        png = _picture(figure, "png", {"Software": None, "Description": line})
+        pdf = _picture(figure, "pdf", {"CreationDate": None, "Producer": None, "Subject": line})
     for suffix, picture in {"png": png, "pdf": pdf}.items():
         with written_whole(f"{stem}.{suffix}") as part:
             part.write_bytes(picture)
@@ -551,8 +553,10 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
 def _fold_labels(figure):
     """Break titles and axis labels that are longer than their panels into several lines."""
     # Folded labels leave the panels less room, so the others are measured again.
+    engine = figure.get_layout_engine()
     for _ in range(3):
-        figure.draw_without_rendering()
+        if engine is not None:
+            engine.execute(figure)
         long = [one for axes in figure.axes for one in _long_labels(axes)]
         for text, excess in long:
             text.set_text(_folded(text.get_text(), excess))
