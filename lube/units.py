@@ -7,8 +7,11 @@ when it cannot.
 
 import functools
 import math
+import os
 import re
+import tempfile
 import unicodedata
+from pathlib import Path
 
 import numpy as np
 
@@ -42,7 +45,18 @@ SYMBOLS = {"ohm": "Ω", "ohm*m": "Ω m", "degC": "°C", "rpm": "r/min", "Pa*s": 
 def _registry():
     import pint  # imported on first use: it costs more than the rest of the package
 
-    return pint.UnitRegistry()
+    # What pint reads from its definitions is kept: every job needs it.
+    kept = Path(__file__).parent / "__pycache__" / f"pint-{pint.__version__}"
+    try:
+        if not kept.exists():
+            kept.parent.mkdir(exist_ok=True)
+            # Moved when it is complete, because several jobs may begin at the same time.
+            with tempfile.TemporaryDirectory(dir=kept.parent) as new:
+                pint.UnitRegistry(cache_folder=new)
+                os.rename(new, kept)
+        return pint.UnitRegistry(cache_folder=kept)
+    except OSError:  # a folder that cannot be written, or another job was first
+        return pint.UnitRegistry()
 
 
 def parse_number(value: object) -> float:
