@@ -96,7 +96,7 @@ def _judged(overlap, factor):
         block = overlap[first : first + BLOCK]
         here = np.int32(0)  # as wide as the heights, so the compiler vectorises the loop
         for j in range(block.size):
-            here += np.int32(block[j] > np.float32(0.0))
+            here = np.int32(here + np.int32(block[j] > np.float32(0.0)))
         touching += here
         # In most blocks no point touches: no segment begins, goes on or ends there.
         if broken or (here == 0 and points == 0):
