@@ -1,9 +1,7 @@
 """The contact model, counted: probability and extent of contact of rough lines (MDR model).
 
-The compiled kernels work on whole height steps and grid points; here film thicknesses,
-half-widths and counts are converted to them and back. An operating point reaches the kernels
-only as its film thickness and contact window, so any dimension of the film table passes through
-unchanged.
+An operating point reaches the kernels only as its film thickness and contact window, so any
+dimension of the film table passes through unchanged.
 """
 
 import logging
@@ -15,6 +13,7 @@ import xarray as xr
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import LineGrid, line_pair
 from lube.grid.gap import PLAIN, Gap
+from lube.grid.operating_points import at_slip
 from lube.study.rollers import BoundaryLayer
 
 log = logging.getLogger(__name__)
@@ -46,13 +45,17 @@ def contact_at(
         slide_to_roll_ratio, dimensions of the films), without attributes of their variables.
         Its own are ``travel`` and ``longest_wavelength``, both m, of a realisation.
     """
-    thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    windows = ContactWindows(LineGrid.of(lines), film, boundary_layer, gap)
+    # At each slip a film of its own, if inlet shear heating thins it.
+    has_own = "slide_to_roll_ratio" in film["film_thickness"].dims
+    films = [at_slip(film, ratio) for ratio in (slide_to_roll_ratio if has_own else [None])]
+    grid = LineGrid.of(lines)
+    windows = [ContactWindows(grid, one, boundary_layer, gap) for one in films]
+    thickness, _ = xr.broadcast(films[0]["film_thickness"], films[0]["contact_half_width"])
     counts = np.empty((lines.sizes["realisation"], len(slide_to_roll_ratio), thickness.size, 4))
     for r, realisation in enumerate(lines["realisation"].values):
         pair = line_pair(lines, realisation)
         for s, ratio in enumerate(slide_to_roll_ratio):
-            counts[r, s] = windows.count(pair, ratio, revolutions)
+            counts[r, s] = windows[s if has_own else 0].count(pair, ratio, revolutions)
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
     touching, breaking, points, overlap = np.moveaxis(counts, -1, 0)
     spacing = lines.attrs["spacing"]

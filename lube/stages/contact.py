@@ -1,10 +1,4 @@
-"""The contact stage: probability and extent of contact of the rough lines (MDR model).
-
-The compiled kernels work on whole height steps and grid points; here film thicknesses,
-half-widths and counts are converted to them and back. An operating point reaches the kernels
-only as its film thickness and contact window, so any dimension of the film table passes through
-unchanged.
-"""
+"""The contact stage: probability and extent of contact of the rough lines (MDR model)."""
 
 from collections.abc import Sequence
 
@@ -14,7 +8,6 @@ import xarray as xr
 from lube.contact.counted import contact_at
 from lube.contact.ensemble import gather
 from lube.grid.gap import PLAIN, Gap
-from lube.grid.operating_points import at_slip
 from lube.schema import OPERATING_DIMS, label
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
@@ -77,7 +70,7 @@ def contact_statistics(
     share is not small, film and asperities together carry more than the applied load.
     """
     film = film.transpose(*OPERATING_DIMS, ...)
-    results = _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, revolutions, gap)
+    results = contact_at(lines, film, boundary_layer, slide_to_roll_ratio, revolutions, gap)
     # F_N 2a/L' by Hertz: the maximum pressure is 4/pi times the mean one, F_N / (2a L').
     width = 2.0 * film["contact_half_width"]
     patch_load = np.pi / 4.0 * film["hertz_pressure"] * width * width
@@ -85,15 +78,3 @@ def contact_statistics(
     levels = {name: film[name] for name in OPERATING_DIMS} | {"revolutions": revolutions}
     levels["slide_to_roll_ratio"] = np.asarray(slide_to_roll_ratio, float)
     return label(results.assign_coords(levels), "contact_batch")
-
-
-def _at_slips(lines, film, boundary_layer, slide_to_roll_ratio, *run):
-    """Results at each slip, with a film of its own if inlet shear heating thins it."""
-    if "slide_to_roll_ratio" not in film["film_thickness"].dims:
-        return contact_at(lines, film, boundary_layer, slide_to_roll_ratio, *run)
-    results = [
-        contact_at(lines, at_slip(film, ratio), boundary_layer, [ratio], *run)
-        for ratio in slide_to_roll_ratio
-    ]
-    options = {"join": "exact", "data_vars": "minimal", "combine_attrs": "override"}
-    return xr.concat(results, "slide_to_roll_ratio", **options)
