@@ -37,9 +37,9 @@ REALISATIONS = 64
 SEED = 1
 
 FILM_VARIABLES = (
-    *("film_thickness", "lambda_ratio", "regime", "in_validity_range", "hertz_pressure"),
-    *("contact_half_width", "entrainment_speed", "dynamic_viscosity"),
-)
+    "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
+    "entrainment_speed dynamic_viscosity"
+).split()
 _PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 
 

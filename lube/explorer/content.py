@@ -13,33 +13,23 @@ from lube.grid.model_limits import merged, overloaded
 from lube.schema import COORDINATES, FILES
 from lube.units import with_unit
 
-CHOICES = (
-    *("lubricant", "film_formula"),
-    *("force", "speed", "temperature", "slide_to_roll_ratio"),
-)
+CHOICES = tuple("lubricant film_formula force speed temperature slide_to_roll_ratio".split())
 """What a reader chooses; together they make one operating point."""
+PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 LIMITS = ("mean", "lower", "upper")
 SHOWN = {
     "lubricant": ("dynamic_viscosity", "pressure_viscosity_coefficient"),
     "film": (
-        *("film_thickness", "lambda_ratio", "regime"),
-        *("formula_place", "formula_source", "in_validity_range"),
-        *("moes_load", "moes_material", "contact_half_width", "hertz_pressure"),
-        *("entrainment_speed", "inlet_shear_heating_factor"),
-    ),
-    "contact": tuple(
-        f"{kind}_{limit}"
-        for kind in ("breakthrough_probability", "geometric_contact_probability")
-        for limit in LIMITS
-    ),
-    "tail": tuple(
+        "film_thickness lambda_ratio regime formula_place formula_source in_validity_range "
+        "moes_load moes_material contact_half_width hertz_pressure entrainment_speed "
+        "inlet_shear_heating_factor"
+    ).split(),
+    "contact": [f"{kind}_{limit}" for kind in PROBABILITIES for limit in LIMITS],
+    "tail": [
         f"{kind}{limit}"
-        for kind in (
-            *("breakthrough_probability", "geometric_contact_probability"),
-            "breakthrough_rate",
-        )
+        for kind in (*PROBABILITIES, "breakthrough_rate")
         for limit in schema.LIMITS
-    ),
+    ],
 }
 """Variables that the page holds of each dataset, all of them over some of `CHOICES`."""
 TRACES = {"contact_length": np.maximum, "contact_resistance": np.minimum}
@@ -167,11 +157,11 @@ def _master(master):
 def _records(comparison):
     """List the records with a contact share as dicts; their values by formula are lists."""
     names = (
-        *("record", "lubricant", "slide_to_roll_ratio", "force", "speed", "temperature"),
-        *("force_level", "speed_level", "temperature_level"),
-        *("measured_share", "measured_share_lower", "measured_share_upper"),
-        *("lambda_ratio", "predicted_share_lower", "predicted_share_upper"),
-    )
+        "record lubricant slide_to_roll_ratio force speed temperature "
+        "force_level speed_level temperature_level "
+        "measured_share measured_share_lower measured_share_upper "
+        "lambda_ratio predicted_share_lower predicted_share_upper"
+    ).split()
     counted = comparison.isel(record=np.isfinite(comparison["measured_share"].values))
     columns = {name: _plain(counted[name].transpose("record", ...)) for name in names}
     rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

@@ -59,8 +59,7 @@ THEME = Theme(
 )
 """Look of all figures, legible on a phone."""
 _POINT = (
-    *("x", "film", "mean", "lower", "upper", "limit", "lambda", "width", "M", "L", "name"),
-    *("outside", "falling"),
+    *"x film mean lower upper limit lambda width M L name outside falling".split(),
     *CHOICES,
 )
 COLUMNS = {

@@ -53,10 +53,8 @@ def lubricant_of(entry: Entry, study: Study) -> str:
 
 def open_entry(entry: Entry) -> Recording:
     """Open the recording of a row of the manifest; errors are those of `open_recording`."""
-    return open_recording(
-        *(entry.file, entry.sampling_interval, entry.channel, entry.unit, entry.gain, entry.offset),
-        entry.skip,
-    )
+    names = "sampling_interval", "channel", "unit", "gain", "offset", "skip"
+    return open_recording(entry.file, **{name: getattr(entry, name) for name in names})
 
 
 def unsaturated_pieces(recording: Recording, study: Study) -> Iterator[np.ndarray]:

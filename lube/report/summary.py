@@ -18,9 +18,9 @@ from lube.units import with_unit
 _FREQUENT, _RARE = 0.1, 0.001
 """Shares of time above and below which contact is called frequent and rare."""
 _AGREEMENT = (
-    *("bias", "rms_difference", "overlap_share", "compared_records", "pairs", "origin"),
-    *("overlap_share_expected_lower", "overlap_share_expected_upper"),
-)
+    "bias rms_difference overlap_share compared_records pairs origin "
+    "overlap_share_expected_lower overlap_share_expected_upper"
+).split()
 """Measures of agreement between simulation and rig that the summary states."""
 _VARIABLES = {
     "force": ("normal force", "N"),

@@ -148,9 +148,9 @@ POINT_DIMS = FILES["film"]["moes_load"].dims
 EXPERIMENT_DIMS = ("slide_to_roll_ratio", *POINT_DIMS)
 """Operating variables of an experiment."""
 
-AT_RECORDS = (
-    *("force", "speed", "temperature", "slide_to_roll_ratio", "lubricant"),
-    *("force_level", "speed_level", "temperature_level", "pair", "duration"),
+AT_RECORDS = tuple(
+    "force speed temperature slide_to_roll_ratio lubricant "
+    "force_level speed_level temperature_level pair duration".split()
 )
 """Variables that describe each record: its conditions, and the study's levels assigned to it."""
 

@@ -134,7 +134,9 @@ def strip_contacts(
     # Size of the smallest contact: a parabola as high as the mean summit above the film.
     smallest = math.sqrt(8.0 / moments[1]) * moments[0] / films.max()
     surface = isotropic_surface(spec, widths.max(), smallest)
-    found |= _sampled(spec, surface, (films, widths, strips), sharp, length, seed, threads)
+    columns = np.maximum(np.floor(widths / surface.spacing).astype(np.int64), 1)
+    points = list(zip(films / spec.height_step, columns, strips, strict=True))
+    found |= _sampled(spec, surface, points, sharp, length, seed, threads)
     slips = np.asarray(slide_to_roll_ratio, float)
     shape = (slips.size, *thickness.shape[-len(OPERATING_DIMS) :])
     variables = {
@@ -146,12 +148,13 @@ def strip_contacts(
 
 
 def _sampled(spec, surface, points, sharp, length, seed, threads=1):
-    """Probabilities and numbers of contacts, with their intervals, shape (points,) each."""
-    _, widths, _ = points
+    """Probabilities and numbers of contacts, with their intervals, shape (points,) each.
+
+    A point is a film (height steps), a contact width (columns) and a number of strips.
+    """
     longest = math.ceil(spec.longest_wavelength / surface.spacing)
     reach = longest, min(AROUND, longest)
-    columns = np.maximum(np.floor(widths / surface.spacing).astype(np.int64), 1)
-    covariances = tuple(surface.covariances(sum(reach) + 1, columns.max()))
+    covariances = tuple(surface.covariances(sum(reach) + 1, max(point[1] for point in points)))
     # The first two children draw the lines of the realisation of this number, the next three are
     # those of `lube.surfaces.rare_contact`.
     seeds = [np.random.SeedSequence((seed, number)).spawn(7)[5:] for number in range(SURFACES)]
@@ -159,7 +162,7 @@ def _sampled(spec, surface, points, sharp, length, seed, threads=1):
         _on_one_surface,
         surface=surface,
         covariances=covariances,
-        points=(points[0] / spec.height_step, columns, points[2]),
+        points=points,
         sharp=sharp / spec.height_step,
         reach=reach,
     )
@@ -185,7 +188,7 @@ def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points, BLOCK), axis=1)
     longest, around = reach
     first, numbers = [], []
-    for film, width, count in zip(*points, strict=True):
+    for film, width, count in points:
         touching, share = _touching(surface.rms, chosen[2:, :count], film, width)
         room = surface.points - longest - 2 * around, surface.points - width + 1
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))

@@ -209,11 +209,11 @@ _ARRAYS = {
 }
 _TEXTS = ("record", "lubricant", "pair")
 _CONDITIONS = (*LEVELS, *(f"{name}_level" for name in LEVELS), "slide_to_roll_ratio")
-_NUMBERS = (
+_NUMBERS = [
     *_CONDITIONS,
-    *("true_contact_share", "duration", "sampling_interval", "turns"),
-    *("revolution_period", "repeatability", "speed_ratio", "share_error"),
-)
+    *"true_contact_share duration sampling_interval turns".split(),
+    *"revolution_period repeatability speed_ratio share_error".split(),
+]
 
 
 def _dataset(

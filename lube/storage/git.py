@@ -10,16 +10,15 @@ ROOT = Path(__file__).parents[2]
 """Folder of the Snakefile, if the code runs from a clone or an unpacked archive."""
 
 # Named one by one, since the user's own studies, records and notes may lie beside them.
-_CODE = (
-    *("Snakefile", "workflow/Snakefile", "pyproject.toml", "LICENSE", "CITATION.cff"),
-    *("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/**/*", "lube/**/*"),
-    *("notebooks/*.ipynb", "benchmarks/*.py", "profiles/*/config.yaml"),
-    *("workflow/rules/*.smk", "workflow/scripts/*.py", "workflow/envs/constraints.txt"),
-    *(f"workflow/config/{name}.yaml" for name in ("paper", "smoke", "slip", "thousand")),
-    *(f"workflow/config/{name}.yaml" for name in ("run-in", "measured", "oils")),
-    *("workflow/config/surfaces/example.x3p", "workflow/report/*"),
-    *("config/README.md", "config/config.yaml"),
-)
+_CODE = """
+Snakefile pyproject.toml LICENSE CITATION.cff README.md CHANGELOG.md CONTRIBUTING.md
+docs/**/* lube/**/* notebooks/*.ipynb benchmarks/*.py profiles/*/config.yaml
+workflow/Snakefile workflow/rules/*.smk workflow/scripts/*.py workflow/report/*
+workflow/envs/constraints.txt workflow/config/surfaces/example.x3p
+workflow/config/paper.yaml workflow/config/smoke.yaml workflow/config/slip.yaml
+workflow/config/thousand.yaml workflow/config/run-in.yaml workflow/config/measured.yaml
+workflow/config/oils.yaml config/README.md config/config.yaml
+""".split()
 
 _CACHE = re.compile(r"(^|/)(\.|__pycache__/)")
 

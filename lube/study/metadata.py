@@ -19,6 +19,11 @@ LICENCES = {
 }
 """Licences for data that repositories such as Zenodo know, by their SPDX names."""
 
+_KEYWORDS = (
+    "tribology, mixed lubrication, boundary lubrication, elastohydrodynamic lubrication, "
+    "rolling contact, surface roughness"
+)
+
 
 def _text(accepted, needed):
     """Field type for a text that a function accepts."""
@@ -92,10 +97,7 @@ class About(StrictModel):
     licence: Literal[tuple(LICENCES)] = "CC-BY-4.0"
     """licence of the results"""
     keywords: tuple[_Line, ...] = Field(
-        (
-            *("tribology", "mixed lubrication", "boundary lubrication"),
-            *("elastohydrodynamic lubrication", "rolling contact", "surface roughness"),
-        ),
+        tuple(_KEYWORDS.split(", ")),
         min_length=1,
     )
     """keywords"""
