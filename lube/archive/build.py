@@ -22,7 +22,7 @@ from lube.errors import DataError, StudyError, shown
 from lube.pipeline.figures import wrong_figures
 from lube.pipeline.study_files import origin, products
 from lube.report import SUMMARISED
-from lube.storage.files import why_not, written_whole
+from lube.storage.files import why_not, write_text, written_whole
 from lube.storage.git import ROOT, code_files, commit
 from lube.storage.netcdf import load
 from lube.storage.provenance import config_text, digest, fingerprint
@@ -71,8 +71,7 @@ def make_archive(study: Study, path: File, results: File, figures: list[str], fo
         _zip(new, packed, folder.name)
         shutil.rmtree(folder, ignore_errors=True)
         os.rename(new, folder)
-        with written_whole(packed.with_name(packed.name + ".sha256")) as part:
-            part.write_text(f"{fingerprint(packed)}  {packed.name}\n", encoding="utf-8")
+        write_text(f"{packed}.sha256", f"{fingerprint(packed)}  {packed.name}\n")
     except OSError as error:
         raise DataError(f"{folder}: cannot be archived: {why_not(error, folder)}") from error
     finally:

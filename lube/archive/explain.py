@@ -171,19 +171,20 @@ def in_words(explanation: Explanation) -> str:
         "explanation.txt",
         **vars(explanation),
         dims=CONTACT_DIMS,
-        corrections=_corrections(explanation.film),
+        corrections=_corrections(explanation.values["film"]),
         differing=explanation.differing,
         realised=[name for name in again if "realisation" in again[name].dims],
         stated=_stated,
     ).strip()
 
 
-def _corrections(film):
+def _corrections(values):
     """Names of the factors that the film has been reduced by."""
-    heated = "slide_to_roll_ratio" in film["film_thickness"].dims
-    factors = {"starvation_factor": "starvation_factor" in film}
-    factors["inlet_shear_heating_factor"] = heated
-    return tuple(name for name, applied in factors.items() if applied)
+    factors = {
+        "inlet_meniscus": "starvation_factor",
+        "inlet_shear_heating": "inlet_shear_heating_factor",
+    }
+    return tuple(factor for key, factor in factors.items() if values[key] != "none")
 
 
 def _stated(array):

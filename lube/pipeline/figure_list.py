@@ -17,14 +17,12 @@ FURTHER = "further-figures"
 NO_FIGURE = "no-figure"
 """Tag of a notebook that is none of the study's figures."""
 
-GAUSSIAN = "gaussian-lines"
-"""Tag of a notebook that needs Gaussian roughness lines, as drawn."""
-
-MAPPED = "flat-film"
-"""Tag of a notebook that needs contact to depend on the film thickness and the width alone."""
-
-ENSEMBLE = "ensemble"
-"""Tag of a notebook about the scatter between pairs of lines."""
+_SHOWS = {
+    "gaussian-lines": lambda study: study.is_sampled,
+    "flat-film": lambda study: study.gap.is_plain,
+    "ensemble": lambda study: not study.line_spec.is_one_pair,
+}
+"""Tags of notebooks, each with what a study must have for the figure."""
 
 
 @dataclass(frozen=True)
@@ -86,11 +84,7 @@ class Figure:
         """
         if not all(study.has(name) for name in self.datasets):
             return False
-        if GAUSSIAN in self.tags and not study.is_sampled:
-            return False
-        if MAPPED in self.tags and not study.gap.is_plain:
-            return False
-        if ENSEMBLE in self.tags and study.line_spec.is_one_pair:
+        if not all(_SHOWS[tag](study) for tag in self.tags if tag in _SHOWS):
             return False
         levels = study.operating_grid.model_dump() | {"lubricant": study.lubricants}
         return all(len(levels.get(name, ())) > 1 for name in self._tagged("several-"))

@@ -18,7 +18,7 @@ from lube.pipeline.cells import datasets_of
 from lube.pipeline.notebooks import execute_notebook
 from lube.pipeline.stamps import drawn_by
 from lube.pipeline.study_files import origin, products
-from lube.storage.files import written_whole
+from lube.storage.files import write_text
 from lube.storage.git import ROOT
 from lube.storage.provenance import REMEDY, fingerprint
 from lube.types import File, Files
@@ -85,8 +85,7 @@ def draw_figure(notebook: File, datasets: list[str], code: list[str], results: F
         "products": {name: fingerprint(results / name) for name in products(figure)},
         "drawn_by": changes,
     }
-    with written_whole(results / origin(figure)) as part:
-        part.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    write_text(results / origin(figure), json.dumps(content, indent=1) + "\n")
 
 
 def _commit_of(path):

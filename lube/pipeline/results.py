@@ -1,10 +1,9 @@
 """The study whose results a notebook shows, chosen in one place."""
 
-import difflib
 import os
 from pathlib import Path
 
-from lube.errors import DataError, shown
+from lube.errors import DataError, nearest, shown
 from lube.pipeline.stamps import DRAWN_BY
 from lube.schema import DATASETS
 from lube.storage.git import ROOT
@@ -65,9 +64,8 @@ def _missing(study, here):
     came = f"study: got {shown(study)}"
     folders = [folder for base in _bases(here) for folder in sorted(base.glob("*"))]
     there = list(dict.fromkeys(folder.name for folder in folders if _holds_results(folder)))
-    near = difflib.get_close_matches(study, there, n=1)
-    if near:
-        return f"{came}, did you mean {near[0]!r}?"
+    if near := nearest(study, there):
+        return f"{came}, did you mean {near!r}?"
     if there:
         return f"{came}, need one with results: {', '.join(there)}; {CHOSEN} chooses it"
     return f"{came}, which has no results yet: run snakemake first"

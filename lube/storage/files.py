@@ -51,6 +51,12 @@ def written_whole(path: File) -> Iterator[Path]:
             part.unlink()
 
 
+def write_text(path: File, text: str) -> None:
+    """Write a text file in UTF-8, by `written_whole`."""
+    with written_whole(path) as part:
+        part.write_text(text, encoding="utf-8")
+
+
 def check_writable(folder: File) -> None:
     """Check that files can be created in a folder.
 

@@ -127,7 +127,7 @@ def isotropic_surface(
     DataError
         If the band of wavelengths is too wide for a square grid.
     """
-    longest = 2.0 * np.pi / spec.q_min
+    longest = spec.longest_wavelength
     side = max(waves * longest, width + longest)
     spacing = 2.0 * np.pi / spec.q_max / POINTS_PER_WAVE
     spacing = min(spacing, max(contact / POINTS_PER_CONTACT, side / LARGE))

@@ -22,6 +22,7 @@ random fields, Ann. Appl. Probab. 22 (2012) 1167-1214.
 """
 
 import functools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -268,7 +269,7 @@ class _Drawn:
         self.size = min(spec.points)
         self.line = self.lines[0][: self.size] + self.lines[1][: self.size]
         self.log_chosen, self.place = np.log(generator.random(WINDOWS)), generator.random(WINDOWS)
-        reach = int(np.ceil(2.0 * np.pi / (spec.q_min * spec.spacing)))
+        reach = math.ceil(spec.longest_wavelength / spec.spacing)
         self.both = sum_of_lines(spec, max(reach + 1, widest))
         self.covariances = tuple(_both_sides(each, reach + 1) for each in self.both.covariances)
         self.places = _spread(self.size, 2 * reach + 1, RUNS) + reach

@@ -87,8 +87,8 @@ class LineSpecLike(Protocol):
         Points N around each roller.
     is_gaussian : bool
         Whether the heights of both lines are Gaussian.
-    q_min : float
-        Smallest angular wavenumber of both lines, rad/m.
+    longest_wavelength : float
+        Longest wavelength of both lines, m.
     spacing : float
         Distance dx of neighbouring points, m.
     height_step : float
@@ -98,7 +98,7 @@ class LineSpecLike(Protocol):
     lines: tuple[RoughLineLike, RoughLineLike]
     points: tuple[int, int]
     is_gaussian: bool
-    q_min: float
+    longest_wavelength: float
     spacing: float
     height_step: float
 

@@ -2,13 +2,11 @@
 
 from lube.explorer.page import explorer_page
 from lube.pipeline.jobs import begin_job
-from lube.storage.files import written_whole
+from lube.storage.files import write_text
 from lube.storage.netcdf import load
 from lube.study.study import load_study
 
 begin_job(snakemake.log[0])
 study = load_study(**snakemake.config["study"])
 datasets = {kind: load(snakemake.input[kind], kind, study) for kind in snakemake.params.kinds}
-page = explorer_page(datasets, study.band)
-with written_whole(snakemake.output[0]) as part:
-    part.write_text(page, encoding="utf-8")
+write_text(snakemake.output[0], explorer_page(datasets, study.band))

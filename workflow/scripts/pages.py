@@ -10,7 +10,7 @@ from lube.report.markdown import title_and_text, to_html
 from lube.report.pages import render
 from lube.report.statements import assumptions_of, limits_of
 from lube.report.summary import facts, findings, made
-from lube.storage.files import written_whole
+from lube.storage.files import write_text
 from lube.storage.netcdf import load
 from lube.study.study import load_study
 
@@ -32,5 +32,4 @@ parts = {
     "assumptions": render("page.html", title=title, body=to_html(assumptions)),
 }
 for name, html in parts.items():
-    with written_whole(snakemake.output[name]) as part:
-        part.write_text(html, encoding="utf-8")
+    write_text(snakemake.output[name], html)

@@ -3,9 +3,8 @@
 from lube.pipeline.jobs import begin_job
 from lube.report.pages import render
 from lube.report.run_times import run_times
-from lube.storage.files import written_whole
+from lube.storage.files import write_text
 
 begin_job(snakemake.log[0])
 page = render("page.html", title="Run times", body=run_times(snakemake.params.jobs))
-with written_whole(snakemake.output[0]) as part:
-    part.write_text(page, encoding="utf-8")
+write_text(snakemake.output[0], page)
