@@ -192,16 +192,31 @@ def paper_with(tmp_path):
 
 
 @pytest.fixture(scope="session")
-def datasets(study, tmp_path_factory, worker_id):
-    """One dataset of every kind; not to be changed. One of several test processes makes them."""
-    if worker_id == "master":
-        return datasets_of_every_kind(study)
-    made = tmp_path_factory.getbasetemp().parent / "datasets"
-    with made.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not made.exists():
-            made.write_bytes(pickle.dumps(datasets_of_every_kind(study)))
-        return pickle.loads(made.read_bytes())
+def made_once(tmp_path_factory, worker_id):
+    """Path of what one of several test processes makes; the others wait for it."""
+    folder = tmp_path_factory.getbasetemp()
+    if worker_id != "master":
+        folder = folder.parent
+
+    def path_of(name, make):
+        path = folder / name
+        with path.with_suffix(".lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not path.exists():
+                make(path)
+        return path
+
+    return path_of
+
+
+@pytest.fixture(scope="session")
+def datasets(study, made_once):
+    """One dataset of every kind; not to be changed."""
+
+    def make(path):
+        path.write_bytes(pickle.dumps(datasets_of_every_kind(study)))
+
+    return pickle.loads(made_once("datasets", make).read_bytes())
 
 
 @pytest.fixture(scope="session")

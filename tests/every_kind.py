@@ -9,9 +9,11 @@ from lube.schema import COORDINATES, FILES, STAGES, label
 from lube.stages.surface import measured_surfaces
 from lube.study.roller_topography import RollerTopography
 
-EXAMPLE_SURFACE = RollerTopography(
-    file=str(CONFIG / "surfaces/example.x3p"), texture="isotropic", holes="interpolate"
-)
+
+def example_surface():
+    """The map that comes with the package; to read it takes a second."""
+    file = str(CONFIG / "surfaces/example.x3p")
+    return RollerTopography(file=file, texture="isotropic", holes="interpolate")
 
 
 def measured_values(kind):
@@ -40,6 +42,6 @@ def datasets_of_every_kind(study):
     others = [kind for kind, stage in STAGES.items() if stage.target == "benchmark"] + ["patch"]
     return {
         **made(own, [kind for kind in STAGES if kind not in others]),
-        "surface": measured_surfaces({"first": EXAMPLE_SURFACE}, own.line_spec, 0.7),
+        "surface": measured_surfaces({"first": example_surface()}, own.line_spec, 0.7),
         **{kind: measured_values(kind) for kind in others},
     }

@@ -1,6 +1,5 @@
 """The smoke study, run once by the real Snakemake in a copy of the repository."""
 
-import fcntl
 import shutil
 
 import pytest
@@ -8,28 +7,20 @@ from repository import Repository, copy_of_the_repository
 
 
 @pytest.fixture(scope="session")
-def smoke(tmp_path_factory, worker_id):
+def smoke(tmp_path_factory, made_once):
     """A repository with the smoke study done; not to be changed. Its output is in `said`.
 
-    Of several test processes the first to need it makes it, and the others copy it.
+    Each test process has its own, because Snakemake locks the folder in which it runs.
     """
-    folder = tmp_path_factory.mktemp("smoke") / "repository"
-    if worker_id == "master":
-        return made(folder)
-    shared = tmp_path_factory.getbasetemp().parent / "smoke"
-    with shared.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if shared.exists():
-            return Repository(shared).copied(folder)
-        repository = made(folder)
-        repository.copied(shared)
-        return repository
+    made = Repository(made_once("smoke", make_smoke))
+    return made.copied(tmp_path_factory.mktemp("smoke") / "repository")
 
 
-def made(folder):
-    repository = copy_of_the_repository(folder)
+def make_smoke(folder):
+    """Run the smoke study. If it fails, the next process that needs it tries again."""
+    repository = copy_of_the_repository(folder.with_name("unfinished"))
     (repository / "said").write_text(repository.run(), encoding="utf-8")
-    return repository
+    repository.copied(folder)
 
 
 @pytest.fixture(scope="session")

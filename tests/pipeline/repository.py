@@ -12,6 +12,7 @@ from pathlib import Path
 import yaml
 from numba.core.caching import _CacheLocator
 
+from lube.kernels.layer import layer_breaks
 from lube.pipeline.cells import datasets_of
 from lube.schema import STAGES
 from lube.study.resolve import resolved_content
@@ -101,15 +102,20 @@ class Repository:
         return "mine.yaml"
 
     def copied(self, folder):
-        """A copy, with the machine code of its kernels under the name that Numba looks for."""
+        """A copy."""
         copy = Repository(shutil.copytree(self.folder, folder, symlinks=True))
-        named = [
-            _CacheLocator.get_suitable_cache_subpath(one / "lube/kernels/any.py")
-            for one in (self.folder, folder)
-        ]
-        for compiled in copy.folder.glob(f"lube/kernels/__pycache__/*/{named[0]}"):
-            compiled.rename(compiled.with_name(named[1]))
+        copy.share_kernels()
         return copy
+
+    def share_kernels(self):
+        """Use one folder with the tests' own kernels for machine code, so that each kernel is
+        compiled once. A changed kernel has another folder."""
+        compiled = Path(layer_breaks.stats.cache_path)
+        kernels = self / "lube/kernels"
+        name = _CacheLocator.get_suitable_cache_subpath(kernels / "any.py")
+        link = kernels / "__pycache__" / compiled.parent.name / name
+        link.parent.mkdir(parents=True, exist_ok=True)
+        link.symlink_to(compiled)
 
     def append(self, name, text):
         """Add a line to a file."""
@@ -162,7 +168,9 @@ def copy_of_the_repository(folder):
             shutil.copytree(ROOT / name, folder / name, ignore=ignored)
         else:
             shutil.copy2(ROOT / name, folder / name)
-    return Repository(folder)
+    repository = Repository(folder)
+    repository.share_kernels()
+    return repository
 
 
 def products_of(figure):
