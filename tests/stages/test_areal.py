@@ -97,10 +97,8 @@ def test_strips_touch_as_often_as_counted(spec, study):
         wide = scipy.ndimage.maximum_filter1d(above.astype(int), width, axis=1, mode="wrap")
         shares.append(scipy.ndimage.maximum_filter1d(wide, rows, axis=0, mode="wrap").mean())
         numbers.append(scipy.ndimage.label(above)[1] / above.size)
-    films = np.array([ratio * surface.rms * spec.height_step])
-    widths = np.array([(width + 0.5) * surface.spacing])
     length = (rows + 0.5) * surface.spacing
-    points = films, widths, np.array([areal.STRIPS])
+    points = [(ratio * surface.rms, width, areal.STRIPS)]
     found = areal._sampled(spec, surface, points, 0.0, length, SEED)
     name = "geometric_contact_probability"
     half = (found[f"{name}_upper"] - found[name]).item()
