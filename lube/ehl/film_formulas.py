@@ -6,20 +6,17 @@ it: to add a formula, write the function and its row. The last row is no formula
 Reynolds' equation, which depends on the oil's viscosity and on E' besides.
 """
 
-import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from lube.ehl.line_contact import ConvergenceError, LineContact, solve
+from lube.ehl.line_contact import profiles_of
 from lube.errors import StudyError, right_one
 from lube.physics.dimensionless import moes_numbers
 from lube.physics.regimes import moes_asymptotes
 from lube.physics.starvation import starvation_factor
 from lube.types import Values
-
-log = logging.getLogger(__name__)
 
 TOLERANCE = 0.15
 """Relative error against a numerical solution up to which a formula counts as valid.
@@ -373,16 +370,9 @@ def computed(
     >>> f"{computed(1.39e-5, 2.52e-11, 3696.0, 0.28, 2.31e11):.3g}"
     '4.03e-05'
     """
-    return _computed(load, speed, material, viscosity, film_modulus, meniscus)[()]
+    profiles = profiles_of(load, speed, material, viscosity, film_modulus, meniscus)
+    return np.vectorize(_central_film, otypes=[float])(profiles)[()]
 
 
-@np.vectorize(otypes=[float])
-def _computed(*groups_and_meniscus):
-    *groups, meniscus = groups_and_meniscus
-    contact = LineContact(*groups)
-    try:
-        profile = solve(contact, meniscus and meniscus / contact.half_width)
-        return float(f"{profile.central_film:.6g}")
-    except ConvergenceError as error:
-        log.warning("%s", error)
-        return np.nan
+def _central_film(profile):
+    return float(f"{profile.central_film:.6g}") if profile else np.nan

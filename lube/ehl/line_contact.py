@@ -1,5 +1,6 @@
 """The film of a lubricated line contact from Reynolds' equation: steady, isothermal, Newtonian."""
 
+import logging
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -14,6 +15,8 @@ from lube.physics.dimensionless import moes_numbers
 from lube.physics.pressure_laws import PRESSURE_LAWS, ROELANDS_VISCOSITY, dowson_higginson_density
 from lube.physics.regimes import moes_asymptotes
 from lube.types import Array, Values
+
+log = logging.getLogger(__name__)
 
 FLOODED = 1e4
 """Height of the gap where the oil begins, over the central film, by which an inlet is flooded.
@@ -262,6 +265,42 @@ def _solve(contact, meniscus, flooded, fineness):
         pressure = np.interp(nodes, profile.nodes, profile.pressure)
         profile = _settle(contact, nodes, pressure, film, profile.steps)
     return profile
+
+
+def profiles_of(
+    load: Array,
+    speed: Array,
+    material: Array,
+    viscosity: Array,
+    film_modulus: Array,
+    meniscus: float | None = None,
+) -> Array:
+    """Solve for the films of many contacts.
+
+    Parameters
+    ----------
+    load, speed, material, viscosity, film_modulus : numpy.ndarray
+        As of `LineContact`; they broadcast.
+    meniscus : float, optional
+        Distance over R*, from the line of centres, at which the oil begins; by default far away.
+
+    Returns
+    -------
+    numpy.ndarray of object
+        A `FilmProfile` each, None where it did not converge; the log names these.
+    """
+    solved = np.vectorize(_solved, otypes=[object])
+    return solved(load, speed, material, viscosity, film_modulus, meniscus)
+
+
+def _solved(load, speed, material, viscosity, film_modulus, meniscus):
+    groups = load, speed, material, viscosity, film_modulus
+    contact = LineContact(*map(float, groups))
+    try:
+        return solve(contact, meniscus and meniscus / contact.half_width)
+    except ConvergenceError as error:
+        log.warning("%s", error)
+        return None
 
 
 def _check(contact, meniscus):

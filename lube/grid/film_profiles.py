@@ -1,13 +1,8 @@
 """Computed films across the contact, on positions that all operating points share."""
 
-import logging
-
 import numpy as np
 
-from lube.ehl.line_contact import ConvergenceError, LineContact, solve
 from lube.types import Array
-
-log = logging.getLogger(__name__)
 
 _STEP, _EVEN, _GROWTH = 0.01, 1.5, 1.03
 """Distance of positions in the contact, up to where they are even, and their growth beyond."""
@@ -47,34 +42,6 @@ def film_positions(half_width: float, reduced_radius: float, roughness: float) -
     return np.concatenate([-half[:0:-1], half])
 
 
-def profiles_of(*groups: Array, meniscus: float | None = None) -> Array:
-    """Solve for the films of many contacts.
-
-    Parameters
-    ----------
-    *groups : numpy.ndarray
-        W, U, G, viscosity and E' as of `lube.ehl.line_contact.LineContact`; they broadcast.
-    meniscus : float, optional
-        Distance over R*, from the line of centres, at which the oil begins; by default far away.
-
-    Returns
-    -------
-    numpy.ndarray of object
-        A `FilmProfile` each, None where it did not converge; the log names these.
-    """
-    return np.vectorize(_profile, otypes=[object])(*groups, meniscus)
-
-
-def _profile(*groups_and_meniscus):
-    *groups, meniscus = groups_and_meniscus
-    contact = LineContact(*map(float, groups))
-    try:
-        return solve(contact, meniscus and meniscus / contact.half_width)
-    except ConvergenceError as error:
-        log.warning("%s", error)
-        return None
-
-
 def six_digits(values: Array) -> Array:
     """Round to six digits: further ones depend on the processor.
 
@@ -97,12 +64,12 @@ def six_digits(values: Array) -> Array:
 
 
 def sampled(profiles: Array, sample, positions: Array) -> Array:
-    """Sample something of every film at some positions.
+    """Sample a quantity of every film at some positions.
 
     Parameters
     ----------
     profiles : numpy.ndarray of object
-        From `profiles_of`.
+        From `lube.ehl.line_contact.profiles_of`.
     sample : callable
         Values of a `FilmProfile` at positions.
     positions : numpy.ndarray

@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from lube.ehl.film_formulas import Formula, formula
-from lube.ehl.line_contact import FilmProfile
-from lube.grid.film_profiles import film_positions, profiles_of, sampled
+from lube.ehl.line_contact import FilmProfile, profiles_of
+from lube.grid.film_profiles import film_positions, sampled
 from lube.physics import dimensionless, hertz
 from lube.physics.inlet_heating import inlet_shear_heating_factor
 from lube.physics.regimes import regime

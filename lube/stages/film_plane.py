@@ -4,7 +4,8 @@ import numpy as np
 import xarray as xr
 
 from lube.ehl.film_formulas import FORMULAS
-from lube.grid.film_profiles import profiles_of, six_digits
+from lube.ehl.line_contact import profiles_of
+from lube.grid.film_profiles import six_digits
 from lube.physics.dimensionless import dimensionless_material
 from lube.schema import label
 from lube.study.study import Study

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lube.ehl import line_contact
-from lube.ehl.line_contact import FilmProfile
-from lube.grid.film_profiles import film_positions, profiles_of, sampled, six_digits
+from lube.ehl.line_contact import FilmProfile, profiles_of
+from lube.grid.film_profiles import film_positions, sampled, six_digits
 
 CONTACT = (1.387e-5, 2.574e-11, 3693.0, 0.2835, 2.308e11)  # the paper's at 800 N, 40 degC
 

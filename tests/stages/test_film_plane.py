@@ -7,7 +7,6 @@ from paper_grid import MODULUS
 from lube.ehl import line_contact
 from lube.ehl.film_formulas import FORMULAS
 from lube.ehl.line_contact import LineContact, solve
-from lube.grid import film_profiles
 from lube.physics.dimensionless import moes_numbers
 from lube.stages import film_plane as stage
 from lube.stages.film_plane import film_plane
@@ -84,7 +83,7 @@ def test_a_film_that_is_not_found_is_not_a_number_named_and_counted(
             monkeypatch.setattr(line_contact, "_MOST_STEPS", 2)
         return solve(contact, meniscus)
 
-    monkeypatch.setattr(film_profiles, "solve", refuse_some)
+    monkeypatch.setattr(line_contact, "solve", refuse_some)
     found = film_plane(oils.isel(lubricant=[1, 0]), MODULUS)
     assert found.attrs["not_converged"] == len(caplog.records) == 6
     assert all("did not converge: mass flux" in each.getMessage() for each in caplog.records)
