@@ -1,6 +1,7 @@
 """Numbers with units: read exactly, or refused in one line that says what is needed."""
 
 import math
+import shutil
 from functools import partial
 
 import numpy as np
@@ -9,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from refusals import one_line
 
+import lube.units
 from lube.errors import LubeError
 from lube.units import (
     convert,
@@ -136,3 +138,20 @@ def test_a_number_is_printed_with_a_unit_that_is_easily_read():
 @given(st.floats(min_value=1e-12, max_value=1e12))
 def test_what_is_printed_is_read_again(value):
     assert parse_quantity(with_unit(value, "Pa"), "Pa") == pytest.approx(value, rel=1e-5)
+
+
+def test_what_pint_reads_is_kept_and_where_that_is_impossible_read_again(tmp_path, monkeypatch):
+    def grade():
+        return lube.units._registry.__wrapped__().Quantity(320.0, "mm^2/s").to("m^2/s").magnitude
+
+    expected = convert(320.0, "mm^2/s", "m^2/s")
+    monkeypatch.setattr(lube.units, "__file__", str(tmp_path / "units.py"))
+    cache = tmp_path / "__pycache__"
+    assert grade() == expected
+    (kept,) = cache.iterdir()
+    files = {path: path.stat().st_mtime_ns for path in kept.iterdir()}
+    assert files and grade() == expected
+    assert {path: path.stat().st_mtime_ns for path in kept.iterdir()} == files
+    shutil.rmtree(cache)
+    cache.touch()  # a file where a folder is needed
+    assert grade() == expected

@@ -18,7 +18,9 @@ def smoke(tmp_path_factory, made_once):
 
 def make_smoke(folder):
     """Run the smoke study. If it fails, the next process that needs it tries again."""
-    repository = copy_of_the_repository(folder.with_name("unfinished"))
+    unfinished = folder.with_name("unfinished")
+    shutil.rmtree(unfinished, ignore_errors=True)
+    repository = copy_of_the_repository(unfinished)
     (repository / "said").write_text(repository.run(), encoding="utf-8")
     repository.copied(folder)
 
