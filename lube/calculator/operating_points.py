@@ -1,8 +1,6 @@
 """Film, probability of contact and resistance at operating points."""
 
-import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import get_args
 
 import numpy as np
@@ -11,19 +9,19 @@ import xarray as xr
 from lube.calculator.amounts import Amount, amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.contact.rough_pair import roughness_batch
+from lube.contact.ensemble import with_limits
+from lube.contact.rough_pair import on_threads, roughness_batch
 from lube.contact.windows import ContactWindows
 from lube.errors import LubeError, RangeError, StudyError, right_one, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.plausibility import remarks
-from lube.schema import MEAN_LIMITS, OPERATING_DIMS, POINT_DIMS, values_with_limits
+from lube.schema import OPERATING_DIMS, POINT_DIMS
 from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.stages.trace import contact_trace
-from lube.statistics.confidence import probability_interval
 from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import check_width
 from lube.study.oil_properties import lubricant_table
@@ -354,18 +352,14 @@ def ensemble(
     def of_realisation(number):
         return windows.count(draw_realisation(spec, seed, number), slip)[:, :2]
 
-    # Drawing and counting release Python's lock, so threads share the work.
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        counts = np.stack(list(pool.map(of_realisation, range(realisations))))
+    counts = on_threads(of_realisation, range(realisations))
+    shares = np.reshape(np.moveaxis(counts, -1, 0), (2, -1, *thickness.shape))
+    dims = "realisation", *thickness.dims
+    contact = {name: (dims, each) for name, each in zip(_PROBABILITIES, shares, strict=True)}
+    levels = {"realisation": np.arange(realisations), **thickness.coords}
     moved = spec.travel * min(speed_ratios(slip))
-    independent = independent_windows(moved, width.values, spec.longest_wavelength)
-    contact = xr.Dataset(coords=thickness.coords, attrs={"seed": seed})
-    for name, shares in zip(_PROBABILITIES, np.moveaxis(counts, -1, 0), strict=True):
-        shares = shares.reshape(-1, *thickness.shape)
-        contact[name] = ("realisation", *thickness.dims), shares
-        limits = probability_interval(shares, independent)
-        contact = contact.assign(values_with_limits(name, limits, thickness.dims, MEAN_LIMITS))
-    return contact.assign_coords(realisation=np.arange(realisations))
+    independent = independent_windows(moved, width, spec.longest_wavelength)
+    return with_limits(xr.Dataset(contact, levels, {"seed": seed}), independent)
 
 
 def check_realisations(realisations: int, seed: int) -> int:

@@ -5,9 +5,6 @@ limits where the limits of the probability cross it. So the 95 % interval is tha
 pairs of rollers.
 """
 
-import os
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 import xarray as xr
 
@@ -25,6 +22,7 @@ from lube.calculator.operating_points import (
     single,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.contact.rough_pair import on_threads
 from lube.contact.window_films import shaped_films
 from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError
@@ -399,7 +397,7 @@ class _Search:
         """Mean and limits of the breakthrough probability, by importance sampling."""
         spec = self._rollers.lines
         found = _on_pairs(lambda number: windows.sample(spec, self._seed, number)[0], pairs)
-        return np.minimum(mean_interval(found), 1.0)
+        return mean_interval(found, 1.0)
 
     def _counted(self, windows):
         """Mean and limits of the breakthrough probability, counted in realisations."""
@@ -414,8 +412,7 @@ class _Search:
 
 def _on_pairs(found_on, pairs):
     """Breakthrough probability on pairs of lines, which share the processors."""
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return np.stack([found[1] for found in pool.map(found_on, range(pairs))])
+    return np.stack([found[1] for found in on_threads(found_on, range(pairs))])
 
 
 def _crossing(ratios, probabilities, share):

@@ -127,7 +127,7 @@ def gather_map(batches: Sequence[xr.Dataset]) -> xr.Dataset:
         As `gather`.
     """
     joined = _join(batches)
-    return _add_intervals(joined, windows_in(joined, joined["contact_width"]), "master")
+    return label(with_limits(joined, windows_in(joined, joined["contact_width"])), "master")
 
 
 def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
@@ -150,7 +150,7 @@ def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
     DataError
         As from `windows_by_force`.
     """
-    return _add_intervals(contact, windows_by_force(contact, film), "contact")
+    return label(with_limits(contact, windows_by_force(contact, film)), "contact")
 
 
 def _join(batches):
@@ -173,10 +173,24 @@ def _join(batches):
     return joined
 
 
-def _add_intervals(dataset, windows, kind):
+def with_limits(dataset: xr.Dataset, windows: xr.DataArray) -> xr.Dataset:
+    """Add mean, lower and upper limit of each probability over the realisations.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        With `PROBABILITIES` over realisation and other dimensions.
+    windows : xarray.DataArray
+        Independent windows in one realisation, over any of these dimensions.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same, and the variables ``_mean``, ``_lower`` and ``_upper`` of each probability.
+    """
     for name in PROBABILITIES:
         dims = dataset[name].dims[1:]
         windows_here = windows.broadcast_like(dataset[name][0]).transpose(*dims)
         interval = probability_interval(dataset[name].values, windows_here.values)
         dataset = dataset.assign(values_with_limits(name, interval, dims, MEAN_LIMITS))
-    return label(dataset, kind)
+    return dataset

@@ -7,7 +7,6 @@ on some of the study's realisations, or sampled where it is rare.
 """
 
 import dataclasses
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
 import numpy as np
@@ -16,7 +15,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import expit, logit
 
 from lube.contact.ensemble import windows_in
-from lube.contact.rough_pair import drawn
+from lube.contact.rough_pair import drawn, on_threads
 from lube.contact.window_films import film_at_places
 from lube.contact.windows import ContactWindows
 from lube.statistics.curves import Curve, peaked_curve
@@ -268,9 +267,7 @@ def _on_pairs(study, records, films, weaker, pairs, threads):
             shares[~is_rare] = windows[~is_rare].count(drawn(study, number))[:, 1]
         return shares
 
-    # Drawing and counting release Python's lock, so threads share the work.
-    with ThreadPoolExecutor(threads) as pool:
-        found = list(pool.map(on_one_pair, range(min(pairs, study.realisations))))
+    found = on_threads(on_one_pair, range(min(pairs, study.realisations)), threads)
     return np.moveaxis(np.reshape(found, (-1, *shape)), 1, 0)
 
 

@@ -3,12 +3,12 @@
 import functools
 import math
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import scipy.special
 import xarray as xr
 
+from lube.contact.rough_pair import on_threads
 from lube.errors import DataError
 from lube.kernels.areal import BLOCK, touching_strips
 from lube.physics.excursions import (
@@ -166,15 +166,12 @@ def _sampled(spec, surface, points, sharp, length, seed, threads=1):
         sharp=sharp / spec.height_step,
         reach=reach,
     )
-    # Drawing and counting release Python's lock, so threads share the work.
-    with ThreadPoolExecutor(threads) as pool:
-        found = zip(*pool.map(one, seeds), strict=True)
-    first, numbers = map(np.stack, found)
+    first, numbers = map(np.stack, zip(*on_threads(one, seeds, threads), strict=True))
     rows = max(int(length / surface.spacing), 1)
     results = {}
     for which, (name, counts) in enumerate(_NAMES.items()):
         limits = jackknife_interval(
-            first[:, :, which], functools.partial(strip_probability, rows=rows), upper=1.0
+            first[:, :, which], functools.partial(strip_probability, rows=rows), most=1.0
         )
         results |= values_with_limits(name, limits)
         results |= values_with_limits(counts, mean_interval(rows * numbers[:, :, which]))

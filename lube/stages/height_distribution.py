@@ -1,16 +1,15 @@
 """The height distribution stage: contact of lines of other skewness and kurtosis."""
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 import xarray as xr
 
+from lube.contact.ensemble import PROBABILITIES, with_limits
+from lube.contact.rough_pair import on_threads
 from lube.contact.windows import ContactWindows
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import at_slip
 from lube.kernels.synthesis import mean_powers
-from lube.schema import MEAN_LIMITS, label, values_with_limits
-from lube.statistics.confidence import probability_interval
+from lube.schema import label
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
@@ -74,28 +73,30 @@ def height_distributions(
     half_width = point["contact_half_width"].item()
     films = LAMBDA_RATIOS * film["composite_rms_roughness"].item()
     points = point.drop_vars("lambda_ratio").assign(film_thickness=("lambda_ratio", films))
-    contact_windows = ContactWindows(spec, points, boundary_layer, gap)
+    windows = ContactWindows(spec, points, boundary_layer, gap)
+
+    def on_lines(level):
+        return _on_lines(_with_heights(spec, *level), seed, windows)
+
     levels = [(skewness, kurtosis) for skewness in SKEWNESS for kurtosis in KURTOSIS]
+    shares, moments = map(np.array, zip(*on_threads(on_lines, levels, threads), strict=True))
+    shape, dims = (len(SKEWNESS), len(KURTOSIS)), ("height_skewness", "height_kurtosis")
+    shares = shares.reshape(*shape, *shares.shape[1:])
+    table = {
+        name: ((*dims, "realisation", "lambda_ratio"), shares[..., which])
+        for which, name in enumerate(PROBABILITIES)
+    }
+    names = "attained_skewness", "attained_kurtosis"
+    for name, values in zip(names, np.moveaxis(moments.mean(axis=1), -1, 0), strict=True):
+        table[name] = dims, values.reshape(shape)
+    levels = {dims[0]: list(SKEWNESS), dims[1]: list(KURTOSIS), "lambda_ratio": LAMBDA_RATIOS}
     # Both rollers turn as one, so a revolution of the smaller one shows all of its line.
-    windows = np.full(films.size, spec.independent_windows(2.0 * half_width))
-
-    def row(level):
-        return _row(_with_heights(spec, *level), seed, contact_windows, windows)
-
-    # Drawing and counting release Python's lock, so threads share the work.
-    with ThreadPoolExecutor(threads) as pool:
-        rows = list(pool.map(row, levels))
-    shape = len(SKEWNESS), len(KURTOSIS)
-    dims = ("height_skewness", "height_kurtosis")
-    table = {"contact_half_width": half_width}
-    for name in rows[0]:
-        values = np.array([row[name] for row in rows])
-        along = (*dims, "lambda_ratio")[: 1 + values.ndim]
-        table[name] = along, values.reshape(shape + values.shape[1:])
-    coordinates = dict(zip(dims, (list(SKEWNESS), list(KURTOSIS)), strict=True))
-    coordinates |= {"lambda_ratio": LAMBDA_RATIOS, "revolutions": 1}
+    independent = xr.DataArray(spec.independent_windows(2.0 * half_width))
+    found = with_limits(xr.Dataset(table, levels).transpose("realisation", ...), independent)
+    found = found.drop_vars(PROBABILITIES).assign(contact_half_width=half_width)
     attributes = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
-    return label(xr.Dataset(table, coordinates, attributes), "height_distribution")
+    found = found.assign_coords(revolutions=1).assign_attrs(attributes)
+    return label(found, "height_distribution")
 
 
 def _with_heights(spec, skewness, kurtosis):
@@ -105,23 +106,14 @@ def _with_heights(spec, skewness, kurtosis):
     )
 
 
-def _row(spec, seed, contact_windows, windows):
-    """Probabilities with their intervals over the films, and the moments that were attained."""
-    counts, moments = [], []
+def _on_lines(spec, seed, windows):
+    """`PROBABILITIES` on each pair, shape (pairs, films, 2), and moments, (lines, 2)."""
+    shares, moments = [], []
     for number in range(PAIRS):
         pair = draw_realisation(spec, seed, number)
-        counts.append(contact_windows.count(pair))
+        shares.append(windows.count(pair)[:, 1::-1])
         moments += map(_moments, pair)
-    contact, breakthrough, _, _ = np.moveaxis(np.array(counts), -1, 0)
-    skewness, kurtosis = np.mean(moments, axis=0)
-    row = {"attained_skewness": skewness, "attained_kurtosis": kurtosis}
-    for name, values in (
-        ("breakthrough_probability", breakthrough),
-        ("geometric_contact_probability", contact),
-    ):
-        interval = probability_interval(values, windows)
-        row |= values_with_limits(name, interval, names=MEAN_LIMITS)
-    return row
+    return shares, moments
 
 
 def _moments(line):

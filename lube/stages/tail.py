@@ -1,12 +1,12 @@
 """The tail stage: probability and rate of contact at any rarity, labelled over the grid."""
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import scipy.special
 import xarray as xr
 
+from lube.contact.rough_pair import on_threads
 from lube.contact.window_films import shaped_films
 from lube.contact.windows import ContactWindows
 from lube.errors import DataError, StudyError
@@ -202,7 +202,7 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
     for name, of_pairs in values.items():
         of_pairs = of_pairs.transpose("pair", ...)
         most = 1.0 if name.endswith("probability") else np.inf
-        limits = np.minimum(mean_interval(of_pairs.values), most)
+        limits = mean_interval(of_pairs.values, most)
         limited |= values_with_limits(name, [of_pairs[0].copy(data=limit) for limit in limits])
     return xr.Dataset(limited, attrs=values.attrs)
 
@@ -315,9 +315,7 @@ def _sampled(spec, film, boundary_layer, seed, gap, threads=None):
         found = some.sample(spec, seed, number)
         return [values.reshape(len(values), -1, *thickness.shape[1:]) for values in found]
 
-    # Drawing and counting release Python's lock, so threads share the work.
-    with ThreadPoolExecutor(threads) as pool:
-        found = list(zip(*pool.map(on_one_pair, range(PAIRS)), strict=True))
+    found = list(zip(*on_threads(on_one_pair, range(PAIRS), threads), strict=True))
     dims = ("pair", "outcome", *thickness.dims)
     for part, pairs in zip(_PARTS, (PAIRS, FEWER_PAIRS), strict=True):
         coordinates = thickness[part].coords

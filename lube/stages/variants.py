@@ -4,12 +4,12 @@ All variants are computed on the same lines, so their ratios are better known th
 themselves.
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
+from lube.contact.rough_pair import on_threads
 from lube.contact.windows import ContactWindows
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
@@ -152,8 +152,8 @@ def _sampled(variants, windows, study, threads):
         pair = study.line_spec, study.seed, number
         return [windows[each].sample(*pair)[0] for each in variants]
 
-    values = _on_pairs(run, PAIRS, threads)
-    return _with_limits(variants, values, np.minimum(mean_interval(values), 1.0))
+    values = np.array(on_threads(run, range(PAIRS), threads))
+    return _with_limits(variants, values, mean_interval(values, 1.0))
 
 
 def _counted(variants, windows, study, threads):
@@ -163,7 +163,7 @@ def _counted(variants, windows, study, threads):
         pair = draw_realisation(study.line_spec, study.seed, number)
         return [_count(each, windows[each], pair) for each in variants]
 
-    values = _on_pairs(run, study.realisations, threads)
+    values = np.array(on_threads(run, range(study.realisations), threads))
     widths = (2 * windows[variants[0]].half_windows + 1) * study.line_spec.spacing
     independent = study.line_spec.independent_windows(widths)
     return _with_limits(variants, values, probability_interval(values, independent))
@@ -174,11 +174,6 @@ def _count(variant, windows, pair):
         return windows.count(pair)[:, :2].T
     breakthrough = windows.count_uncut(pair)
     return [np.full_like(breakthrough, np.nan), breakthrough]
-
-
-def _on_pairs(run, pairs, threads):
-    with ThreadPoolExecutor(threads) as pool:
-        return np.array(list(pool.map(run, range(pairs))))
 
 
 def _with_limits(variants, values, means):

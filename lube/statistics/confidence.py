@@ -208,7 +208,7 @@ def probability_interval(probabilities: Array, windows: Values) -> tuple[Array, 
     return mean, *probability_limits(mean, sample_size, degrees, windows * realisations)
 
 
-def mean_interval(values: Array) -> tuple[Array, Array, Array]:
+def mean_interval(values: Array, most: float = np.inf) -> tuple[Array, Array, Array]:
     r"""Mean of independent, unbiased estimates of a positive number, and its 95 % interval.
 
     .. math:: \bar x \pm t \frac{s}{\sqrt R}
@@ -219,11 +219,13 @@ def mean_interval(values: Array) -> tuple[Array, Array, Array]:
     ----------
     values : numpy.ndarray
         Shape (R, ...), the estimates, R of two or more.
+    most : float, optional
+        Largest possible mean, such as 1 of a probability.
 
     Returns
     -------
     mean, lower, upper : numpy.ndarray
-        Shape (...) each; the lower limit is at least zero.
+        Shape (...) each, from zero to `most`.
 
     Examples
     --------
@@ -233,12 +235,11 @@ def mean_interval(values: Array) -> tuple[Array, Array, Array]:
     count = values.shape[0]
     mean = mean_over_first(values)
     error = np.sqrt(mean_over_first(np.square(values - mean)) / (count - 1))
-    half = scipy.special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0) * error
-    return mean, np.maximum(mean - half, 0.0), mean + half
+    return _student_interval(mean, error, count, most)
 
 
 def jackknife_interval(
-    values: Array, function: Callable[[Array], Array], upper: float = np.inf
+    values: Array, function: Callable[[Array], Array], most: float = np.inf
 ) -> tuple[Array, Array, Array]:
     r"""Compute a function of the mean of independent values, and its 95 % interval.
 
@@ -255,13 +256,13 @@ def jackknife_interval(
         Shape (R, ...), of R two or more.
     function : callable
         Of the mean over R.
-    upper : float, optional
+    most : float, optional
         Largest possible result.
 
     Returns
     -------
     result, lower, upper : numpy.ndarray
-        Shape of the function's result; the lower limit is at least zero.
+        Shape of the function's result, from zero to `most`.
 
     References
     ----------
@@ -276,6 +277,11 @@ def jackknife_interval(
     mean = mean_over_first(values)
     without = np.stack([function((count * mean - one) / (count - 1)) for one in values])
     error = np.sqrt((count - 1) * mean_over_first(np.square(without - mean_over_first(without))))
+    return _student_interval(np.minimum(function(mean), most), error, count, most)
+
+
+def _student_interval(result, error, count, most):
+    """Limits of a result of some values, from its standard error and their count."""
     half = scipy.special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0) * error
-    result = np.minimum(function(mean), upper)
-    return result, np.maximum(result - half, 0.0), np.minimum(result + half, upper)
+    limits = result, np.maximum(result - half, 0.0), result + half
+    return tuple(np.minimum(limit, most) for limit in limits)
