@@ -21,7 +21,7 @@ MODULES = {
 
 # A folder, or a module beside them, imports from those of the floors before its own.
 FLOORS = [
-    {"errors", "types", "lazy"},
+    {"errors", "types", "lazy", "threads"},
     {"kernels"},
     {"units", "schema", "physics", "statistics", "surfaces"},
     {"ehl"},

@@ -10,7 +10,7 @@ from lube.calculator.amounts import Amount, amount, bare_number, described
 from lube.calculator.answers import Answer
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.ensemble import with_limits
-from lube.contact.rough_pair import on_threads, roughness_batch
+from lube.contact.rough_pair import roughness_batch
 from lube.contact.windows import ContactWindows
 from lube.errors import LubeError, RangeError, StudyError, right_one, shown
 from lube.grid.discretise import speed_ratios
@@ -28,6 +28,7 @@ from lube.study.oil_properties import lubricant_table
 from lube.study.rig_settings import RIG_REALISATIONS
 from lube.study.study import Study
 from lube.surfaces.synthetic import draw_realisation
+from lube.threads import on_threads
 
 FORMULA = "pan-hamrock"
 """Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""

@@ -22,7 +22,6 @@ from lube.calculator.operating_points import (
     single,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.contact.rough_pair import on_threads
 from lube.contact.window_films import shaped_films
 from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError
@@ -33,6 +32,7 @@ from lube.statistics.confidence import mean_interval, probability_interval
 from lube.statistics.curves import peaked_curve
 from lube.study.line_spec import check_width
 from lube.surfaces.synthetic import draw_realisation
+from lube.threads import on_threads
 
 LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
 """Lambda ratios that are tried at first; even at the last, contact has a probability of 1e-37."""

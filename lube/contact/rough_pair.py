@@ -1,9 +1,6 @@
 """Pairs of rough lines, drawn as the study's seed says."""
 
-import os
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -21,29 +18,6 @@ PADDING = np.iinfo(np.int32).min
 def drawn(study: Study, realisation: int) -> Pair:
     """Draw the two lines of a realisation of a study."""
     return draw_realisation(study.line_spec, study.seed, realisation)
-
-
-def on_threads(function: Callable, items: Iterable, threads: int | None = None) -> list[Any]:
-    """Call a function for each of some items, such as the numbers of pairs.
-
-    Drawing and counting release Python's lock, so threads share the work.
-
-    Parameters
-    ----------
-    function : callable
-        Of one item.
-    items : iterable
-        The items.
-    threads : int, optional
-        Number of threads, by default one for each core; it does not change the results.
-
-    Returns
-    -------
-    list
-        The results in the order of the items.
-    """
-    with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
-        return list(pool.map(function, items))
 
 
 def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> xr.Dataset:

@@ -16,12 +16,14 @@ from lube.types import Array
 class WindowFilm:
     """Film at the points of a contact window and beyond, where lines may still reach it.
 
+    The surfaces move from the last point to the first: the last ones lie in the inlet.
+
     Attributes
     ----------
     film : numpy.ndarray
         Film thickness, or gap outside the contact, at each point, shape (W,), height steps.
     before : int
-        Points before the line of centres.
+        Points before that at the line of centres.
     """
 
     film: Array
@@ -152,7 +154,7 @@ def _as_far(profile, half_width, grid):
     """Film at all points of a line to which a profile reaches."""
     if not np.isfinite(profile).all():
         return None
-    ends = profile["film_position"].values[[0, -1]] * half_width / grid.spacing
+    ends = -profile["film_position"].values[[-1, 0]] * half_width / grid.spacing
     points = np.arange(np.ceil(ends[0]), np.floor(ends[1]) + 1.0)
     return WindowFilm(film_on_points(profile, half_width, points, grid), int(-points[0]))
 
@@ -160,7 +162,7 @@ def _as_far(profile, half_width, grid):
 def film_on_points(
     profile: xr.DataArray, half_width: float, points: Array, grid: LineGrid
 ) -> Array:
-    """Film at points of a line.
+    """Film at points of a line, which moves with the oil: in a time step by a point at most.
 
     Parameters
     ----------
@@ -169,7 +171,7 @@ def film_on_points(
     half_width : float
         Half-width of the contact, m.
     points : numpy.ndarray, shape (n,)
-        Points, counted from the line of centres.
+        Points, counted from the line of centres against the motion, into the inlet.
     grid : LineGrid
         Grid of the lines.
 
@@ -179,5 +181,5 @@ def film_on_points(
         Film at the points, height steps, from a cubic spline through the profile.
     """
     film = CubicSpline(profile["film_position"].values, profile.values)
-    position = points * (grid.spacing / half_width)
+    position = -points * (grid.spacing / half_width)
     return np.rint(film(position) / grid.height_step).astype(np.int64)

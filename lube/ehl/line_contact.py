@@ -1,10 +1,12 @@
 """The film of a lubricated line contact from Reynolds' equation: steady, isothermal, Newtonian."""
 
 import logging
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
+import scipy.optimize
 from threadpoolctl import ThreadpoolController
 
 from lube.ehl.deflection import deflection_matrix
@@ -150,6 +152,27 @@ class FilmProfile:
         return int(np.flatnonzero(self.pressure)[-1])
 
     @cached_property
+    def film_end(self) -> float:
+        """Position over the half-width at which the film ends.
+
+        There no pressure drives oil any more, and what the surfaces drag is all that flows. The
+        nodes say it no better than by their distance.
+        """
+
+        def beyond(position):
+            return self.scaled_gap(np.array([position])).item() - self.flux[0]
+
+        middle = 0.5 * (self.nodes[1:] + self.nodes[:-1])
+        thinnest = middle[np.argmin(self.scaled_gap(middle))]
+        return float(scipy.optimize.brentq(beyond, thinnest, self.nodes[-1]))
+
+    @cached_property
+    def central_gap(self) -> float:
+        """Scaled gap at the line of centres, linear between the two nearest places."""
+        middle = 0.5 * (self.nodes[1:] + self.nodes[:-1])
+        return float(np.interp(0.0, middle, self.scaled_gap(middle)))
+
+    @cached_property
     def central_film(self) -> float:
         """Film over R* at the line of centres.
 
@@ -241,15 +264,47 @@ def solve(
     '1.02 um, least 0.85 um'
     """
     _check(contact, meniscus)
-    # A step that overflows is too large, and repeated.
-    quiet = np.errstate(over="ignore", invalid="ignore", divide="ignore")
-    with quiet, _libraries().limit(limits=1, user_api="blas"):
+    with _quiet(), one_blas_thread():
         return _solve(contact, meniscus, flooded, fineness)
+
+
+def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
+    """Solve again for a film, on other nodes.
+
+    Parameters
+    ----------
+    profile : FilmProfile
+        The film.
+    nodes : numpy.ndarray, shape (n,)
+        Positions over the half-width, rising, with the ends of the film's own.
+
+    Returns
+    -------
+    FilmProfile
+        The same film on these nodes, converged to `TOLERANCE`.
+
+    Raises
+    ------
+    ConvergenceError
+        With the state of the iteration.
+    """
+    pressure = np.interp(nodes, profile.nodes, profile.pressure)
+    with _quiet(), one_blas_thread():
+        return _settle(profile.contact, nodes, pressure, profile.central_gap, profile.steps)
+
+
+def _quiet():
+    # A step that overflows is too large, and repeated.
+    return np.errstate(over="ignore", invalid="ignore", divide="ignore")
+
+
+def one_blas_thread() -> AbstractContextManager:
+    """Have linear algebra done in one thread: on these small matrices, more only slow it down."""
+    return _libraries().limit(limits=1, user_api="blas")
 
 
 @cache
 def _libraries():
-    """Libraries of linear algebra: on these small matrices, further threads only slow them down."""
     return ThreadpoolController()
 
 
@@ -287,7 +342,8 @@ def profiles_of(
     Returns
     -------
     numpy.ndarray of object
-        A `FilmProfile` each, None where it did not converge; the log names these.
+        A `FilmProfile` each, None where a group is NaN, or the film did not converge; the log names
+        the latter.
     """
     solved = np.vectorize(_solved, otypes=[object])
     return solved(load, speed, material, viscosity, film_modulus, meniscus)
@@ -295,6 +351,8 @@ def profiles_of(
 
 def _solved(load, speed, material, viscosity, film_modulus, meniscus):
     groups = load, speed, material, viscosity, film_modulus
+    if np.isnan(groups).any():
+        return None
     contact = LineContact(*map(float, groups))
     try:
         return solve(contact, meniscus and meniscus / contact.half_width)
@@ -319,9 +377,8 @@ def _check(contact, meniscus):
 def _fit(profile, meniscus, flooded, fineness):
     """Nodes fitted to a solution, and its central film."""
     contact = profile.contact
-    middle = 0.5 * (profile.nodes[1:] + profile.nodes[:-1])
-    gap = profile.scaled_gap(middle)
-    film = float(np.interp(0.0, middle, gap))
+    gap = profile.scaled_gap(0.5 * (profile.nodes[1:] + profile.nodes[:-1]))
+    film = profile.central_gap
     end = inlet_end(profile.offset, flooded * film) if meniscus is None else -meniscus
     share = np.abs(profile.pressure_flow / profile.flux)
     profiles = profile.pressure, contact.log_viscosity(profile.pressure)[0], gap, share

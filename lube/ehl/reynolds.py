@@ -111,11 +111,11 @@ class DiscreteContact:
             Changes of the pressures and of the offset; NaN if there is no such step.
         """
         inner = np.arange(pressure.size - 2)
-        jacobian = np.diff(self._dense(flow.by_gap, flow.by_left, flow.by_right), axis=0)
+        jacobian = np.diff(self.flux_by_pressure(flow), axis=0)
         by_offset, residual = np.diff(flow.by_gap), np.diff(flow.flux)
         if np.isfinite(settling_time):
             squeeze = 0.5 * self.weight[1:-1] / settling_time
-            drag = self._dense(flow.drag_by_gap, flow.drag_by_node, flow.drag_by_node)
+            drag = self.drag_by_pressure(flow)
             jacobian += squeeze[:, None] * (drag[1:] + drag[:-1])
             by_offset += squeeze * (flow.drag_by_gap[1:] + flow.drag_by_gap[:-1])
         scale = np.abs(jacobian[inner, inner + 1])
@@ -133,6 +133,14 @@ class DiscreteContact:
             solution = np.full_like(right, np.nan)
         change[film + 1] = solution[:-1]
         return change, solution[-1]
+
+    def flux_by_pressure(self, flow: Flow) -> Array:
+        """Differentiate the mass flux by the pressures at all nodes, shape (n - 1, n)."""
+        return self._dense(flow.by_gap, flow.by_left, flow.by_right)
+
+    def drag_by_pressure(self, flow: Flow) -> Array:
+        """Differentiate its dragged part, the oil in the gap, by all pressures, (n - 1, n)."""
+        return self._dense(flow.drag_by_gap, flow.drag_by_node, flow.drag_by_node)
 
     def _dense(self, by_gap, by_left, by_right):
         """Put together the derivatives of a flux by all pressures, shape (n - 1, n)."""

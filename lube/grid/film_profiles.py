@@ -11,7 +11,13 @@ _REACH = 12.0
 line is so high."""
 
 
-def film_positions(half_width: float, reduced_radius: float, roughness: float) -> Array:
+def film_positions(
+    half_width: float,
+    reduced_radius: float,
+    roughness: float,
+    step: float = _STEP,
+    growth: float = _GROWTH,
+) -> Array:
     """Positions at which the computed films of a study are kept.
 
     Parameters
@@ -22,6 +28,8 @@ def film_positions(half_width: float, reduced_radius: float, roughness: float) -
         R*, m.
     roughness : float
         Composite rms roughness, m.
+    step, growth : float, optional
+        Distance of positions in the contact, and their growth beyond.
 
     Returns
     -------
@@ -36,9 +44,9 @@ def film_positions(half_width: float, reduced_radius: float, roughness: float) -
     (425, 9.375603)
     """
     farthest = 1.0 + np.sqrt(2.0 * reduced_radius * _REACH * roughness) / half_width
-    even = np.arange(0.0, _EVEN + _STEP / 2, _STEP)
-    count = max(1, int(np.ceil(np.log(farthest / _EVEN) / np.log(_GROWTH))))
-    half = np.concatenate([even, _EVEN * _GROWTH ** np.arange(1, count + 1)]).round(6)
+    even = np.arange(0.0, _EVEN + step / 2, step)
+    count = max(1, int(np.ceil(np.log(farthest / _EVEN) / np.log(growth))))
+    half = np.concatenate([even, _EVEN * growth ** np.arange(1, count + 1)]).round(6)
     return np.concatenate([-half[:0:-1], half])
 
 

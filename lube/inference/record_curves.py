@@ -15,12 +15,13 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import expit, logit
 
 from lube.contact.ensemble import windows_in
-from lube.contact.rough_pair import drawn, on_threads
+from lube.contact.rough_pair import drawn
 from lube.contact.window_films import film_at_places
 from lube.contact.windows import ContactWindows
 from lube.statistics.curves import Curve, peaked_curve
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.study import Study
+from lube.threads import on_threads
 from lube.types import Array
 
 PROBABILITY = "breakthrough_probability"

@@ -248,6 +248,14 @@ _ROWS = (
         parallel=True,
     ),
     Stage(
+        "film_response",
+        "what the oil does to waves of the roughness, a minute or two",
+        inputs=("lubricant", "film"),
+        values={"lines": "line_spec", "slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"},
+        target="computed",
+        parallel=True,
+    ),
+    Stage(
         "film_plane",
         "computed film over Moes' numbers, some seconds a lubricant",
         inputs=("lubricant",),

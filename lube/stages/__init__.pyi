@@ -21,6 +21,7 @@ from lube.rig.contact_share import share_interval as share_interval
 from lube.stages.comparison import compare as compare
 from lube.stages.contact import contact_statistics as contact_statistics
 from lube.stages.film import film_table as film_table
+from lube.stages.film_response import film_responses as film_responses
 from lube.stages.gauge import gauge_film as gauge_film
 from lube.stages.gauge import gauge_records as gauge_records
 from lube.stages.master import contact_map as contact_map

@@ -8,7 +8,6 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.contact.rough_pair import on_threads
 from lube.errors import DataError
 from lube.kernels.areal import BLOCK, touching_strips
 from lube.physics.excursions import (
@@ -25,6 +24,7 @@ from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import ROLLER_NUMBERS
+from lube.threads import on_threads
 from lube.types import Datasets
 
 SURFACES = 24

@@ -14,7 +14,7 @@ from lube.types import Datasets
 _NUMBERS = {
     "central_film": lambda one: one.central_film,
     "minimum_film": lambda one: one.minimum_film,
-    "film_end": lambda one: one.nodes[one.end],
+    "film_end": lambda one: one.film_end,
     "mass_flux_defect": lambda one: float(f"{one.mass_flux_defect:.0e}"),
 }
 """Numbers of a film profile by the names of their variables."""

@@ -4,7 +4,6 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.ensemble import PROBABILITIES, with_limits
-from lube.contact.rough_pair import on_threads
 from lube.contact.windows import ContactWindows
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import at_slip
@@ -14,6 +13,7 @@ from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.surfaces.synthetic import draw_realisation
+from lube.threads import on_threads
 from lube.types import Datasets
 
 SKEWNESS = (-1.0, -0.5, 0.0, 0.5, 1.0)

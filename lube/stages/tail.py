@@ -6,7 +6,6 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.contact.rough_pair import on_threads
 from lube.contact.window_films import shaped_films
 from lube.contact.windows import ContactWindows
 from lube.errors import DataError, StudyError
@@ -30,6 +29,7 @@ from lube.study.study import Study
 from lube.surfaces.rare_contact import check_gaussian
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import ROLLER_NUMBERS
+from lube.threads import on_threads
 from lube.types import Datasets
 
 PAIRS = 40

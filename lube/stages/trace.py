@@ -144,10 +144,10 @@ def contact_window(
     Returns
     -------
     xarray.Dataset
-        Over ``x`` (m, from the middle of the window): ``height`` of both rollers and
-        ``overlap`` z1 + z2 - h, m. Over ``segment``: ``first`` and ``last`` index in the
-        window, ``contact_length`` D (m), ``force`` F (N, Eq. 5), ``layer_thickness`` h_l
-        (m, Eq. 6), and ``broken``.
+        Over ``x`` (m, from the middle of the window, in the direction in which the surfaces
+        move): ``height`` of both rollers and ``overlap`` z1 + z2 - h, m. Over ``segment``:
+        ``first`` and ``last`` index in the window, ``contact_length`` D (m), ``force`` F (N,
+        Eq. 5), ``layer_thickness`` h_l (m, Eq. 6), and ``broken``.
 
     Notes
     -----
@@ -175,7 +175,8 @@ def contact_window(
         pair = [Waves(line, grid).flattened(*contact) for line in pair]
     moving = zip(pair, ratios, strict=True)
     rows = [line[(surface_position(step, ratio) + window) % line.size] for line, ratio in moving]
-    heights = np.array(rows, np.int64)
+    # Points of a line that are ahead in its direction of motion come first.
+    heights, film = np.array(rows, np.int64)[:, ::-1], np.broadcast_to(film, window.shape)[::-1]
     overlap = heights.sum(axis=0) - film
     if reach is None:
         touching = np.abs(window[overlap > 0]).max(initial=0)

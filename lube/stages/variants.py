@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from lube.contact.rough_pair import on_threads
 from lube.contact.windows import ContactWindows
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
@@ -20,6 +19,7 @@ from lube.schema import POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval, probability_interval, ratio_interval
 from lube.study.study import Study
 from lube.surfaces.synthetic import draw_realisation, wave_amplitudes
+from lube.threads import on_threads
 from lube.types import Datasets
 
 PAIRS = 40

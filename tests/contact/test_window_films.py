@@ -5,9 +5,12 @@ import pytest
 import xarray as xr
 
 from lube.contact.window_films import WindowFilm, film_on_points, shaped_films, window_films
+from lube.contact.windows import ContactWindows
 from lube.errors import DataError
 from lube.grid.discretise import LineGrid
+from lube.grid.gap import Gap
 from lube.physics.hertz import hertz_gap
+from lube.study.rollers import BoundaryLayer
 
 POSITION = np.linspace(-3.0, 3.0, 601).round(6)
 GRID = LineGrid(spacing=1e-6, height_step=1e-12)
@@ -64,7 +67,7 @@ def test_films_at_the_points_follow_the_profile():
     for number, (one, width) in enumerate(zip(films, WIDTHS * 3, strict=True)):
         points = np.arange(one.film.size) - one.before
         assert points[0] == round(-3.0 * width / 1e-6)
-        exact = np.interp(points * 1e-6 / width, POSITION, shaped.isel(point=number))
+        exact = np.interp(-points * 1e-6 / width, POSITION, shaped.isel(point=number))
         np.testing.assert_allclose(one.film * 1e-12, exact, rtol=1e-4)
         assert one.film[one.before] == pytest.approx(exact[one.before] / 1e-12, abs=1)
 
@@ -79,7 +82,7 @@ def test_a_film_that_is_not_known_is_none():
 def test_a_spline_through_a_parabola_is_exact():
     profile = film_table()["film_profile"].isel(force=0)
     points = np.arange(-100, 101)
-    position = points * 1e-6 / 50e-6
+    position = -points * 1e-6 / 50e-6
     expected = np.rint((1.0 + 0.5 * (position - 0.5) ** 2) * 1e6)
     np.testing.assert_allclose(film_on_points(profile, 50e-6, points, GRID), expected, atol=1)
 
@@ -91,3 +94,17 @@ def test_only_points_within_reach_are_kept():
     assert one.below(2).film.tolist() == [3]  # one point at least
     with pytest.raises(DataError, match="within reach of the lines, 9 height steps high"):
         one.below(9)
+
+
+def test_an_asperity_runs_with_the_oil_from_the_centre_to_the_thin_outlet():
+    """It is higher than the film from 0.18 to 0.82 half-widths behind the centre only."""
+    table = film_table().isel(film_formula=0, force=0)
+    table["film_thickness"] = table["film_profile"].sel(film_position=0.0)
+    table = table.assign(reduced_modulus=115e9, moes_load=1.0, moes_material=1.0)
+    pair = np.zeros((2, 2000), np.int32)
+    pair[0, 1000] = 1.05e6
+    weak = BoundaryLayer(critical_thickness="5 nm", shear_strength="1 Pa")
+    windows = ContactWindows(GRID, table, weak, Gap("computed"))
+    touching = np.flatnonzero(windows.trace(tuple(pair))[0])
+    behind = (touching - 1000) * 1e-6 / WIDTHS[0]
+    assert (behind[0], behind[-1]) == pytest.approx((0.5 - 0.1**0.5, 0.5 + 0.1**0.5), abs=0.02)

@@ -126,7 +126,7 @@ def test_window_lies_within_the_half_width_and_holds_the_heights(case):
     np.testing.assert_allclose(np.diff(window["x"]), spacing, rtol=1e-9)
     for roller in (0, 1):
         line = lines["height"].values[0, roller]
-        around = np.rint(window["x"].values / spacing).astype(int) % line.size
+        around = np.rint(-window["x"].values / spacing).astype(int) % line.size
         np.testing.assert_allclose(window["height"].values[roller], line[around], rtol=1e-12)
     gap = trace["film_thickness"].values[0] - window["height"].sum("roller")
     np.testing.assert_allclose(window["overlap"], -gap, rtol=0, atol=0.5e-12 * (1.0 + 1e-6))

@@ -1,0 +1,184 @@
+r"""Linear response of the film to the roughness: what the oil does to waves of small amplitude.
+
+A wave of the roughness of one surface moves through the contact with that surface, at :math:`c`
+times the entrainment speed. In the scaled variables of `lube.ehl.reynolds` and the time
+:math:`T = t v / a` it leaves small changes :math:`\hat p(X)` and :math:`\hat h(X)` of pressure and
+gap, both times :math:`\exp(-i k c T)`, which satisfy Reynolds' equation about the steady film with
+its squeeze term,
+
+.. math::
+
+    \frac{d\hat q}{dX} = i k c\, (\bar\rho \hat h + \bar\rho' H \hat p), \qquad
+    \hat h = \hat h_0 - \frac{1}{\pi} \int \hat p \ln|X - X'|\, dX' + e^{ikX}, \qquad
+    \int \hat p\, dX = 0
+
+with the change :math:`\hat q` of the mass flux. The pressure does not change where the oil begins
+and from the end of the film on, whose motion is of second order. The load is fixed: the rollers
+give way by :math:`\hat h_0`.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from lube.ehl.deflection import deflection_matrix
+from lube.ehl.line_contact import FilmProfile, on_nodes, one_blas_thread
+from lube.ehl.reynolds import DiscreteContact
+from lube.types import Array
+
+POINTS_A_WAVE = 16
+"""Nodes in a wave, where the gap is not wide."""
+WIDE = 6.0
+"""Gap over the central film from which on fewer nodes are enough: there hardly any pressure
+arises."""
+_GROWTH = 0.15
+"""Growth of the cells per length in the wide gap."""
+_LEAST, _ENOUGH = 3.0, 8.0
+"""Nodes in a wave below which it is left out, and from which on it is there in full."""
+
+
+@dataclass(frozen=True)
+class WaveResponse:
+    """Response of a film to waves of one wavelength.
+
+    Attributes
+    ----------
+    profile : FilmProfile
+        The steady film, on nodes that resolve the wave.
+    wavelength : float
+        Over the half-width.
+    """
+
+    profile: FilmProfile
+    wavelength: float
+    _discrete: DiscreteContact = field(init=False, repr=False)
+
+    def __post_init__(self):
+        discrete = DiscreteContact(self.profile.contact, self.profile.nodes)
+        object.__setattr__(self, "_discrete", discrete)
+
+    @classmethod
+    def of(cls, profile: FilmProfile, wavelength: float, fineness: float = 1.0) -> "WaveResponse":
+        """Form the response of a film, which is solved for on nodes that resolve the wave.
+
+        Parameters
+        ----------
+        profile : FilmProfile
+            The steady film.
+        wavelength : float
+            Over the half-width.
+        fineness : float, optional
+            The number of nodes in a wave grows in proportion.
+
+        Returns
+        -------
+        WaveResponse
+            The response.
+
+        Raises
+        ------
+        lube.ehl.line_contact.ConvergenceError
+            If the film was not found on these nodes.
+        """
+        step = wavelength / (POINTS_A_WAVE * fineness)
+        return cls(on_nodes(profile, _resolving_nodes(profile, step)), wavelength)
+
+    def transfer(self, surface_speed: float, position: Array, fixed_load: bool = True) -> Array:
+        r"""Transfer function of the wave.
+
+        Parameters
+        ----------
+        surface_speed : float
+            Speed :math:`c` of the wave over the entrainment speed: 1 in pure rolling.
+        position : numpy.ndarray, shape (n,)
+            Positions X over the half-width, in the contact or outside.
+        fixed_load : bool, optional
+            Whether the rollers give way so that the load stays; otherwise their distance stays, as
+            that of rollers too heavy to follow.
+
+        Returns
+        -------
+        numpy.ndarray of complex, shape (n,)
+            :math:`T_k(X) = \hat h(X) \exp(-i k X)`: the wave in the gap over that of the
+            undeformed surface, 1 where the oil does nothing to it.
+
+        Notes
+        -----
+        The mass flux and what is stored between two nodes are taken as travelling with the surface,
+        :math:`\exp(i k c X)`, within a cell. So a wave that the oil carries through the contact
+        keeps its height and phase on any nodes, and only what pressure does to it is approximated.
+        """
+        wavenumber, discrete = 2.0 * np.pi / self.wavelength, self._discrete
+        flow, middle = discrete.flow(self.profile.pressure, self.profile.offset), discrete.middle
+        film = np.flatnonzero(self.profile.pressure[1:-1] > 0.0)
+        phase = 1j * wavenumber * surface_speed * np.diff(self.profile.nodes) / 2.0
+        # What is stored on either side of a node, in half a cell each, times i k c.
+        ahead, behind = 1.0 - np.exp(-phase[1:]), np.exp(phase[:-1]) - 1.0
+
+        def balance(flux, storage):
+            stored = (ahead * storage[1:].T + behind * storage[:-1].T).T
+            return (np.diff(flux, axis=0) - stored)[film]
+
+        matrix = np.zeros((film.size + 1, film.size + 1), complex)
+        by_pressure = discrete.flux_by_pressure(flow), discrete.drag_by_pressure(flow)
+        matrix[:-1, :-1] = balance(*(each[:, film + 1] for each in by_pressure))
+        matrix[:-1, -1] = balance(flow.by_gap, flow.drag_by_gap)
+        matrix[-1] = np.append(discrete.weight[film + 1], 0.0) if fixed_load else 0.0
+        matrix[-1, -1] = 0.0 if fixed_load else 1.0
+        wave = _resolved(self.wavelength / discrete.step) * np.exp(1j * wavenumber * middle)
+        right = np.append(-balance(flow.by_gap * wave, flow.drag_by_gap * wave), 0.0)
+        with one_blas_thread():
+            change = np.linalg.solve(matrix, right)
+            deflection = deflection_matrix(position, self.profile.nodes)[:, film + 1] @ change[:-1]
+        return 1.0 + (change[-1] + deflection) * np.exp(-1j * wavenumber * position)
+
+
+def at_wavelengths(wanted: Array, wavelengths: Array, transfer: Array, position: Array) -> Array:
+    """Interpolate a transfer function to other wavelengths.
+
+    Its change is interpolated by cubic splines over the logarithm of the wavelength: as it is in
+    the contact, and with the phase at the contact's edge outside, where the gap hardly varies from
+    place to place but the wave does.
+
+    Parameters
+    ----------
+    wanted : numpy.ndarray, shape (m,)
+        Other wavelengths over the half-width.
+    wavelengths : numpy.ndarray, shape (n,)
+        Wavelengths over the half-width, falling.
+    transfer : numpy.ndarray, shape (..., n, x)
+        Transfer function at these and some positions.
+    position : numpy.ndarray, shape (x,)
+        Positions over the half-width.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., m, x)
+        Transfer function. Beyond the longest wave it is that of the longest, and beyond the
+        shortest it is 1.
+    """
+    outside = 2j * np.pi * (position - np.clip(position, -1.0, 1.0))
+    change = (transfer - 1.0) * np.exp(outside / wavelengths[:, None])
+    spline = CubicSpline(np.log(wavelengths[::-1]), change[..., ::-1, :], axis=-2)
+    inside = np.clip(wanted, wavelengths[-1], wavelengths[0])
+    found = spline(np.log(inside)) * np.exp(-outside / wanted[:, None])
+    return 1.0 + (wanted >= wavelengths[-1])[:, None] * found
+
+
+def _resolving_nodes(profile, step):
+    """Nodes of a film, with others between them where they are further apart than a step."""
+    nodes, size = profile.nodes, np.diff(profile.nodes)
+    middle = 0.5 * (nodes[1:] + nodes[:-1])
+    gap = profile.scaled_gap(middle)
+    wide = middle[(middle < 0.0) & (gap > WIDE * profile.central_gap)]
+    low, high = wide[-1] if wide.size else nodes[0], nodes[profile.end + 1]
+    largest = step + _GROWTH * np.maximum(0.0, np.maximum(low - middle, middle - high))
+    counts = np.ceil(size / largest * (1.0 - 1e-9)).astype(int)
+    return np.interp(np.arange(counts.sum() + 1), np.append(0, np.cumsum(counts)), nodes)
+
+
+def _resolved(points):
+    """Share of a wave with so many nodes that is looked at: a wave of too few would be another."""
+    part = np.clip((points - _LEAST) / (_ENOUGH - _LEAST), 0.0, 1.0)
+    return part * part * (3.0 - 2.0 * part)

@@ -1,0 +1,178 @@
+"""What the oil does to waves: Reynolds' equation itself, limits, print, and other codes."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from paper_grid import contact_at
+
+from lube.ehl.line_contact import LineContact, on_nodes, solve
+from lube.ehl.response import WaveResponse, at_wavelengths
+from lube.ehl.reynolds import DiscreteContact
+
+HEAVY, FIG_5, LIGHT = (1600, 100, 80), (800, 100, 40), (100, 100, 80)
+MIDDLE = np.array([0.0])
+
+
+@cache
+def profile_at(point):
+    return solve(contact_at(*point))
+
+
+@cache
+def venners():
+    """M = 100, L = 11, with an oil of 20 1/GPa between steel rollers."""
+    material = 2e-8 * 2.308e11
+    speed = 0.5 * (11.0 / material) ** 4
+    return solve(LineContact(100.0 * np.sqrt(2.0 * speed), speed, material, 0.1, 2.308e11))
+
+
+def at_centre(profile, wavelength, speed=1.0, fineness=1.0, fixed_load=True):
+    wave = WaveResponse.of(profile, wavelength, fineness)
+    return abs(wave.transfer(speed, MIDDLE, fixed_load).item())
+
+
+# Reynolds' equation
+
+
+@pytest.mark.parametrize("point", [HEAVY, LIGHT])
+@pytest.mark.parametrize("wavelength", [0.3, 2.0])
+def test_a_wave_at_rest_changes_the_steady_film_as_the_solver_says(monkeypatch, point, wavelength):
+    wave = WaveResponse.of(profile_at(point), wavelength)
+    smooth, wavenumber = wave.profile, 2.0 * np.pi / wavelength
+    position = 0.5 * (smooth.nodes[1:] + smooth.nodes[:-1])
+    position = position[np.abs(position) < 1.5]
+    flat, gaps = DiscreteContact.gap, []
+    for amplitude in (0.01 * smooth.central_gap, -0.01 * smooth.central_gap):
+
+        def wavy(discrete, *state, amplitude=amplitude):
+            return flat(discrete, *state) + amplitude * np.cos(wavenumber * discrete.middle)
+
+        monkeypatch.setattr(DiscreteContact, "gap", wavy)
+        gaps.append(on_nodes(smooth, smooth.nodes).scaled_gap(position))
+    change = (gaps[0] - gaps[1]) / (0.02 * smooth.central_gap)
+    found = wave.transfer(0.0, position) * np.exp(1j * wavenumber * position)
+    np.testing.assert_allclose(change + np.cos(wavenumber * position), found.real, atol=0.02)
+
+
+def literal(wave, speed, position):
+    """As `WaveResponse.transfer`, as the equation reads: derivatives by differences, the squeeze
+    term by the trapezoidal rule, the wave as it is at every node."""
+    profile, wavenumber = wave.profile, 2.0 * np.pi / wave.wavelength
+    discrete, state = DiscreteContact(profile.contact, profile.nodes), profile.pressure
+    film, step = np.flatnonzero(state[1:-1] > 0.0) + 1, 1e-7
+
+    def flux_and_mass(pressure, offset, added=0.0):
+        flow = discrete.flow(pressure, offset)
+        density = profile.contact.density(0.5 * (pressure[1:] + pressure[:-1]))[0]
+        return flow.flux + flow.by_gap * added, density * (flow.gap + added)
+
+    def residual(change):
+        flux, mass = change
+        weight = 0.5 * discrete.weight[1:-1]
+        return (np.diff(flux) - 1j * wavenumber * speed * weight * (mass[1:] + mass[:-1]))[film - 1]
+
+    def difference(pressure, offset, added=0.0):
+        above = flux_and_mass(state + pressure, profile.offset + offset, added)
+        below = flux_and_mass(state - pressure, profile.offset - offset, -added)
+        return residual([(a - b) / 2.0 for a, b in zip(above, below, strict=True)])
+
+    columns = [difference(step * np.eye(state.size)[node], 0.0) / step for node in film]
+    columns.append(difference(0.0 * state, step) / step)
+    matrix = np.vstack([np.transpose(columns), np.append(discrete.weight[film], 0.0)])
+    right = difference(0.0 * state, 0.0, np.exp(1j * wavenumber * discrete.middle))
+    pressure = np.zeros(state.size, complex)
+    *pressure[film], shift = np.linalg.solve(matrix, np.append(-right, 0.0))
+    deflection = np.interp(position, discrete.middle, discrete.deflection @ pressure)
+    return 1.0 + (shift + deflection) * np.exp(-1j * wavenumber * position)
+
+
+@pytest.mark.parametrize("speed", [1.0, 1.5, 0.5])
+def test_it_is_what_a_literal_solution_on_finer_nodes_finds(speed):
+    position = np.array([-0.5, 0.0, 0.5, 0.8])
+    found = WaveResponse.of(profile_at(HEAVY), 1.0).transfer(speed, position)
+    fine = WaveResponse.of(profile_at(HEAVY), 1.0, fineness=4.0)
+    np.testing.assert_allclose(found, literal(fine, speed, position), atol=0.02)
+
+
+# Limits
+
+
+@pytest.mark.parametrize("point", [HEAVY, FIG_5])
+@pytest.mark.parametrize("speed", [1.0, 1.5])
+def test_short_waves_stay_as_they_are(point, speed):
+    position = np.linspace(-1.0, 1.0, 101)
+    short, long = (
+        np.abs(WaveResponse.of(profile_at(point), wavelength).transfer(speed, position) - 1.0).max()
+        for wavelength in (0.05, 4.0)
+    )
+    assert short < 0.03 < long
+
+
+def test_the_response_is_the_same_on_finer_nodes():
+    for point in (HEAVY, FIG_5):
+        for wavelength, speed in ((4.0, 1.0), (1.0, 1.0), (0.25, 1.0), (1.0, 1.5), (0.5, 0.5)):
+            coarse, fine = (
+                at_centre(profile_at(point), wavelength, speed, fineness) for fineness in (1, 2)
+            )
+            assert coarse == pytest.approx(fine, rel=0.02)
+
+
+# Numbers of others
+
+
+@pytest.mark.parametrize(
+    ("wavelength", "printed"),
+    [(4.0, 0.030), (2.0, 0.073), (1.0, 0.183), (0.5, 0.394), (0.25, 0.660), (0.125, 0.839)],
+)
+def test_it_is_near_the_printed_nonlinear_solution(wavelength, printed):
+    """Venner, Couhier, Lubrecht and Greenwood (1996), Table 1, amplitude 0.1 of the film; read in
+    transcription."""
+    assert at_centre(venners(), wavelength) == pytest.approx(printed, rel=0.08)
+
+
+# Another code's, on the same equations: the study's design notes, physics beyond the paper, § 15.
+
+
+@pytest.mark.parametrize(
+    ("speed", "wavelength", "expected"),
+    [
+        (1.0, 1.0, 0.845),
+        (1.0, 2.0, 0.501),
+        (1.0, 4.0, 0.258),
+        (1.1, 1.0, 0.764),
+        (1.1, 0.5, 0.922),
+        (1.5, 1.0, 0.341),
+        (1.5, 0.25, 0.830),
+        (0.5, 1.0, 0.704),
+        (0.5, 0.5, 0.047),
+    ],
+)
+def test_another_code_finds_the_same_in_the_middle(speed, wavelength, expected):
+    found = at_centre(profile_at(HEAVY), wavelength, speed)
+    assert found == pytest.approx(expected, rel=0.005, abs=0.001)
+
+
+def test_another_code_finds_the_same_across_the_contact_and_at_a_fixed_gap():
+    position = np.array([-0.5, 0.0, 0.5, 0.8, 0.9])
+    found = np.abs(WaveResponse.of(profile_at(HEAVY), 2.0).transfer(1.0, position))
+    np.testing.assert_allclose(found, [0.505, 0.501, 0.496, 0.251, 0.370], atol=0.0015)
+    for wavelength, expected in ((1.0, 0.853), (2.0, 0.533), (4.0, 0.220)):
+        found = at_centre(profile_at(HEAVY), wavelength, fixed_load=False)
+        assert found == pytest.approx(expected, abs=0.001)
+
+
+# Between the wavelengths
+
+
+def test_between_wavelengths_it_is_interpolated_and_beyond_it_is_the_last_or_one():
+    position, profile = np.linspace(-1.3, 1.3, 53), profile_at(HEAVY)
+    wavelengths = 2.0 * 1.2 ** -np.arange(8.0)
+    known = np.stack([WaveResponse.of(profile, one).transfer(1.0, position) for one in wavelengths])
+    np.testing.assert_allclose(at_wavelengths(wavelengths, wavelengths, known, position), known)
+    between = WaveResponse.of(profile, 1.1).transfer(1.0, position)
+    found = at_wavelengths(np.array([1.1, 3.0, 0.1]), wavelengths, known, position)
+    np.testing.assert_allclose(found[0], between, atol=0.01)
+    inside = np.abs(position) <= 1.0
+    np.testing.assert_allclose(found[1, inside], known[0, inside])
+    np.testing.assert_array_equal(found[2], 1.0)
