@@ -25,10 +25,10 @@ def amplitude_ratio(wavelength: Values, moes_load: Values, moes_material: Values
 
     Notes
     -----
-    For transverse waves in pure rolling, under a full film. Read in transcription; its values follow
-    the table of the source, which begins at M = 100, L = 11. Below M = 5 it is an extrapolation, and
-    wrong: at the paper's points waves shorter than the half-width lose up to 22 % by it, and at most
-    5 % by Reynolds' equation (`lube.ehl.response`).
+    For transverse waves in pure rolling, under a full film. Read in transcription; its values
+    follow the table of the source, which begins at M = 100, L = 11. Below M = 5 it is an
+    extrapolation, and wrong: at the paper's points waves shorter than the half-width lose up to
+    22 % by it, and at most 5 % by Reynolds' equation (`lube.ehl.response`).
 
     References
     ----------
