@@ -115,7 +115,7 @@ STUDIES = {
     "corrections": _small(
         "corrections",
         film_formulas=["paper", "dowson-higginson-minimum"],
-        inlet_shear_heating="gupta-1992",
+        inlet_shear_heating="zhu-cheng-1988",
         inlet_meniscus="0.4 mm",
         operating_grid=_grid([400, 1600], [100, 200], [60, 80], [0, 1]),
         traces=[_trace(1600, 100, 80, slide_to_roll_ratio=1)],
@@ -125,7 +125,7 @@ STUDIES = {
         "unknown",
         film_shape="computed",
         film_formulas=["paper", "computed"],
-        inlet_shear_heating="gupta-1992",
+        inlet_shear_heating="zhu-cheng-1988",
         operating_grid=_grid([800, 1600], [100, 60_000], [40, 80], [0, 1]),
         traces=[
             _trace(1600, 60_000, 40, slide_to_roll_ratio=1),

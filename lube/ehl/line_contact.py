@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
-import scipy.optimize
 from threadpoolctl import ThreadpoolController
 
 from lube.ehl.deflection import deflection_matrix
@@ -15,7 +14,7 @@ from lube.ehl.reynolds import HERTZ_LOAD, DiscreteContact
 from lube.errors import LubeError, RangeError
 from lube.physics.dimensionless import moes_numbers
 from lube.physics.pressure_laws import PRESSURE_LAWS, ROELANDS_VISCOSITY, dowson_higginson_density
-from lube.physics.regimes import moes_asymptotes
+from lube.physics.regimes import asymptotic_film
 from lube.types import Array, Values
 
 log = logging.getLogger(__name__)
@@ -100,9 +99,7 @@ class LineContact:
     def film_guess(self) -> float:
         """Central film H, roughly: the asymptote of its regime (`lube.physics.regimes`)."""
         numbers = moes_numbers(self.load, self.speed, self.material)
-        rigid_iso, rigid_piezo, elastic_iso, elastic_piezo = moes_asymptotes(*numbers)
-        film = max(rigid_iso, elastic_iso, min(rigid_piezo, elastic_piezo))
-        return float(film * np.sqrt(2.0 * self.speed) / self.half_width**2)
+        return float(asymptotic_film(*numbers) * np.sqrt(2.0 * self.speed) / self.half_width**2)
 
 
 @dataclass(frozen=True)
@@ -158,13 +155,14 @@ class FilmProfile:
         There no pressure drives oil any more, and what the surfaces drag is all that flows. The
         nodes say it no better than by their distance.
         """
+        from scipy.optimize import brentq  # slow to import
 
         def beyond(position):
             return self.scaled_gap(np.array([position])).item() - self.flux[0]
 
         middle = 0.5 * (self.nodes[1:] + self.nodes[:-1])
         thinnest = middle[np.argmin(self.scaled_gap(middle))]
-        return float(scipy.optimize.brentq(beyond, thinnest, self.nodes[-1]))
+        return float(brentq(beyond, thinnest, self.nodes[-1]))
 
     @cached_property
     def central_gap(self) -> float:

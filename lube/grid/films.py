@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -11,8 +12,8 @@ from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile, profiles_of
 from lube.grid.film_profiles import film_positions, sampled
 from lube.physics import dimensionless, hertz
-from lube.physics.inlet_heating import inlet_shear_heating_factor
-from lube.physics.regimes import regime
+from lube.physics.inlet_heating import heating_factor, thermal_loading
+from lube.physics.regimes import asymptotic_film, regime
 
 log = logging.getLogger(__name__)
 
@@ -64,7 +65,8 @@ def film_at(
         groups = FilmGroups.at(lubricant, rollers, force, contact, inlet_meniscus)
         table = contact.merge(_regime(groups), join="exact")
         table = table.merge(_film(chosen, rollers, groups, table), join="exact")
-        factor = _heating_factor(lubricant, contact, slide_to_roll_ratio)
+        heat = inlet_shear_heating, lubricant, contact, groups, slide_to_roll_ratio
+        factor = _heating_factor(*heat)
         if inlet_shear_heating != "none":
             for name in ("film_thickness", "lambda_ratio"):
                 table[name] = table[name] * factor
@@ -76,18 +78,19 @@ def film_at(
     return table
 
 
-def _heating_factor(lubricant, contact, slide_to_roll_ratio):
-    film_modulus = 2.0 * contact["reduced_modulus"]
-    return xr.apply_ufunc(
-        inlet_shear_heating_factor,
+def _heating_factor(model, lubricant, contact, groups, slip):
+    loading = thermal_loading(
         lubricant["dynamic_viscosity"],
         lubricant["temperature_viscosity_coefficient"],
         contact["entrainment_speed"],
         lubricant["thermal_conductivity"],
-        contact["hertz_pressure"] / film_modulus,
-        slide_to_roll_ratio,
-        join="exact",
     )
+    pressure = contact["hertz_pressure"] / (2.0 * contact["reduced_modulus"])
+    numbers = xr.apply_ufunc(asymptotic_film, *groups.moes_numbers, join="exact")
+    film = numbers * np.sqrt(2.0 * groups.speed)
+    film = film * (contact["reduced_radius"] / contact["contact_half_width"]) ** 2
+    arguments = loading, slip, pressure, film
+    return xr.apply_ufunc(partial(heating_factor, model), *arguments, join="exact")
 
 
 def _warn(factor):

@@ -54,6 +54,19 @@ def moes_asymptotes(moes_load: Values, moes_material: Values) -> tuple[Values, .
     )
 
 
+def asymptotic_film(moes_load: Values, moes_material: Values) -> Values:
+    """Film of the asymptote that holds, over R* (2U)^0.5; arguments as of `moes_asymptotes`.
+
+    Examples
+    --------
+    >>> float(asymptotic_film(1.0, 1.0))
+    3.0
+    """
+    rigid_iso, rigid_piezo, elastic_iso, elastic_piezo = moes_asymptotes(moes_load, moes_material)
+    piezoviscous = np.minimum(rigid_piezo, elastic_piezo)
+    return np.maximum(np.maximum(rigid_iso, elastic_iso), piezoviscous)[()]
+
+
 def regime(moes_load: Values, moes_material: Values) -> np.ndarray:
     r"""Regime of lubrication: the one whose asymptote the film follows.
 

@@ -61,11 +61,11 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
             f"meniscus: got one {meniscus.min():g} half-widths before the line of centres, inside "
             "the contact, need more than 1"
         )
-    wanted, _ = _inlet(np.log(film), film, np.inf)
+    wanted, _ = inlet_integral(np.log(film), film, np.inf)
     log_film = np.log(film)
     # The integral's logarithm is concave in that of the film, so Newton's steps do not overshoot.
     for _ in range(_STEPS):
-        found, slope = _inlet(log_film, film, meniscus)
+        found, slope = inlet_integral(log_film, film, meniscus)
         step = (wanted - found) / slope
         log_film = log_film + step
         if np.nanmax(np.abs(step), initial=0.0) < 1e-12:
@@ -73,7 +73,7 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
     return (np.exp(log_film) / film)[()]
 
 
-def _inlet(log_film: Array, flooded: Array, meniscus: Values) -> tuple[Array, Array]:
+def inlet_integral(log_film: Array, flooded: Array, meniscus: Values) -> tuple[Array, Array]:
     """Logarithm of the inlet's integral, and its slope over that of the film."""
     # Where the gap is as high as the film: it grows as d^1.5 near the contact, as d^2 far off.
     scales = np.log(flooded) * np.array([[2.0 / 3.0], [0.5]]).reshape(2, *(1,) * flooded.ndim)

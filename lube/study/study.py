@@ -101,8 +101,9 @@ class Study(StrictModel):
     equation, with the gap outside the contact
     """
     inlet_shear_heating: Literal[INLET_HEATING] = "none"
-    """formula by which heating of the oil at the inlet thins the film, the more so the more the
-    rollers slip: that of Gupta et al. (1992)
+    """how heating of the oil at the inlet thins the film, the more so the more the rollers slip: by
+    the formula of Zhu and Cheng (1988) or that of Wilson and Sheu (1983), which differ with slip,
+    or by the equation behind the latter
     """
     inlet_meniscus: _Meniscus = "none"
     """distance before the line of centres at which the oil begins, more than the half-width of the

@@ -21,7 +21,7 @@ POINT = {"force": 1600.0, "speed": 100.0, "temperature": 80.0}
 REALISATIONS = 9  # from eight on, NumPy sums pairwise
 
 
-CORRECTED = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 0.4e-3}
+CORRECTED = {"inlet_shear_heating": "zhu-cheng-1988", "inlet_meniscus": 0.4e-3}
 
 
 @pytest.fixture(scope="module")

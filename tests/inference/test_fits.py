@@ -10,7 +10,7 @@ from lube.inference.fits import _lambda_ratios
 from lube.physics.starvation import starvation_factor
 from lube.study.oil_properties import lubricant_table
 
-CORRECTED = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 0.4e-3}
+CORRECTED = {"inlet_shear_heating": "zhu-cheng-1988", "inlet_meniscus": 0.4e-3}
 FORMULAS = ["paper", "moes", "computed"]
 
 

@@ -130,20 +130,19 @@ def test_its_contacts_are_those_of_the_contact_stage(
 
 @pytest.mark.parametrize("deformation", ["none", "venner-1997"])
 def test_under_films_with_a_shape_too(lines_of, study, with_rig, shaped_film, deformation):
-    """The contact stage looks at some windows, and rounds flattened lines otherwise."""
-    changed = with_rig(
-        study.model_copy(update={"film_shape": "computed", "roughness_deformation": deformation}),
-        revolutions=1,
-    )
+    """The contact stage looks at some windows, and rounds flattened lines otherwise.
+
+    Under so weak a layer contact is frequent enough that some windows know it."""
+    weak = study.boundary_layer.model_copy(update={"shear_strength": 2e5})
+    choices = {"film_shape": "computed", "roughness_deformation": deformation}
+    changed = with_rig(study.model_copy(update=choices | {"boundary_layer": weak}), revolutions=1)
     lines, gap = lines_of(changed), Gap("computed", deformation)
-    found = contact_statistics(lines, shaped_film, study.boundary_layer, gap=gap)[
-        "breakthrough_probability"
-    ]
+    found = contact_statistics(lines, shaped_film, weak, gap=gap)["breakthrough_probability"]
     points = operating_points(shaped_film.isel(film_formula=0), 0.0)
     touched = [np.mean(one.contact > 0) for _, _, one in run(lines, changed, points)]
     expected = found.isel(film_formula=0).values.ravel()
-    np.testing.assert_allclose(touched, expected, rtol=0.1, atol=5e-4)
-    assert max(touched) > 0.003
+    np.testing.assert_allclose(touched, expected, rtol=0.05, atol=5e-4)
+    assert max(touched) > 0.03
 
 
 @pytest.mark.parametrize(("drift", "kept"), [(0.3, 0.7**0.5), (1.0, 0.0)])

@@ -149,7 +149,7 @@ def corrected(**corrections):
 
 
 def test_inlet_shear_heating_thins_the_film_by_its_factor_at_each_slip():
-    cold, hot = corrected(), corrected(inlet_shear_heating="gupta-1992")
+    cold, hot = corrected(), corrected(inlet_shear_heating="zhu-cheng-1988")
     schema.check(hot, "film")
     assert hot["film_thickness"].dims == schema.CONTACT_DIMS
     factor = hot["inlet_shear_heating_factor"]
@@ -170,7 +170,7 @@ def test_a_meniscus_thins_the_film_by_its_factor_before_heating_does():
     factor = starved["starvation_factor"]
     assert (factor < 0.98).all() and (factor.diff("force") < 0.0).all()
     np.testing.assert_allclose(starved["film_thickness"], flooded["film_thickness"] * factor, 1e-14)
-    both = corrected(inlet_shear_heating="gupta-1992", inlet_meniscus=0.4e-3)
+    both = corrected(inlet_shear_heating="zhu-cheng-1988", inlet_meniscus=0.4e-3)
     np.testing.assert_array_equal(both["starvation_factor"], factor)
     expected = starved["film_thickness"] * both["inlet_shear_heating_factor"]
     np.testing.assert_allclose(both["film_thickness"], expected.transpose(*schema.CONTACT_DIMS))
@@ -190,7 +190,9 @@ def test_a_starved_computed_film_is_that_of_the_profile():
 
 def test_beyond_the_range_of_the_heating_formula_the_film_is_not_known(caplog):
     fast = [100.0, 1e6]
-    table = film_table(oil(), ROLLERS, [1600.0], fast, ["paper"], inlet_shear_heating="gupta-1992")
+    table = film_table(
+        oil(), ROLLERS, [1600.0], fast, ["paper"], inlet_shear_heating="zhu-cheng-1988"
+    )
     slow, unknown = (table["film_thickness"].sel(speed=speed) for speed in fast)
     assert slow.notnull().all() and unknown.isnull().all()
     assert "the film is not known at 5 of 10 conditions" in caplog.text
@@ -200,7 +202,7 @@ def test_each_record_is_heated_by_its_own_slip():
     rows = {"force": [400.0, 1600.0], "speed": [200.0, 100.0], "slide_to_roll_ratio": [2.0, -1.0]}
     rows |= {"temperature": [40.0, 40.0], "lubricant": [oil()["lubricant"].values[0]] * 2}
     experiment = xr.Dataset({name: ("record", values) for name, values in rows.items()})
-    corrections = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 0.4e-3}
+    corrections = {"inlet_shear_heating": "zhu-cheng-1988", "inlet_meniscus": 0.4e-3}
     found = film_at_records(experiment, oil(), ROLLERS, NAMES, **corrections)
     table = corrected(**corrections).isel(lubricant=0).sel(temperature=40.0)
     assert found["inlet_meniscus"] == 0.4e-3

@@ -105,7 +105,7 @@ def test_threads_change_nothing(slipping, files):
 
 
 def test_heating_thins_the_film_that_answers(busy_study, monkeypatch):
-    study = study_with(busy_study, inlet_shear_heating="gupta-1992")
+    study = study_with(busy_study, inlet_shear_heating="zhu-cheng-1988")
     files = made(study, ("lubricant", "film"))
     central, solve = [], WaveResponse.of.__func__
 

@@ -68,9 +68,9 @@ def test_the_force_of_a_record_needs_a_contact_that_the_grid_resolves():
 def test_the_papers_film_is_flat_and_not_corrected_and_another_asks_for_what_it_needs(paper_with):
     plain = {"with_shape": False, "inlet_shear_heating": "none", "inlet_meniscus": None}
     assert load_study(PAPER).film_model == plain
-    changes = ("inlet_shear_heating", "gupta-1992"), ("inlet_meniscus", "0.4 mm")
+    changes = ("inlet_shear_heating", "zhu-cheng-1988"), ("inlet_meniscus", "0.4 mm")
     study = load_study(paper_with(*changes))
-    heated = {"inlet_shear_heating": "gupta-1992", "inlet_meniscus": 4e-4}
+    heated = {"inlet_shear_heating": "zhu-cheng-1988", "inlet_meniscus": 4e-4}
     assert study.film_model == plain | heated
     # So is the force of a record.
     with pytest.raises(StudyError, match=r"got 400 µm, need more than .* the contact at 6000 N"):
@@ -131,7 +131,7 @@ MECHANICS = {"contact", "tail", "areal", "trace", "experiment"}
 # Those that are for pure rolling too.
 LAYER = MECHANICS | {"master", "height_distribution", "variants"}
 LINES = LAYER | {"roughness", "patch"}
-SPECTRUM = LINES | {"surface"}
+SPECTRUM = LINES | {"surface", "film_response"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 
 
@@ -139,8 +139,8 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
     for key, value, stages in [
         ("resistivity", "0.3 uohm*m", {"trace", "experiment"}),
         ("boundary_layer.critical_thickness", "6 nm", LAYER),
-        ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS | {"film"}),
-        ("inlet_shear_heating", "gupta-1992", {"film"}),
+        ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS | {"film", "film_response"}),
+        ("inlet_shear_heating", "zhu-cheng-1988", {"film"}),
         ("inlet_meniscus", "0.4 mm", {"film"}),
         ("revolutions", 3, {"contact"}),
         ("seed", 1, LINES),

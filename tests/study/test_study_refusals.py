@@ -44,7 +44,7 @@ CORRECTIONS = [
     ("inlet_meniscus", "0.4", "got '0.4', need a number with its unit, such as '1 m', or none"),
     ("inlet_meniscus", "far", "or none"),
     ("inlet_meniscus", "-1 mm", "got -1 mm, need a value above 0 m, or none"),
-    ("inlet_shear_heating", "gupta", "need 'none' or 'gupta-1992'"),
+    ("inlet_shear_heating", "gupta", "'zhu-cheng-1988'"),
 ]
 
 COUNTS = [
