@@ -256,6 +256,12 @@ _ROWS = (
         parallel=True,
     ),
     Stage(
+        "heating_plane",
+        "heating at the inlet by every model of it",
+        inputs=("lubricant", "film"),
+        target="computed",
+    ),
+    Stage(
         "film_plane",
         "computed film over Moes' numbers, some seconds a lubricant",
         inputs=("lubricant",),

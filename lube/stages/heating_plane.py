@@ -1,0 +1,60 @@
+"""The heating plane stage: how heating at the inlet thins the film, by every model of it."""
+
+import numpy as np
+import xarray as xr
+
+from lube.physics.inlet_heating import INLET_HEATING, heating_factor, thermal_loading
+from lube.physics.regimes import asymptotic_film
+from lube.schema import FILES, label
+from lube.study.study import Study
+from lube.types import Datasets
+
+LOADINGS = np.geomspace(1e-3, 10.0, 41)
+"""Levels of the thermal loading."""
+SLIPS = np.linspace(0.0, 2.0, 41)
+"""Levels of the slide-to-roll ratio."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``heating_plane.nc``; see `lube.stages`."""
+    return heating_plane(inputs["lubricant"], inputs["film"])
+
+
+def heating_plane(lubricant: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
+    """Tabulate the factors of heating at the inlet over thermal loading and slip.
+
+    Parameters
+    ----------
+    lubricant, film : xarray.Dataset
+        Datasets of these kinds. The pressure and the film on which a factor depends a little are
+        those of the middle force, speed and temperature and the first lubricant.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``heating_plane`` file of `lube.schema`.
+    """
+    middle = {name: film.sizes[name] // 2 for name in ("temperature", "speed", "force")}
+    point = film.isel(middle | {"lubricant": 0})
+    pressure = (0.5 * point["hertz_pressure"] / point["reduced_modulus"]).item()
+    # U = (W / M)^2 / 2 with W = pi/8 (a / R*)^2, so that the film over a^2 / R* is:
+    number = asymptotic_film(point["moes_load"].item(), point["moes_material"].item())
+    thickness = number * np.pi / 8.0 / point["moes_load"].item()
+    models = INLET_HEATING[1:]
+    plane = LOADINGS[:, None], SLIPS, pressure, thickness
+    factors = [heating_factor(model, *plane) for model in models]
+    oil = [lubricant[name] for name in ("dynamic_viscosity", "temperature_viscosity_coefficient")]
+    loading = thermal_loading(*oil, film["entrainment_speed"], lubricant["thermal_conductivity"])
+    kind = FILES["heating_plane"]
+    table = {
+        "inlet_shear_heating_factor": (kind["inlet_shear_heating_factor"].dims, factors),
+        "relative_hertz_pressure": pressure,
+        "relative_film": thickness,
+        "operating_loading": loading.transpose(*kind["operating_loading"].dims),
+    }
+    levels = {
+        "heating_model": list(models),
+        "thermal_loading": LOADINGS,
+        "slide_to_roll_ratio": SLIPS,
+    }
+    return label(xr.Dataset(table, levels).drop_vars("force", errors="ignore"), "heating_plane")
