@@ -17,7 +17,8 @@ and from the end of the film on, whose motion is of second order. The load is fi
 give way by :math:`\hat h_0`.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -52,11 +53,6 @@ class WaveResponse:
 
     profile: FilmProfile
     wavelength: float
-    _discrete: DiscreteContact = field(init=False, repr=False)
-
-    def __post_init__(self):
-        discrete = DiscreteContact(self.profile.contact, self.profile.nodes)
-        object.__setattr__(self, "_discrete", discrete)
 
     @classmethod
     def of(cls, profile: FilmProfile, wavelength: float, fineness: float = 1.0) -> "WaveResponse":
@@ -109,9 +105,8 @@ class WaveResponse:
         :math:`\exp(i k c X)`, within a cell. So a wave that the oil carries through the contact
         keeps its height and phase on any nodes, and only what pressure does to it is approximated.
         """
-        wavenumber, discrete = 2.0 * np.pi / self.wavelength, self._discrete
-        flow, middle = discrete.flow(self.profile.pressure, self.profile.offset), discrete.middle
-        film = np.flatnonzero(self.profile.pressure[1:-1] > 0.0)
+        discrete, flow, film, by_pressure = self._linearised
+        wavenumber, middle = 2.0 * np.pi / self.wavelength, discrete.middle
         phase = 1j * wavenumber * surface_speed * np.diff(self.profile.nodes) / 2.0
         # What is stored on either side of a node, in half a cell each, times i k c.
         ahead, behind = 1.0 - np.exp(-phase[1:]), np.exp(phase[:-1]) - 1.0
@@ -121,8 +116,7 @@ class WaveResponse:
             return (np.diff(flux, axis=0) - stored)[film]
 
         matrix = np.zeros((film.size + 1, film.size + 1), complex)
-        by_pressure = discrete.flux_by_pressure(flow), discrete.drag_by_pressure(flow)
-        matrix[:-1, :-1] = balance(*(each[:, film + 1] for each in by_pressure))
+        matrix[:-1, :-1] = balance(*by_pressure)
         matrix[:-1, -1] = balance(flow.by_gap, flow.drag_by_gap)
         matrix[-1] = np.append(discrete.weight[film + 1], 0.0) if fixed_load else 0.0
         matrix[-1, -1] = 0.0 if fixed_load else 1.0
@@ -132,6 +126,15 @@ class WaveResponse:
             change = np.linalg.solve(matrix, right)
             deflection = deflection_matrix(position, self.profile.nodes)[:, film + 1] @ change[:-1]
         return 1.0 + (change[-1] + deflection) * np.exp(-1j * wavenumber * position)
+
+    @cached_property
+    def _linearised(self):
+        """Reynolds' equation about the steady film: inner nodes in it, and their derivatives."""
+        discrete = DiscreteContact(self.profile.contact, self.profile.nodes)
+        flow = discrete.flow(self.profile.pressure, self.profile.offset)
+        film = np.flatnonzero(self.profile.pressure[1:-1] > 0.0)
+        by_pressure = discrete.flux_by_pressure(flow), discrete.drag_by_pressure(flow)
+        return discrete, flow, film, [each[:, film + 1] for each in by_pressure]
 
 
 def at_wavelengths(wanted: Array, wavelengths: Array, transfer: Array, position: Array) -> Array:

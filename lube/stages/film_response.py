@@ -25,7 +25,7 @@ SHORTEST = 0.05
 """Shortest wave that is solved for, over the half-width of the contact."""
 UNCHANGED = 0.003
 """Largest change by the oil of a wave that is taken for none, of shorter ones too."""
-ROLLING_RATIO, SLIDING_RATIO = 1.2, 1.1
+ROLLING_RATIO, SLIDING_RATIO = 1.2, 1.15
 """Largest ratio of neighbouring wavelengths. With slip the response changes faster with them: what
 the oil carries through the contact runs ahead of the wave, or falls behind."""
 POSITIONS = 0.02, 1.06
