@@ -144,6 +144,16 @@ class FilmProfile:
         return np.interp(position, self.nodes, self.pressure, left=0.0, right=0.0)
 
     @cached_property
+    def middle(self) -> Array:
+        """Positions midway between the nodes, where the equation holds."""
+        return 0.5 * (self.nodes[1:] + self.nodes[:-1])
+
+    @cached_property
+    def middle_gap(self) -> Array:
+        """Scaled gap midway between the nodes."""
+        return self.scaled_gap(self.middle)
+
+    @cached_property
     def end(self) -> int:
         """Index of the last node with pressure; the film ends between it and the next."""
         return int(np.flatnonzero(self.pressure)[-1])
@@ -152,23 +162,21 @@ class FilmProfile:
     def film_end(self) -> float:
         """Position over the half-width at which the film ends.
 
-        There no pressure drives oil any more, and what the surfaces drag is all that flows. The
-        nodes say it no better than by their distance.
+        There the surfaces alone carry the whole mass flux. The last node with pressure lies up to a
+        cell before it.
         """
         from scipy.optimize import brentq  # slow to import
 
         def beyond(position):
             return self.scaled_gap(np.array([position])).item() - self.flux[0]
 
-        middle = 0.5 * (self.nodes[1:] + self.nodes[:-1])
-        thinnest = middle[np.argmin(self.scaled_gap(middle))]
+        thinnest = self.middle[np.argmin(self.middle_gap)]
         return float(brentq(beyond, thinnest, self.nodes[-1]))
 
     @cached_property
     def central_gap(self) -> float:
         """Scaled gap at the line of centres, linear between the two nearest places."""
-        middle = 0.5 * (self.nodes[1:] + self.nodes[:-1])
-        return float(np.interp(0.0, middle, self.scaled_gap(middle)))
+        return float(np.interp(0.0, self.middle, self.middle_gap))
 
     @cached_property
     def central_film(self) -> float:
@@ -177,16 +185,14 @@ class FilmProfile:
         By the cubic through the four nearest places midway between nodes, where the equation holds:
         at a node the pressure's kink dents a thin film.
         """
-        middle = 0.5 * (self.nodes[1:] + self.nodes[:-1])
-        first = int(np.searchsorted(middle, 0.0)) - 2
-        near = middle[first : first + 4]
+        first = int(np.searchsorted(self.middle, 0.0)) - 2
+        near = self.middle[first : first + 4]
         return float(np.polyfit(near, self.film_at(near), 3)[-1])
 
     @cached_property
     def minimum_film(self) -> float:
         """Least film over R*."""
-        middle = 0.5 * (self.nodes[1:] + self.nodes[:-1])
-        thinnest = middle[np.argmin(self.scaled_gap(middle))]
+        thinnest = self.middle[np.argmin(self.middle_gap)]
         near = np.searchsorted(self.nodes, thinnest) + np.array([-3, 2])
         low, high = self.nodes[np.clip(near, 0, self.nodes.size - 1)]
         return float(self.film_at(np.linspace(low, high, 201)).min())
@@ -200,7 +206,7 @@ class FilmProfile:
     @cached_property
     def mass_flux_defect(self) -> float:
         """Largest difference of the mass flux from that at the centre, over it."""
-        central = np.interp(0.0, 0.5 * (self.nodes[1:] + self.nodes[:-1]), self.flux)
+        central = np.interp(0.0, self.middle, self.flux)
         return float(np.abs(self.flux[: self.end] / central - 1.0).max())
 
     @cached_property
@@ -375,8 +381,7 @@ def _check(contact, meniscus):
 def _fit(profile, meniscus, flooded, fineness):
     """Nodes fitted to a solution, and its central film."""
     contact = profile.contact
-    gap = profile.scaled_gap(0.5 * (profile.nodes[1:] + profile.nodes[:-1]))
-    film = profile.central_gap
+    gap, film = profile.middle_gap, profile.central_gap
     end = inlet_end(profile.offset, flooded * film) if meniscus is None else -meniscus
     share = np.abs(profile.pressure_flow / profile.flux)
     profiles = profile.pressure, contact.log_viscosity(profile.pressure)[0], gap, share

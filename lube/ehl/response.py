@@ -31,12 +31,13 @@ from lube.types import Array
 POINTS_A_WAVE = 16
 """Nodes in a wave, where the gap is not wide."""
 WIDE = 6.0
-"""Gap over the central film from which on fewer nodes are enough: there hardly any pressure
-arises."""
+"""Gap, over the central film, beyond which the mesh need not resolve the wave: such a wide gap
+builds up hardly any pressure."""
 _GROWTH = 0.15
 """Growth of the cells per length in the wide gap."""
 _LEAST, _ENOUGH = 3.0, 8.0
-"""Nodes in a wave below which it is left out, and from which on it is there in full."""
+"""With fewer nodes in a wave than the first number, the wave is left out; with more than the
+second, it has its full amplitude."""
 
 
 @dataclass(frozen=True)
@@ -172,8 +173,7 @@ def at_wavelengths(wanted: Array, wavelengths: Array, transfer: Array, position:
 def _resolving_nodes(profile, step):
     """Nodes of a film, with others between them where they are further apart than a step."""
     nodes, size = profile.nodes, np.diff(profile.nodes)
-    middle = 0.5 * (nodes[1:] + nodes[:-1])
-    gap = profile.scaled_gap(middle)
+    middle, gap = profile.middle, profile.middle_gap
     wide = middle[(middle < 0.0) & (gap > WIDE * profile.central_gap)]
     low, high = wide[-1] if wide.size else nodes[0], nodes[profile.end + 1]
     largest = step + _GROWTH * np.maximum(0.0, np.maximum(low - middle, middle - high))
@@ -182,6 +182,9 @@ def _resolving_nodes(profile, step):
 
 
 def _resolved(points):
-    """Share of a wave with so many nodes that is looked at: a wave of too few would be another."""
+    """Part of its amplitude with which a wave of so many nodes enters.
+
+    On too few nodes a wave would look like a longer one.
+    """
     part = np.clip((points - _LEAST) / (_ENOUGH - _LEAST), 0.0, 1.0)
     return part * part * (3.0 - 2.0 * part)

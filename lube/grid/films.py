@@ -13,7 +13,7 @@ from lube.ehl.line_contact import FilmProfile, profiles_of
 from lube.grid.film_profiles import film_positions, sampled
 from lube.physics import dimensionless, hertz
 from lube.physics.inlet_heating import heating_factor, thermal_loading
-from lube.physics.regimes import asymptotic_film, regime
+from lube.physics.regimes import asymptotic_gap, regime
 
 log = logging.getLogger(__name__)
 
@@ -86,9 +86,7 @@ def _heating_factor(model, lubricant, contact, groups, slip):
         lubricant["thermal_conductivity"],
     )
     pressure = contact["hertz_pressure"] / (2.0 * contact["reduced_modulus"])
-    numbers = xr.apply_ufunc(asymptotic_film, *groups.moes_numbers, join="exact")
-    film = numbers * np.sqrt(2.0 * groups.speed)
-    film = film * (contact["reduced_radius"] / contact["contact_half_width"]) ** 2
+    film = xr.apply_ufunc(asymptotic_gap, *groups.moes_numbers, join="exact")
     arguments = loading, slip, pressure, film
     return xr.apply_ufunc(partial(heating_factor, model), *arguments, join="exact")
 

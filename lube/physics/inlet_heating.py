@@ -14,8 +14,8 @@ from lube.types import Array, Values
 INLET_HEATING = ("none", "zhu-cheng-1988", "wilson-sheu-1983", "computed")
 """How a study may take the heating into account."""
 _REACH, _NEAREST, _STEPS = 1e3, 1e-7, 200
-"""Of the integration towards the contact: first and last distance from it, over the scale of the
-inlet, and the number of steps."""
+"""The integration goes from the first of these distances before the contact to the second, both
+over the length of the inlet, in so many steps."""
 
 
 def thermal_loading(

@@ -67,6 +67,19 @@ def asymptotic_film(moes_load: Values, moes_material: Values) -> Values:
     return np.maximum(np.maximum(rigid_iso, elastic_iso), piezoviscous)[()]
 
 
+def asymptotic_gap(moes_load: Values, moes_material: Values) -> Values:
+    r"""Film of the asymptote that holds, over a^2 / R*; arguments as of `moes_asymptotes`.
+
+    .. math:: \frac{a^2}{R^{*2}} = \frac{8 W}{\pi}, \qquad M = \frac{W}{\sqrt{2U}}
+
+    Examples
+    --------
+    >>> f"{asymptotic_gap(1.0, 1.0):.3f}"
+    '1.178'
+    """
+    return asymptotic_film(moes_load, moes_material) * np.pi / (8.0 * moes_load)
+
+
 def regime(moes_load: Values, moes_material: Values) -> np.ndarray:
     r"""Regime of lubrication: the one whose asymptote the film follows.
 

@@ -86,7 +86,7 @@ def film_responses(
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = hertz_contact(rollers, levels["force"], levels["speed"])
         groups = FilmGroups.at(lubricant, rollers, levels["force"], contact, inlet_meniscus)
-        factor = film["inlet_shear_heating_factor"] if is_heated else xr.ones_like(groups.load)
+        factor = film["inlet_shear_heating_factor"]
         solved = _thinned(groups, factor) if is_heated else groups.profiles()
     narrowest = contact["contact_half_width"].min().item()
     waves = wavelengths(spec, narrowest, SLIDING_RATIO if slips.any() else ROLLING_RATIO)
@@ -205,5 +205,5 @@ def _over_grid(found, shape, is_heated):
     found = found.reshape(*shape, *found.shape[1:])
     points = len(POINT_DIMS)
     if is_heated:  # each slip has its own films
-        return np.moveaxis(found[(slice(None),) * (points + 1) + (0,)], points + 1, 1)
+        return np.moveaxis(np.squeeze(found, points + 1), points + 1, 1)
     return np.moveaxis(found, (points, points + 1), (0, 1))

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from lube.physics.inlet_heating import INLET_HEATING, heating_factor, thermal_loading
-from lube.physics.regimes import asymptotic_film
+from lube.physics.regimes import asymptotic_gap
 from lube.schema import FILES, label
 from lube.study.study import Study
 from lube.types import Datasets
@@ -37,9 +37,7 @@ def heating_plane(lubricant: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
     middle = {name: film.sizes[name] // 2 for name in ("temperature", "speed", "force")}
     point = film.isel(middle | {"lubricant": 0})
     pressure = (0.5 * point["hertz_pressure"] / point["reduced_modulus"]).item()
-    # U = (W / M)^2 / 2 with W = pi/8 (a / R*)^2, so that the film over a^2 / R* is:
-    number = asymptotic_film(point["moes_load"].item(), point["moes_material"].item())
-    thickness = number * np.pi / 8.0 / point["moes_load"].item()
+    thickness = asymptotic_gap(point["moes_load"].item(), point["moes_material"].item())
     models = INLET_HEATING[1:]
     plane = LOADINGS[:, None], SLIPS, pressure, thickness
     factors = [heating_factor(model, *plane) for model in models]
@@ -57,4 +55,4 @@ def heating_plane(lubricant: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
         "thermal_loading": LOADINGS,
         "slide_to_roll_ratio": SLIPS,
     }
-    return label(xr.Dataset(table, levels).drop_vars("force", errors="ignore"), "heating_plane")
+    return label(xr.Dataset(table, levels), "heating_plane")
