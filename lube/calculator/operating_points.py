@@ -102,13 +102,13 @@ def film_in_si(
     speed: Amount,
     temperature: Amount,
     film_formula: str | Sequence[str],
-    film_shape: str = "flat",
+    gap: Gap = PLAIN,
+    slip: float = 0.0,
 ) -> xr.Dataset:
     """All variables of the film table in SI units, and the oil's.
 
-    Arguments as in `film` and `contact_probability`.
+    Arguments as in `film` and `ensemble`.
     """
-    gap = gap_of(film_shape)
     force, speed, temperature = _conditions(rollers, force, speed, temperature)
     if not temperature.dims:
         temperature = temperature.assign_coords(temperature=temperature)
@@ -116,17 +116,21 @@ def film_in_si(
     formulas = list(film_formula) if several else [film_formula]
     if not formulas or not all(isinstance(one, str) for one in formulas):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, gap.has_shape)
+    answers = {"slide_to_roll_ratio": slip}
+    if gap.is_answered:
+        answers["answered_lines"] = rollers.lines
+    conditions = force, speed, temperature
+    table = film_of_oil(oil, rollers.pair, *conditions, formulas, gap.has_shape, **answers)
     table = table.assign_coords(force=force, speed=speed)
-    dims = ("film_formula", "temperature", "speed", "force", "film_position")
-    table = table.transpose(*dims, missing_dims="ignore")
+    dims = ("film_formula", "temperature", "speed", "force")
+    table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if several else table.isel(film_formula=0)
 
 
-def film_of_oil(oil, pair, force, speed, temperature, formulas, with_shape=False) -> xr.Dataset:
+def film_of_oil(oil, pair, force, speed, temperature, formulas, *options, **answers) -> xr.Dataset:
     """Film table with the oil's viscosity; numbers in N, rpm and degC, over any dimensions."""
     properties = oil.at(temperature)
-    table = film_at(properties, pair, force, speed, formulas, with_shape)
+    table = film_at(properties, pair, force, speed, formulas, *options, **answers)
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
 
 
@@ -253,10 +257,12 @@ def contact_probability(
     film_shape : str, optional
         ``"flat"``, or ``"computed"`` from Reynolds' equation, a second for each operating point.
     roughness_deformation : str, optional
-        ``"none"``, or ``"venner-1997"``: the oil flattens the waves of the roughness.
+        ``"none"``; ``"computed"``: the oil answers the waves of the roughness by Reynolds'
+        equation, some seconds for each operating point; or ``"venner-1997"``: it flattens them by a
+        formula.
     slide_to_roll_ratio : float, optional
-        Difference of the surface speeds over their mean. It does not change the expected
-        probability, only the computing time and the scatter.
+        Difference of the surface speeds over their mean. It changes the computing time and the
+        scatter; the expected probability only if the oil answers the roughness by computation.
     realisations : int, optional
         Number of pairs of roughness lines.
     seed : int, optional
@@ -289,9 +295,9 @@ def contact_probability(
     >>> bool(found.tail_breakthrough_probability_lower > 0)
     True
     """
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, film_shape)
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     gap = gap_of(film_shape, roughness_deformation)
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, gap, slip)
     contact = ensemble(table, rollers, realisations, seed, slip, gap)
     on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
     return with_remarks(joined(table, contact, on_pairs), table, rollers)

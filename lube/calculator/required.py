@@ -137,10 +137,10 @@ def required_viscosity(
     rotation = single("speed", rotation_speed(speed, rollers.pair.first.radius))
     one = one_formula(film_formula)
 
-    def table(factors, film_shape="flat"):
+    def table(factors, gap=PLAIN):
         # The film depends on the product of viscosity and speed, so the speed is varied for both.
         speeds = rotation * factors, "rpm"
-        return film_in_si(rollers, oil, force, speeds, temperature, one, film_shape)
+        return film_in_si(rollers, oil, force, speeds, temperature, one, gap)
 
     search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
@@ -187,8 +187,8 @@ def required_speed(
     """
     one = one_formula(film_formula)
 
-    def table(speeds, film_shape="flat"):
-        return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, film_shape)
+    def table(speeds, gap=PLAIN):
+        return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, gap)
 
     search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
@@ -232,8 +232,8 @@ def required_temperature(
     """
     one = one_formula(film_formula)
 
-    def table(temperatures, film_shape="flat"):
-        return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, film_shape)
+    def table(temperatures, gap=PLAIN):
+        return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, gap)
 
     search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
@@ -281,11 +281,12 @@ def required_roughness(
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
     one = one_formula(film_formula)
-    film = film_in_si(rollers, oil, force, speed, temperature, one, film_shape)
+    chosen = gap_of(film_shape, roughness_deformation)
+    film = film_in_si(rollers, oil, force, speed, temperature, one, chosen)
     for name, size in film["film_thickness"].sizes.items():
         raise StudyError(f"{name}: got {size} values, need one")
     own = film["lambda_ratio"].item()
-    search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
+    search = _Search(rollers, share, realisations, seed, chosen)
 
     def gap(ratios):
         # Lines of s times the height break as the given ones do under the film over s.
@@ -326,7 +327,7 @@ class _Search:
 
         def gap(sought):
             here = np.interp(sought, ratios[known], known)
-            return table(np.interp(here, np.arange(levels.size), levels), self.gap.film_shape)
+            return table(np.interp(here, np.arange(levels.size), levels), self.gap)
 
         ends = ratios[known[[0, -1]]]
         films = self.films(whole["contact_half_width"].item(), gap, ends)

@@ -52,7 +52,10 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     runs = points * formulas * realisations
     records, refused = _records(study)
     oil = lubricant_table(study.lubricants, study.operating_grid.temperature)
-    grid, model = study.operating_grid, study.film_model | {"with_shape": False}
+    grid, model = (
+        study.operating_grid,
+        study.film_model | {"with_shape": False, "answered_lines": None},
+    )
     levels = grid.force, grid.speed, study.film_formulas[:1]
     film = film_table(oil, study.rough_rollers, *levels, slide_to_roll_ratio=study.slips, **model)
     question = film, study.line_spec, study.rough_rollers

@@ -1,16 +1,16 @@
 """Contact windows: what meets at some operating points, and how often it touches.
 
 The film of a window is flat and ends at the edges of the contact, or has the shape of the computed
-one. The lines reach the gap as drawn, or the oil flattens their long waves.
+one. The lines reach the gap as drawn, or the oil flattens or answers their waves.
 """
 
 import copy
 
 import numpy as np
-import scipy.fft
 import xarray as xr
 
-from lube.contact.window_films import window_films
+from lube.contact.waves import Waves, answered_window, answers_at
+from lube.contact.window_films import WindowFilm, window_films
 from lube.grid.discretise import (
     Layer,
     LineGrid,
@@ -21,11 +21,10 @@ from lube.grid.discretise import (
 )
 from lube.grid.gap import PLAIN, Gap
 from lube.kernels.motion import surface_position
-from lube.kernels.shaped import shaped_statistics, shaped_trace
+from lube.kernels.shaped import BLOCK_SHIFT, Window, as_drawn, node_count, phase_of, shaped_trace
 from lube.kernels.strips import strip_statistics, strip_trace
 from lube.kernels.whole_runs import whole_run_steps
-from lube.physics.flattening import amplitude_ratio
-from lube.surfaces.rare_contact import rare_contact, rare_contact_under
+from lube.surfaces.rare_contact import RarePair, UnevenWindow, rare_contact, rare_contact_under
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair, Values
 
@@ -89,12 +88,18 @@ class ContactWindows:
         if gap.has_shape:
             self._shapes[:] = window_films(film, grid)
             self.unknown |= [shape is None for shape in self._shapes]
+        self._answers = np.full((thickness.size, 2), None)
+        if gap.is_answered:
+            answers, _ = xr.broadcast(answers_at(film, gap.has_shape), spread[0])
+            self._answers = answers.transpose(*spread[0].dims, "roller").values.reshape(-1, 2)
+            self.unknown |= [answer is None for answer in self._answers[:, 0]]
         factor = layer_factor_of(grid, film["reduced_modulus"].item(), boundary_layer)
         self._factors = factor * np.broadcast_to(weaker, thickness.shape)
+        self._numbers, self._places = np.arange(thickness.size), {}
 
     def __getitem__(self, points: Array | slice) -> "ContactWindows":
         some = copy.copy(self)
-        names = ("_films", "_shapes", "_contacts", "_factors")
+        names = ("_films", "_shapes", "_answers", "_contacts", "_factors", "_numbers")
         for name in (*names, "thickness", "half_windows", "unknown"):
             setattr(some, name, getattr(self, name)[points])
         some.shape = some.unknown.shape
@@ -127,8 +132,8 @@ class ContactWindows:
         slip : float, optional
             Slide-to-roll ratio; the default is pure rolling.
         turns : float, optional
-            Revolutions of the roller with the faster surface; a single time step at least. Under a
-            film that is not flat only some of the time steps are looked at.
+            Revolutions of the roller with the faster surface; a single time step at least. If the
+            places of a window differ, only some of the time steps are looked at.
         begin : int, optional
             First time step.
 
@@ -141,15 +146,24 @@ class ContactWindows:
         """
         ratios = speed_ratios(slip)
         steps = max(round(turns * revolution(pair, ratios)), 1)
-        pair = _begun(pair, ratios, begin)
-        run = self._under_shaped_films if self._gap.has_shape else self._under_flat_films
-        counts = np.empty((self.size, 4))
-        is_general = not self._gap.is_plain
-        if is_general and ratios[0] == ratios[1] and pair[0].size == pair[1].size:
+        pair, counts = _begun(pair, ratios, begin), np.full((self.size, 4), np.nan)
+        are_alike = all(first is second for first, second in self._answers)
+        is_one = ratios[0] == ratios[1] and pair[0].size == pair[1].size and are_alike
+        if is_one and not self._gap.is_plain:
             pair = pair[0] + pair[1], np.zeros(1, np.int32)  # one line passes the contact
-        for lines, factor, here in self._in_contact(pair):
-            counts[here] = run(lines, ratios, steps, here, factor)
-        counts[self.unknown] = np.nan
+        if self._gap.is_uniform:
+            for lines, factor, here in self._under_flat_films(pair):
+                counts[here] = self._strips(lines, ratios, steps, here, factor)
+            counts[self.unknown] = np.nan
+            return counts
+        for point, surfaces, window in self._meetings(pair):
+            stride = max(1, (2 * self.half_windows[point] + 1) // WINDOWS_PER_WIDTH)
+            motion = ratios, steps, -(-steps // stride)
+            found = shaped_trace(surfaces, *motion, window, self._factors[point])
+            points, broken, _ = found.T
+            counts[point, :2] = np.count_nonzero(points), np.count_nonzero(broken)
+            counts[point, 2:] = found[:, 1:].sum(axis=0)
+            counts[point] /= len(found)
         return counts
 
     def trace(self, pair: Pair, slip: float = 0.0, begin: int = 0) -> Array:
@@ -168,15 +182,15 @@ class ContactWindows:
         ratios = speed_ratios(slip)
         steps = revolution(pair, ratios)
         broken = np.zeros((self.size, steps), np.int32)
-        for lines, factor, here in self._in_contact(_begun(pair, ratios, begin)):
-            if not self._gap.has_shape:
+        pair = _begun(pair, ratios, begin)
+        if self._gap.is_uniform:
+            for lines, factor, here in self._under_flat_films(pair):
                 films = self._films[here], self.half_windows[here]
                 broken[here] = strip_trace(lines, ratios, steps, *films, factor)
-                continue
-            for point in here[~self.unknown[here]]:
-                film = self._shapes[point].below(_highest(lines))
-                motion = lines, ratios, steps, steps
-                broken[point] = shaped_trace(*motion, film.film, film.before, factor)[:, 1]
+            return broken
+        for point, surfaces, window in self._meetings(pair):
+            found = shaped_trace(surfaces, ratios, steps, steps, window, self._factors[point])
+            broken[point] = found[:, 1]
         return broken
 
     def count_uncut(self, pair: Pair) -> Array:
@@ -198,7 +212,7 @@ class ContactWindows:
         """
         line = pair[0] + np.resize(pair[1], pair[0].size)
         shares = np.full(self.size, np.nan)
-        for (one,), factor, here in self._in_contact((line,)):
+        for (one,), factor, here in self._under_flat_films((line,)):
             films = self._films[here], self.half_windows[here]
             shares[here] = whole_run_steps(one, *films, factor) / line.size
         return np.where(self.unknown, np.nan, shares)
@@ -218,31 +232,54 @@ class ContactWindows:
             that are not flat as of `lube.surfaces.rare_contact.rare_contact_under`, shapes (2, P)
             and (4, P), NaN where the film is not known.
         """
-        if not self._gap.has_shape:
+        if self._gap.is_uniform:
             widths = 2 * self.half_windows + 1
             return rare_contact(spec, seed, number, self.thickness, widths, self._factors)
-        films = [shape.film.astype(float) for shape in self._shapes[~self.unknown]]
-        factors = self._factors[~self.unknown]
-        found = rare_contact_under(spec, seed, number, films, factors)
+        known = np.flatnonzero(~self.unknown)
+        places = [self._place(point, spec) for point in known]
+        pair = RarePair(spec, seed, number, max((one.film.size for one in places), default=1))
+        waves = [Waves(line, self._grid) for line in pair.lines] if self._gap.is_answered else []
+        nothing = np.zeros((2, 0), np.float32)
+        filtered = (
+            [wave.filtered(one) for wave, one in zip(waves, self._answers[point], strict=True)]
+            if waves
+            else (nothing, nothing)
+            for point in known
+        )
+        found = rare_contact_under(pair, places, filtered, self._factors[known])
         windows, runs = (np.full((len(each), self.size), np.nan) for each in found)
-        windows[:, ~self.unknown], runs[:, ~self.unknown] = found
+        windows[:, known], runs[:, known] = found
         return windows, runs
 
+    def _place(self, point, spec):
+        """Contact window of a point, in which lines are sampled."""
+        if not self._gap.is_answered:
+            return UnevenWindow(self._shapes[point].film.astype(float))
+        key = self._numbers[point]
+        if key not in self._places:
+            shape = self._shapes[point] or self._reached(point, 0)
+            film = shape.film.astype(float), shape.before
+            self._places[key] = answered_window(spec, *film, tuple(self._answers[point]))
+        return self._places[key]
+
     def _in_contact(self, pair):
-        """Yield the lines, flattened if need be, the layer's factor, and points with both alike."""
+        """Yield the lines, flattened if need be, and the points at which they are the same."""
         if not self._gap.is_flattened:
-            for factor in np.unique(self._factors):
-                yield pair, factor, np.flatnonzero(self._factors == factor)
+            yield pair, np.arange(self.size)
             return
         waves = [Waves(line, self._grid) for line in pair]
         contacts, inverse = np.unique(self._contacts, axis=0, return_inverse=True)
         for number, contact in enumerate(contacts):
             lines = tuple(one.flattened(*contact) for one in waves)
-            for factor in np.unique(self._factors[inverse.ravel() == number]):
-                alike = (inverse.ravel() == number) & (self._factors == factor)
-                yield lines, factor, np.flatnonzero(alike)
+            yield lines, np.flatnonzero(inverse.ravel() == number)
 
-    def _under_flat_films(self, lines, ratios, steps, points, factor):
+    def _under_flat_films(self, pair):
+        """Yield lines, a layer's factor, and the points at which both are the same."""
+        for lines, here in self._in_contact(pair):
+            for factor in np.unique(self._factors[here]):
+                yield lines, factor, here[self._factors[here] == factor]
+
+    def _strips(self, lines, ratios, steps, points, factor):
         films = np.stack([self._films[points], self.half_windows[points]])
         (films, half_windows), inverse = np.unique(films, axis=1, return_inverse=True)
         if lines[1].size == 1:
@@ -250,18 +287,44 @@ class ContactWindows:
         counts = strip_statistics(lines, ratios, steps, films, half_windows, factor)
         return (counts / steps)[inverse.ravel()]
 
-    def _under_shaped_films(self, lines, ratios, steps, points, factor):
-        known = ~self.unknown[points]
-        reached = [self._shapes[point].below(_highest(lines)) for point in points[known]]
-        strides = np.maximum(1, (2 * self.half_windows[points[known]] + 1) // WINDOWS_PER_WIDTH)
-        begin = np.cumsum([0, *(one.film.size for one in reached)])
-        joined = np.concatenate([np.zeros(0, np.int64), *(one.film for one in reached)])
-        centres = np.array([one.before for one in reached], np.int64)
-        counts = np.full((points.size, 4), np.nan)
-        counts[known] = shaped_statistics(
-            lines, ratios, steps, -(-steps // strides), (joined, begin, centres), factor
-        )
-        return counts
+    def _meetings(self, pair):
+        """Yield each known point, with the surfaces and the window that meet there."""
+        for lines, here in self._in_contact(pair):
+            drawn = [as_drawn(line) for line in lines]
+            waves = [Waves(line, self._grid) for line in lines] if self._gap.is_answered else []
+            alike = {}  # points with the same answers together: filtered lines take time and memory
+            for point in here[~self.unknown[here]]:
+                alike.setdefault(tuple(map(id, self._answers[point])), []).append(point)
+            for points in alike.values():
+                answers = self._answers[points[0]]
+                filtered = [wave.filtered(one) for wave, one in zip(waves, answers, strict=False)]
+                for point in points:
+                    yield point, *self._meeting(point, drawn, filtered)
+
+    def _meeting(self, point, surfaces, filtered):
+        """Surfaces and window of a point."""
+        highest = sum(surface.line.max() for surface in surfaces)
+        for answer, lines in zip(self._answers[point], filtered, strict=False):
+            highest += np.sum(np.abs(answer.shapes) * np.abs(lines).max(axis=0), axis=1).max()
+        film = self._reached(point, highest)
+        if not filtered:
+            return tuple(surfaces), Window(film.film, film.before, BLOCK_SHIFT)
+        shift = self._answers[point, 0].shift(self._grid.spacing)
+        window = Window(film.film, film.before, shift)
+        nodes = (np.arange(node_count(window)) << shift) - phase_of(window)
+        position = (film.before - nodes) * (self._grid.spacing / self._contacts[point, 0])
+        both = zip(surfaces, filtered, self._answers[point], strict=True)
+        return tuple(
+            surface._replace(filtered=lines, shapes=answer.at(position))
+            for surface, lines, answer in both
+        ), window
+
+    def _reached(self, point, highest):
+        """Film over the window of a point, as far as a height reaches it."""
+        if self._gap.has_shape:
+            return self._shapes[point].below(highest)
+        half_window = self.half_windows[point]
+        return WindowFilm(np.full(2 * half_window + 1, self._films[point]), half_window)
 
 
 def _begun(pair, ratios, begin):
@@ -270,48 +333,3 @@ def _begun(pair, ratios, begin):
         return pair
     positions = (surface_position(begin, ratio) for ratio in ratios)
     return tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))
-
-
-def _highest(lines):
-    return lines[0].max() + lines[1].max()
-
-
-class Waves:
-    """Waves of a line, each of which the oil can flatten.
-
-    Parameters
-    ----------
-    line : numpy.ndarray
-        Heights, shape (N,), height steps.
-    grid : LineGrid
-        Grid of the line. Waves shorter than those of its band, of the rounding to whole height
-        steps, are left out.
-    """
-
-    def __init__(self, line: Array, grid: LineGrid) -> None:
-        step = 2.0 * np.pi / (line.size * grid.spacing)
-        last = int(grid.q_max / step * (1.0 + 1e-9))
-        self._size = line.size
-        self._waves = scipy.fft.rfft(line.astype(float))[1 : last + 1]
-        self._wavelength = 2.0 * np.pi / (step * np.arange(1, last + 1))
-
-    def flattened(self, half_width: float, moes_load: float, moes_material: float) -> Array:
-        """Heights of the flattened line.
-
-        Parameters
-        ----------
-        half_width : float
-            Half-width of the contact, m.
-        moes_load, moes_material : float
-            M and L.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape (N,), int32 height steps.
-        """
-        kept = amplitude_ratio(self._wavelength / half_width, moes_load, moes_material)
-        spectrum = np.zeros(self._size // 2 + 1, complex)
-        spectrum[1 : kept.size + 1] = self._waves * kept
-        line = scipy.fft.irfft(spectrum, self._size, overwrite_x=True)
-        return np.rint(line).astype(np.int32)

@@ -11,6 +11,7 @@ import xarray as xr
 from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile, profiles_of
 from lube.grid.film_profiles import film_positions, sampled
+from lube.grid.film_responses import film_responses, thinned
 from lube.physics import dimensionless, hertz
 from lube.physics.inlet_heating import heating_factor, thermal_loading
 from lube.physics.regimes import asymptotic_gap, regime
@@ -28,6 +29,8 @@ def film_at(
     slide_to_roll_ratio: xr.DataArray | float = 0.0,
     inlet_shear_heating: str = "none",
     inlet_meniscus: float | None = None,
+    answered_lines=None,
+    threads: int | None = None,
 ) -> xr.Dataset:
     """Film thickness over the dimensions that the lubricant, force and speed have.
 
@@ -43,8 +46,10 @@ def film_at(
         Names of film formulas.
     slide_to_roll_ratio : xarray.DataArray or float, optional
         Slide-to-roll ratio.
-    with_shape, inlet_shear_heating, inlet_meniscus
+    with_shape, inlet_shear_heating, inlet_meniscus, answered_lines
         As in `lube.stages.film.film_table`.
+    threads : int, optional
+        Threads that share the responses' work; they do not change the results.
 
     Returns
     -------
@@ -75,6 +80,15 @@ def film_at(
         if with_shape:
             profile = over_positions(groups.profiles(), FilmProfile.film_at, rollers, contact)
             table["film_profile"] = profile * rollers.reduced_radius
+        if answered_lines is not None:
+            is_heated = inlet_shear_heating != "none"
+            solved = thinned(groups, factor) if is_heated else groups.profiles()
+            responses = contact, xr.DataArray(slide_to_roll_ratio), answered_lines, threads
+            table = table.merge(film_responses(solved, *responses), join="exact")
+            # With slip the oil answers otherwise: each slip has a film of its own.
+            for name in ("film_thickness", "lambda_ratio"):
+                table[name] = table[name].broadcast_like(table["interpolation_error"])
+                table[name] = table[name].isel(roller=0, drop=True)
     return table
 
 

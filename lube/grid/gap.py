@@ -14,7 +14,7 @@ class Gap:
         shape of the computed one.
     roughness_deformation : str
         ``none``: the lines reach the gap as drawn; ``venner-1997``: the oil flattens their waves by
-        `lube.physics.flattening`.
+        `lube.physics.flattening`; ``computed``: it answers them as `lube.ehl.response` says.
     """
 
     film_shape: str = "flat"
@@ -27,13 +27,23 @@ class Gap:
 
     @property
     def is_flattened(self) -> bool:
-        """Whether the oil flattens the lines."""
-        return self.roughness_deformation != "none"
+        """Whether the oil flattens the lines alike everywhere in the contact."""
+        return self.roughness_deformation == "venner-1997"
+
+    @property
+    def is_answered(self) -> bool:
+        """Whether the oil answers the lines, at each place of the contact otherwise."""
+        return self.roughness_deformation == "computed"
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether film and lines are the same at all places of the contact window."""
+        return not (self.has_shape or self.is_answered)
 
     @property
     def is_plain(self) -> bool:
         """Whether film thickness and contact width alone decide on contact: a map has it all."""
-        return not (self.has_shape or self.is_flattened)
+        return self == PLAIN
 
 
 PLAIN = Gap()

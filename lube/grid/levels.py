@@ -84,3 +84,8 @@ def format_levels(levels: Sequence[float | str]) -> str:
     '60, 85.7143'
     """
     return ", ".join(level if isinstance(level, str) else f"{level:g}" for level in levels)
+
+
+def rolling(slide_to_roll_ratio: Sequence[float]) -> float:
+    """Return pure rolling if it is among some slide-to-roll ratios, else the first."""
+    return 0.0 if 0.0 in slide_to_roll_ratio else slide_to_roll_ratio[0]

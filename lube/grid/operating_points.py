@@ -6,6 +6,7 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
+from lube.grid.levels import rolling
 from lube.schema import EXPERIMENT_DIMS
 
 
@@ -39,7 +40,9 @@ def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tupl
 
 
 def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Dataset:
-    """Select one slide-to-roll ratio; the film depends on it only with inlet shear heating.
+    """Select one slide-to-roll ratio, if the film depends on it.
+
+    It does with inlet shear heating, or if it answers the roughness.
 
     Parameters
     ----------
@@ -65,8 +68,7 @@ def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Da
     if name not in film["film_thickness"].dims:
         return film.drop_dims(name, errors="ignore")
     if slide_to_roll_ratio is None:
-        levels = film[name].values
-        slide_to_roll_ratio = 0.0 if 0.0 in levels else levels[0]
+        slide_to_roll_ratio = rolling(film[name].values)
     return film.sel({name: slide_to_roll_ratio}, drop=True)
 
 
@@ -86,6 +88,8 @@ def known_films(film: xr.Dataset) -> xr.DataArray:
     known = film["film_thickness"].notnull()
     if "film_profile" in film:
         known = known & film["film_profile"].notnull().all("film_position")
+    if "interpolation_error" in film:  # of the response to the roughness
+        known = known & film["interpolation_error"].notnull().all("roller")
     return known
 
 

@@ -12,10 +12,12 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.rough_pair import drawn
+from lube.grid.film_responses import VARIABLES
 from lube.grid.films import film_at
 from lube.grid.operating_points import at_slip
 from lube.inference.record_scatter import record_scatter, study_windows
 from lube.schema import OPERATING_DIMS
+from lube.study.line_spec import LineSpec
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import RollerPair
 from lube.study.study import Study
@@ -78,6 +80,7 @@ def film_at_records(
     with_shape: bool = False,
     inlet_shear_heating: str = "none",
     inlet_meniscus: float | None = None,
+    answered_lines: LineSpec | None = None,
 ) -> xr.Dataset:
     """Film thickness at the conditions of each record.
 
@@ -87,7 +90,7 @@ def film_at_records(
         An ``experiment`` dataset.
     lubricant : xarray.Dataset
         A ``lubricant`` dataset at all temperatures of the records.
-    rollers, formulas, with_shape, inlet_shear_heating, inlet_meniscus
+    rollers, formulas, with_shape, inlet_shear_heating, inlet_meniscus, answered_lines
         As in `lube.grid.films.film_at`; the slip is that of each record.
 
     Returns
@@ -104,12 +107,13 @@ def film_at_records(
         for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio")
     )
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
-    options = with_shape, slip, inlet_shear_heating, inlet_meniscus
+    options = with_shape, slip, inlet_shear_heating, inlet_meniscus, answered_lines
     table = film_at(properties, rollers, force, speed, formulas, *options)
     table["dynamic_viscosity"] = properties["dynamic_viscosity"]
     names = ["film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width"]
     names += ["reduced_radius", "reduced_modulus", "composite_rms_roughness", "dynamic_viscosity"]
     names += ["film_profile", "formula_place"] if with_shape else []
+    names += VARIABLES if answered_lines else []
     if inlet_shear_heating != "none":
         names.append("inlet_shear_heating_factor")
     if inlet_meniscus is not None:

@@ -1,4 +1,11 @@
-"""Contact under a film that is not flat: its thickness rides with the contact window.
+r"""Contact in a window whose places differ: film and oil ride with the contact.
+
+The film may have a shape, and the oil may answer the roughness. Its answer at the place X is a sum
+of filtered lines, each times a function of the place:
+
+.. math:: z(s) + \sum_m u_m(X)\, z_m(s)
+
+It is smooth, so it is computed at some points of the window, the nodes, and linear between them.
 
 Where no line can reach the film, blocks of points are passed over by the highest heights of both
 lines there; where it can, the points are read as in the literal scan, to which this is equal to the
@@ -6,15 +13,58 @@ last bit. Windows a tenth of the contact apart see nearly the same, so for proba
 time step needs one.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from lube.kernels.compiler import kernel
+from lube.kernels.compiler import inlined, kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
-from lube.types import Array, Pair, Ratios
+from lube.types import Array, Ratios
 
-BLOCK = 64
+BLOCK_SHIFT = 6
+BLOCK = 2**BLOCK_SHIFT
 """Points that are passed over together."""
+
+
+class Surface(NamedTuple):
+    """Rough surface of a roller in the contact.
+
+    Attributes
+    ----------
+    line : numpy.ndarray
+        Heights, shape (N,), int32 height steps.
+    highest : numpy.ndarray
+        From `highest_ahead`.
+    filtered : numpy.ndarray
+        Filtered lines on a coarser grid of n points, the last one the first again, shape
+        (n + 1, M), float32 height steps; M = 0 if the oil does not answer.
+    shapes : numpy.ndarray
+        Functions of the place by which they are multiplied, at the nodes, shape (nodes, M).
+    """
+
+    line: Array
+    highest: Array
+    filtered: Array
+    shapes: Array
+
+
+class Window(NamedTuple):
+    """Points of the contact window.
+
+    Attributes
+    ----------
+    film : numpy.ndarray
+        Film thickness at each point, shape (W,), int64 height steps.
+    before : int
+        Points of the window before its centre.
+    shift : int
+        Binary logarithm of the points from node to node, a part of `BLOCK`.
+    """
+
+    film: Array
+    before: int
+    shift: int
 
 
 @kernel
@@ -61,21 +111,58 @@ def _least_by_block(film):
     return least
 
 
+@inlined
+def phase_of(window):
+    """Points from the first node to the first point: the window's centre is a node."""
+    return -window.before & ((1 << window.shift) - 1)
+
+
+@inlined
+def node_count(window):
+    """Count the nodes of a window, those beyond its last block included."""
+    blocks = (window.film.size + BLOCK - 1) // BLOCK
+    return blocks * (BLOCK >> window.shift) + 2
+
+
+@inlined
+def answer_at(surface, first, step, node):
+    """Answer of the oil to a surface, at a node of the window that begins at a point."""
+    points, rows = surface.line.size, surface.filtered.shape[0] - 1
+    at = ((first + node * step) % points) * (rows / points)
+    row = int(at)
+    part = at - row
+    total = 0.0
+    for m in range(surface.shapes.shape[1]):
+        here = (1.0 - part) * surface.filtered[row, m] + part * surface.filtered[row + 1, m]
+        total += surface.shapes[node, m] * here
+    return total
+
+
 @kernel
-def _window(lines, highest, first_1, first_2, films, factor):
+def _window(surfaces, first_1, first_2, window, least, lift, factor):
     """Contact points, broken points and overlap in one window, as in the literal scan."""
-    film, least = films
-    line_1, line_2 = lines
+    film, shift, phase = window.film, window.shift, phase_of(window)
+    step = 1 << shift
+    line_1, line_2 = surfaces[0].line, surfaces[1].line
+    if surfaces[0].shapes.size + surfaces[1].shapes.size > 0:
+        for node in range(lift.size):
+            answers = answer_at(surfaces[0], first_1 - phase, step, node)
+            answers += answer_at(surfaces[1], first_2 - phase, step, node)
+            lift[node] = np.int64(np.rint(answers))
     contact_points = broken_points = total_overlap = 0
     segment_points = segment_overlap = 0
     for block in range(least.size):
         begin = block * BLOCK
         i, k = (first_1 + begin) % line_1.size, (first_2 + begin) % line_2.size
-        touched = np.int64(highest[0][i]) + highest[1][k] > least[block]
+        node = (begin + phase) >> shift
+        lifted = lift[node : node + (BLOCK >> shift) + 2].max()
+        touched = np.int64(surfaces[0].highest[i]) + surfaces[1].highest[k] + lifted > least[block]
         if not touched and segment_points == 0:
             continue
         for point in range(begin, min(begin + BLOCK, film.size)):
-            overlap = np.int64(line_1[i]) + line_2[k] - film[point]
+            node, part = (point + phase) >> shift, (point + phase) & (step - 1)
+            answers = lift[node] + ((lift[node + 1] - lift[node]) * part >> shift)
+            overlap = np.int64(line_1[i]) + line_2[k] + answers - film[point]
             if overlap > 0:
                 segment_points += 1
                 segment_overlap += overlap
@@ -103,30 +190,27 @@ def _window(lines, highest, first_1, first_2, films, factor):
 
 @kernel
 def shaped_trace(
-    lines: Pair,
+    surfaces: tuple[Surface, Surface],
     speed_ratios: Ratios,
     steps: int,
     windows: int,
-    film: Array,
-    before: int,
+    window: Window,
     factor: float,
 ) -> Array:
     """Compute the contact in windows evenly spread over the time steps of one operating point.
 
     Parameters
     ----------
-    lines : tuple of numpy.ndarray
-        Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
+    surfaces : tuple of Surface
+        Both rough surfaces.
     speed_ratios : tuple of float
         Surface speeds over that of the faster surface.
     steps : int
         Number T of time steps.
     windows : int
         Number of windows; T for one at each time step.
-    film : numpy.ndarray
-        Film thickness at each point of the window, shape (W,), int64 height steps.
-    before : int
-        Points of the window before its centre.
+    window : Window
+        Film over the window.
     factor : float
         From `lube.kernels.layer.layer_factor`.
 
@@ -140,73 +224,34 @@ def shaped_trace(
     One high point passes a window of three points, with a film that is thin in the middle only:
 
     >>> line = np.array([5, 0, 0, 0, 0], np.int32)
-    >>> film = np.array([9, 3, 9])
-    >>> lines = line, np.zeros_like(line)
-    >>> shaped_trace(lines, (1.0, 1.0), 5, 5, film, 1, 1.0)[:, 0].tolist()
+    >>> surfaces = as_drawn(line), as_drawn(np.zeros_like(line))
+    >>> window = Window(np.array([9, 3, 9]), 1, BLOCK_SHIFT)
+    >>> shaped_trace(surfaces, (1.0, 1.0), 5, 5, window, 1.0)[:, 0].tolist()
     [1, 0, 0, 0, 0]
     """
     trace = np.empty((windows, 3), np.int64)
-    films = film, _least_by_block(film)
-    highest = highest_ahead(lines[0]), highest_ahead(lines[1])
-    for window in range(windows):
-        step = window * steps // windows
-        first_1 = (surface_position(step, speed_ratios[0]) - before) % lines[0].size
-        first_2 = (surface_position(step, speed_ratios[1]) - before) % lines[1].size
-        trace[window] = _window(lines, highest, first_1, first_2, films, factor)
+    least = _least_by_block(window.film)
+    lift = np.zeros(node_count(window), np.int64)
+    for number in range(windows):
+        step = number * steps // windows
+        first_1 = surface_position(step, speed_ratios[0]) - window.before
+        first_2 = surface_position(step, speed_ratios[1]) - window.before
+        first_1, first_2 = first_1 % surfaces[0].line.size, first_2 % surfaces[1].line.size
+        trace[number] = _window(surfaces, first_1, first_2, window, least, lift, factor)
     return trace
 
 
-@kernel
-def shaped_statistics(
-    lines: Pair,
-    speed_ratios: Ratios,
-    steps: int,
-    windows: Array,
-    films: tuple[Array, Array, Array],
-    factor: float,
-) -> Array:
-    """Compute the contact statistics of many operating points.
+def as_drawn(line: Array) -> Surface:
+    """Return the surface of a line which reaches the gap as drawn.
 
     Parameters
     ----------
-    lines, speed_ratios, steps, factor
-        As in `shaped_trace`.
-    windows : numpy.ndarray
-        Number of windows of each operating point, shape (P,), int64.
-    films : tuple of numpy.ndarray
-        Films of all windows one behind the other, int64 height steps; where the film of each
-        operating point begins, and the end of the last, shape (P + 1,); and the points of each
-        window before its centre, shape (P,).
+    line : numpy.ndarray
+        Heights, shape (N,), int32 height steps.
 
     Returns
     -------
-    numpy.ndarray
-        Shape (P, 4), means over the windows: share with contact, share with a broken boundary
-        layer, broken points, and overlap (height steps).
-
-    Examples
-    --------
-    >>> line = np.array([5, 0, 0, 0, 0], np.int32)
-    >>> films = np.array([9, 3, 9]), np.array([0, 3]), np.array([1])
-    >>> lines = line, np.zeros_like(line)
-    >>> shaped_statistics(lines, (1.0, 1.0), 5, np.array([5]), films, 1.0).tolist()
-    [[0.2, 0.2, 0.2, 0.4]]
+    Surface
+        Without answers of the oil.
     """
-    film, begin, before = films
-    highest = highest_ahead(lines[0]), highest_ahead(lines[1])
-    sums = np.zeros((windows.size, 4), np.int64)
-    for point in range(windows.size):
-        own = film[begin[point] : begin[point + 1]]
-        both = own, _least_by_block(own)
-        for window in range(windows[point]):
-            step = window * steps // windows[point]
-            first_1 = surface_position(step, speed_ratios[0]) - before[point]
-            first_2 = surface_position(step, speed_ratios[1]) - before[point]
-            found = _window(
-                lines, highest, first_1 % lines[0].size, first_2 % lines[1].size, both, factor
-            )
-            sums[point, 0] += found[0] > 0
-            sums[point, 1] += found[1] > 0
-            sums[point, 2] += found[1]
-            sums[point, 3] += found[2]
-    return sums / windows.reshape(-1, 1)
+    return Surface(line, highest_ahead(line), np.zeros((2, 0), np.float32), np.zeros((0, 0)))

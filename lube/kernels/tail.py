@@ -8,6 +8,7 @@ import numpy as np
 
 from lube.kernels.compiler import inlined, kernel
 from lube.kernels.layer import layer_breaks
+from lube.kernels.shaped import Surface, answer_at
 from lube.types import Array, Pair
 
 BLOCK = 64
@@ -82,6 +83,71 @@ def touching_windows(
         if broken:
             breakthrough += weight
     return contact / starts.size, breakthrough / starts.size
+
+
+@kernel
+def answered_windows(
+    surfaces: tuple[Surface, Surface],
+    starts: Array,
+    correlation: Array,
+    touching: Pair,
+    film: Array,
+    covariances: Array,
+    shift: int,
+    factor: float,
+) -> tuple[float, float]:
+    """Weigh windows in which one point is known to touch, where the oil answers the lines.
+
+    Parameters
+    ----------
+    surfaces : tuple of lube.kernels.shaped.Surface
+        Both surfaces; lines of float32.
+    starts, correlation, touching, film, factor
+        As in `touching_windows`.
+    covariances : numpy.ndarray
+        Shape (2, 2, C, C), float32: what the oil adds to the covariance of each line at two nodes
+        of the window, over the variance of the sum as drawn; of a line at the first node that lies
+        one point further back too.
+    shift : int
+        As of `lube.kernels.shaped.Window`.
+
+    Returns
+    -------
+    contact, breakthrough : float
+        As from `touching_windows`.
+    """
+    width, nodes = film.size, covariances.shape[2]
+    contact = breakthrough = 0.0
+    overlap = np.empty(width, np.float32)
+    added, lift = np.empty(nodes, np.float32), np.empty(nodes, np.float32)
+    at_once = covariances[0, 0] + covariances[1, 0]
+    for m in range(starts.size):
+        first, origin = starts[m], touching[0][m]
+        for node in range(nodes):
+            answers = answer_at(surfaces[0], first, 1 << shift, node)
+            lift[node] = answers + answer_at(surfaces[1], first, 1 << shift, node)
+            added[node] = between_nodes(at_once[node], origin, shift)
+        shape = correlation[width - 1 - origin : 2 * width - 1 - origin]
+        one, other = surfaces[0].line[first:], surfaces[1].line[first:]
+        rise = touching[1][m] - one[origin] - other[origin] - between_nodes(lift, origin, shift)
+        rise /= np.float32(1.0) + between_nodes(added, origin, shift)
+        for j in range(width):
+            known = (shape[j] + between_nodes(added, j, shift)) * rise
+            overlap[j] = one[j] + other[j] + between_nodes(lift, j, shift) + known - film[j]
+        points, broken, _ = _judged(overlap, factor)
+        weight = 1.0 / max(points, 1)
+        contact += weight
+        if broken:
+            breakthrough += weight
+    return contact / starts.size, breakthrough / starts.size
+
+
+@inlined
+def between_nodes(values, point, shift):
+    """Linear interpolation between nodes, single precision."""
+    node = point >> shift
+    part = np.float32((point - (node << shift)) / (1 << shift))
+    return values[node] + part * (values[node + 1] - values[node])
 
 
 @inlined
@@ -195,19 +261,23 @@ def touching_runs(
 
 @kernel
 def touching_runs_under(
-    lines: Pair,
+    surfaces: tuple[Surface, Surface],
     places: Array,
     correlations: Pair,
     touching: Pair,
     film: Array,
+    covariances: Array,
+    shift: int,
     steps: Array,
     factor: float,
 ) -> Array:
-    """Weigh runs of points above a film that is not flat, each found from one known point.
+    """Weigh runs of points in a window whose places differ, each found from one known point.
 
     Parameters
     ----------
-    lines, places, correlations, factor
+    surfaces, covariances, shift
+        As in `answered_windows`.
+    places, correlations, factor
         As in `touching_runs`.
     touching : tuple of numpy.ndarray
         Point of the window in which each known point lies, shape (M,), and the sum of the lines
@@ -226,10 +296,16 @@ def touching_runs_under(
     """
     sums = np.zeros(1 + len(steps))
     reach = correlations[0].size // 2
+    lines = surfaces[0].line, surfaces[1].line
+    answers = np.empty((2, 2, 2, covariances.shape[2]), np.float32)
     for m in range(places.size):
         known = touching[0][m]
-        rise = touching[1][m] - (lines[0][places[m]] + lines[1][places[m]])
-        around = lines, places[m] - known, correlations, reach - known, rise, film
+        offset, centre = places[m] - known, reach - known
+        _answer(answers, surfaces, covariances, offset, known, shift)
+        own = lines[0][places[m]] + lines[1][places[m]] + _answers_at(answers, 0, known, shift)
+        rise = touching[1][m] - own
+        rise /= np.float32(1.0) + _answers_at(answers, 1, known, shift)
+        around = lines, offset, correlations, centre, rise, film, answers, shift
         start, stop, total = _run_under(around, known, 0, 0)
         points = max(stop - start, 1)  # rounding may put the known point just below the film
         if not layer_breaks(points, total, factor):
@@ -250,14 +326,40 @@ def touching_runs_under(
 
 
 @inlined
+def _answer(answers, surfaces, covariances, offset, known, shift):
+    """Answers to each line and what they add to its covariance with the known point, at nodes.
+
+    Of the line as it lies, and of that one point further back.
+    """
+    for roller in range(2):
+        for back in range(2):
+            for node in range(answers.shape[3]):
+                at = answer_at(surfaces[roller], offset - back, 1 << shift, node)
+                answers[0, roller, back, node] = at
+                row = covariances[roller, back, node]
+                answers[1, roller, back, node] = between_nodes(row, known, shift)
+
+
+@inlined
+def _answers_at(answers, kind, point, shift):
+    """Answers to both lines as they lie, or what they add to the covariance, at a point."""
+    first = between_nodes(answers[kind, 0, 0], point, shift)
+    return first + between_nodes(answers[kind, 1, 0], point, shift)
+
+
+@inlined
 def _overlap_under(around, point, first, second):
     """Overlap at a point of the window before the lines moved, below zero beyond what is known."""
-    lines, offset, correlations, centre, rise, film = around
+    lines, offset, correlations, centre, rise, film, answers, shift = around
     ahead, behind = point - max(first, second) + centre, point - min(first, second) + centre
     if point < 0 or point >= film.size or ahead < 0 or behind >= correlations[0].size:
         return np.float32(-1.0)
-    one = lines[0][offset + point - first] + correlations[0][centre + point - first] * rise
-    other = lines[1][offset + point - second] + correlations[1][centre + point - second] * rise
+    one = lines[0][offset + point - first] + between_nodes(answers[0, 0, first], point, shift)
+    known = between_nodes(answers[1, 0, first], point, shift)
+    one += (correlations[0][centre + point - first] + known) * rise
+    other = lines[1][offset + point - second] + between_nodes(answers[0, 1, second], point, shift)
+    known = between_nodes(answers[1, 1, second], point, shift)
+    other += (correlations[1][centre + point - second] + known) * rise
     return one + other - film[point]
 
 

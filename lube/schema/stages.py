@@ -106,6 +106,7 @@ _ROWS = (
             "slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio",
             "inlet_shear_heating": "inlet_shear_heating",
             "inlet_meniscus": "inlet_meniscus",
+            "answered_lines": "answered_lines",
         },
         priority=1,
     ),
@@ -238,20 +239,20 @@ _ROWS = (
         target="computed",
     ),
     Stage(
-        "variants",
-        "contact if one choice of the model is made otherwise, some minutes",
-        inputs=("lubricant", "film", "film_profile"),
-        values=_LINES
-        | _LAYER
-        | {"realisations": "realisations", "roughness_deformation": "roughness_deformation"},
-        target="computed",
-        parallel=True,
-    ),
-    Stage(
         "film_response",
         "what the oil does to waves of the roughness, a minute or two",
         inputs=("lubricant", "film"),
         values={"lines": "line_spec", "slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"},
+        target="computed",
+        parallel=True,
+    ),
+    Stage(
+        "variants",
+        "contact if one choice of the model is made otherwise, some minutes",
+        inputs=("lubricant", "film", "film_profile", "film_response"),
+        values=_LINES
+        | _LAYER
+        | {"realisations": "realisations", "roughness_deformation": "roughness_deformation"},
         target="computed",
         parallel=True,
     ),

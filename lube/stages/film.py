@@ -8,6 +8,7 @@ import xarray as xr
 
 from lube.grid.films import film_at
 from lube.schema import CONTACT_DIMS, label
+from lube.study.line_spec import LineSpec
 from lube.study.rollers import RollerPair
 from lube.study.study import Study
 from lube.types import Datasets
@@ -37,6 +38,7 @@ def film_table(
     slide_to_roll_ratio: npt.ArrayLike = (0.0,),
     inlet_shear_heating: str = "none",
     inlet_meniscus: float | None = None,
+    answered_lines: LineSpec | None = None,
 ) -> xr.Dataset:
     """Tabulate the film thickness of a pair of rollers over the operating grid.
 
@@ -65,12 +67,16 @@ def film_table(
     inlet_meniscus : float, optional
         Distance before the line of centres at which the oil begins, m; by default the contact is
         fully flooded.
+    answered_lines : LineSpec, optional
+        Roughness lines that the film answers: its response to their waves becomes part of the
+        result. By default they reach the gap as drawn.
 
     Returns
     -------
     xarray.Dataset
         The ``film`` file of `lube.schema`. With inlet shear heating the film thickness depends on
-        slip; it is NaN, and the log says so, where there is no factor.
+        slip; it is NaN, and the log says so, where there is no factor. If the film answers
+        roughness lines, each slip has a film of its own.
 
     Raises
     ------
@@ -95,6 +101,7 @@ def film_table(
     levels = {"force": force, "speed": speed, "slide_to_roll_ratio": slide_to_roll_ratio}
     axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
     slip = axes["slide_to_roll_ratio"]
-    options = with_shape, slip, inlet_shear_heating, inlet_meniscus
+    options = with_shape, slip, inlet_shear_heating, inlet_meniscus, answered_lines
     table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas, *options)
-    return label(table.transpose(*CONTACT_DIMS, ...), "film")
+    dims = CONTACT_DIMS[0], "roller", *CONTACT_DIMS[1:]
+    return label(table.transpose(*dims, ..., missing_dims="ignore"), "film")

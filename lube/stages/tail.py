@@ -42,6 +42,7 @@ _AS_DRAWN = (
     "roughness_deformation: got lines that the oil flattens, need none: importance sampling is for "
     "lines that are the same at all operating points"
 )
+_ASYMPTOTES = "geometric_contact_asymptote", "breakthrough_asymptote"
 _OF_PAIRS = "breakthrough_probability", "geometric_contact_probability", "breakthrough_rate"
 _PARTS = slice(0, 1), slice(1, None)
 """The first film formula, and the others."""
@@ -92,9 +93,10 @@ def tail_probabilities(
     -------
     xarray.Dataset
         The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty, but where the lines
-        are flattened or not Gaussian: then it says so, and all values are NaN. Under films
-        that are not flat, the share of pairs and the first time are NaN: they depend on the pauses
-        between breakthroughs, which are sampled under flat films only.
+        are flattened by a formula or not Gaussian: then it says so, and all values are NaN. If the
+        places of a window differ, the share of pairs and the first time are NaN: they depend on the
+        pauses between breakthroughs, which are sampled in uniform windows only. The theory for high
+        films is for lines as drawn.
 
     Raises
     ------
@@ -250,8 +252,8 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
 
 def _in_time(spec, film, runs, slip, gap):
     """Broken runs in the window at a time, and new ones per second."""
-    if gap.has_shape:
-        return _under_a_shape(spec, film, runs, slip)
+    if not gap.is_uniform:
+        return _at_uneven_places(spec, film, runs, slip)
     points = _window_points(spec, film)
     _, broken, _, new, broken_points, new_points, *_ = runs.transpose("outcome", ...)
     # A run is in the window if any of its points is.
@@ -261,8 +263,8 @@ def _in_time(spec, film, runs, slip, gap):
     return in_window, speed / spec.spacing * (broken + abs(slip) * new_in_window)
 
 
-def _under_a_shape(spec, film, runs, slip):
-    """As `_in_time`, under a film that is not flat: in time steps as contact is counted in.
+def _at_uneven_places(spec, film, runs, slip):
+    """As `_in_time`, if the places of a window differ: in time steps as contact is counted in.
 
     In each the faster surface moves by a point. The other does so in a part of them, and rests in
     the others.
@@ -283,7 +285,7 @@ def _in_pure_rolling(values):
 
 def _in_a_revolution(spec, film, runs, breakthrough, gap):
     """Pairs with a breakthrough in a revolution of pure rolling, and when the first comes."""
-    if gap.has_shape:  # how far one is from the next is not sampled
+    if not gap.is_uniform:  # how far one is from the next is not sampled
         unknown = xr.full_like(breakthrough.isel(pair=0, drop=True), np.nan)
         names = (f"touching_pair_share{end}" for end in LIMITS)
         return dict.fromkeys([*names, "first_breakthrough_time"], unknown)
@@ -380,6 +382,9 @@ def _asymptotes(spec, film, boundary_layer, gap):
     moments = [sum(line[name] ** 2 for line in lines) for name in names]
     strength = layer.critical_thickness, layer.shear_strength
     curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
+    if gap.is_answered:  # the moments change along the window
+        unknown = xr.full_like(film["film_thickness"], np.nan)
+        return dict.fromkeys(_ASYMPTOTES, unknown)
     if gap.has_shape:
         return _shaped_asymptotes(film, moments, curvature)
     thickness = film["film_thickness"]
@@ -387,7 +392,7 @@ def _asymptotes(spec, film, boundary_layer, gap):
     contact = first + 2.0 * film["contact_half_width"] * crossing_rate(thickness, moments)
     share = sharp_summit_share(thickness.values, moments, curvature)
     breakthrough = contact * thickness.copy(data=share)
-    return {"geometric_contact_asymptote": contact, "breakthrough_asymptote": breakthrough}
+    return dict(zip(_ASYMPTOTES, (contact, breakthrough), strict=True))
 
 
 def _shaped_asymptotes(film, moments, curvature):
@@ -398,7 +403,5 @@ def _shaped_asymptotes(film, moments, curvature):
     # One after the other: the integral over the curvature takes a thousand times their memory.
     shares = [sharp_summit_share(row, moments, curvature) for row in rows]
     share = films.copy(data=np.reshape(shares, films.shape))
-    return {
-        "geometric_contact_asymptote": crossings.integrate("film_position"),
-        "breakthrough_asymptote": (crossings * share).integrate("film_position"),
-    }
+    values = [each.integrate("film_position") for each in (crossings, crossings * share)]
+    return dict(zip(_ASYMPTOTES, values, strict=True))

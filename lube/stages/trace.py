@@ -7,8 +7,9 @@ from dataclasses import asdict
 import numpy as np
 import xarray as xr
 
+from lube.contact.waves import Waves, answers_at, lifted
 from lube.contact.window_films import film_on_points, shaped_films
-from lube.contact.windows import ContactWindows, Waves
+from lube.contact.windows import ContactWindows
 from lube.errors import DataError
 from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, speed_ratios, whole_numbers
 from lube.grid.gap import PLAIN, Gap
@@ -26,6 +27,7 @@ log = logging.getLogger(__name__)
 REALISATION = 0
 """The realisation that traces show."""
 _MOES = ["moes_load", "moes_material"]
+_RESPONSE = ["response_real", "response_imaginary", "reduced_radius", "composite_rms_roughness"]
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -97,6 +99,8 @@ def contact_trace(
         trace["film_profile"] = shaped_films(table)
     if gap.is_flattened:
         trace = trace.assign({name: table[name] for name in _MOES})
+    if gap.is_answered:
+        trace = trace.assign(table[_RESPONSE].transpose("operating_point", ...))
     time = spacing / faster_surface * np.arange(length.shape[1])
     return label(trace.assign_coords(time=time), "trace")
 
@@ -173,10 +177,14 @@ def contact_window(
     if gap.is_flattened:
         contact = [point[name].item() for name in ("contact_half_width", *_MOES)]
         pair = [Waves(line, grid).flattened(*contact) for line in pair]
-    moving = zip(pair, ratios, strict=True)
-    rows = [line[(surface_position(step, ratio) + window) % line.size] for line, ratio in moving]
+    places = [surface_position(step, ratio) for ratio in ratios]
+    both = zip(pair, places, strict=True)
+    heights = np.array([line[(place + window) % line.size] for line, place in both], np.int64)
+    if gap.is_answered:
+        answers = answers_at(point, gap.has_shape).values
+        heights += lifted(pair, grid, answers, places, window)
     # Points of a line that are ahead in its direction of motion come first.
-    heights, film = np.array(rows, np.int64)[:, ::-1], np.broadcast_to(film, window.shape)[::-1]
+    heights, film = heights[:, ::-1], np.broadcast_to(film, window.shape)[::-1]
     overlap = heights.sum(axis=0) - film
     if reach is None:
         touching = np.abs(window[overlap > 0]).max(initial=0)

@@ -10,8 +10,11 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.windows import ContactWindows
+from lube.ehl.response import at_wavelengths
+from lube.grid.film_responses import VARIABLES
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
+from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
@@ -74,6 +77,8 @@ VARIANTS = {
     "computed, open": Variant("computed", "open"),
     "computed": Variant("computed", "computed"),
     "as drawn": Variant(roughness_deformation="none"),
+    "answered": Variant(roughness_deformation="computed"),
+    "computed, answered": Variant("computed", "computed", "computed"),
     "flattened": Variant(roughness_deformation="venner-1997"),
     "uncut": Variant(film_shape="flat", roughness_deformation="none", is_uncut=True),
 }
@@ -136,6 +141,9 @@ def _film(variant, study, inputs):
         film = film.assign(film_thickness=thinner * other["film_thickness"])
         film["formula_place"] = other["formula_place"]
     film["film_thickness"] = film["film_thickness"].transpose(*POINT_DIMS)
+    response = inputs["film_response"][list(VARIABLES)].rename(film_position="response_position")
+    slip = rolling(response["slide_to_roll_ratio"].values)
+    film = film.assign(response.sel(slide_to_roll_ratio=slip, drop=True))
     if variant.film_shape == "flat":
         return film.drop_vars("film_profile", errors="ignore")
     if variant.film_shape == "computed":
@@ -189,22 +197,30 @@ def _with_limits(variants, values, means):
 
 
 def _roughness_ratio(variant, spec, film):
-    """Rms height of both lines together, as the oil leaves it, over that as drawn."""
-    if not variant.gap.is_flattened:
+    """Rms height of both lines together at the line of centres, over that as drawn."""
+    if variant.roughness_deformation == "none":
         return np.ones(film["film_thickness"].shape)
     waves = [wave_amplitudes(spec, roller) for roller in range(len(spec.lines))]
     power = np.concatenate([amplitudes**2 for _, amplitudes in waves])
-    wavelength = np.concatenate(
-        [
-            points * spec.spacing / (first + np.arange(amplitudes.size))
-            for points, (first, amplitudes) in zip(spec.points, waves, strict=True)
-        ]
-    )
+    wavelengths = [
+        points * spec.spacing / (first + np.arange(amplitudes.size))
+        for points, (first, amplitudes) in zip(spec.points, waves, strict=True)
+    ]
 
-    def ratio(half_width, *moes):
-        kept = amplitude_ratio(wavelength / half_width, *moes)
-        return np.sqrt(np.sum(kept**2 * power) / np.sum(power))
+    def ratio(half_width, *contact):
+        scaled = [each / half_width for each in wavelengths]
+        if variant.gap.is_answered:
+            centre, solved = np.zeros(1), film["wavelength"].values / half_width
+            both = zip(scaled, contact[0] + 1j * contact[1], strict=True)
+            kept = [at_wavelengths(own, solved, one[:, None], centre)[:, 0] for own, one in both]
+        else:
+            kept = [amplitude_ratio(own, *contact) for own in scaled]
+        return np.sqrt(np.sum(np.abs(np.concatenate(kept)) ** 2 * power) / np.sum(power))
 
-    names = ("contact_half_width", "moes_load", "moes_material")
-    contact = (film[name].drop_attrs() for name in names)
-    return xr.apply_ufunc(ratio, *contact, vectorize=True).transpose(*POINT_DIMS).values
+    names, dims = ("contact_half_width", "moes_load", "moes_material"), []
+    if variant.gap.is_answered:
+        names, dims = ("contact_half_width", *VARIABLES[:2]), ["roller", "wavelength"]
+        film = film.sel(response_position=0.0)
+    contact = [film[name].drop_attrs() for name in names]
+    options = {"input_core_dims": [[], dims, dims], "vectorize": True}
+    return xr.apply_ufunc(ratio, *contact, **options).transpose(*POINT_DIMS).values

@@ -9,7 +9,7 @@ and those after it only.
 import math
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, StrictInt, field_validator, model_validator
 from pydantic_core import to_jsonable_python
@@ -17,7 +17,7 @@ from pydantic_core import to_jsonable_python
 from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, shown
 from lube.grid.gap import Gap
-from lube.grid.levels import SAME, level_index
+from lube.grid.levels import SAME, level_index, rolling
 from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
@@ -111,9 +111,10 @@ class Study(StrictModel):
     """
     operating_grid: OperatingGrid
     roughness: Roughness
-    roughness_deformation: Literal["none", "venner-1997"] = "none"
-    """none, as in the paper; or long waves flattened by the oil, by the formula of Venner et al.
-    (1997), which is for pure rolling
+    roughness_deformation: Literal["none", "computed", "venner-1997"] = "none"
+    """none, as in the paper; computed, waves of the roughness answered by the oil, by Reynolds'
+    equation about the computed film; or venner-1997, long waves flattened by the formula of Venner
+    et al., for pure rolling and high loads
     """
     boundary_layer: BoundaryLayer
     resistivity: _Resistivity
@@ -150,12 +151,13 @@ class Study(StrictModel):
         return self.rollers.with_rms_heights(self.line_spec.rms_height)
 
     @property
-    def film_model(self) -> dict[str, bool | str | float | None]:
+    def film_model(self) -> dict[str, Any]:
         """What the study assumes of its films, as arguments of `lube.stages.film.film_table`."""
         return {
             "with_shape": self.film_shape != "flat",
             "inlet_shear_heating": self.inlet_shear_heating,
             "inlet_meniscus": None if self.inlet_meniscus == "none" else self.inlet_meniscus,
+            "answered_lines": self.answered_lines,
         }
 
     @property
@@ -184,6 +186,11 @@ class Study(StrictModel):
     def gap(self) -> Gap:
         """How film and roughness make up the gap."""
         return Gap(self.film_shape, self.roughness_deformation)
+
+    @property
+    def answered_lines(self) -> LineSpec | None:
+        """The roughness lines, if the film answers them."""
+        return self.line_spec if self.gap.is_answered else None
 
     @property
     def is_sampled(self) -> bool:
@@ -234,7 +241,7 @@ class Study(StrictModel):
     @property
     def rig_slip(self) -> float:
         """Slide-to-roll ratio of the simulated rig: pure rolling if the study has it."""
-        return 0.0 if 0.0 in self.slips else self.slips[0]
+        return rolling(self.slips)
 
     @property
     def rig_realisations(self) -> range:

@@ -24,13 +24,19 @@ random fields, Ann. Appl. Probab. 22 (2012) 1167-1214.
 import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.special
 
 from lube.errors import StudyError
-from lube.kernels.tail import touching_runs, touching_runs_under, touching_windows
+from lube.kernels.shaped import Surface
+from lube.kernels.tail import (
+    answered_windows,
+    touching_runs,
+    touching_runs_under,
+    touching_windows,
+)
 from lube.surfaces.spectra import autocovariance
 from lube.surfaces.synthetic import ROLLER_NUMBERS, LineSpecLike, draw_gaussian_line
 from lube.types import Array, Pair, Values
@@ -44,7 +50,8 @@ RUN_NUMBERS = 10
 STEPS = np.array([(1, 1), (1, 0), (0, 1)])
 """Kinds of time steps, in points by which each surface moves: both, or the faster one alone."""
 NEGLIGIBLE = 1e-9
-"""Likelihood of contact at a point, over that at the thinnest film, that is passed over."""
+"""Likelihood of contact at a point, over that at the likeliest, that is passed over."""
+_NO_ANSWERS = np.zeros((0, 0))
 
 
 @dataclass(frozen=True)
@@ -193,12 +200,12 @@ def rare_contact(
     StudyError
         If the lines are not Gaussian.
     """
-    drawn = _Drawn(spec, seed, number, int(widths.max()))
+    drawn = RarePair(spec, seed, number, int(widths.max()))
     windows, runs = np.empty((2, films.size)), np.empty((RUN_NUMBERS, films.size))
     factors = np.broadcast_to(factor, films.shape)
     for i, (film, width, own) in enumerate(zip(films, widths, factors, strict=True)):
         log_tail = scipy.special.log_ndtr(-film / drawn.both.rms)
-        touching = (drawn.place * width).astype(np.int64), drawn.heights(log_tail)
+        touching = (drawn.place * width).astype(np.int64), drawn.heights(log_tail, drawn.both.rms)
         shape = np.full(width, film, np.float32)
         windows[:, i] = drawn.windows(shape, touching, own) * (width * np.exp(log_tail))
         known = drawn.lines, drawn.places, drawn.covariances, touching[1][:RUNS]
@@ -207,18 +214,44 @@ def rare_contact(
     return windows, runs
 
 
+@dataclass(frozen=True)
+class UnevenWindow:
+    """Contact window whose places differ.
+
+    Attributes
+    ----------
+    film : numpy.ndarray
+        Film thickness at each point, shape (W,), height steps, above zero.
+    rms : float or numpy.ndarray
+        Rms height of the sum of the lines as it reaches the gap there, over that as drawn.
+    shapes : tuple of numpy.ndarray
+        As of `lube.kernels.shaped.Surface`, of both surfaces.
+    covariances : numpy.ndarray
+        As in `lube.kernels.tail.answered_windows`.
+    shift : int
+        As of `lube.kernels.shaped.Window`.
+    """
+
+    film: Array
+    rms: Values = 1.0
+    shapes: Pair = (_NO_ANSWERS, _NO_ANSWERS)
+    covariances: Array = field(default_factory=lambda: np.zeros((2, 2, 2, 2), np.float32))
+    shift: int = 30
+
+
 def rare_contact_under(
-    spec: LineSpecLike, seed: int, number: int, films: Sequence[Array], factor: Values
+    pair: "RarePair", windows: Sequence[UnevenWindow], filtered: Sequence[Pair], factor: Values
 ) -> Pair:
-    """Estimate probabilities and rates under films that are not flat, from one pair of lines.
+    """Estimate probabilities and rates in windows whose places differ, from one pair of lines.
 
     Parameters
     ----------
-    spec, seed, number
-        As in `rare_contact`. The lines are the same, and so are the random choices.
-    films : sequence of numpy.ndarray
-        Film thickness at each point of a window, height steps, above zero: one array for each
-        operating point.
+    pair : RarePair
+        The lines.
+    windows : sequence of UnevenWindow
+        The window of each operating point.
+    filtered : sequence of tuple of numpy.ndarray
+        Lines as filtered for each, as of `lube.kernels.shaped.Surface`.
     factor : float or numpy.ndarray
         As in `rare_contact`.
 
@@ -230,38 +263,69 @@ def rare_contact_under(
         Shape (4, P): expected number of runs in a window whose boundary layer breaks; and of those
         of them that are new, for each kind of time step in `STEPS`.
 
+    Notes
+    -----
+    Points of the window at which contact is less likely by a factor `NEGLIGIBLE` than at the
+    likeliest are left out.
+    """
+    shares, runs = np.empty((2, len(windows))), np.empty((1 + len(STEPS), len(windows)))
+    factors = np.broadcast_to(factor, len(windows))
+    for i, (window, own, lines) in enumerate(zip(windows, factors, filtered, strict=True)):
+        rms = np.broadcast_to(pair.both.rms * window.rms, window.film.shape)
+        log_tails, part = likely_part(window.film, rms)
+        # The known point of a window lies where contact is likely.
+        share = np.cumsum(np.exp(log_tails - log_tails.max()))
+        known = np.searchsorted(share, pair.place * share[-1])
+        touching = known, pair.heights(log_tails[known], rms[part][known])
+        expected = share[-1] * np.exp(log_tails.max())
+        each = zip(pair.lines, lines, window.shapes, strict=True)
+        answered = tuple(Surface(line, line, *answers) for line, *answers in each)
+        film, answers = window.film.astype(np.float32), (window.covariances, window.shift)
+        shares[:, i] = pair.windows(film[part], touching, own, answered, answers) * expected
+        above = part.start + known[:RUNS], touching[1][:RUNS]
+        found = touching_runs_under(
+            answered, pair.places, pair.covariances, above, film, *answers, STEPS, own
+        )
+        runs[:, i] = found * (expected / RUNS)
+    return shares, runs
+
+
+def likely_part(film: Array, rms: Array) -> tuple[Array, slice]:
+    """Find the part of a window in which contact is likely.
+
+    Parameters
+    ----------
+    film, rms : numpy.ndarray, shape (W,)
+        Film thickness and rms height of the sum of the lines, height steps.
+
+    Returns
+    -------
+    log_tails : numpy.ndarray
+        Logarithm of the likelihood of contact at each point of the part.
+    part : slice
+        The part, from the first to the last likely point.
+    """
+    log_tails = scipy.special.log_ndtr(-film / rms)
+    likely = np.flatnonzero(log_tails > log_tails.max() + np.log(NEGLIGIBLE))
+    part = slice(int(likely[0]), int(likely[-1]) + 1)
+    return log_tails[part], part
+
+
+class RarePair:
+    """A pair of Gaussian lines, and what is chosen at random on it.
+
+    Parameters
+    ----------
+    spec, seed, number
+        As in `draw_pair`.
+    widest : int
+        Points in the widest contact window.
+
     Raises
     ------
     StudyError
         If the lines are not Gaussian.
-
-    Notes
-    -----
-    Points of the window at which contact is less likely by a factor `NEGLIGIBLE` than at the
-    thinnest film are left out.
     """
-    drawn = _Drawn(spec, seed, number, max(film.size for film in films))
-    windows, runs = np.empty((2, len(films))), np.empty((1 + len(STEPS), len(films)))
-    for i, (film, own) in enumerate(zip(films, np.broadcast_to(factor, len(films)), strict=True)):
-        log_tails = scipy.special.log_ndtr(-film / drawn.both.rms)
-        likely = np.flatnonzero(log_tails > log_tails.max() + np.log(NEGLIGIBLE))
-        part = slice(likely[0], likely[-1] + 1)
-        log_tails = log_tails[part]
-        # The known point of a window lies where contact is likely.
-        share = np.cumsum(np.exp(log_tails - log_tails.max()))
-        known = np.searchsorted(share, drawn.place * share[-1])
-        touching = known, drawn.heights(log_tails[known])
-        expected = share[-1] * np.exp(log_tails.max())
-        shape = film[part].astype(np.float32)
-        windows[:, i] = drawn.windows(shape, touching, own) * expected
-        above = likely[0] + known[:RUNS], touching[1][:RUNS]
-        whole = drawn.lines, drawn.places, drawn.covariances, above, film.astype(np.float32)
-        runs[:, i] = touching_runs_under(*whole, STEPS, own) * (expected / RUNS)
-    return windows, runs
-
-
-class _Drawn:
-    """A pair of lines, and what is chosen at random on it."""
 
     def __init__(self, spec, seed, number, widest):
         check_gaussian(spec)
@@ -274,16 +338,18 @@ class _Drawn:
         self.covariances = tuple(_both_sides(each, reach + 1) for each in self.both.covariances)
         self.places = _spread(self.size, 2 * reach + 1, RUNS) + reach
 
-    def heights(self, log_tail):
+    def heights(self, log_tail, rms):
         """Heights above a film as they are by themselves: the inverse of the Gaussian tail."""
-        heights = -self.both.rms * scipy.special.ndtri_exp(self.log_chosen + log_tail)
+        heights = -rms * scipy.special.ndtri_exp(self.log_chosen + log_tail)
         return heights.astype(np.float32)
 
-    def windows(self, film, touching, factor):
+    def windows(self, film, touching, factor, surfaces=(), answers=()):
         """Mean weights of windows with contact and with a breakthrough."""
         starts = _spread(self.size, film.size, WINDOWS)
-        correlation = _both_sides(self.both.correlation, film.size)
-        return np.array(touching_windows(self.line, starts, correlation, touching, film, factor))
+        window = starts, _both_sides(self.both.correlation, film.size), touching, film
+        if any(surface.shapes.size for surface in surfaces):
+            return np.array(answered_windows(surfaces, *window, *answers, factor))
+        return np.array(touching_windows(self.line, *window, factor))
 
 
 def _both_sides(covariance, lags):

@@ -25,12 +25,15 @@ def weak(study):
     return study.boundary_layer.model_copy(update={"shear_strength": 2e5})
 
 
-GAPS = [Gap(*each) for each in itertools.product(("flat", "computed"), ("none", "venner-1997"))]
+GAPS = [
+    Gap(*each)
+    for each in itertools.product(("flat", "computed"), ("none", "venner-1997", "computed"))
+]
 
 
 @pytest.fixture(scope="module", params=GAPS)
 def case(request, shaped_film, coarse, weak):
-    """Flat and shaped films, lines as drawn and flattened."""
+    """Flat and shaped films; lines as drawn, flattened and answered."""
     return request.param, ContactWindows(LineGrid.of(coarse), shaped_film, weak, request.param)
 
 
@@ -73,7 +76,7 @@ def test_some_operating_points_are_rows_of_all(case, coarse):
 
 def test_statistics_are_means_of_the_traces(case, coarse):
     """To the bit under flat films and lines as drawn; flattened ones are rounded otherwise, and
-    under a shape one window in some is looked at."""
+    where places differ, one window in some is looked at."""
     gap, windows = case
     pair = line_pair(coarse, 0)
     found, trace = windows.count(pair), windows.trace(pair)

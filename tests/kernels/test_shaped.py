@@ -5,7 +5,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from literal import scan_trace
 
-from lube.kernels.shaped import BLOCK, highest_ahead, shaped_statistics, shaped_trace
+from lube.kernels.motion import surface_position
+from lube.kernels.shaped import (
+    BLOCK,
+    BLOCK_SHIFT,
+    Surface,
+    Window,
+    answer_at,
+    as_drawn,
+    highest_ahead,
+    shaped_trace,
+)
 
 seeds = st.integers(0, 2**32 - 1)
 ratios = st.sampled_from([(1.0, 1.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.37), (0.9, 1.0)])
@@ -32,22 +42,63 @@ def test_highest_ahead_is_the_maximum_of_a_block(size, seed):
 @given(seeds, sizes, sizes, sizes, ratios, st.integers(0, 50), st.floats(0.0, 9.0))
 def test_trace_equals_the_literal_scan(seed, size_1, size_2, width, ratios, before, factor):
     lines, film = contact(seed, size_1, size_2, width)
-    trace = shaped_trace(lines, ratios, 29, 29, film, before, factor)
+    surfaces, window = tuple(map(as_drawn, lines)), Window(film, before, BLOCK_SHIFT)
+    trace = shaped_trace(surfaces, ratios, 29, 29, window, factor)
     np.testing.assert_array_equal(trace, scan_trace(lines, ratios, 29, film, before, factor))
+    some = shaped_trace(surfaces, ratios, 29, 7, window, factor)
+    np.testing.assert_array_equal(some, trace[np.arange(7) * 29 // 7])
 
 
-@given(seeds, sizes, sizes, sizes, ratios, st.integers(0, 50), st.floats(0.0, 9.0))
-def test_statistics_are_means_over_evenly_spread_windows(
-    seed, size_1, size_2, width, ratios, before, factor
+def answered(line, random, nodes, functions):
+    """Surface whose filtered lines and shapes are noise."""
+    filtered = random.normal(0.0, 3.0, (line.size // 2 + 1, functions)).astype(np.float32)
+    filtered = np.concatenate([filtered, filtered[:1]])
+    return Surface(line, highest_ahead(line), filtered, random.normal(0.0, 1.0, (nodes, functions)))
+
+
+def literal_answer(surface, place, node):
+    """Sum over the functions, each filtered line read between its points."""
+    rows = len(surface.filtered) - 1
+    at = place % surface.line.size * rows / surface.line.size
+    levels = [np.interp(at, np.arange(rows + 1), one) for one in surface.filtered.T]
+    return np.dot(surface.shapes[node], levels)
+
+
+@given(
+    *(seeds, sizes, sizes, sizes, ratios),
+    st.integers(0, 50),
+    st.floats(0.0, 9.0),
+    st.integers(0, BLOCK_SHIFT),
+    st.integers(1, 3),
+)
+def test_answers_are_added_to_the_lines_at_every_point(
+    seed, size_1, size_2, width, ratios, before, factor, shift, functions
 ):
     lines, film = contact(seed, size_1, size_2, width)
-    other = film[::2] + 1
-    films = np.concatenate([film, other]), np.cumsum([0, film.size, other.size])
-    windows, centres = np.array([7, 29]), np.array([before, 1])
-    found = shaped_statistics(lines, ratios, 29, windows, (*films, centres), factor)
-    for row, each, count, centre in zip(found, (film, other), windows, centres, strict=True):
-        steps = np.arange(count) * 29 // count
-        trace = scan_trace(lines, ratios, 29, each, centre, factor)[steps]
-        points, broken, overlap = trace.T
-        expected = (points > 0).mean(), (broken > 0).mean(), broken.mean(), overlap.mean()
-        np.testing.assert_allclose(row, expected, rtol=1e-14)
+    random, step, phase = np.random.default_rng(seed), 1 << shift, -before % (1 << shift)
+    nodes = width // step + BLOCK // step + 3
+    surfaces = tuple(answered(line, random, nodes, functions) for line in lines)
+    found = shaped_trace(surfaces, ratios, 29, 29, Window(film, before, shift), factor)
+    points = np.arange(width) + phase
+    for number in range(29):
+        places = [surface_position(number, ratio) - before for ratio in ratios]
+        both = list(zip(surfaces, places, strict=True))
+        lift = np.array(
+            [
+                round(sum(answer_at(one, at - phase, step, node) for one, at in both))
+                for node in range(nodes)
+            ]
+        )
+        surface, place = both[0]
+        literal = literal_answer(surface, place - phase + step, 1)
+        assert np.isclose(answer_at(surface, place - phase, step, 1), literal, atol=1e-4)
+        node, part = points // step, points % step
+        answers = lift[node] + (lift[node + 1] - lift[node]) * part // step
+        overlap = answers - film
+        for line, at in zip(lines, places, strict=True):
+            overlap = overlap + line[(at + np.arange(width)) % line.size]
+        high = np.zeros(width + 2, np.int32)
+        high[1:-1] = np.maximum(overlap, 0)
+        one_window = (high, np.zeros_like(high))
+        expected = scan_trace(one_window, (1.0, 1.0), 1, np.zeros(width + 2, int), 0, factor)
+        assert found[number].tolist() == expected[0].tolist()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from made import made
+from plain_answers import PlainAnswer
 
 from lube.contact.window_films import window_films
 from lube.errors import DataError
@@ -13,7 +13,13 @@ from lube.grid.operating_points import at_slip
 from lube.kernels.layer import layer_factor
 from lube.kernels.motion import surface_position
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS
-from lube.stages import contact_statistics, gather, roughness_lines
+from lube.stages import (
+    contact_statistics,
+    film_table,
+    gather,
+    lubricant_table,
+    roughness_lines,
+)
 from lube.stages.tail import tail_probabilities
 from lube.surfaces.rare_contact import draw_pair
 
@@ -180,7 +186,7 @@ def test_an_ensemble_finds_the_same_probabilities(tail, spec, few, study):
     assert seen >= 8
 
 
-def broken_runs(lines, starts, film, window, factor, margin=60):
+def broken_runs(lines, starts, film, window, factor, margin=60, answers=()):
     """Whole runs with a broken boundary layer that reach into a window of the sum of lines.
 
     As sets of points, counted from the window's first point.
@@ -190,6 +196,8 @@ def broken_runs(lines, starts, film, window, factor, margin=60):
         line[(start + points) % line.size] for line, start in zip(lines, starts, strict=True)
     )
     overlap = first + second - film
+    for answer, start in zip(answers, starts, strict=False):
+        overlap += answer(start)
     pieces = np.split(np.arange(points.size), np.flatnonzero(np.diff(overlap > 0.0)) + 1)
     for piece in pieces:
         breaks = overlap[piece[0]] > 0.0 and piece.size**3 < factor * overlap[piece].sum()
@@ -197,35 +205,42 @@ def broken_runs(lines, starts, film, window, factor, margin=60):
             yield set(points[piece].tolist())
 
 
-@pytest.mark.parametrize("shape", ["flat", "computed"])
+@pytest.mark.parametrize("gap", [Gap(), Gap("computed"), Gap("computed", "computed")])
 @pytest.mark.parametrize("ratio", [0.0, 0.4])
-def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study, ratio, shape):
+def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study, ratio, gap):
     """A broken run is new unless it overlaps one of the step before, seen from a surface."""
     spec = make_spec(20_000)
     point = few.isel(film_formula=[0], temperature=[1], force=[2])
-    if shape == "computed":
-        at = study.operating_grid.model_copy(
-            update={name: tuple(point[name].values) for name in ("force", "speed", "temperature")}
-        )
-        shaped = study.model_copy(update={"film_shape": shape, "operating_grid": at})
-        point = made(shaped, ("lubricant", "film"))["film"].isel(film_formula=[0])
+    if gap.has_shape:
+        oil = lubricant_table(study.lubricants, point["temperature"].values)
+        levels = study.rollers, point["force"], point["speed"], study.film_formulas[:1], True
+        answered = spec if gap.is_answered else None
+        point = film_table(oil, *levels, slide_to_roll_ratio=[ratio], answered_lines=answered)
     weak = study.boundary_layer.model_copy(update={"shear_strength": 3e4})
-    tail = tail_probabilities(spec, point, weak, SEED, [ratio], 1, Gap(shape)).squeeze()
+    tail = tail_probabilities(spec, point, weak, SEED, [ratio], 1, gap).squeeze()
     factor = layer_factor(
         point["reduced_modulus"].item(), weak.critical_thickness, 3e4, spec.spacing, 1e-12
     )
     film, margin = point["film_thickness"].item() / spec.height_step, 60
     window = 2 * int(point["contact_half_width"].item() / spec.spacing) + 1
-    if shape == "computed":
-        film, margin = window_films(point, spec)[0].film, 0
-        window = film.size
+    if gap.has_shape:
+        reached = window_films(point, spec)[0].below(8.0 * np.hypot(*spec.rms_height) / 1e-12)
+        film, margin, window = reached.film, 0, reached.film.size
+        places = np.arange(window) - reached.before
     ratios, counts = speed_ratios(ratio), []
     for number in range(8):
         lines, _ = draw_pair(spec, SEED, 100 + number)
-        count, old, starts = 0, None, None
+        count, old, starts, answers = 0, None, None, ()
+        if gap.is_answered:
+            responses = [point.squeeze().isel(roller=roller) for roller in range(2)]
+            plain = [
+                PlainAnswer(line, spec.spacing, one, places).lifts(2000 + window)
+                for line, one in zip(lines, responses, strict=True)
+            ]
+            answers = [lambda start, one=one: one[start + reached.before] for one in plain]
         for step in range(2000):
             moved = [surface_position(step, one) for one in ratios]
-            runs = list(broken_runs(lines, moved, film, window, factor, margin))
+            runs = list(broken_runs(lines, moved, film, window, factor, margin, answers))
             if old is not None:
                 steps = [new - before for new, before in zip(moved, starts, strict=True)]
                 # The points of the step before, as each surface has carried them on.

@@ -98,7 +98,7 @@ def test_window_explains_the_trace_at_every_step(case):
             assert broken == pytest.approx(length[step], rel=1e-12, abs=1e-300)
 
 
-@pytest.mark.parametrize("deformation", ["none", "venner-1997"])
+@pytest.mark.parametrize("deformation", ["none", "venner-1997", "computed"])
 def test_window_explains_the_trace_under_a_shape(lines, shaped_film, study, deformation):
     """No segment is cut: where lines touch beyond the contact, the window is wider."""
     place = {"film_formula": 0, "speed": 0, "temperature": 1, "force": 1}

@@ -12,7 +12,7 @@ from lube.surfaces.synthetic import draw_realisation
 
 GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (60.0, 80.0)}
 FORMULAS = ("paper", "pan-hamrock", "computed")
-KINDS = ("lubricant", "film", "film_profile", "contact", "tail", "variants")
+KINDS = ("lubricant", "film", "film_profile", "film_response", "contact", "tail", "variants")
 
 
 @pytest.fixture(scope="module")

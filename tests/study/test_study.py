@@ -67,6 +67,7 @@ def test_the_force_of_a_record_needs_a_contact_that_the_grid_resolves():
 
 def test_the_papers_film_is_flat_and_not_corrected_and_another_asks_for_what_it_needs(paper_with):
     plain = {"with_shape": False, "inlet_shear_heating": "none", "inlet_meniscus": None}
+    plain["answered_lines"] = None
     assert load_study(PAPER).film_model == plain
     changes = ("inlet_shear_heating", "zhu-cheng-1988"), ("inlet_meniscus", "0.4 mm")
     study = load_study(paper_with(*changes))

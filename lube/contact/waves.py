@@ -1,0 +1,342 @@
+"""Waves of rough lines on their way into the gap: the oil flattens or answers them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+import xarray as xr
+from scipy.interpolate import CubicSpline
+
+from lube.ehl.line_contact import one_blas_thread
+from lube.ehl.response import at_wavelengths
+from lube.grid.discretise import LineGrid
+from lube.grid.film_profiles import six_digits
+from lube.kernels.shaped import BLOCK, Surface, answer_at
+from lube.physics.flattening import amplitude_ratio
+from lube.physics.hertz import hertz_gap
+from lube.surfaces.rare_contact import UnevenWindow, likely_part, sum_of_lines
+from lube.surfaces.synthetic import wave_amplitudes
+from lube.types import Array, Pair, Points
+
+PRECISION = 0.01
+"""Largest error of the answers to rough lines, over the rms height of the lines."""
+FINER = 4
+"""Wavelengths for each of the stored ones, at which answers are expanded."""
+STEEPNESS = 0.7
+"""Waves are weighed by this power of their length, as those of rough surfaces are high."""
+NODES = 20
+"""Least number of nodes in a half-width of the contact."""
+_IN_PHASE = 0.2
+"""Difference of phase of neighbouring bands of waves, over the window, rad."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    r"""What the oil adds to the waves of a surface at an operating point.
+
+    The response of the film is expanded in functions of the place X and of the wavenumber k,
+
+    .. math:: T_k(X) - 1 = \sum_m u_m(X)\, f_m(k)
+
+    with real :math:`u_m`: as many as the `PRECISION` takes where lines may touch.
+
+    Attributes
+    ----------
+    half_width : float
+        Half-width of the contact, m.
+    position : numpy.ndarray, shape (n,)
+        Places over the half-width, rising.
+    shapes : numpy.ndarray, shape (n, M)
+        :math:`u_m` there.
+    wavenumber : numpy.ndarray, shape (K,)
+        Wavenumbers, rad/m, rising. The oil does not change longer ones.
+    filters : numpy.ndarray of complex, shape (K, M)
+        :math:`f_m` of these.
+    """
+
+    half_width: float
+    position: Array
+    shapes: Array
+    wavenumber: Array
+    filters: Array
+
+    @classmethod
+    def of(
+        cls,
+        response: Array,
+        wavelength: Array,
+        position: Array,
+        half_width: float,
+        importance: Array,
+    ) -> "Answer":
+        """Expand a response of the film.
+
+        Parameters
+        ----------
+        response : numpy.ndarray of complex, shape (w, n)
+            The response.
+        wavelength : numpy.ndarray, shape (w,)
+            Wavelengths, m, falling.
+        position : numpy.ndarray, shape (n,)
+            Places over the half-width, rising.
+        half_width : float
+            Half-width of the contact, m.
+        importance : numpy.ndarray, shape (n,)
+            Weight of an error at each place, 1 at most.
+
+        Returns
+        -------
+        Answer
+            The expansion.
+        """
+        changed = np.flatnonzero(np.abs(response - 1.0).max(axis=1))
+        last = changed[-1] if changed.size else 1
+        finer = np.geomspace(wavelength[0], wavelength[last], FINER * last + 1)
+        scaled = finer / half_width, wavelength / half_width
+        change = at_wavelengths(*scaled, response, position) - 1.0
+        weight = finer[:, None] ** STEEPNESS
+        weighted = np.concatenate([change.real, change.imag]) * np.tile(weight, (2, 1))
+        left, values, right = np.linalg.svd(weighted * importance, full_matrices=False)
+        # Square error at each place with the first 0, 1, ... functions.
+        parts = (values[:, None] * right) ** 2
+        errors = np.cumsum(parts[::-1], axis=0)[::-1].max(axis=1)
+        count = np.count_nonzero(errors > PRECISION**2 * np.sum(weight**2))
+        shapes = np.einsum("km,kx->xm", left[:, :count], weighted)
+        filters = np.einsum("kx,mx->km", change * importance, right[:count]) / values[:count]
+        filters = six_digits(filters.real) + 1j * six_digits(filters.imag)
+        return cls(half_width, position, six_digits(shapes), 2.0 * np.pi / finer, filters)
+
+    def shift(self, spacing: float) -> int:
+        """Binary logarithm of the points of a line from node to node."""
+        return int(np.log2(np.clip(self.half_width / (NODES * spacing), 1, BLOCK)))
+
+    def at(self, position: Array) -> Array:
+        """Functions :math:`u_m` at other places over the half-width, shape (places, M)."""
+        ends = self.position[[0, -1]]
+        return CubicSpline(self.position, self.shapes)(np.clip(position, *ends))
+
+
+def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
+    """Answers of the oil to both surfaces.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset, or rows of one, with the film's response.
+    has_shape : bool
+        Whether lines may touch outside the contact too.
+
+    Returns
+    -------
+    xarray.DataArray
+        An `Answer` each over roller and the dimensions of the response, None where it is not known;
+        the same for both rollers where the film responds to both alike.
+    """
+    response = film["response_real"] + 1j * film["response_imaginary"]
+    width = film["contact_half_width"]
+    dims = [name for name in response.dims if name not in _OF_RESPONSE]
+    response = response.transpose(*dims, *_OF_RESPONSE)
+    width = width.broadcast_like(response.isel(dict.fromkeys(_OF_RESPONSE, 0))).transpose(*dims)
+    wavelength, position = (response[name].values for name in _OF_RESPONSE[1:])
+    roughness = film["composite_rms_roughness"].item()
+    answers = np.full((*width.shape, 2), None)
+    for index, half_width in np.ndenumerate(width.values):
+        gap = hertz_gap(position) * (half_width**2 / film["reduced_radius"].item())
+        importance = np.exp(-gap / roughness) if has_shape else np.abs(position) <= 1.0
+        both = response.values[index]
+        for roller, one in enumerate(both):
+            if roller and np.array_equal(one, both[0]):
+                answers[index][1] = answers[index][0]
+            elif np.isfinite(one).all():
+                own = one, wavelength, position, half_width, importance
+                answers[index][roller] = Answer.of(*own)
+    return xr.DataArray(answers, width.coords, (*dims, "roller"))
+
+
+_OF_RESPONSE = "roller", "wavelength", "response_position"
+
+
+def lifted(lines: Pair, grid: LineGrid, answers: Pair, places: Points, window: Array) -> Array:
+    """Compute what the oil adds to two lines in a contact window.
+
+    Parameters
+    ----------
+    lines : tuple of numpy.ndarray
+        Heights of both lines, int32 height steps.
+    grid : LineGrid
+        Their grid.
+    answers : tuple of Answer
+        To both surfaces.
+    places : tuple of int
+        Point of each line at the window's centre.
+    window : numpy.ndarray of int
+        Points of the window, counted from its centre.
+
+    Returns
+    -------
+    numpy.ndarray of int64, shape (2, W)
+        Of each line, height steps; together as contact is counted with.
+    """
+    shift = answers[0].shift(grid.spacing)
+    nodes = np.arange(window[0] >> shift, (window[-1] >> shift) + 2) << shift
+    at_nodes = np.empty((2, nodes.size))
+    for own, line, answer, place in zip(at_nodes, lines, answers, places, strict=True):
+        shapes = answer.at(-nodes * (grid.spacing / answer.half_width))
+        surface = Surface(line, line, Waves(line, grid).filtered(answer), shapes)
+        first = place + nodes[0]
+        own[:] = [answer_at(surface, first, 1 << shift, node) for node in range(nodes.size)]
+    at_nodes[1] += at_nodes[0]
+    whole = np.rint(at_nodes).astype(np.int64)
+    number, part = (window - nodes[0]) >> shift, window & ((1 << shift) - 1)
+    steps = np.diff(whole)[:, number]
+    first, both = whole[:, number] + (steps * part >> shift)
+    return np.array([first, both - first])
+
+
+def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answer]) -> UnevenWindow:
+    """Part of a contact window in which contact is likely, with what the oil does there.
+
+    Parameters
+    ----------
+    spec : lube.study.line_spec.LineSpec
+        Parameters of the lines.
+    film : numpy.ndarray, shape (W,)
+        Film thickness at each point of the window, height steps.
+    before : int
+        Points of the window before its centre.
+    answers : tuple of Answer
+        To both surfaces.
+
+    Returns
+    -------
+    UnevenWindow
+        For `lube.surfaces.rare_contact.rare_contact_under`.
+    """
+    shift = answers[0].shift(spec.spacing)
+
+    def nodes_of(first, points):
+        """Nodes of points of the window from a first one on, their shapes and added covariance."""
+        nodes = first + (np.arange((points >> shift) + 2) << shift)
+        position = (before - nodes) * (spec.spacing / answers[0].half_width)
+        return nodes - first, [answer.at(position) for answer in answers]
+
+    rms = sum_of_lines(spec, 1).rms
+    nodes, shapes = nodes_of(0, film.size)
+    both = zip(answers, shapes, strict=True)
+    added = sum(
+        _Covariance(spec, roller, one, film.size).of_nodes(at, nodes, 0, diagonal=True)
+        for roller, (one, at) in enumerate(both)
+    )
+    ratio = np.sqrt(1.0 + np.interp(np.arange(film.size), nodes, added) / rms**2)
+    _, part = likely_part(film, rms * ratio)
+    nodes, shapes = nodes_of(part.start, part.stop - part.start)
+    covariances = np.empty((2, 2, nodes.size, nodes.size), np.float32)
+    for roller, (answer, at) in enumerate(zip(answers, shapes, strict=True)):
+        lines = _Covariance(spec, roller, answer, film.size)
+        for back in (0, 1):
+            covariances[roller, back] = lines.of_nodes(at, nodes, back) / rms**2
+    return UnevenWindow(film[part], ratio[part], tuple(shapes), covariances, shift)
+
+
+class _Covariance:
+    """What the oil adds to the covariance of a line in the window, by bands of its waves."""
+
+    def __init__(self, spec, roller, answer, points):
+        first, amplitudes = wave_amplitudes(spec, roller)
+        unit = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+        amplitudes = amplitudes[: max(int(answer.wavenumber[-1] / unit) - first + 1, 0)]
+        # So few waves in a band that they are in phase over the window.
+        band = max(1, int(_IN_PHASE / (unit * spec.spacing * points)))
+        edges = np.arange(0, amplitudes.size, band)
+        waves = first + np.arange(amplitudes.size)
+        power = (amplitudes / spec.height_step) ** 2 / 2.0
+        self._power = np.add.reduceat(power, edges)
+        middle = np.add.reduceat(power * waves, edges) / self._power
+        self._by_point = unit * spec.spacing * middle
+        numbers = np.log(answer.wavenumber)
+        self._filters = np.array(
+            [np.interp(np.log(unit * middle), numbers, own) for own in answer.filters.T]
+        ).reshape(-1, middle.size)
+
+    def of_nodes(self, shapes, nodes, back, diagonal=False):
+        """Compute it for a first node, some points further back, and a second one."""
+        with one_blas_thread():
+            changed = 1.0 + shapes @ self._filters.conj()  # against the motion, so conjugate
+            if diagonal:
+                return (np.abs(changed) ** 2 - 1.0) @ self._power
+            drawn = np.exp(1j * nodes[:, None] * self._by_point)
+            behind = self._power * np.exp(-1j * back * self._by_point)
+            changed *= drawn
+            found = (changed * behind) @ changed.conj().T - (drawn * behind) @ drawn.conj().T
+        return found.real
+
+
+class Waves:
+    """Waves of a line, which the oil can flatten or answer.
+
+    Parameters
+    ----------
+    line : numpy.ndarray
+        Heights, shape (N,), height steps.
+    grid : LineGrid
+        Grid of the line. Waves shorter than those of its band, of the rounding to whole height
+        steps, are left out.
+    """
+
+    def __init__(self, line: Array, grid: LineGrid) -> None:
+        self._unit = 2.0 * np.pi / (line.size * grid.spacing)
+        last = int(grid.q_max / self._unit * (1.0 + 1e-9))
+        self._size, self._spacing = line.size, grid.spacing
+        self._waves = scipy.fft.rfft(line.astype(float))[1 : last + 1]
+
+    def flattened(self, half_width: float, moes_load: float, moes_material: float) -> Array:
+        """Heights of the line as a formula flattens it.
+
+        Parameters
+        ----------
+        half_width : float
+            Half-width of the contact, m.
+        moes_load, moes_material : float
+            M and L.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (N,), int32 height steps.
+        """
+        wavelength = 2.0 * np.pi / (self._unit * np.arange(1, self._waves.size + 1))
+        kept = amplitude_ratio(wavelength / half_width, moes_load, moes_material)
+        return np.rint(self._line(self._waves * kept, self._size)).astype(np.int32)
+
+    def filtered(self, answer: Answer) -> Array:
+        """Filter the line by each function of an answer, on a coarser grid.
+
+        The line is passed against the direction in which places are counted, so its waves are
+        conjugate.
+
+        Parameters
+        ----------
+        answer : Answer
+            The answer of the oil.
+
+        Returns
+        -------
+        numpy.ndarray
+            As in `lube.kernels.shaped.Surface`.
+        """
+        count = min(self._waves.size, int(answer.wavenumber[-1] / self._unit))
+        wavenumber = np.log(self._unit * np.arange(1, count + 1))
+        size = max(-(-self._size >> answer.shift(self._spacing)), 2 * count + 2)
+        size = scipy.fft.next_fast_len(size, real=True)
+        lines = np.empty((size + 1, answer.filters.shape[1]), np.float32)
+        for m, own in enumerate(answer.filters.T):
+            kept = np.interp(wavenumber, np.log(answer.wavenumber), own)
+            lines[:-1, m] = self._line(self._waves[:count] * kept.conj(), size)
+        lines[-1] = lines[0]
+        return lines
+
+    def _line(self, waves, size):
+        """Sum of waves on a grid of some points."""
+        spectrum = np.zeros(size // 2 + 1, complex)
+        spectrum[1 : waves.size + 1] = waves * (size / self._size)
+        return scipy.fft.irfft(spectrum, size, overwrite_x=True)
