@@ -111,6 +111,17 @@ STUDIES = {
         operating_grid=_grid([200, 800], [600], [50, 80, 95]),
         traces=[_trace(800, 600, 95)],
     ),
+    # The complete answer: computed film, its shape, and the roughness that it answers.
+    "answered": _small(
+        "answered",
+        film_shape="computed",
+        roughness_deformation="computed",
+        rollers=PAPER_CONTENT["rollers"]
+        | {"second": _STEEL | {"radius": "40 mm", "rms_roughness": "0.15 um"}},
+        film_formulas=["computed", "paper"],
+        operating_grid=_grid([400, 1600], [100], [60, 80], [0, 1]),
+        traces=[_trace(1600, 100, 80, slide_to_roll_ratio=1)],
+    ),
     # A film that is thinner with slip, and at the greater force because the oil begins so near.
     "corrections": _small(
         "corrections",

@@ -145,7 +145,7 @@ def _window(surfaces, first_1, first_2, window, least, lift, factor):
     step = 1 << shift
     line_1, line_2 = surfaces[0].line, surfaces[1].line
     if surfaces[0].shapes.size + surfaces[1].shapes.size > 0:
-        for node in range(lift.size):
+        for node in range(((film.size - 1 + phase) >> shift) + 2):
             answers = answer_at(surfaces[0], first_1 - phase, step, node)
             answers += answer_at(surfaces[1], first_2 - phase, step, node)
             lift[node] = np.int64(np.rint(answers))

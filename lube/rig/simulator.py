@@ -108,7 +108,8 @@ class SimulatedRig:
         """Contact windows of some operating points."""
         rows = [self._points[number].row for number in numbers]
         film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
-        film["reduced_modulus"] = rows[0]["reduced_modulus"]  # the same at all
+        alike = ["reduced_modulus", "reduced_radius", "composite_rms_roughness"]
+        film = film.assign(rows[0][alike])
         layer, gap = self._study.boundary_layer, self._study.gap
         return ContactWindows(LineGrid.of(self._lines), film, layer, gap)
 
