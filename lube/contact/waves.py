@@ -11,12 +11,13 @@ from lube.ehl.line_contact import one_blas_thread
 from lube.ehl.response import at_wavelengths
 from lube.grid.discretise import LineGrid
 from lube.grid.film_profiles import six_digits
+from lube.kernels.motion import surface_position
 from lube.kernels.shaped import BLOCK, Surface, answer_at
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
 from lube.surfaces.rare_contact import UnevenWindow, likely_part, sum_of_lines
 from lube.surfaces.synthetic import wave_amplitudes
-from lube.types import Array, Pair, Points
+from lube.types import Array, Pair, Ratios
 
 PRECISION = 0.01
 """Largest error of the answers to rough lines, over the rms height of the lines."""
@@ -156,8 +157,10 @@ def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
 _OF_RESPONSE = "roller", "wavelength", "response_position"
 
 
-def lifted(lines: Pair, grid: LineGrid, answers: Pair, places: Points, window: Array) -> Array:
-    """Compute what the oil adds to two lines in a contact window.
+def lifted(
+    lines: Pair, grid: LineGrid, answers: Pair, ratios: Ratios, step: int, window: Array
+) -> Array:
+    """Compute what the oil adds to two lines in the contact window of a trace.
 
     Parameters
     ----------
@@ -167,29 +170,35 @@ def lifted(lines: Pair, grid: LineGrid, answers: Pair, places: Points, window: A
         Their grid.
     answers : tuple of Answer
         To both surfaces.
-    places : tuple of int
-        Point of each line at the window's centre.
-    window : numpy.ndarray of int
+    ratios : tuple of float
+        Surface speeds over that of the faster surface.
+    step : int
+        Time step.
+    window : numpy.ndarray of int, shape (W,)
         Points of the window, counted from its centre.
 
     Returns
     -------
     numpy.ndarray of int64, shape (2, W)
-        Of each line, height steps; together as contact is counted with.
+        Of each line, height steps; together as in `lube.kernels.shaped.shaped_trace`.
     """
     shift = answers[0].shift(grid.spacing)
     nodes = np.arange(window[0] >> shift, (window[-1] >> shift) + 2) << shift
-    at_nodes = np.empty((2, nodes.size))
-    for own, line, answer, place in zip(at_nodes, lines, answers, places, strict=True):
+    begin = step >> shift << shift
+    at_nodes = np.zeros((2, 2, nodes.size))
+    for roller, (line, answer) in enumerate(zip(lines, answers, strict=True)):
         shapes = answer.at(-nodes * (grid.spacing / answer.half_width))
         surface = Surface(line, line, Waves(line, grid).filtered(answer), shapes)
-        first = place + nodes[0]
-        own[:] = [answer_at(surface, first, 1 << shift, node) for node in range(nodes.size)]
-    at_nodes[1] += at_nodes[0]
-    whole = np.rint(at_nodes).astype(np.int64)
+        for time in (0, 1):
+            moved = surface_position(begin + (time << shift), ratios[roller])
+            at_nodes[time, roller] = [
+                answer_at(surface, moved + nodes[0], 1 << shift, node) for node in range(nodes.size)
+            ]
+    at_nodes[:, 1] += at_nodes[:, 0]
+    now, then = np.rint(at_nodes).astype(np.int64)
+    whole = now + ((then - now) * (step - begin) >> shift)
     number, part = (window - nodes[0]) >> shift, window & ((1 << shift) - 1)
-    steps = np.diff(whole)[:, number]
-    first, both = whole[:, number] + (steps * part >> shift)
+    first, both = whole[:, number] + (np.diff(whole)[:, number] * part >> shift)
     return np.array([first, both - first])
 
 

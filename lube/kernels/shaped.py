@@ -5,7 +5,8 @@ of filtered lines, each times a function of the place:
 
 .. math:: z(s) + \sum_m u_m(X)\, z_m(s)
 
-It is smooth, so it is computed at some points of the window, the nodes, and linear between them.
+It is smooth, so it is computed at some points of the window, the nodes, and taken as linear between
+them.
 
 Where no line can reach the film, blocks of points are passed over by the highest heights of both
 lines there; where it can, the points are read as in the literal scan, to which this is equal to the
@@ -139,16 +140,26 @@ def answer_at(surface, first, step, node):
 
 
 @kernel
+def _answer(surfaces, speed_ratios, step, window, lift):
+    """Compute the answers to both surfaces at a time step, at the nodes, height steps."""
+    if surfaces[0].shapes.size + surfaces[1].shapes.size == 0:
+        return
+    distance, before = 1 << window.shift, window.before + phase_of(window)
+    first_1 = surface_position(step, speed_ratios[0]) - before
+    first_2 = surface_position(step, speed_ratios[1]) - before
+    last = (window.film.size - 1 + phase_of(window)) >> window.shift
+    for node in range(last + 2):
+        answers = answer_at(surfaces[0], first_1, distance, node)
+        answers += answer_at(surfaces[1], first_2, distance, node)
+        lift[node] = np.int64(np.rint(answers))
+
+
+@kernel
 def _window(surfaces, first_1, first_2, window, least, lift, factor):
     """Contact points, broken points and overlap in one window, as in the literal scan."""
     film, shift, phase = window.film, window.shift, phase_of(window)
     step = 1 << shift
     line_1, line_2 = surfaces[0].line, surfaces[1].line
-    if surfaces[0].shapes.size + surfaces[1].shapes.size > 0:
-        for node in range(((film.size - 1 + phase) >> shift) + 2):
-            answers = answer_at(surfaces[0], first_1 - phase, step, node)
-            answers += answer_at(surfaces[1], first_2 - phase, step, node)
-            lift[node] = np.int64(np.rint(answers))
     contact_points = broken_points = total_overlap = 0
     segment_points = segment_overlap = 0
     for block in range(least.size):
@@ -219,6 +230,11 @@ def shaped_trace(
     numpy.ndarray
         Shape (windows, 3), int64: contact points, broken points and overlap (height steps).
 
+    Notes
+    -----
+    The answers change as slowly with time as along the window. If every time step is looked at,
+    they are computed as many steps apart as there are points from node to node.
+
     Examples
     --------
     One high point passes a window of three points, with a film that is thin in the middle only:
@@ -231,9 +247,17 @@ def shaped_trace(
     """
     trace = np.empty((windows, 3), np.int64)
     least = _least_by_block(window.film)
-    lift = np.zeros(node_count(window), np.int64)
+    now, then, lift = np.zeros((3, node_count(window)), np.int64)
     for number in range(windows):
         step = number * steps // windows
+        part = step & ((1 << window.shift) - 1) if windows == steps else 0
+        if part == 0:
+            _answer(surfaces, speed_ratios, step, window, now)
+            lift[:] = now
+        if part == 1:
+            _answer(surfaces, speed_ratios, step - 1 + (1 << window.shift), window, then)
+        if part > 0:
+            lift[:] = now + ((then - now) * part >> window.shift)
         first_1 = surface_position(step, speed_ratios[0]) - window.before
         first_2 = surface_position(step, speed_ratios[1]) - window.before
         first_1, first_2 = first_1 % surfaces[0].line.size, first_2 % surfaces[1].line.size

@@ -182,7 +182,7 @@ def contact_window(
     heights = np.array([line[(place + window) % line.size] for line, place in both], np.int64)
     if gap.is_answered:
         answers = answers_at(point, gap.has_shape).values
-        heights += lifted(pair, grid, answers, places, window)
+        heights += lifted(pair, grid, answers, ratios, step, window)
     # Points of a line that are ahead in its direction of motion come first.
     heights, film = heights[:, ::-1], np.broadcast_to(film, window.shape)[::-1]
     overlap = heights.sum(axis=0) - film

@@ -8,6 +8,7 @@ from lube.contact import waves
 from lube.contact.waves import Answer, Waves, answered_window, answers_at, lifted
 from lube.grid.discretise import line_pair
 from lube.grid.operating_points import at_slip
+from lube.kernels.motion import surface_position
 from lube.stages import film_table, lubricant_table, roughness_lines
 from lube.surfaces.synthetic import wave_amplitudes
 
@@ -79,8 +80,9 @@ def test_answers_to_lines_are_those_to_every_wave(has_shape, point, pair, spec):
     ]
     square = []
     for place in range(17, 12_000, 1000):
-        places = place, 3 * place + 5
-        found = lifted(pair, spec, answers, places, window)
+        ratios = 1.0, 0.37
+        places = [surface_position(place, ratio) for ratio in ratios]
+        found = lifted(pair, spec, answers, ratios, place, window)
         square.append(
             [(found[i] - plain[i].lift(places[i])) ** 2 for i in range(2)],
         )

@@ -78,27 +78,41 @@ def test_answers_are_added_to_the_lines_at_every_point(
     random, step, phase = np.random.default_rng(seed), 1 << shift, -before % (1 << shift)
     nodes = width // step + BLOCK // step + 3
     surfaces = tuple(answered(line, random, nodes, functions) for line in lines)
-    found = shaped_trace(surfaces, ratios, 29, 29, Window(film, before, shift), factor)
+    window = Window(film, before, shift)
+    every = shaped_trace(surfaces, ratios, 29, 29, window, factor)
+    some = shaped_trace(surfaces, ratios, 29, 10, window, factor)
     points = np.arange(width) + phase
-    for number in range(29):
-        places = [surface_position(number, ratio) - before for ratio in ratios]
+
+    def answers_at(number):
+        places = [surface_position(number, ratio) - before - phase for ratio in ratios]
         both = list(zip(surfaces, places, strict=True))
-        lift = np.array(
+        surface, place = both[0]
+        literal = literal_answer(surface, place + step, 1)
+        assert np.isclose(answer_at(surface, place, step, 1), literal, atol=1e-4)
+        return np.array(
             [
-                round(sum(answer_at(one, at - phase, step, node) for one, at in both))
+                round(sum(answer_at(one, at, step, node) for one, at in both))
                 for node in range(nodes)
             ]
         )
-        surface, place = both[0]
-        literal = literal_answer(surface, place - phase + step, 1)
-        assert np.isclose(answer_at(surface, place - phase, step, 1), literal, atol=1e-4)
+
+    def expected(number, lift):
         node, part = points // step, points % step
         answers = lift[node] + (lift[node + 1] - lift[node]) * part // step
         overlap = answers - film
-        for line, at in zip(lines, places, strict=True):
+        for line, ratio in zip(lines, ratios, strict=True):
+            at = surface_position(number, ratio) - before
             overlap = overlap + line[(at + np.arange(width)) % line.size]
         high = np.zeros(width + 2, np.int32)
         high[1:-1] = np.maximum(overlap, 0)
         one_window = (high, np.zeros_like(high))
-        expected = scan_trace(one_window, (1.0, 1.0), 1, np.zeros(width + 2, int), 0, factor)
-        assert found[number].tolist() == expected[0].tolist()
+        still = np.zeros(width + 2, int)
+        return scan_trace(one_window, (1.0, 1.0), 1, still, 0, factor)[0].tolist()
+
+    for number, found in enumerate(every):
+        begin = number // step * step
+        now, then = answers_at(begin), answers_at(begin + step)
+        lift = now + (then - now) * (number - begin) // step
+        assert found.tolist() == expected(number, lift)
+    for number, found in zip(np.arange(10) * 29 // 10, some, strict=True):
+        assert found.tolist() == expected(number, answers_at(number))
