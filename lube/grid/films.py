@@ -84,7 +84,7 @@ def film_at(
             is_heated = inlet_shear_heating != "none"
             solved = thinned(groups, factor) if is_heated else groups.profiles()
             responses = contact, xr.DataArray(slide_to_roll_ratio), answered_lines, threads
-            table = table.merge(film_responses(solved, *responses), join="exact")
+            table = table.merge(film_responses(solved, *responses), compat="override", join="exact")
             # With slip the oil answers otherwise: each slip has a film of its own.
             for name in ("film_thickness", "lambda_ratio"):
                 table[name] = table[name].broadcast_like(table["interpolation_error"])

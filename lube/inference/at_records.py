@@ -51,8 +51,8 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
         ``longest_wavelength``, both m, of one realisation.
 
         The probabilities are those of one revolution of pure rolling, at the film of the record's
-        own slip: apart from that film slip does not change the expected probability. It changes the
-        scatter of a record.
+        own slip and with its answer to the roughness: apart from these slip does not change the
+        expected probability. It changes the scatter of a record.
     """
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     rollers, formulas = study.rough_rollers, study.film_formulas

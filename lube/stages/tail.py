@@ -38,9 +38,9 @@ follow from the scatter between them."""
 FEWER_PAIRS = 8
 """The first of these pairs, used for the other film formulas."""
 _SLIP = "slide_to_roll_ratio"
-_AS_DRAWN = (
-    "roughness_deformation: got lines that the oil flattens, need none: importance sampling is for "
-    "lines that are the same at all operating points"
+_FLATTENED = (
+    "roughness_deformation: got venner-1997, need none or computed: importance sampling is not "
+    "for lines that a formula flattens"
 )
 _ASYMPTOTES = "geometric_contact_asymptote", "breakthrough_asymptote"
 _OF_PAIRS = "breakthrough_probability", "geometric_contact_probability", "breakthrough_rate"
@@ -107,7 +107,8 @@ def tail_probabilities(
     -----
     At equal film thickness the probabilities do not depend on slip, in expectation: the lines are
     stationary and independent, so every alignment is as good as another. Slip changes how many
-    contacts there are, and how long they last; and the film, where inlet shear heating thins it.
+    contacts there are, and how long they last; the film, where inlet shear heating thins it; and
+    the answer of the oil to the roughness, if that is computed.
 
     A *breakthrough* is counted where the boundary layer breaks on a whole run of touching points,
     not on a piece that the window's edge cuts off. There are :math:`\nu` of them per point of the
@@ -212,7 +213,7 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
 def _why_not(spec, gap):
     """Say in one line why contact cannot be sampled; nothing if it can."""
     if gap.is_flattened:
-        return _AS_DRAWN
+        return _FLATTENED
     try:
         check_gaussian(spec)
     except StudyError as error:

@@ -194,7 +194,7 @@ class Study(StrictModel):
 
     @property
     def is_sampled(self) -> bool:
-        """Whether rare contact can be sampled: lines that are Gaussian, and stay as drawn."""
+        """Whether rare contact can be sampled: lines that are Gaussian, and not flattened."""
         return self.line_spec.is_gaussian and not self.gap.is_flattened
 
     @property
@@ -278,7 +278,7 @@ class Study(StrictModel):
             )
 
     def check_slip(self, slide_to_roll_ratio: float) -> None:
-        """Refuse slip of lines that the oil flattens.
+        """Refuse slip of lines that a formula flattens.
 
         Parameters
         ----------
@@ -293,8 +293,8 @@ class Study(StrictModel):
         if self.gap.is_flattened and slide_to_roll_ratio:
             raise StudyError(
                 f"roughness_deformation: got {self.roughness_deformation} with a slide-to-roll "
-                f"ratio of {slide_to_roll_ratio:g}, need none, or a ratio of 0: its formula is for "
-                "pure rolling"
+                f"ratio of {slide_to_roll_ratio:g}, need none or computed, or a ratio of 0: "
+                "its formula is for pure rolling"
             )
 
     @property

@@ -40,7 +40,8 @@ def results(study, folder):
     corrections = {"slide_to_roll_ratio": study.slips, **study.film_model}
     film = film_table(oil, study.rollers, *levels, **corrections)
     lines = roughness_batch(study.line_spec, study.seed, range(REALISATIONS))
-    run = contact_statistics(lines, film, study.boundary_layer, study.slips, study.revolutions)
+    run = study.boundary_layer, study.slips, study.revolutions, study.gap
+    run = contact_statistics(lines, film, *run)
     save(oil, folder / "lubricant.nc", "lubricant", study)
     save(film, folder / "film.nc", "film", study, [folder / "lubricant.nc"])
     save(gather([run], film), folder / "contact.nc", "contact", study, [folder / "film.nc"])
@@ -64,6 +65,15 @@ def test_realisations_are_computed_again_to_the_last_bit(folder):
             stored = contact.sel(realisation=realisation, **names)
             for name in result.again:
                 np.testing.assert_array_equal(result.again[name].squeeze(), stored[name].squeeze())
+
+
+def test_contact_of_lines_that_the_oil_answers_is_computed_again(study, tmp_path):
+    changes = {"film_shape": "computed", "roughness_deformation": "computed"}
+    folder = results(study.model_copy(update=changes), tmp_path)
+    slip = {"film_formula": "paper", "slide_to_roll_ratio": 0.1}
+    result = explain(folder / "contact.nc", 2, **POINT, **slip)
+    assert result.differing == []
+    assert result.again["geometric_contact_probability"].item() > 0.0
 
 
 def test_mean_and_interval_are_computed_again_at_every_point(folder):

@@ -159,6 +159,18 @@ def test_a_rare_share_under_a_shape_is_sampled_and_on_flattened_lines_refused(ro
         lube.required_speed(rollers, oil, **given, roughness_deformation="venner-1997", **ONE)
 
 
+def test_a_rare_share_of_lines_that_the_oil_answers(rollers, oil):
+    """Put in again, and with slip, which the answer depends on."""
+    gap = {"film_shape": "computed", "roughness_deformation": "computed"}
+    found = lube.required_speed(rollers, oil, **without("speed"), share=1e-4, **gap, **ONE)
+    point = POINT | {"speed": (found["speed"].item(), "rpm")}
+    back = lube.contact_probability(rollers, oil, **point, **gap, **ONE)
+    probability = back["tail_breakthrough_probability"].item()
+    assert probability == pytest.approx(1e-4, rel=0.1)
+    sliding = lube.contact_probability(rollers, oil, **point, **gap, **ONE, slide_to_roll_ratio=1.0)
+    assert abs(np.log(sliding["tail_breakthrough_probability"].item() / probability)) > 0.02
+
+
 def test_a_choice_that_no_study_has_is_refused(rollers, oil):
     for name in CHOICES:
         with pytest.raises(LubeError, match=f"^{name}: got 'curved', "):

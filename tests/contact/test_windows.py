@@ -11,6 +11,7 @@ from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, whole_num
 from lube.grid.gap import Gap
 from lube.physics.flattening import amplitude_ratio
 from lube.stages import roughness_lines
+from lube.surfaces.synthetic import draw_realisation
 
 RATIOS = (1.0, 1.0)
 
@@ -151,3 +152,31 @@ def test_where_a_shape_is_not_known_contact_is_not_either(shaped_film, coarse, w
     assert np.isnan(found[:, 1, 0]).all()  # of both film formulas
     assert windows.unknown.reshape(2, 2, 2)[:, 1, 0].all() and windows.unknown.sum() == 2
     np.testing.assert_array_equal(found[:, 0], whole.reshape(2, 2, 2, 4)[:, 0])
+
+
+@pytest.mark.parametrize("shape", ["flat", "computed"])
+def test_where_the_oil_answers_sampled_contact_is_as_often_as_counted(
+    shape, shaped_film, make_spec, weak
+):
+    spec, pairs = make_spec(20_000), 40
+    windows = ContactWindows(spec, shaped_film, weak, Gap(shape, "computed"))
+    counted = [
+        windows.count(draw_realisation(spec, 11, number))[:, :2].T for number in range(pairs)
+    ]
+    sampled = [windows.sample(spec, 11, number)[0] for number in range(pairs)]
+    means = np.mean([counted, sampled], axis=1)
+    errors = np.std([counted, sampled], axis=1, ddof=1) / pairs**0.5
+    often = means[0] > 3e-3
+    deviations = (means[1] - means[0]) / np.hypot(*errors)
+    assert often.sum() >= 12 and np.abs(deviations[often]).max() < 4.0
+    assert np.median(errors[1] / means[1]) < 0.02
+
+
+def test_a_response_that_is_not_known_leaves_contact_unknown(shaped_film, coarse, weak):
+    holed = shaped_film.copy(deep=True)
+    holed["response_real"][:, 0, 1, 0, 0] = np.nan
+    windows = ContactWindows(LineGrid.of(coarse), holed, weak, Gap("flat", "computed"))
+    unknown = windows.unknown.reshape(2, 2, 2)
+    assert unknown[:, 1, 0].all() and unknown.sum() == 2
+    found = windows.count(line_pair(coarse, 0))
+    np.testing.assert_array_equal(np.isnan(found).all(axis=1), windows.unknown)

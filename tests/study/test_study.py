@@ -131,6 +131,7 @@ def changed_stages(paper_with):
 MECHANICS = {"contact", "tail", "areal", "trace", "experiment"}
 # Those that are for pure rolling too.
 LAYER = MECHANICS | {"master", "height_distribution", "variants"}
+DEFORMED = {"variants", "height_distribution"}
 LINES = LAYER | {"roughness", "patch"}
 SPECTRUM = LINES | {"surface", "film_response"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
@@ -151,7 +152,8 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("rollers.first.radius", "60 mm", SPECTRUM | {"film"}),
         ("film_formulas", ["paper"], {"film"}),
         ("film_shape", "computed", {"film"}),
-        ("roughness_deformation", "venner-1997", MECHANICS | {"variants", "height_distribution"}),
+        ("roughness_deformation", "venner-1997", MECHANICS | DEFORMED),
+        ("roughness_deformation", "computed", MECHANICS | DEFORMED | {"film"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
         ("traces.1.temperature", "60 degC", {"trace", "rig"}),
@@ -170,7 +172,12 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
 
 
 @pytest.mark.parametrize(
-    "change", [("film_shape", "computed"), ("roughness_deformation", "venner-1997")]
+    "change",
+    [
+        ("film_shape", "computed"),
+        ("roughness_deformation", "venner-1997"),
+        ("roughness_deformation", "computed"),
+    ],
 )
 def test_the_master_map_and_the_surface_need_flat_films_and_lines_as_drawn(paper_with, change):
     paper, study = load_study(PAPER), load_study(paper_with(change))
