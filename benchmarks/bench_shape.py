@@ -91,10 +91,10 @@ def breakthroughs(pairs, film, windows, factor):
     found = []
     for pair in pairs:
         one = film.below(pair[0].max())
-        window = Window(one.film, one.before, BLOCK_SHIFT)
+        window = Window(one.film[None], one.before, BLOCK_SHIFT)
         surfaces = tuple(as_drawn(line) for line in pair)
-        trace = shaped_trace(surfaces, (1.0, 1.0), pair[0].size, windows, window, factor)
-        found.append(np.mean(trace[:, 1] > 0))
+        run = (1.0, 1.0), pair[0].size, windows, window, np.array([factor])
+        found.append(np.mean(shaped_trace(surfaces, *run)[0, :, 1] > 0))
     return np.array(found)
 
 

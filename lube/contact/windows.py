@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.waves import Waves, answered_window, answers_at
-from lube.contact.window_films import WindowFilm, window_films
+from lube.contact.window_films import window_films
 from lube.grid.discretise import (
     Layer,
     LineGrid,
@@ -156,14 +156,13 @@ class ContactWindows:
                 counts[here] = self._strips(lines, ratios, steps, here, factor)
             counts[self.unknown] = np.nan
             return counts
-        for point, surfaces, window in self._meetings(pair):
-            stride = max(1, (2 * self.half_windows[point] + 1) // WINDOWS_PER_WIDTH)
+        for points, surfaces, window in self._meetings(pair):
+            stride = max(1, (2 * self.half_windows[points[0]] + 1) // WINDOWS_PER_WIDTH)
             motion = ratios, steps, -(-steps // stride)
-            found = shaped_trace(surfaces, *motion, window, self._factors[point])
-            points, broken, _ = found.T
-            counts[point, :2] = np.count_nonzero(points), np.count_nonzero(broken)
-            counts[point, 2:] = found[:, 1:].sum(axis=0)
-            counts[point] /= len(found)
+            found = shaped_trace(surfaces, *motion, window, self._factors[points])
+            counts[points, :2] = np.count_nonzero(found[..., :2], axis=1)
+            counts[points, 2:] = found[..., 1:].sum(axis=1)
+            counts[points] /= found.shape[1]
         return counts
 
     def trace(self, pair: Pair, slip: float = 0.0, begin: int = 0) -> Array:
@@ -188,9 +187,9 @@ class ContactWindows:
                 films = self._films[here], self.half_windows[here]
                 broken[here] = strip_trace(lines, ratios, steps, *films, factor)
             return broken
-        for point, surfaces, window in self._meetings(pair):
-            found = shaped_trace(surfaces, ratios, steps, steps, window, self._factors[point])
-            broken[point] = found[:, 1]
+        for points, surfaces, window in self._meetings(pair):
+            found = shaped_trace(surfaces, ratios, steps, steps, window, self._factors[points])
+            broken[points] = found[..., 1]
         return broken
 
     def count_uncut(self, pair: Pair) -> Array:
@@ -257,9 +256,10 @@ class ContactWindows:
             return UnevenWindow(self._shapes[point].film.astype(float))
         key = self._numbers[point]
         if key not in self._places:
-            shape = self._shapes[point] or self._reached(point, 0)
-            film = shape.film.astype(float), shape.before
-            self._places[key] = answered_window(spec, *film, tuple(self._answers[point]))
+            shape = self._shapes[point]
+            film, before = (shape.film, shape.before) if shape else self._reached([point], 0)
+            film = np.ravel(film).astype(float)
+            self._places[key] = answered_window(spec, film, before, tuple(self._answers[point]))
         return self._places[key]
 
     def _in_contact(self, pair):
@@ -288,43 +288,50 @@ class ContactWindows:
         return (counts / steps)[inverse.ravel()]
 
     def _meetings(self, pair):
-        """Yield each known point, with the surfaces and the window that meet there."""
+        """Yield known points of one window, with the surfaces and the window that meet there."""
         for lines, here in self._in_contact(pair):
             drawn = [as_drawn(line) for line in lines]
-            waves = [Waves(line, self._grid) for line in lines] if self._gap.is_answered else []
-            alike = {}  # points with the same answers together: filtered lines take time and memory
-            for point in here[~self.unknown[here]]:
+            highest = sum(line.max() for line in lines)
+            known = here[~self.unknown[here]]
+            if not self._gap.is_answered:
+                for point in known:
+                    films, before = self._reached([point], highest)
+                    yield [point], tuple(drawn), Window(films, before, BLOCK_SHIFT)
+                continue
+            waves = [Waves(line, self._grid) for line in lines]
+            alike = {}
+            for point in known:
                 alike.setdefault(tuple(map(id, self._answers[point])), []).append(point)
             for points in alike.values():
-                answers = self._answers[points[0]]
-                filtered = [wave.filtered(one) for wave, one in zip(waves, answers, strict=False)]
-                for point in points:
-                    yield point, *self._meeting(point, drawn, filtered)
+                yield points, *self._answered(points, drawn, waves, highest)
 
-    def _meeting(self, point, surfaces, filtered):
-        """Surfaces and window of a point."""
-        highest = sum(surface.line.max() for surface in surfaces)
-        for answer, lines in zip(self._answers[point], filtered, strict=False):
+    def _answered(self, points, drawn, waves, highest):
+        """Surfaces that the oil answers, and the window of points at which it answers alike."""
+        answers = self._answers[points[0]]
+        filtered = [wave.filtered(one) for wave, one in zip(waves, answers, strict=False)]
+        for answer, lines in zip(answers, filtered, strict=False):
             highest += np.sum(np.abs(answer.shapes) * np.abs(lines).max(axis=0), axis=1).max()
-        film = self._reached(point, highest)
-        if not filtered:
-            return tuple(surfaces), Window(film.film, film.before, BLOCK_SHIFT)
-        shift = self._answers[point, 0].shift(self._grid.spacing)
-        window = Window(film.film, film.before, shift)
+        shift = answers[0].shift(self._grid.spacing)
+        window = Window(*self._reached(points, highest), shift)
         nodes = (np.arange(node_count(window)) << shift) - phase_of(window)
-        position = (film.before - nodes) * (self._grid.spacing / self._contacts[point, 0])
-        both = zip(surfaces, filtered, self._answers[point], strict=True)
+        position = (window.before - nodes) * (self._grid.spacing / answers[0].half_width)
+        both = zip(drawn, filtered, answers, strict=True)
         return tuple(
             surface._replace(filtered=lines, shapes=answer.at(position))
             for surface, lines, answer in both
         ), window
 
-    def _reached(self, point, highest):
-        """Film over the window of a point, as far as a height reaches it."""
-        if self._gap.has_shape:
-            return self._shapes[point].below(highest)
-        half_window = self.half_windows[point]
-        return WindowFilm(np.full(2 * half_window + 1, self._films[point]), half_window)
+    def _reached(self, points, highest):
+        """Films over the window of some points as far as a height reaches, and points before."""
+        if not self._gap.has_shape:
+            half_window = self.half_windows[points[0]]
+            return np.repeat(self._films[points, None], 2 * half_window + 1, axis=1), half_window
+        shapes = self._shapes[points]
+        reached = [shape.below(highest) for shape in shapes]
+        before = max(one.before for one in reached)
+        behind = max(one.film.size - one.before for one in reached)
+        part = [shape.film[shape.before - before : shape.before + behind] for shape in shapes]
+        return np.array(part), before
 
 
 def _begun(pair, ratios, begin):

@@ -55,15 +55,16 @@ class Window(NamedTuple):
 
     Attributes
     ----------
-    film : numpy.ndarray
-        Film thickness at each point, shape (W,), int64 height steps.
+    films : numpy.ndarray
+        Film thickness at each point, shape (F, W), int64 height steps; of F operating points that
+        have the same window and answers.
     before : int
         Points of the window before its centre.
     shift : int
         Binary logarithm of the points from node to node, a part of `BLOCK`.
     """
 
-    film: Array
+    films: Array
     before: int
     shift: int
 
@@ -103,12 +104,13 @@ def highest_ahead(line: Array) -> Array:
 
 
 @kernel
-def _least_by_block(film):
-    """Thinnest film in each block of a window."""
-    blocks = (film.size + BLOCK - 1) // BLOCK
-    least = np.empty(blocks, film.dtype)
-    for b in range(blocks):
-        least[b] = film[b * BLOCK : (b + 1) * BLOCK].min()
+def _least_by_block(films):
+    """Thinnest film in each block of a window, shape (F, blocks)."""
+    blocks = (films.shape[1] + BLOCK - 1) // BLOCK
+    least = np.empty((len(films), blocks), films.dtype)
+    for f in range(len(films)):
+        for b in range(blocks):
+            least[f, b] = films[f, b * BLOCK : (b + 1) * BLOCK].min()
     return least
 
 
@@ -121,7 +123,7 @@ def phase_of(window):
 @inlined
 def node_count(window):
     """Count the nodes of a window, those beyond its last block included."""
-    blocks = (window.film.size + BLOCK - 1) // BLOCK
+    blocks = (window.films.shape[1] + BLOCK - 1) // BLOCK
     return blocks * (BLOCK >> window.shift) + 2
 
 
@@ -147,7 +149,7 @@ def _answer(surfaces, speed_ratios, step, window, lift):
     distance, before = 1 << window.shift, window.before + phase_of(window)
     first_1 = surface_position(step, speed_ratios[0]) - before
     first_2 = surface_position(step, speed_ratios[1]) - before
-    last = (window.film.size - 1 + phase_of(window)) >> window.shift
+    last = (window.films.shape[1] - 1 + phase_of(window)) >> window.shift
     for node in range(last + 2):
         answers = answer_at(surfaces[0], first_1, distance, node)
         answers += answer_at(surfaces[1], first_2, distance, node)
@@ -155,9 +157,9 @@ def _answer(surfaces, speed_ratios, step, window, lift):
 
 
 @kernel
-def _window(surfaces, first_1, first_2, window, least, lift, factor):
+def _window(surfaces, first_1, first_2, window, film, least, lift, factor):
     """Contact points, broken points and overlap in one window, as in the literal scan."""
-    film, shift, phase = window.film, window.shift, phase_of(window)
+    shift, phase = window.shift, phase_of(window)
     step = 1 << shift
     line_1, line_2 = surfaces[0].line, surfaces[1].line
     contact_points = broken_points = total_overlap = 0
@@ -206,9 +208,9 @@ def shaped_trace(
     steps: int,
     windows: int,
     window: Window,
-    factor: float,
+    factors: Array,
 ) -> Array:
-    """Compute the contact in windows evenly spread over the time steps of one operating point.
+    """Compute the contact in windows evenly spread over the time steps of some operating points.
 
     Parameters
     ----------
@@ -221,14 +223,14 @@ def shaped_trace(
     windows : int
         Number of windows; T for one at each time step.
     window : Window
-        Film over the window.
-    factor : float
-        From `lube.kernels.layer.layer_factor`.
+        Films over the window.
+    factors : numpy.ndarray
+        From `lube.kernels.layer.layer_factor`, shape (F,).
 
     Returns
     -------
     numpy.ndarray
-        Shape (windows, 3), int64: contact points, broken points and overlap (height steps).
+        Shape (F, windows, 3), int64: contact points, broken points and overlap (height steps).
 
     Notes
     -----
@@ -241,12 +243,12 @@ def shaped_trace(
 
     >>> line = np.array([5, 0, 0, 0, 0], np.int32)
     >>> surfaces = as_drawn(line), as_drawn(np.zeros_like(line))
-    >>> window = Window(np.array([9, 3, 9]), 1, BLOCK_SHIFT)
-    >>> shaped_trace(surfaces, (1.0, 1.0), 5, 5, window, 1.0)[:, 0].tolist()
+    >>> window = Window(np.array([[9, 3, 9]]), 1, BLOCK_SHIFT)
+    >>> shaped_trace(surfaces, (1.0, 1.0), 5, 5, window, np.ones(1))[0, :, 0].tolist()
     [1, 0, 0, 0, 0]
     """
-    trace = np.empty((windows, 3), np.int64)
-    least = _least_by_block(window.film)
+    trace = np.empty((len(window.films), windows, 3), np.int64)
+    least = _least_by_block(window.films)
     now, then, lift = np.zeros((3, node_count(window)), np.int64)
     for number in range(windows):
         step = number * steps // windows
@@ -261,7 +263,9 @@ def shaped_trace(
         first_1 = surface_position(step, speed_ratios[0]) - window.before
         first_2 = surface_position(step, speed_ratios[1]) - window.before
         first_1, first_2 = first_1 % surfaces[0].line.size, first_2 % surfaces[1].line.size
-        trace[number] = _window(surfaces, first_1, first_2, window, least, lift, factor)
+        for f in range(len(window.films)):
+            own = window.films[f], least[f], lift, factors[f]
+            trace[f, number] = _window(surfaces, first_1, first_2, window, *own)
     return trace
 
 

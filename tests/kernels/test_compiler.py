@@ -16,8 +16,8 @@ SCAN = """
 import numpy as np
 from lube.kernels.shaped import Window, as_drawn, shaped_trace
 line = np.array([3, 3, 0], np.int32)
-surfaces, window = (as_drawn(line), as_drawn(line)), Window(np.zeros(3, np.int64), 0, 6)
-print(*shaped_trace(surfaces, (1.0, 1.0), 1, 1, window, 1.0)[0])
+surfaces, window = (as_drawn(line), as_drawn(line)), Window(np.zeros((1, 3), np.int64), 0, 6)
+print(*shaped_trace(surfaces, (1.0, 1.0), 1, 1, window, np.ones(1))[0, 0])
 """
 
 

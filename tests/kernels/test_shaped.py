@@ -42,11 +42,14 @@ def test_highest_ahead_is_the_maximum_of_a_block(size, seed):
 @given(seeds, sizes, sizes, sizes, ratios, st.integers(0, 50), st.floats(0.0, 9.0))
 def test_trace_equals_the_literal_scan(seed, size_1, size_2, width, ratios, before, factor):
     lines, film = contact(seed, size_1, size_2, width)
-    surfaces, window = tuple(map(as_drawn, lines)), Window(film, before, BLOCK_SHIFT)
-    trace = shaped_trace(surfaces, ratios, 29, 29, window, factor)
-    np.testing.assert_array_equal(trace, scan_trace(lines, ratios, 29, film, before, factor))
-    some = shaped_trace(surfaces, ratios, 29, 7, window, factor)
-    np.testing.assert_array_equal(some, trace[np.arange(7) * 29 // 7])
+    films, factors = np.array([film, film[::-1] + 1]), np.array([factor, 2.0 * factor])
+    surfaces, window = tuple(map(as_drawn, lines)), Window(films, before, BLOCK_SHIFT)
+    traces = shaped_trace(surfaces, ratios, 29, 29, window, factors)
+    for trace, *own in zip(traces, films, factors, strict=True):
+        expected = scan_trace(lines, ratios, 29, own[0], before, own[1])
+        np.testing.assert_array_equal(trace, expected)
+    some = shaped_trace(surfaces, ratios, 29, 7, window, factors)
+    np.testing.assert_array_equal(some, traces[:, np.arange(7) * 29 // 7])
 
 
 def answered(line, random, nodes, functions):
@@ -78,9 +81,9 @@ def test_answers_are_added_to_the_lines_at_every_point(
     random, step, phase = np.random.default_rng(seed), 1 << shift, -before % (1 << shift)
     nodes = width // step + BLOCK // step + 3
     surfaces = tuple(answered(line, random, nodes, functions) for line in lines)
-    window = Window(film, before, shift)
-    every = shaped_trace(surfaces, ratios, 29, 29, window, factor)
-    some = shaped_trace(surfaces, ratios, 29, 10, window, factor)
+    window, factors = Window(film[None], before, shift), np.array([factor])
+    (every,) = shaped_trace(surfaces, ratios, 29, 29, window, factors)
+    (some,) = shaped_trace(surfaces, ratios, 29, 10, window, factors)
     points = np.arange(width) + phase
 
     def answers_at(number):

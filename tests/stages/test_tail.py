@@ -59,7 +59,9 @@ def test_lines_that_the_oil_flattens_are_refused_in_words(few, spec, study):
     found = tail_probabilities(
         spec, few, study.boundary_layer, SEED, RATIOS, 1, Gap(roughness_deformation="venner-1997")
     )
-    assert found.attrs["remarks"].startswith("roughness_deformation: got venner-1997, need none or computed")
+    assert found.attrs["remarks"].startswith(
+        "roughness_deformation: got venner-1997, need none or computed"
+    )
     assert all(np.isnan(found[name]).all() for name in found.data_vars)
 
 
