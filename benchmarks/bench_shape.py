@@ -52,7 +52,7 @@ def prepared(study_file):
     oil = lubricant_table(study.lubricants[:1], grid.temperature)
     levels = study.rough_rollers, grid.force, grid.speed, ["computed"], True
     film = film_table(oil, *levels, answered_lines=study.line_spec)
-    return study, film.squeeze("slide_to_roll_ratio").transpose(*OPERATING_DIMS, ...)
+    return study, film.squeeze("slide_to_roll_ratio", drop=True).transpose(*OPERATING_DIMS, ...)
 
 
 def print_ensemble(study, film, lines):

@@ -121,7 +121,7 @@ class WaveResponse:
         matrix[:-1, -1] = balance(flow.by_gap, flow.drag_by_gap)
         matrix[-1] = np.append(discrete.weight[film + 1], 0.0) if fixed_load else 0.0
         matrix[-1, -1] = 0.0 if fixed_load else 1.0
-        wave = _resolved(self.wavelength / discrete.step) * np.exp(1j * wavenumber * middle)
+        wave = resolved_part(self.wavelength / discrete.step) * np.exp(1j * wavenumber * middle)
         right = np.append(-balance(flow.by_gap * wave, flow.drag_by_gap * wave), 0.0)
         with one_blas_thread():
             change = np.linalg.solve(matrix, right)
@@ -181,7 +181,7 @@ def _resolving_nodes(profile, step):
     return np.interp(np.arange(counts.sum() + 1), np.append(0, np.cumsum(counts)), nodes)
 
 
-def _resolved(points):
+def resolved_part(points):
     """Part of its amplitude with which a wave of so many nodes enters.
 
     On too few nodes a wave would look like a longer one.

@@ -30,8 +30,8 @@ _GROWTH = 1.08, 1.15
 _DAMPING = 1.0
 """Half-widths that the surfaces travel while what rings in the pressure decays."""
 _ENOUGH, _LARGEST, _MOST = 1e-7, 0.5, 300
-"""Change of the pressure at which a time step is solved, the largest in a step of Newton's method, and
-the most of these."""
+"""Change of the pressure at which a time step is solved, the largest in a step of Newton's method,
+and the most of these."""
 
 
 def passage_nodes(profile: FilmProfile, step: float) -> Array:
@@ -94,6 +94,7 @@ class RoughPassage:
         smooth = on_nodes(profile, passage_nodes(profile, step))
         self._discrete = DiscreteContact(smooth.contact, smooth.nodes)
         self._offset, self._step = smooth.offset, step
+        self._late = 0.5 * (1.0 + min(step / _DAMPING, 1.0))
         self._closed = CLOSED * profile.central_gap
         # Of the pressure in a cell, half acts at either node.
         by_node = self._discrete.deflection
@@ -132,88 +133,108 @@ class RoughPassage:
         ConvergenceError
             With the pressure's last change.
         """
-        before = self._flow
-        # What the roughness does to the pressure travels with it: a first guess.
+        had = self._balance(_drag(self._flow), self._flow.pressure_flow, 1.0 - self._late, -1.0)
+        state = self._first_guess()
+        touching = state[2] > 0.0
+        for _ in range(_MOST):
+            state, change = self._newton(had, heights, touching, state)
+            gap = self._gap(heights, *state)
+            # Complementary: a closed gap under pressure, or an open one without.
+            again = state[2] + self._closed - gap > 0.0
+            solved = change < _ENOUGH and np.array_equal(again, touching)
+            if solved or not np.isfinite(change):
+                break
+            touching = again
+        if not solved:
+            raise ConvergenceError(
+                f"{self._discrete.contact.name}: roughness that passes did not converge in a time "
+                f"step: the pressure changes by {change:.1g}"
+            )
+        self.pressure, self._offset, self.contact_pressure = state
+        self._flow = self._flow_through(gap, heights, *state)
+        self.gap = self._flow.gap
+
+    def _first_guess(self):
+        """Pressure, offset and contact pressure: what roughness does to them travels with it."""
         pressure, solid = self._smooth.copy(), np.zeros_like(self.contact_pressure)
         pressure[1:] += (self.pressure - self._smooth)[:-1]
         solid[1:] = self.contact_pressure[:-1]
-        state, touching = (np.maximum(pressure, 0.0), self._offset, solid), solid > 0.0
-        for _ in range(_MOST):
-            raw = self._raw_gap(heights, *state)
-            flow = self._flow_at(heights, raw, *state)
-            state, change = self._newton(before, flow, raw, touching, state)
-            gap = self._raw_gap(heights, *state)
-            # Complementary: a closed gap under pressure, or none.
-            again = state[2] + (self._closed - gap) > 0.0
-            if change < _ENOUGH and np.array_equal(again, touching):
-                break
-            touching = again
-        else:
-            raise ConvergenceError(
-                f"{self._discrete.contact.name}: a time step of roughness that "
-                f"passes did not converge: the pressure changes by {change:.1g}"
-            )
-        self.pressure, self._offset, self.contact_pressure = state
-        self._flow = self._flow_at(heights, gap, *state)
-        self.gap = self._flow.gap
+        return np.maximum(pressure, 0.0), self._offset, solid
 
-    def _raw_gap(self, heights, pressure, offset, solid):
+    def _gap(self, heights, pressure, offset, solid):
+        """Gap midway between the nodes, which may be less than closed before it has converged."""
         return self._discrete.gap(pressure, offset - heights) + self._by_cell @ solid
 
-    def _flow_at(self, heights, raw, pressure, offset, solid):
-        """Flow through the gap, which is not let closer than closed."""
-        opened = np.maximum(raw, self._closed) - raw
+    def _flow_through(self, gap, heights, pressure, offset, solid):
+        """Flow through a gap, closed where it is less than that."""
+        opened = np.maximum(gap, self._closed) - gap
         return self._discrete.flow(pressure, offset - heights + self._by_cell @ solid + opened)
 
-    def _newton(self, before, flow, raw, touching, state):
-        """Step of Newton's method for pressure, offset and contact pressure; the largest change."""
+    def _balance(self, drag, driven, part, stored=1.0):
+        """Oil that leaves a node less what enters, by a part of the driven flow, and is stored."""
+        squeeze = stored * 0.5 * self._discrete.weight[1:-1] / self._step
+        storing = (squeeze * (drag[1:] + drag[:-1]).T).T
+        return np.diff(0.5 * drag, axis=0) - np.diff(part * driven, axis=0) + storing
+
+    def _newton(self, had, heights, touching, state):
+        """Step of Newton's method for pressure, offset and contact pressure; the largest change.
+
+        As in `lube.ehl.reynolds`, but for one of time; nodes without oil pressure and cells without
+        contact get none.
+        """
         discrete, (pressure, offset, solid) = self._discrete, state
-        late = 0.5 * (1.0 + min(self._step / _DAMPING, 1.0))
-        squeeze = 0.5 * discrete.weight[1:-1] / self._step
-
-        def balance(drag, driven, part):
-            """What leaves a node less what enters, and what is stored there."""
-            leaving = np.diff(0.5 * drag, axis=0) - np.diff(part * driven, axis=0)
-            return leaving, (squeeze * (drag[1:] + drag[:-1]).T).T
-
-        def change_of(drag, driven):
-            return sum(balance(drag, driven, late))
-
-        leaves, stored = balance(flow.flux + flow.pressure_flow, flow.pressure_flow, late)
-        left, had = balance(before.flux + before.pressure_flow, before.pressure_flow, 1.0 - late)
-        residual = leaves + left + stored - had
-        drag_by_gap = flow.drag_by_gap
-        driven_by_gap = drag_by_gap - flow.by_gap
+        gap = self._gap(heights, *state)
+        flow = self._flow_through(gap, heights, *state)
+        residual = had + self._balance(_drag(flow), flow.pressure_flow, self._late)
+        by_gap = flow.drag_by_gap, flow.drag_by_gap - flow.by_gap
         dragged = discrete.drag_by_pressure(flow)
-        jacobian = change_of(dragged, dragged - discrete.flux_by_pressure(flow))
-        cells, inner = np.flatnonzero(touching), np.arange(pressure.size - 2)
+        driven = dragged - discrete.flux_by_pressure(flow)
+        jacobian = self._balance(dragged, driven, self._late)
+        inner = np.arange(pressure.size - 2)
         film = np.flatnonzero(pressure[1:-1] > residual / np.abs(jacobian[inner, inner + 1]))
-        n, m = film.size, cells.size
+        cells = np.flatnonzero(touching)
+
+        def by_opening(opening):
+            """Change of the balance as the gap opens, per column."""
+            columns = ((each * opening.T).T for each in by_gap)
+            return self._balance(*columns, self._late)[film]
+
         change, cell_change = -pressure, -solid
         change[film + 1], cell_change[cells] = 0.0, 0.0
-        by_solid = self._by_cell[:, cells]
-        matrix = np.zeros((n + 1 + m, n + 1 + m))
-        matrix[:n, :n] = jacobian[np.ix_(film, film + 1)]
-        matrix[:n, n] = change_of(drag_by_gap, driven_by_gap)[film]
-        columns = drag_by_gap[:, None] * by_solid, driven_by_gap[:, None] * by_solid
-        matrix[:n, n + 1 :] = change_of(*columns)[film]
-        matrix[n, :n], matrix[n, n + 1 :] = discrete.weight[film + 1], discrete.step[cells]
-        matrix[n + 1 :, :n] = discrete.deflection[np.ix_(cells, film + 1)]
-        matrix[n + 1 :, n], matrix[n + 1 :, n + 1 :] = 1.0, by_solid[cells]
-        solid_moved = self._by_cell @ cell_change
-        moved = discrete.deflection @ change + solid_moved
-        by_cells = change_of(drag_by_gap * solid_moved, driven_by_gap * solid_moved)
+        released = self._by_cell @ cell_change
         load = discrete.weight @ (pressure + change) + discrete.step @ (solid + cell_change)
+        opened = discrete.deflection @ change + released
         right = -np.concatenate(
             [
-                (residual + jacobian @ change + by_cells)[film],
+                (residual + jacobian @ change)[film] + by_opening(released),
                 [load - HERTZ_LOAD],
-                (raw + moved - self._closed)[cells],
+                (gap + opened - self._closed)[cells],
             ]
         )
-        solution = np.linalg.solve(matrix, right)
-        change[film + 1], cell_change[cells] = solution[:n], solution[n + 1 :]
-        largest = max(np.abs(change).max(), np.abs(cell_change).max())
-        part = min(1.0, _LARGEST / largest)
+        one, deflection = np.ones_like(gap), discrete.deflection[:, film + 1]
+        matrix = np.block(
+            [
+                [
+                    jacobian[np.ix_(film, film + 1)],
+                    by_opening(one)[:, None],
+                    by_opening(self._by_cell[:, cells]),
+                ],
+                [discrete.weight[film + 1], 0.0, discrete.step[cells]],
+                [deflection[cells], one[cells, None], self._by_cell[np.ix_(cells, cells)]],
+            ]
+        )
+        try:
+            solution = np.linalg.solve(matrix, right)
+        except np.linalg.LinAlgError:
+            solution = np.full_like(right, np.nan)
+        change[film + 1], cell_change[cells] = np.split(np.delete(solution, film.size), [film.size])
+        largest = np.abs(np.append(change, cell_change)).max()
+        part = _LARGEST / max(largest, _LARGEST)
         pressure = np.maximum(pressure + part * change, 0.0)
-        return (pressure, offset + part * solution[n], solid + part * cell_change), largest
+        offset += part * solution[film.size]
+        return (pressure, offset, solid + part * cell_change), largest
+
+
+def _drag(flow):
+    """Oil that the surfaces drag, or that is in the gap."""
+    return flow.flux + flow.pressure_flow

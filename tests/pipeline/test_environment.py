@@ -15,7 +15,7 @@ BLAS |= {"corrcoef", "cov", "spearmanr", "pearsonr"}
 # They fit planes to measured surfaces, and lines to measured spectra, by least squares.
 FITS = {"abel.py", "surface_statistics.py", "topography.py"}
 # They solve for the film and its response, of which six digits are kept.
-FITS |= {"line_contact.py", "reynolds.py", "response.py", "waves.py"}
+FITS |= {"line_contact.py", "reynolds.py", "response.py", "transient.py", "waves.py"}
 
 
 def test_later_processes_import_the_package_of_a_folder(monkeypatch, tmp_path):
