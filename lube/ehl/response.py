@@ -181,10 +181,20 @@ def _resolving_nodes(profile, step):
     return np.interp(np.arange(counts.sum() + 1), np.append(0, np.cumsum(counts)), nodes)
 
 
-def resolved_part(points):
-    """Part of its amplitude with which a wave of so many nodes enters.
+def resolved_part(points: Array) -> Array:
+    """Part of its amplitude with which a wave enters on a mesh.
 
-    On too few nodes a wave would look like a longer one.
+    On too few nodes it would look like a longer one.
+
+    Parameters
+    ----------
+    points : numpy.ndarray
+        Nodes in a wavelength.
+
+    Returns
+    -------
+    numpy.ndarray
+        From 0 to 1.
     """
     part = np.clip((points - _LEAST) / (_ENOUGH - _LEAST), 0.0, 1.0)
     return part * part * (3.0 - 2.0 * part)

@@ -15,9 +15,12 @@ and the surfaces carry the pressure :math:`P_c \ge 0` themselves. Elsewhere that
 amplitude of the roughness may be any.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from lube.ehl.line_contact import ConvergenceError, FilmProfile, on_nodes
+from lube.ehl.line_contact import ConvergenceError, FilmProfile, on_nodes, one_blas_thread
+from lube.ehl.response import resolved_part
 from lube.ehl.reynolds import HERTZ_LOAD, DiscreteContact
 from lube.types import Array
 
@@ -27,6 +30,8 @@ REACH, BEYOND = 1.3, 0.15
 """How far the even nodes reach, in half-widths: into the inlet, and beyond the end of the film."""
 _GROWTH = 1.08, 1.15
 """Growth of the cells towards the inlet, and behind the film."""
+_GROWN, _SETTLED = 1.5, 4.0
+"""Half-widths that the surfaces travel until a wave has its height, and until the gap repeats."""
 _DAMPING = 1.0
 """Half-widths that the surfaces travel while what rings in the pressure decays."""
 _ENOUGH, _LARGEST, _MOST = 1e-7, 0.5, 300
@@ -233,6 +238,83 @@ class RoughPassage:
         pressure = np.maximum(pressure + part * change, 0.0)
         offset += part * solution[film.size]
         return (pressure, offset, solid + part * cell_change), largest
+
+
+@dataclass(frozen=True)
+class PassedWave:
+    """A wave that has passed through the contact for so long that the gap repeats itself.
+
+    Attributes
+    ----------
+    position : numpy.ndarray, shape (n,)
+        Positions over the half-width.
+    transfer : numpy.ndarray of complex, shape (n,)
+        Its part of the gap that has its wavelength and speed, over the undeformed wave, as of
+        `lube.ehl.response.WaveResponse`.
+    gap : numpy.ndarray, shape (steps, n)
+        Scaled gap in the last period.
+    oil_load_share : float
+        Least share of the load that the oil carried in that time.
+    """
+
+    position: Array
+    transfer: Array
+    gap: Array
+    oil_load_share: float
+
+
+def pass_wave(
+    profile: FilmProfile,
+    wavelength: float,
+    surface_speed: float,
+    amplitude: float,
+    nodes: int = 20,
+) -> PassedWave:
+    """Let a wave of the roughness of one surface pass through the contact.
+
+    Parameters
+    ----------
+    profile : FilmProfile
+        The film of smooth rollers.
+    wavelength : float
+        Over the half-width.
+    surface_speed : float
+        Speed of the wave over the entrainment speed, above 0.
+    amplitude : float
+        Over the central film.
+    nodes : int, optional
+        Nodes in a wavelength.
+
+    Returns
+    -------
+    PassedWave
+        The gap once the wave has grown to its height and passed the contact.
+
+    Raises
+    ------
+    ConvergenceError
+        If a time step is not solved.
+    """
+    step, wavenumber = wavelength / nodes, 2.0 * np.pi / wavelength
+    passage = RoughPassage(profile, step)
+    height = amplitude * profile.central_gap * resolved_part(wavelength / passage.spacing)
+    period = round(nodes / surface_speed)
+    steps = int(_SETTLED / min(surface_speed, 1.0) / step) + period
+    gaps, oil = np.empty((period, passage.position.size)), np.ones(period)
+    for number in range(1, steps + 1):
+        time = number * step
+        grown = min(1.0, time / _GROWN)
+        wave = np.cos(wavenumber * (passage.position - surface_speed * time))
+        with one_blas_thread():
+            passage.advance(grown * height * wave)
+        gaps[number % period], oil[number % period] = passage.gap, passage.oil_load_share
+    times = step * (steps - (steps - np.arange(period)) % period)
+    turning = np.exp(1j * wavenumber * surface_speed * times)
+    parts = np.stack([np.ones(period), turning.real, turning.imag], axis=1)
+    _, cosine, sine = np.linalg.lstsq(parts, gaps, rcond=None)[0]
+    phase = np.exp(-1j * wavenumber * passage.position)
+    transfer = -(cosine + 1j * sine) * phase / (amplitude * profile.central_gap)
+    return PassedWave(passage.position, transfer, gaps, oil.min())
 
 
 def _drag(flow):
