@@ -21,7 +21,15 @@ from lube.grid.discretise import (
 )
 from lube.grid.gap import PLAIN, Gap
 from lube.kernels.motion import surface_position
-from lube.kernels.shaped import BLOCK_SHIFT, Window, as_drawn, node_count, phase_of, shaped_trace
+from lube.kernels.shaped import (
+    BLOCK_SHIFT,
+    Window,
+    as_drawn,
+    means_of,
+    node_count,
+    phase_of,
+    shaped_trace,
+)
 from lube.kernels.strips import strip_statistics, strip_trace
 from lube.kernels.whole_runs import whole_run_steps
 from lube.surfaces.rare_contact import RarePair, UnevenWindow, rare_contact, rare_contact_under
@@ -160,9 +168,7 @@ class ContactWindows:
             stride = max(1, (2 * self.half_windows[points[0]] + 1) // WINDOWS_PER_WIDTH)
             motion = ratios, steps, -(-steps // stride)
             found = shaped_trace(surfaces, *motion, window, self._factors[points])
-            counts[points, :2] = np.count_nonzero(found[..., :2], axis=1)
-            counts[points, 2:] = found[..., 1:].sum(axis=1)
-            counts[points] /= found.shape[1]
+            counts[points] = means_of(found)
         return counts
 
     def trace(self, pair: Pair, slip: float = 0.0, begin: int = 0) -> Array:

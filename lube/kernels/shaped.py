@@ -141,11 +141,23 @@ def answer_at(surface, first, step, node):
     return total
 
 
+@inlined
+def _is_answered(surfaces):
+    return surfaces[0].shapes.size + surfaces[1].shapes.size > 0
+
+
+@kernel
+def _highest_by_block(lift, shift, highest):
+    """Highest answer in each block of a window."""
+    nodes = (BLOCK >> shift) + 2
+    for block in range(highest.size):
+        begin = block * (BLOCK >> shift)
+        highest[block] = lift[begin : begin + nodes].max()
+
+
 @kernel
 def _answer(surfaces, speed_ratios, step, window, lift):
     """Compute the answers to both surfaces at a time step, at the nodes, height steps."""
-    if surfaces[0].shapes.size + surfaces[1].shapes.size == 0:
-        return
     distance, before = 1 << window.shift, window.before + phase_of(window)
     first_1 = surface_position(step, speed_ratios[0]) - before
     first_2 = surface_position(step, speed_ratios[1]) - before
@@ -157,25 +169,23 @@ def _answer(surfaces, speed_ratios, step, window, lift):
 
 
 @kernel
-def _window(surfaces, first_1, first_2, window, film, least, lift, factor):
+def _window(lines, ahead, first_1, first_2, film, least, answers, factor):
     """Contact points, broken points and overlap in one window, as in the literal scan."""
-    shift, phase = window.shift, phase_of(window)
+    (line_1, line_2), (is_answered, lift, highest, shift, phase) = lines, answers
     step = 1 << shift
-    line_1, line_2 = surfaces[0].line, surfaces[1].line
     contact_points = broken_points = total_overlap = 0
     segment_points = segment_overlap = 0
     for block in range(least.size):
         begin = block * BLOCK
         i, k = (first_1 + begin) % line_1.size, (first_2 + begin) % line_2.size
-        node = (begin + phase) >> shift
-        lifted = lift[node : node + (BLOCK >> shift) + 2].max()
-        touched = np.int64(surfaces[0].highest[i]) + surfaces[1].highest[k] + lifted > least[block]
+        touched = np.int64(ahead[0][i]) + ahead[1][k] + highest[block] > least[block]
         if not touched and segment_points == 0:
             continue
         for point in range(begin, min(begin + BLOCK, film.size)):
-            node, part = (point + phase) >> shift, (point + phase) & (step - 1)
-            answers = lift[node] + ((lift[node + 1] - lift[node]) * part >> shift)
-            overlap = np.int64(line_1[i]) + line_2[k] + answers - film[point]
+            overlap = np.int64(line_1[i]) + line_2[k] - film[point]
+            if is_answered:
+                node, part = (point + phase) >> shift, (point + phase) & (step - 1)
+                overlap += lift[node] + ((lift[node + 1] - lift[node]) * part >> shift)
             if overlap > 0:
                 segment_points += 1
                 segment_overlap += overlap
@@ -250,23 +260,60 @@ def shaped_trace(
     trace = np.empty((len(window.films), windows, 3), np.int64)
     least = _least_by_block(window.films)
     now, then, lift = np.zeros((3, node_count(window)), np.int64)
+    highest, is_answered = np.zeros(least.shape[1], np.int64), _is_answered(surfaces)
+    lines = surfaces[0].line, surfaces[1].line
+    ahead = surfaces[0].highest, surfaces[1].highest
+    answers = is_answered, lift, highest, window.shift, phase_of(window)
     for number in range(windows):
         step = number * steps // windows
         part = step & ((1 << window.shift) - 1) if windows == steps else 0
-        if part == 0:
-            _answer(surfaces, speed_ratios, step, window, now)
-            lift[:] = now
-        if part == 1:
-            _answer(surfaces, speed_ratios, step - 1 + (1 << window.shift), window, then)
-        if part > 0:
-            lift[:] = now + ((then - now) * part >> window.shift)
+        if is_answered:
+            if part == 0:
+                _answer(surfaces, speed_ratios, step, window, now)
+                lift[:] = now
+            if part == 1:
+                _answer(surfaces, speed_ratios, step - 1 + (1 << window.shift), window, then)
+            if part > 0:
+                lift[:] = now + ((then - now) * part >> window.shift)
+            _highest_by_block(lift, window.shift, highest)
         first_1 = surface_position(step, speed_ratios[0]) - window.before
         first_2 = surface_position(step, speed_ratios[1]) - window.before
         first_1, first_2 = first_1 % surfaces[0].line.size, first_2 % surfaces[1].line.size
         for f in range(len(window.films)):
-            own = window.films[f], least[f], lift, factors[f]
-            trace[f, number] = _window(surfaces, first_1, first_2, window, *own)
+            own = window.films[f], least[f], answers, factors[f]
+            trace[f, number] = _window(lines, ahead, first_1, first_2, *own)
     return trace
+
+
+@kernel
+def means_of(traces: Array) -> Array:
+    """Average the contact over the windows of some operating points.
+
+    Parameters
+    ----------
+    traces : numpy.ndarray
+        From `shaped_trace`, shape (F, windows, 3).
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (F, 4): share of the windows with contact, share with a broken boundary layer, broken
+        points, and overlap (height steps).
+
+    Examples
+    --------
+    >>> means_of(np.array([[[0, 0, 0], [3, 2, 8]]])).tolist()
+    [[0.5, 0.5, 1.0, 4.0]]
+    """
+    sums = np.zeros((len(traces), 4), np.int64)
+    for f in range(len(traces)):
+        for number in range(traces.shape[1]):
+            points, broken, overlap = traces[f, number]
+            sums[f, 0] += points > 0
+            sums[f, 1] += broken > 0
+            sums[f, 2] += broken
+            sums[f, 3] += overlap
+    return sums / traces.shape[1]
 
 
 def as_drawn(line: Array) -> Surface:
