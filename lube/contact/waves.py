@@ -117,6 +117,29 @@ class Answer:
         return CubicSpline(self.position, self.shapes)(np.clip(position, *ends))
 
 
+def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:
+    """Return the response of both rollers' longest wave at the line of centres, in numbers.
+
+    It tells operating points apart that differ in slip alone.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        As in `answers_at`.
+
+    Returns
+    -------
+    list of xarray.DataArray
+        Real and imaginary part of either roller, over the other dimensions.
+    """
+    parts = (film[name].isel(wavelength=0) for name in ("response_real", "response_imaginary"))
+    return [
+        part.sel(response_position=0.0, drop=True).isel(roller=roller, drop=True)
+        for part in parts
+        for roller in (0, 1)
+    ]
+
+
 def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
     """Answers of the oil to both surfaces.
 

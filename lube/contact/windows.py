@@ -9,7 +9,7 @@ import copy
 import numpy as np
 import xarray as xr
 
-from lube.contact.waves import Waves, answered_window, answers_at
+from lube.contact.waves import Waves, answered_window, answers_at, longest_answers
 from lube.contact.window_films import window_films
 from lube.grid.discretise import (
     Layer,
@@ -88,8 +88,10 @@ class ContactWindows:
         names += ["moes_load", "moes_material"] if not gap.is_plain else []
         spread = xr.broadcast(*(film[name] for name in names))
         self.shape = spread[0].shape
-        thickness, half_width, *moes = (each.values.ravel() for each in spread)
-        self._grid, self._contacts = grid, np.stack([half_width, *moes], axis=1)
+        if gap.is_answered:  # and with slip the answer to the longest wave
+            spread = xr.broadcast(*spread, *longest_answers(film))
+        thickness, half_width, *others = (each.values.ravel() for each in spread)
+        self._grid, self._contacts = grid, np.stack([half_width, *others], axis=1)
         self.thickness, self.unknown = thickness / grid.height_step, np.isnan(thickness)
         self._films, self.half_windows = whole_numbers(thickness, half_width, grid)
         self._shapes = np.full(thickness.size, None)
@@ -314,8 +316,8 @@ class ContactWindows:
     def _answered(self, points, drawn, waves, highest):
         """Surfaces that the oil answers, and the window of points at which it answers alike."""
         answers = self._answers[points[0]]
-        filtered = [wave.filtered(one) for wave, one in zip(waves, answers, strict=False)]
-        for answer, lines in zip(answers, filtered, strict=False):
+        filtered = [wave.filtered(one) for wave, one in zip(waves, answers, strict=True)]
+        for answer, lines in zip(answers, filtered, strict=True):
             highest += np.sum(np.abs(answer.shapes) * np.abs(lines).max(axis=0), axis=1).max()
         shift = answers[0].shift(self._grid.spacing)
         window = Window(*self._reached(points, highest), shift)
@@ -323,7 +325,7 @@ class ContactWindows:
         position = (window.before - nodes) * (self._grid.spacing / answers[0].half_width)
         both = zip(drawn, filtered, answers, strict=True)
         return tuple(
-            surface._replace(filtered=lines, shapes=answer.at(position))
+            surface._replace(filtered=lines, shapes=answer.at(position)) if lines.any() else surface
             for surface, lines, answer in both
         ), window
 

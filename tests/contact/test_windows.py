@@ -10,7 +10,7 @@ from lube.contact.windows import WINDOWS_PER_WIDTH, ContactWindows, Waves
 from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, whole_numbers
 from lube.grid.gap import Gap
 from lube.physics.flattening import amplitude_ratio
-from lube.stages import roughness_lines
+from lube.stages import film_table, lubricant_table, roughness_lines
 from lube.surfaces.synthetic import draw_realisation
 
 RATIOS = (1.0, 1.0)
@@ -180,3 +180,20 @@ def test_a_response_that_is_not_known_leaves_contact_unknown(shaped_film, coarse
     assert unknown[:, 1, 0].all() and unknown.sum() == 2
     found = windows.count(line_pair(coarse, 0))
     np.testing.assert_array_equal(np.isnan(found).all(axis=1), windows.unknown)
+
+
+def test_points_that_differ_in_slip_alone_are_told_apart_where_the_oil_answers(
+    shaped_film, make_spec, weak, study
+):
+    spec = make_spec(20_000)
+    oil = lubricant_table(study.lubricants, [60.0])
+    levels = [400.0], [100.0], ["paper"]
+    slips = {"slide_to_roll_ratio": [0.0, 1.0]}
+    sliding = film_table(oil, study.rollers, *levels, **slips, answered_lines=spec)
+    sliding = sliding.isel(slide_to_roll_ratio=[0, 1, 0])
+    answered = ContactWindows(spec, sliding, weak, Gap("flat", "computed"))
+    assert answered.distinct()[1].tolist() == [0, 1, 0]
+    # Told by the same numbers in another table, as records are.
+    again = film_table(oil, study.rollers, *levels, answered_lines=spec)
+    (key,) = ContactWindows(spec, again, weak, Gap("flat", "computed")).keys
+    assert key == answered.keys[0] != answered.keys[1]
