@@ -35,7 +35,7 @@ _IN_PHASE = 0.2
 class Answer:
     r"""What the oil adds to the waves of a surface at an operating point.
 
-    The response of the film is expanded in functions of the place X and of the wavenumber k,
+    The response of the film is expanded in functions of the position X and of the wavenumber k,
 
     .. math:: T_k(X) - 1 = \sum_m u_m(X)\, f_m(k)
 
@@ -46,11 +46,11 @@ class Answer:
     half_width : float
         Half-width of the contact, m.
     position : numpy.ndarray, shape (n,)
-        Places over the half-width, rising.
+        Positions over the half-width, rising.
     shapes : numpy.ndarray, shape (n, M)
         :math:`u_m` there.
     wavenumber : numpy.ndarray, shape (K,)
-        Wavenumbers, rad/m, rising. The oil does not change longer ones.
+        Wavenumbers, rad/m, rising. The oil does not change waves of larger ones.
     filters : numpy.ndarray of complex, shape (K, M)
         :math:`f_m` of these.
     """
@@ -79,11 +79,11 @@ class Answer:
         wavelength : numpy.ndarray, shape (w,)
             Wavelengths, m, falling.
         position : numpy.ndarray, shape (n,)
-            Places over the half-width, rising.
+            Positions over the half-width, rising.
         half_width : float
             Half-width of the contact, m.
         importance : numpy.ndarray, shape (n,)
-            Weight of an error at each place, 1 at most.
+            Weight of an error at each position, 1 at most.
 
         Returns
         -------
@@ -98,7 +98,7 @@ class Answer:
         weight = finer[:, None] ** STEEPNESS
         weighted = np.concatenate([change.real, change.imag]) * np.tile(weight, (2, 1))
         left, values, right = np.linalg.svd(weighted * importance, full_matrices=False)
-        # Square error at each place with the first 0, 1, ... functions.
+        # Square error at each position with the first 0, 1, ... functions.
         parts = (values[:, None] * right) ** 2
         errors = np.cumsum(parts[::-1], axis=0)[::-1].max(axis=1)
         count = np.count_nonzero(errors > PRECISION**2 * np.sum(weight**2))
@@ -112,7 +112,7 @@ class Answer:
         return int(np.log2(np.clip(self.half_width / (NODES * spacing), 1, BLOCK)))
 
     def at(self, position: Array) -> Array:
-        """Functions :math:`u_m` at other places over the half-width, shape (places, M)."""
+        """Functions :math:`u_m` at other positions over the half-width, one row each."""
         ends = self.position[[0, -1]]
         return CubicSpline(self.position, self.shapes)(np.clip(position, *ends))
 
@@ -343,7 +343,7 @@ class Waves:
     def filtered(self, answer: Answer) -> Array:
         """Filter the line by each function of an answer, on a coarser grid.
 
-        The line is passed against the direction in which places are counted, so its waves are
+        The line is passed against the direction in which positions are counted, so its waves are
         conjugate.
 
         Parameters

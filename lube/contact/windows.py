@@ -142,8 +142,8 @@ class ContactWindows:
         slip : float, optional
             Slide-to-roll ratio; the default is pure rolling.
         turns : float, optional
-            Revolutions of the roller with the faster surface; a single time step at least. If the
-            places of a window differ, only some of the time steps are looked at.
+            Revolutions of the roller with the faster surface; a single time step at least. In
+            uneven windows only some of the time steps are looked at.
         begin : int, optional
             First time step.
 
@@ -235,9 +235,9 @@ class ContactWindows:
         Returns
         -------
         windows, runs : numpy.ndarray
-            As of `lube.surfaces.rare_contact.rare_contact`, shapes (2, P) and (10, P); under films
-            that are not flat as of `lube.surfaces.rare_contact.rare_contact_under`, shapes (2, P)
-            and (4, P), NaN where the film is not known.
+            As of `lube.surfaces.rare_contact.rare_contact`, shapes (2, P) and (10, P); in uneven
+            windows as of `lube.surfaces.rare_contact.rare_contact_under`, shapes (2, P) and (4, P),
+            NaN where the film is not known.
         """
         if self._gap.is_uniform:
             widths = 2 * self.half_windows + 1

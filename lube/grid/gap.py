@@ -32,12 +32,12 @@ class Gap:
 
     @property
     def is_answered(self) -> bool:
-        """Whether the oil answers the lines, at each place of the contact otherwise."""
+        """Whether the oil answers the lines, otherwise at each position in the contact."""
         return self.roughness_deformation == "computed"
 
     @property
     def is_uniform(self) -> bool:
-        """Whether film and lines are the same at all places of the contact window."""
+        """Whether film and lines are the same all over the contact window; else it is uneven."""
         return not (self.has_shape or self.is_answered)
 
     @property

@@ -1,7 +1,7 @@
-r"""Contact in a window whose places differ: film and oil ride with the contact.
+r"""Contact in an uneven window: film and oil ride with the contact.
 
-The film may have a shape, and the oil may answer the roughness. Its answer at the place X is a sum
-of filtered lines, each times a function of the place:
+The film may have a shape, and the oil may answer the roughness. Its answer at the position X is a
+sum of filtered lines, each times a function of the position:
 
 .. math:: z(s) + \sum_m u_m(X)\, z_m(s)
 
@@ -41,7 +41,7 @@ class Surface(NamedTuple):
         Filtered lines on a coarser grid of n points, the last one the first again, shape
         (n + 1, M), float32 height steps; M = 0 if the oil does not answer.
     shapes : numpy.ndarray
-        Functions of the place by which they are multiplied, at the nodes, shape (nodes, M).
+        Functions of the position by which they are multiplied, at the nodes, shape (nodes, M).
     """
 
     line: Array

@@ -271,7 +271,7 @@ def touching_runs_under(
     steps: Array,
     factor: float,
 ) -> Array:
-    """Weigh runs of points in a window whose places differ, each found from one known point.
+    """Weigh runs of points in an uneven window, each found from one known point.
 
     Parameters
     ----------

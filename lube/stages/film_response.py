@@ -49,22 +49,11 @@ def film_responses(
         Where the film did not converge, the response is NaN and the log says so.
     """
     if "response_real" not in film:
-        levels = film["force"], film["speed"]
-        slip = film["slide_to_roll_ratio"]
-        film = film_at(
-            lubricant,
-            rollers,
-            *levels,
-            ["computed"],
-            False,
-            slip,
-            inlet_shear_heating,
-            inlet_meniscus,
-            spec,
-            threads,
-        )
+        levels = film["force"], film["speed"], ["computed"], False, film["slide_to_roll_ratio"]
+        corrections = inlet_shear_heating, inlet_meniscus
+        film = film_at(lubricant, rollers, *levels, *corrections, spec, threads)
     table = film[[*VARIABLES, "contact_half_width"]].rename(response_position="film_position")
     central = table.sel(film_position=0.0, drop=True)
-    table["amplitude_ratio"] = np.hypot(central["response_real"], central["response_imaginary"])
+    table["amplitude_ratio"] = np.abs(central["response_real"] + 1j * central["response_imaginary"])
     dims = FILES["film_response"]["response_real"].dims
     return label(table.drop_attrs().transpose(*dims), "film_response")

@@ -93,9 +93,9 @@ def tail_probabilities(
     -------
     xarray.Dataset
         The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty, but where the lines
-        are flattened by a formula or not Gaussian: then it says so, and all values are NaN. If the
-        places of a window differ, the share of pairs and the first time are NaN: they depend on the
-        pauses between breakthroughs, which are sampled in uniform windows only. The theory for high
+        are flattened by a formula or not Gaussian: then it says so, and all values are NaN. In
+        uneven windows the share of pairs and the first time are NaN: they depend on the pauses
+        between breakthroughs, which are sampled in uniform windows only. The theory for high
         films is for lines as drawn.
 
     Raises
@@ -254,7 +254,7 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
 def _in_time(spec, film, runs, slip, gap):
     """Broken runs in the window at a time, and new ones per second."""
     if not gap.is_uniform:
-        return _at_uneven_places(spec, film, runs, slip)
+        return _in_uneven_windows(spec, film, runs, slip)
     points = _window_points(spec, film)
     _, broken, _, new, broken_points, new_points, *_ = runs.transpose("outcome", ...)
     # A run is in the window if any of its points is.
@@ -264,8 +264,8 @@ def _in_time(spec, film, runs, slip, gap):
     return in_window, speed / spec.spacing * (broken + abs(slip) * new_in_window)
 
 
-def _at_uneven_places(spec, film, runs, slip):
-    """As `_in_time`, if the places of a window differ: in time steps as contact is counted in.
+def _in_uneven_windows(spec, film, runs, slip):
+    """As `_in_time`, in uneven windows: in time steps as contact is counted in.
 
     In each the faster surface moves by a point. The other does so in a part of them, and rests in
     the others.

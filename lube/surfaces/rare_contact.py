@@ -216,7 +216,7 @@ def rare_contact(
 
 @dataclass(frozen=True)
 class UnevenWindow:
-    """Contact window whose places differ.
+    """Contact window along which the film or the roughness changes.
 
     Attributes
     ----------
@@ -242,7 +242,7 @@ class UnevenWindow:
 def rare_contact_under(
     pair: "RarePair", windows: Sequence[UnevenWindow], filtered: Sequence[Pair], factor: Values
 ) -> Pair:
-    """Estimate probabilities and rates in windows whose places differ, from one pair of lines.
+    """Estimate probabilities and rates in uneven windows, from one pair of lines.
 
     Parameters
     ----------

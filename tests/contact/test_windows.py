@@ -77,7 +77,7 @@ def test_some_operating_points_are_rows_of_all(case, coarse):
 
 def test_statistics_are_means_of_the_traces(case, coarse):
     """To the bit under flat films and lines as drawn; flattened ones are rounded otherwise, and
-    where places differ, one window in some is looked at."""
+    in uneven windows, one in some is looked at."""
     gap, windows = case
     pair = line_pair(coarse, 0)
     found, trace = windows.count(pair), windows.trace(pair)
