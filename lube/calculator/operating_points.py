@@ -116,21 +116,22 @@ def film_in_si(
     formulas = list(film_formula) if several else [film_formula]
     if not formulas or not all(isinstance(one, str) for one in formulas):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    answers = {"slide_to_roll_ratio": slip}
-    if gap.is_answered:
-        answers["answered_lines"] = rollers.lines
-    conditions = force, speed, temperature
-    table = film_of_oil(oil, rollers.pair, *conditions, formulas, gap.has_shape, **answers)
+    choices = {
+        "with_shape": gap.has_shape,
+        "slide_to_roll_ratio": slip,
+        "answered_lines": rollers.lines if gap.is_answered else None,
+    }
+    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, **choices)
     table = table.assign_coords(force=force, speed=speed)
     dims = ("film_formula", "temperature", "speed", "force")
     table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if several else table.isel(film_formula=0)
 
 
-def film_of_oil(oil, pair, force, speed, temperature, formulas, *options, **answers) -> xr.Dataset:
+def film_of_oil(oil, pair, force, speed, temperature, formulas, **choices) -> xr.Dataset:
     """Film table with the oil's viscosity; numbers in N, rpm and degC, over any dimensions."""
     properties = oil.at(temperature)
-    table = film_at(properties, pair, force, speed, formulas, *options, **answers)
+    table = film_at(properties, pair, force, speed, formulas, **choices)
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
 
 

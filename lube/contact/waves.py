@@ -247,26 +247,22 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
     shift = answers[0].shift(spec.spacing)
 
     def nodes_of(first, points):
-        """Nodes of points of the window from a first one on, their shapes and added covariance."""
+        """Nodes of points of the window from a first one on, and the shapes of both answers."""
         nodes = first + (np.arange((points >> shift) + 2) << shift)
         position = (before - nodes) * (spec.spacing / answers[0].half_width)
         return nodes - first, [answer.at(position) for answer in answers]
 
     rms = sum_of_lines(spec, 1).rms
+    lines = [_Covariance(spec, roller, one, film.size) for roller, one in enumerate(answers)]
     nodes, shapes = nodes_of(0, film.size)
-    both = zip(answers, shapes, strict=True)
-    added = sum(
-        _Covariance(spec, roller, one, film.size).of_nodes(at, nodes, 0, diagonal=True)
-        for roller, (one, at) in enumerate(both)
-    )
+    added = sum(one.at_nodes(at) for one, at in zip(lines, shapes, strict=True))
     ratio = np.sqrt(1.0 + np.interp(np.arange(film.size), nodes, added) / rms**2)
     _, part = likely_part(film, rms * ratio)
     nodes, shapes = nodes_of(part.start, part.stop - part.start)
     covariances = np.empty((2, 2, nodes.size, nodes.size), np.float32)
-    for roller, (answer, at) in enumerate(zip(answers, shapes, strict=True)):
-        lines = _Covariance(spec, roller, answer, film.size)
+    for roller, (one, at) in enumerate(zip(lines, shapes, strict=True)):
         for back in (0, 1):
-            covariances[roller, back] = lines.of_nodes(at, nodes, back) / rms**2
+            covariances[roller, back] = one.of_nodes(at, nodes, back) / rms**2
     return UnevenWindow(film[part], ratio[part], tuple(shapes), covariances, shift)
 
 
@@ -290,12 +286,18 @@ class _Covariance:
             [np.interp(np.log(unit * middle), numbers, own) for own in answer.filters.T]
         ).reshape(-1, middle.size)
 
-    def of_nodes(self, shapes, nodes, back, diagonal=False):
+    def at_nodes(self, shapes):
+        """Compute what it adds to the variance at nodes."""
+        with one_blas_thread():
+            return (np.abs(self._changed(shapes)) ** 2 - 1.0) @ self._power
+
+    def _changed(self, shapes):
+        return 1.0 + shapes @ self._filters.conj()  # against the motion, so conjugate
+
+    def of_nodes(self, shapes, nodes, back):
         """Compute it for a first node, some points further back, and a second one."""
         with one_blas_thread():
-            changed = 1.0 + shapes @ self._filters.conj()  # against the motion, so conjugate
-            if diagonal:
-                return (np.abs(changed) ** 2 - 1.0) @ self._power
+            changed = self._changed(shapes)
             drawn = np.exp(1j * nodes[:, None] * self._by_point)
             behind = self._power * np.exp(-1j * back * self._by_point)
             changed *= drawn

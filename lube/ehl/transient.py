@@ -184,8 +184,8 @@ class RoughPassage:
     def _newton(self, had, heights, touching, state):
         """Step of Newton's method for pressure, offset and contact pressure; the largest change.
 
-        As in `lube.ehl.reynolds`, but for one of time; nodes without oil pressure and cells without
-        contact get none.
+        As in `lube.ehl.reynolds`, with a squeeze film of one time step. Nodes outside the film get
+        no pressure of the oil, cells without contact none of the solids.
         """
         discrete, (pressure, offset, solid) = self._discrete, state
         gap = self._gap(heights, *state)

@@ -27,7 +27,7 @@ POSITIONS = 0.02, 1.06
 VARIABLES = "response_real", "response_imaginary", "interpolation_error"
 
 
-def film_responses(
+def wave_responses(
     solved: xr.DataArray, contact: xr.Dataset, slide_to_roll_ratio, spec, threads=None
 ) -> xr.Dataset:
     """Compute the linear response of films to waves of the roughness of either roller.
@@ -112,7 +112,7 @@ def wavelengths(spec, half_width: float, ratio: float | None = None) -> Array:
     return np.geomspace(longest, shortest, count + 1)
 
 
-def thinned(groups, factor: xr.DataArray) -> xr.DataArray:
+def thinned(groups, cold: xr.DataArray, factor: xr.DataArray) -> xr.DataArray:
     """Solve for films that heating thins.
 
     The steady film is that of an oil which is thinner at the inlet: so much that the central film
@@ -123,6 +123,8 @@ def thinned(groups, factor: xr.DataArray) -> xr.DataArray:
     ----------
     groups : lube.grid.films.FilmGroups
         What the films depend on without heating.
+    cold : xarray.DataArray
+        The films without heating.
     factor : xarray.DataArray
         Thinned film over that without heating.
 
@@ -131,7 +133,7 @@ def thinned(groups, factor: xr.DataArray) -> xr.DataArray:
     xarray.DataArray
         A `lube.ehl.line_contact.FilmProfile` each; None where it did not converge.
     """
-    cold, thinner = groups.profiles(), factor
+    thinner = factor
     for _ in range(2):
         solved = replace(groups, speed=groups.speed * thinner).profiles()
         thinner = thinner ** (np.log(factor) / np.log(_central(solved) / _central(cold)))

@@ -11,7 +11,7 @@ import xarray as xr
 from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile, profiles_of
 from lube.grid.film_profiles import film_positions, sampled
-from lube.grid.film_responses import film_responses, thinned
+from lube.grid.film_responses import thinned, wave_responses
 from lube.physics import dimensionless, hertz
 from lube.physics.inlet_heating import heating_factor, thermal_loading
 from lube.physics.regimes import asymptotic_gap, regime
@@ -77,14 +77,16 @@ def film_at(
                 table[name] = table[name] * factor
             _warn(factor)
         table["inlet_shear_heating_factor"] = factor
+        is_answered = answered_lines is not None
+        solved = groups.profiles() if with_shape or is_answered else None
         if with_shape:
-            profile = over_positions(groups.profiles(), FilmProfile.film_at, rollers, contact)
+            profile = over_positions(solved, FilmProfile.film_at, rollers, contact)
             table["film_profile"] = profile * rollers.reduced_radius
-        if answered_lines is not None:
-            is_heated = inlet_shear_heating != "none"
-            solved = thinned(groups, factor) if is_heated else groups.profiles()
+        if is_answered:
+            if inlet_shear_heating != "none":
+                solved = thinned(groups, solved, factor)
             responses = contact, xr.DataArray(slide_to_roll_ratio), answered_lines, threads
-            table = table.merge(film_responses(solved, *responses), compat="override", join="exact")
+            table = table.merge(wave_responses(solved, *responses), compat="override", join="exact")
             # With slip the oil answers otherwise: each slip has a film of its own.
             for name in ("film_thickness", "lambda_ratio"):
                 table[name] = table[name].broadcast_like(table["interpolation_error"])

@@ -45,7 +45,7 @@ def film_responses(
     Returns
     -------
     xarray.Dataset
-        The ``film_response`` file of `lube.schema`, by `lube.grid.film_responses.film_responses`.
+        The ``film_response`` file of `lube.schema`, by `lube.grid.film_responses.wave_responses`.
         Where the film did not converge, the response is NaN and the log says so.
     """
     if "response_real" not in film:

@@ -193,7 +193,7 @@ def test_points_that_differ_in_slip_alone_are_told_apart_where_the_oil_answers(
     sliding = sliding.isel(slide_to_roll_ratio=[0, 1, 0])
     answered = ContactWindows(spec, sliding, weak, Gap("flat", "computed"))
     assert answered.distinct()[1].tolist() == [0, 1, 0]
-    # Told by the same numbers in another table, as records are.
+    # The same conditions have the same key in any table: so a record finds what is stored.
     again = film_table(oil, study.rollers, *levels, answered_lines=spec)
     (key,) = ContactWindows(spec, again, weak, Gap("flat", "computed")).keys
     assert key == answered.keys[0] != answered.keys[1]
