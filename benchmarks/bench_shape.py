@@ -31,7 +31,8 @@ from lube.contact.windows import WINDOWS_PER_WIDTH, ContactWindows
 from lube.grid.discretise import layer_factor_of, line_pair
 from lube.grid.gap import Gap
 from lube.kernels.compiler import kernel
-from lube.kernels.shaped import BLOCK_SHIFT, Window, as_drawn, shaped_trace
+from lube.kernels.runs import BLOCK_SHIFT
+from lube.kernels.shaped import Window, as_drawn, shaped_trace
 from lube.schema import OPERATING_DIMS
 from lube.stages.contact import contact_statistics
 from lube.stages.film import film_table

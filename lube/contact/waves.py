@@ -12,7 +12,8 @@ from lube.ehl.response import at_wavelengths
 from lube.grid.discretise import LineGrid
 from lube.grid.film_profiles import six_digits
 from lube.kernels.motion import surface_position
-from lube.kernels.shaped import BLOCK, Surface, answer_at
+from lube.kernels.runs import BLOCK
+from lube.kernels.shaped import Surface, answer_at
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
 from lube.surfaces.rare_contact import UnevenWindow, likely_part, sum_of_lines

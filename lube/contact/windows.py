@@ -21,15 +21,8 @@ from lube.grid.discretise import (
 )
 from lube.grid.gap import PLAIN, Gap
 from lube.kernels.motion import surface_position
-from lube.kernels.shaped import (
-    BLOCK_SHIFT,
-    Window,
-    as_drawn,
-    means_of,
-    node_count,
-    phase_of,
-    shaped_trace,
-)
+from lube.kernels.runs import BLOCK_SHIFT
+from lube.kernels.shaped import Window, as_drawn, means_of, node_count, phase_of, shaped_trace
 from lube.kernels.strips import strip_statistics, strip_trace
 from lube.kernels.whole_runs import whole_run_steps
 from lube.surfaces.rare_contact import RarePair, UnevenWindow, rare_contact, rare_contact_under

@@ -1,10 +1,10 @@
 """Runs of points at which the sum of two rough lines lies above a film.
 
-Points are searched in blocks, and blocks that cannot reach above the film are skipped. In pure
-rolling the two lines keep one alignment for the whole revolution, so their sum is computed once,
-and then the maximum of each block. With slip an alignment lasts for a few time steps only. There
-the maxima of two blocks together are an upper limit of their sum. They are computed once, for
-blocks that begin at any point, and exclude most windows before any heights are added.
+Blocks of points that cannot reach above the film are skipped. In pure
+rolling the two lines keep one alignment for the whole revolution, so their sum is computed once
+and searched point by point. With slip an alignment lasts for a few time steps only. There the
+maxima of two blocks together are an upper limit of their sum. They are computed once, for blocks
+that begin at any point, and exclude most windows before any heights are added.
 """
 
 import numpy as np
@@ -12,7 +12,8 @@ import numpy as np
 from lube.kernels.compiler import kernel
 from lube.types import Array, Pair
 
-BLOCK = 32
+BLOCK_SHIFT = 6
+BLOCK = 2**BLOCK_SHIFT
 """Number of points that are searched, or skipped, together."""
 
 
@@ -49,152 +50,45 @@ def add_lines(lines: Pair, first_1: int, first_2: int, line: Array) -> None:
 
 
 @kernel
-def _high_stretches(line, film, stretches):
-    """Find the stretches of successive blocks that each have a point above a film.
-
-    Parameters
-    ----------
-    line : numpy.ndarray
-        Heights, shape (L,), int32 height steps.
-    film : int
-        Film thickness, height steps.
-    stretches : tuple of numpy.ndarray
-        Filled with the first index of each stretch and the index after its last.
-
-    Returns
-    -------
-    int
-        Number of stretches.
-
-    Examples
-    --------
-    >>> line = np.zeros(5 * BLOCK, np.int32)
-    >>> line[[BLOCK + 1, 2 * BLOCK + 5, 4 * BLOCK]] = 9
-    >>> starts, stops = np.empty((2, 9), np.int64)
-    >>> count = _high_stretches(line, 8, (starts, stops))
-    >>> starts[:count] // BLOCK, stops[:count] // BLOCK
-    (array([1, 4]), array([3, 5]))
-    """
-    starts, stops = stretches
-    found = 0
-    inside = False
-    for start in range(0, line.size, BLOCK):
-        stop = min(start + BLOCK, line.size)
-        highest = line[start]
-        for i in range(start, stop):
-            highest = max(highest, line[i])
-        if highest > film:
-            if not inside:
-                starts[found] = start
-                found += 1
-            stops[found - 1] = stop
-        inside = highest > film
-    return found
+def _replace_by_highest(line):
+    """Replace each point by the highest of the `BLOCK` points from it on, but for the last ones."""
+    covered = 1
+    while covered < BLOCK:
+        for i in range(line.size - covered):
+            line[i] = max(line[i], line[i + covered])
+        covered *= 2
 
 
-@kernel
-def block_maxima(line: Array, reach: int) -> Array:
-    """Compute the maximum of each block of a periodic line, for blocks that begin at any point.
+def highest_ahead(line: Array, reach: int = 0) -> Array:
+    """Find the highest of the next `BLOCK` points of a periodic line, from each point on.
 
     Parameters
     ----------
     line : numpy.ndarray
         Heights of a periodic line, shape (N,), int32 height steps.
-    reach : int
+    reach : int, optional
         Number of points to include beyond the end of the line, wrapped around.
 
     Returns
     -------
     numpy.ndarray
-        Shape (BLOCK, C), int32: in row r and column c the maximum of the `BLOCK` points from
-        index r + c BLOCK on. Successive blocks are neighbours in a row.
+        Shape (N + reach,), int32.
 
     Examples
     --------
-    >>> maxima = block_maxima(np.arange(100, dtype=np.int32), 0)
-    >>> maxima[0, :3].tolist()
-    [31, 63, 95]
+    >>> line = np.zeros(200, np.int32)
+    >>> line[100] = 5
+    >>> np.flatnonzero(highest_ahead(line))[[0, -1]].tolist()
+    [37, 100]
     """
-    size = (line.size + reach) // BLOCK * BLOCK + BLOCK
-    highest = np.empty(size + BLOCK, np.int32)
-    done = 0
-    while done < highest.size:
-        stretch = min(line.size, highest.size - done)
-        for i in range(stretch):
-            highest[done + i] = line[i]
-        done += stretch
-    covered = 1  # points in each maximum so far
-    while covered < BLOCK:
-        for i in range(highest.size - covered):
-            highest[i] = max(highest[i], highest[i + covered])
-        covered *= 2
-    maxima = np.empty((BLOCK, size // BLOCK), np.int32)
-    for column in range(maxima.shape[1]):
-        for row in range(BLOCK):
-            maxima[row, column] = highest[row + column * BLOCK]
-    return maxima
-
-
-@kernel
-def _possible_stretches(maxima, first_1, first_2, size, film, stretches):
-    """Find the stretches of blocks in which the sum of two lines may lie above a film.
-
-    Parameters
-    ----------
-    maxima : tuple of numpy.ndarray
-        From `block_maxima`, for each line.
-    first_1, first_2 : int
-        Indices of the first points, zero or more.
-    size : int
-        Number of points to search.
-    film : int
-        Film thickness, height steps.
-    stretches : tuple of numpy.ndarray
-        Filled with the first index of each stretch and the index after its last, counted from
-        the first points.
-
-    Returns
-    -------
-    int
-        Number of stretches.
-
-    Examples
-    --------
-    >>> line = np.zeros(4 * BLOCK, np.int32)
-    >>> line[2 * BLOCK] = 9
-    >>> maxima = block_maxima(line, line.size)
-    >>> starts, stops = np.empty((2, 9), np.int64)
-    >>> maxima = maxima, maxima
-    >>> count = _possible_stretches(maxima, 0, 0, line.size, 8, (starts, stops))
-    >>> starts[:count] // BLOCK, stops[:count] // BLOCK
-    (array([2]), array([3]))
-    """
-    blocks = (size + BLOCK - 1) // BLOCK
-    column_1, column_2 = first_1 // BLOCK, first_2 // BLOCK
-    highest_1 = maxima[0][first_1 % BLOCK, column_1 : column_1 + blocks]
-    highest_2 = maxima[1][first_2 % BLOCK, column_2 : column_2 + blocks]
-    highest = np.int32(highest_1[0] + highest_2[0])
-    for block in range(1, blocks):  # without a branch, so the compiler vectorises it
-        highest = max(highest, np.int32(highest_1[block] + highest_2[block]))
-    if highest <= film:
-        return 0
-    starts, stops = stretches
-    found = 0
-    inside = False
-    for block in range(blocks):
-        high = highest_1[block] + highest_2[block] > film
-        if high:
-            if not inside:
-                starts[found] = block * BLOCK
-                found += 1
-            stops[found - 1] = min((block + 1) * BLOCK, size)
-        inside = high
-    return found
+    highest = np.resize(line, line.size + reach + BLOCK)
+    _replace_by_highest(highest)
+    return highest[:-BLOCK]
 
 
 @kernel
 def fill_high_stretches(
-    lines: Pair, maxima: Pair, first_1: int, first_2: int, film: int, line: Array, stretches: Pair
+    lines: Pair, ahead: Pair, first_1: int, first_2: int, film: int, line: Array, stretches: Pair
 ) -> int:
     """Add two lines in all stretches of blocks where their sum may lie above a film.
 
@@ -202,8 +96,8 @@ def fill_high_stretches(
     ----------
     lines : tuple of numpy.ndarray
         Heights of the two periodic lines, shapes (N1,) and (N2,), int32 height steps.
-    maxima : tuple of numpy.ndarray
-        From `block_maxima`, for each line; empty to add the lines everywhere, which is faster
+    ahead : tuple of numpy.ndarray
+        From `highest_ahead`, for each line; empty to add the lines everywhere, which is faster
         where one sum serves many time steps.
     first_1, first_2 : int
         Indices of the first points, within the lines.
@@ -219,14 +113,32 @@ def fill_high_stretches(
     int
         Number of stretches.
     """
-    if maxima[0].size == 0:
+    if ahead[0].size == 0:
         add_lines(lines, first_1, first_2, line)
-        return _high_stretches(line, film, stretches)
-    count = _possible_stretches(maxima, first_1, first_2, line.size, film, stretches)
-    for stretch in range(count):
-        start, stop = stretches[0][stretch], stretches[1][stretch]
+        stretches[0][0], stretches[1][0] = 0, line.size
+        return 1
+    highest_1 = ahead[0][first_1 : first_1 + line.size : BLOCK]
+    highest_2 = ahead[1][first_2 : first_2 + line.size : BLOCK]
+    highest = np.int32(highest_1[0] + highest_2[0])
+    for block in range(1, highest_1.size):  # without a branch, so the compiler vectorises it
+        highest = max(highest, np.int32(highest_1[block] + highest_2[block]))
+    if highest <= film:
+        return 0
+    starts, stops = stretches
+    found = 0
+    inside = False
+    for block in range(highest_1.size):
+        high = highest_1[block] + highest_2[block] > film
+        if high:
+            if not inside:
+                starts[found] = block * BLOCK
+                found += 1
+            stops[found - 1] = min((block + 1) * BLOCK, line.size)
+        inside = high
+    for stretch in range(found):
+        start, stop = starts[stretch], stops[stretch]
         add_lines(lines, first_1 + start, first_2 + start, line[start:stop])
-    return count
+    return found
 
 
 @kernel

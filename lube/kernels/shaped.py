@@ -21,11 +21,8 @@ import numpy as np
 from lube.kernels.compiler import inlined, kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
+from lube.kernels.runs import BLOCK, highest_ahead
 from lube.types import Array, Ratios
-
-BLOCK_SHIFT = 6
-BLOCK = 2**BLOCK_SHIFT
-"""Points that are passed over together."""
 
 
 class Surface(NamedTuple):
@@ -67,40 +64,6 @@ class Window(NamedTuple):
     films: Array
     before: int
     shift: int
-
-
-@kernel
-def highest_ahead(line: Array) -> Array:
-    """Find the highest of the next `BLOCK` points of a periodic line, from each point on.
-
-    Parameters
-    ----------
-    line : numpy.ndarray
-        Heights, shape (N,), int32 height steps.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (N,), int32.
-
-    Examples
-    --------
-    >>> line = np.zeros(200, np.int32)
-    >>> line[100] = 5
-    >>> np.flatnonzero(highest_ahead(line))[[0, -1]].tolist()
-    [37, 100]
-    """
-    size = line.size
-    # Of windows of 1, 2, 4, ... points, each twice as long as the one before.
-    highest = line.copy()
-    length = 1
-    while length < BLOCK:
-        ahead = np.empty_like(highest)
-        for i in range(size):
-            ahead[i] = max(highest[i], highest[(i + length) % size])
-        highest = ahead
-        length *= 2
-    return highest
 
 
 @kernel
@@ -253,7 +216,7 @@ def shaped_trace(
 
     >>> line = np.array([5, 0, 0, 0, 0], np.int32)
     >>> surfaces = as_drawn(line), as_drawn(np.zeros_like(line))
-    >>> window = Window(np.array([[9, 3, 9]]), 1, BLOCK_SHIFT)
+    >>> window = Window(np.array([[9, 3, 9]]), 1, 6)
     >>> shaped_trace(surfaces, (1.0, 1.0), 5, 5, window, np.ones(1))[0, :, 0].tolist()
     [1, 0, 0, 0, 0]
     """

@@ -15,7 +15,7 @@ import numpy as np
 from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
-from lube.kernels.runs import block_maxima, fill_high_stretches, find_runs
+from lube.kernels.runs import fill_high_stretches, find_runs, highest_ahead
 from lube.types import Array, Pair, Ratios
 
 LONGEST_STRIP = 2**14
@@ -219,27 +219,28 @@ def _strip_point(line, runs, found, film, width, factor, broken, lengths, counts
 
 
 @kernel
-def _steps_of(lengths, point, begin, end):
-    """Return one operating point's lengths at the time steps of a strip, or None."""
-    if lengths is None:
+def _steps_of(trace, point, begin, end):
+    """Return one operating point's part of a trace, or None."""
+    if trace is None:
         return None
-    return lengths[point, begin:end]
+    return trace[point, begin:end]
 
 
 @kernel
 def _run_strips(
-    lines, speed_ratios, steps, films, half_windows, factor, thinnest_first, margin, lengths
+    lines, speed_ratios, steps, films, half_windows, factor, thinnest_first, ahead, trace
 ):
-    """Return the statistics of `strip_statistics`; fill the lengths of `strip_trace` if given."""
-    statistics = np.zeros((films.size, 4), np.int64)
+    """Return the statistics of `strip_statistics`; fill the trace of `strip_trace` if given.
+
+    The operating points are sorted outside, because compiling a sort takes longer than compiling
+    this kernel.
+    """
+    statistics, margin = np.zeros((films.size, 4), np.int64), half_windows.max()
     buffer = np.empty(min(steps, LONGEST_STRIP) + 2 * margin, np.int32)
     marks = np.empty(buffer.size - 2 * margin, np.uint8)
     capacity = buffer.size // 2 + 1
     runs = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
     found_before = np.empty(capacity, np.int64), np.empty(capacity, np.int64)
-    maxima = np.empty((0, 0), np.int32), np.empty((0, 0), np.int32)
-    if speed_ratios[0] != speed_ratios[1]:
-        maxima = block_maxima(lines[0], buffer.size), block_maxima(lines[1], buffer.size)
     begin = 0
     while begin < steps:
         end = strip_end(begin, steps, speed_ratios)
@@ -248,7 +249,7 @@ def _run_strips(
         first_1 = (position_1 - margin) % lines[0].size
         first_2 = (position_2 - margin) % lines[1].size
         searched = films[thinnest_first[0]]
-        found = fill_high_stretches(lines, maxima, first_1, first_2, searched, line, runs)
+        found = fill_high_stretches(lines, ahead, first_1, first_2, searched, line, runs)
         searched -= 1  # the stretches are no runs yet
         for point in thinnest_first:
             if found == 0:  # a thicker film has none either
@@ -258,11 +259,21 @@ def _run_strips(
                 runs, found_before = found_before, runs
                 found = find_runs(line, film, found_before, found, runs)
                 searched = film
-            kept = _steps_of(lengths, point, begin, end)
-            counts = statistics[point]
-            _strip_point(line, runs, found, film, width, factor, broken, kept, counts)
+            lengths, counts = _steps_of(trace, point, begin, end), statistics[point]
+            _strip_point(line, runs, found, film, width, factor, broken, lengths, counts)
         begin = end
     return statistics
+
+
+def _run(lines, speed_ratios, steps, films, half_windows, factor, trace):
+    """Prepare and call `_run_strips`."""
+    # For another layout in memory Numba would compile the kernel once more.
+    films, half_windows = np.ascontiguousarray([films, half_windows])
+    order, ahead = np.argsort(films, kind="stable"), (np.zeros(0, np.int32),) * 2
+    if speed_ratios[0] != speed_ratios[1]:
+        reach = min(steps, LONGEST_STRIP) + 2 * half_windows.max()
+        ahead = highest_ahead(lines[0], reach), highest_ahead(lines[1], reach)
+    return _run_strips(lines, speed_ratios, steps, films, half_windows, factor, order, ahead, trace)
 
 
 def strip_statistics(
@@ -299,10 +310,7 @@ def strip_statistics(
     >>> strip_statistics(lines, (1.0, 1.0), 5, films, np.array([1, 1]), 1.0).tolist()
     [[3, 3, 3, 6], [0, 0, 0, 0]]
     """
-    # For another layout in memory Numba would compile the kernel once more.
-    films, half_windows = np.ascontiguousarray([films, half_windows])
-    order, margin = _plan(films, half_windows)
-    return _run_strips(lines, speed_ratios, steps, films, half_windows, factor, order, margin, None)
+    return _run(lines, speed_ratios, steps, films, half_windows, factor, None)
 
 
 def strip_trace(
@@ -329,15 +337,6 @@ def strip_trace(
     >>> strip_trace(lines, (1.0, 1.0), 5, film, half_window, 1.0).tolist()
     [[1, 1, 0, 0, 1]]
     """
-    lengths = np.zeros((films.size, steps), np.int32)
-    order, margin = _plan(films, half_windows)
-    _run_strips(lines, speed_ratios, steps, films, half_windows, factor, order, margin, lengths)
-    return lengths
-
-
-def _plan(films, half_windows):
-    """Return the operating points in the order of rising films, and the widest half-window.
-
-    Not compiled, because compiling a sort takes longer than compiling the kernel.
-    """
-    return np.argsort(films, kind="stable"), int(half_windows.max())
+    trace = np.zeros((films.size, steps), np.int32)
+    _run(lines, speed_ratios, steps, films, half_windows, factor, trace)
+    return trace

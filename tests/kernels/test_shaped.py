@@ -6,16 +6,8 @@ from hypothesis import strategies as st
 from literal import scan_trace
 
 from lube.kernels.motion import surface_position
-from lube.kernels.shaped import (
-    BLOCK,
-    BLOCK_SHIFT,
-    Surface,
-    Window,
-    answer_at,
-    as_drawn,
-    highest_ahead,
-    shaped_trace,
-)
+from lube.kernels.runs import BLOCK, BLOCK_SHIFT, highest_ahead
+from lube.kernels.shaped import Surface, Window, answer_at, as_drawn, shaped_trace
 
 seeds = st.integers(0, 2**32 - 1)
 ratios = st.sampled_from([(1.0, 1.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.37), (0.9, 1.0)])
@@ -30,13 +22,6 @@ def contact(seed, size_1, size_2, width):
         for size in (size_1, size_2)
     ]
     return tuple(lines), random.integers(2, 16, width)
-
-
-@given(sizes, seeds)
-def test_highest_ahead_is_the_maximum_of_a_block(size, seed):
-    line = np.random.default_rng(seed).integers(-99, 99, size).astype(np.int32)
-    expected = [np.roll(np.tile(line, BLOCK), -i)[:BLOCK].max() for i in range(size)]
-    assert highest_ahead(line).tolist() == expected
 
 
 @given(seeds, sizes, sizes, sizes, ratios, st.integers(0, 50), st.floats(0.0, 9.0))
