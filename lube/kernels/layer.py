@@ -3,6 +3,7 @@
 import math
 
 from lube.kernels.compiler import inlined
+from lube.types import Array, Values
 
 
 def layer_factor(
@@ -57,21 +58,21 @@ def layer_factor(
 
 
 @inlined
-def layer_breaks(points: int, overlap: int, factor: float) -> bool:
+def layer_breaks(points: Values, overlap: Values, factor: float) -> bool | Array:
     """Decide whether the boundary layer on a segment breaks, h_l < h_c (paper, Eq. 6).
 
     Parameters
     ----------
-    points : int
+    points : int or numpy.ndarray
         Number n of points in the segment.
-    overlap : int
+    overlap : int or numpy.ndarray
         Sum S of their overlaps, height steps.
     factor : float
         c of `layer_factor`.
 
     Returns
     -------
-    bool
+    bool or numpy.ndarray
         True if n^3 < c S. A layer of exactly the critical thickness holds.
 
     Examples
@@ -79,4 +80,4 @@ def layer_breaks(points: int, overlap: int, factor: float) -> bool:
     >>> layer_breaks(2, 8, 1.0), layer_breaks(2, 9, 1.0)
     (False, True)
     """
-    return float(points) * points * points < factor * overlap
+    return 1.0 * points * points * points < factor * overlap

@@ -248,7 +248,6 @@ def shaped_trace(
     return trace
 
 
-@kernel
 def means_of(traces: Array) -> Array:
     """Average the contact over the windows of some operating points.
 
@@ -268,15 +267,8 @@ def means_of(traces: Array) -> Array:
     >>> means_of(np.array([[[0, 0, 0], [3, 2, 8]]])).tolist()
     [[0.5, 0.5, 1.0, 4.0]]
     """
-    sums = np.zeros((len(traces), 4), np.int64)
-    for f in range(len(traces)):
-        for number in range(traces.shape[1]):
-            points, broken, overlap = traces[f, number]
-            sums[f, 0] += points > 0
-            sums[f, 1] += broken > 0
-            sums[f, 2] += broken
-            sums[f, 3] += overlap
-    return sums / traces.shape[1]
+    windows = np.count_nonzero(traces[..., :2], axis=1)
+    return np.hstack([windows, traces[..., 1:].sum(axis=1)]) / traces.shape[1]
 
 
 def as_drawn(line: Array) -> Surface:

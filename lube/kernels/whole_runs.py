@@ -2,12 +2,10 @@
 
 import numpy as np
 
-from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 from lube.types import Array
 
 
-@kernel
 def whole_run_steps(line: Array, films: Array, half_windows: Array, factor: float) -> Array:
     """Count the windows that hold a part of a run whose boundary layer breaks as a whole.
 
@@ -37,29 +35,16 @@ def whole_run_steps(line: Array, films: Array, half_windows: Array, factor: floa
     [4]
     """
     counts = np.zeros(films.size, np.int64)
-    begin = np.argmin(line)
-    for point in range(films.size):
-        film, reach = films[point], half_windows[point]
-        if line[begin] > film:  # one run without an end
-            overlap = np.int64(line.sum()) - line.size * film
-            counts[point] = line.size * layer_breaks(line.size, overlap, factor)
-            continue
-        first = covered = -line.size  # window after the last that counts
-        points = overlap = 0
-        # From a point that does not touch, so that the line's end cuts no run.
-        for i in range(line.size + 1):
-            height = line[(begin + i) % line.size] - film
-            if height > 0:
-                points += 1
-                overlap += height
-                continue
-            if points > 0 and layer_breaks(points, overlap, factor):
-                start = i - points - reach
-                if counts[point] == 0:
-                    first = start
-                counts[point] += i + reach - max(start, covered)
-                covered = i + reach
-            points = overlap = 0
-        # The last windows may be the first ones, seen again.
-        counts[point] = min(counts[point] - max(0, covered - first - line.size), line.size)
+    line = np.roll(line, -np.argmin(line))  # so that the line's end cuts no run
+    height_before = np.append(0, np.cumsum(line, dtype=np.int64))
+    for point, (film, reach) in enumerate(zip(films, half_windows, strict=True)):
+        edges = np.flatnonzero(np.diff(line > film, prepend=False, append=False))
+        starts, stops = edges[::2], edges[1::2]
+        points = stops - starts
+        overlap = height_before[stops] - height_before[starts] - points * film
+        broken = layer_breaks(points, overlap, factor)
+        if broken.any():
+            starts, stops = starts[broken], stops[broken]
+            gaps = np.append(starts[1:], starts[0] + line.size) - stops
+            counts[point] = line.size - np.maximum(gaps - 2 * reach, 0).sum()
     return counts

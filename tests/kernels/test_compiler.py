@@ -43,7 +43,7 @@ def test_a_changed_layer_criterion_reaches_the_kernels_that_inline_it(tmp_path):
     assert scan_in(tmp_path) == ["2", "2", "12"]
     layer = kernels / "layer.py"
     text = layer.read_text()
-    changed = text.replace("return float(points)", "return 1e9 + float(points)")
+    changed = text.replace("return 1.0 * points", "return 1e9 + 1.0 * points")
     assert changed != text
     layer.write_text(changed)
     assert scan_in(tmp_path) == ["2", "0", "12"]
