@@ -63,31 +63,6 @@ def gaussian_phasors(generator: np.random.Generator, count: int) -> np.ndarray:
 
 
 @kernel
-def whole_steps(heights: np.ndarray) -> np.ndarray:
-    """Round heights in units of the height step to whole height steps.
-
-    Parameters
-    ----------
-    heights : numpy.ndarray
-        Shape (N,), float32, heights over the height step.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (N,), int32; halves are rounded to even.
-
-    Examples
-    --------
-    >>> whole_steps(np.array([-1.6, 0.5, 2.51], np.float32)).tolist()
-    [-2, 0, 3]
-    """
-    steps = np.empty(heights.size, np.int32)
-    for i in range(heights.size):
-        steps[i] = np.int32(np.rint(heights[i]))
-    return steps
-
-
-@kernel
 def power_series(values: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
     r"""Sum a power series without a constant term, :math:`\sum_{n \ge 1} c_n x^n`.
 

@@ -9,9 +9,6 @@ import numpy as np
 from lube.kernels.compiler import kernel
 from lube.types import Array
 
-CHUNK = 4096
-"""Number of values compared with all limits together; they fit into the first-level cache."""
-
 
 @kernel
 def count_below(values: Array, seen: int, doublings: int, limits: Array, counts: Array) -> None:
@@ -39,17 +36,14 @@ def count_below(values: Array, seen: int, doublings: int, limits: Array, counts:
     >>> counts
     array([[2, 1, 0]])
     """
-    begin = 0
-    while begin < values.size:
-        block = (seen + begin) >> doublings
-        end = min(values.size, begin + CHUNK, ((block + 1) << doublings) - seen)
-        chunk = values[begin:end]
+    for block in range(seen >> doublings, ((seen + values.size - 1) >> doublings) + 1):
+        begin = (block << doublings) - seen
+        part = values[max(begin, 0) : begin + (1 << doublings)]
         for k in range(limits.size):
             limit, count = limits[k], 0
-            for i in range(chunk.size):
-                count += chunk[i] < limit
+            for i in range(part.size):
+                count += part[i] < limit
             counts[k, block] += count
-        begin = end
 
 
 @kernel

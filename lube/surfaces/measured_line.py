@@ -19,7 +19,6 @@ import numpy as np
 import scipy.fft
 
 from lube.errors import DataError
-from lube.kernels.synthesis import whole_steps
 from lube.surfaces.topography import Topography, step_at_join
 from lube.types import Array
 
@@ -146,4 +145,4 @@ def _resampled(heights, points, point_spacing, shortest, height_step, repeats=1)
     waves = np.zeros(points // 2 + 1, complex)
     waves[repeats : repeats * kept : repeats] = spectrum[1:kept]
     line = scipy.fft.irfft(waves, points, norm="forward") / height_step
-    return whole_steps(line.astype(np.float32))
+    return np.rint(line.astype(np.float32)).astype(np.int32)

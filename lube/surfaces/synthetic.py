@@ -23,12 +23,7 @@ from typing import Any, Protocol
 import numpy as np
 import scipy.fft
 
-from lube.kernels.synthesis import (
-    gaussian_phasors,
-    random_phasors,
-    translated_steps,
-    whole_steps,
-)
+from lube.kernels.synthesis import gaussian_phasors, random_phasors, translated_steps
 from lube.surfaces.translation import REACH, gaussian_power, johnson_curve
 
 ROLLER_NUMBERS = (1, 2)
@@ -217,8 +212,8 @@ def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> 
     if line.heights is not None:
         return line.heights.steps
     if line.is_gaussian:
-        spectrum = _spectrum(spec, roller)
-        return whole_steps(_superposition(spectrum, line.points, random_phasors, generator))
+        heights = _superposition(_spectrum(spec, roller), line.points, random_phasors, generator)
+        return np.rint(heights).astype(np.int32)
     same = spec.lines.index(line)  # the first of two equal rollers
     spectrum, curve = _translation(spec, same)
     gaussian = _superposition(spectrum, line.points, random_phasors, generator)

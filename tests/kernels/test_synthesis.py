@@ -1,8 +1,8 @@
-"""Random phases and whole heights."""
+"""Random phases and translated heights."""
 
 import numpy as np
 
-from lube.kernels.synthesis import PHASES, random_phasors, translated_steps, whole_steps
+from lube.kernels.synthesis import PHASES, random_phasors, translated_steps
 
 
 def test_phasors_are_those_of_the_phases_drawn():
@@ -16,13 +16,6 @@ def test_phases_are_uniform():
     phasors = random_phasors(np.random.default_rng(4), 200_000).astype(complex)
     for harmonic in (1, 2, 3, 4, 8):
         assert abs(np.mean(phasors**harmonic)) < 4.0 / np.sqrt(phasors.size)
-
-
-def test_heights_are_rounded_to_the_nearest_step():
-    heights = np.array([-1.6, -1.4, -0.5, 0.49, 0.5, 1.5, 2.51, 654321.0], np.float32)
-    steps = whole_steps(heights)
-    assert steps.dtype == np.int32
-    assert steps.tolist() == [-2, -1, 0, 0, 0, 2, 3, 654321]
 
 
 def test_translated_heights_are_interpolated_centred_and_scaled():
