@@ -253,7 +253,7 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
         position = (before - nodes) * (spec.spacing / answers[0].half_width)
         return nodes - first, [answer.at(position) for answer in answers]
 
-    rms = sum_of_lines(spec, 1).rms
+    rms, _ = sum_of_lines(spec, 1)
     lines = [_Covariance(spec, roller, one, film.size) for roller, one in enumerate(answers)]
     nodes, shapes = nodes_of(0, film.size)
     added = sum(one.at_nodes(at) for one, at in zip(lines, shapes, strict=True))

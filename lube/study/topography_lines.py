@@ -15,9 +15,6 @@ from lube.surfaces.spectrum_table import LineSpectrum, band_table, power_law_int
 from lube.surfaces.topography import Preparation, Topography, prepare
 from lube.types import Array
 
-TABLE_VALUES = 100
-"""Values of the spectrum of a drawn line."""
-
 
 def preparation(settings: RollerTopography) -> Preparation:
     """State what is done to a topography before it is used."""
@@ -113,7 +110,7 @@ def table(
     limits = (2.0 * np.pi / wave for wave in band)
     # Rounded: the last digits may depend on the machine.
     wave_vector, density = (
-        tuple(map(_rounded, values)) for values in band_table(spectrum, *limits, TABLE_VALUES)
+        tuple(map(_rounded, values)) for values in band_table(spectrum, *limits)
     )
     rms = power_law_integral(np.array(wave_vector), np.array(density)) ** 0.5
     return _rounded(rms), (wave_vector, density)

@@ -54,30 +54,8 @@ NEGLIGIBLE = 1e-9
 _NO_ANSWERS = np.zeros((0, 0))
 
 
-@dataclass(frozen=True)
-class SumOfLines:
-    """Second moments of the sum of both lines.
-
-    Attributes
-    ----------
-    rms : float
-        Rms height, height steps.
-    covariances : tuple of numpy.ndarray
-        Autocovariance of each line over the variance of the sum, for distances of 0, 1, ...
-        points.
-    """
-
-    rms: float
-    covariances: Pair
-
-    @property
-    def correlation(self) -> Array:
-        """Autocorrelation of the sum."""
-        return self.covariances[0] + self.covariances[1]
-
-
 @functools.lru_cache(maxsize=4)
-def sum_of_lines(spec: LineSpecLike, lags: int) -> SumOfLines:
+def sum_of_lines(spec: LineSpecLike, lags: int) -> tuple[float, Pair]:
     """Compute the second moments of the sum of both lines.
 
     Parameters
@@ -89,12 +67,15 @@ def sum_of_lines(spec: LineSpecLike, lags: int) -> SumOfLines:
 
     Returns
     -------
-    SumOfLines
-        The moments.
+    rms : float
+        Rms height, height steps.
+    covariances : tuple of numpy.ndarray
+        Autocovariance of each line over the variance of the sum, for distances of 0, 1, ...
+        points.
     """
     lines = [autocovariance(spec, roller, lags) for roller in range(len(ROLLER_NUMBERS))]
     variance = lines[0][0] + lines[1][0]
-    return SumOfLines(np.sqrt(variance), tuple(line / variance for line in lines))
+    return np.sqrt(variance), tuple(line / variance for line in lines)
 
 
 def check_gaussian(spec: LineSpecLike) -> None:
@@ -204,8 +185,8 @@ def rare_contact(
     windows, runs = np.empty((2, films.size)), np.empty((RUN_NUMBERS, films.size))
     factors = np.broadcast_to(factor, films.shape)
     for i, (film, width, own) in enumerate(zip(films, widths, factors, strict=True)):
-        log_tail = scipy.special.log_ndtr(-film / drawn.both.rms)
-        touching = (drawn.place * width).astype(np.int64), drawn.heights(log_tail, drawn.both.rms)
+        log_tail = scipy.special.log_ndtr(-film / drawn.rms)
+        touching = (drawn.place * width).astype(np.int64), drawn.heights(log_tail, drawn.rms)
         shape = np.full(width, film, np.float32)
         windows[:, i] = drawn.windows(shape, touching, own) * (width * np.exp(log_tail))
         known = drawn.lines, drawn.places, drawn.covariances, touching[1][:RUNS]
@@ -271,7 +252,7 @@ def rare_contact_under(
     shares, runs = np.empty((2, len(windows))), np.empty((1 + len(STEPS), len(windows)))
     factors = np.broadcast_to(factor, len(windows))
     for i, (window, own, lines) in enumerate(zip(windows, factors, filtered, strict=True)):
-        rms = np.broadcast_to(pair.both.rms * window.rms, window.film.shape)
+        rms = np.broadcast_to(pair.rms * window.rms, window.film.shape)
         log_tails, part = likely_part(window.film, rms)
         # The known point of a window lies where contact is likely.
         share = np.cumsum(np.exp(log_tails - log_tails.max()))
@@ -334,8 +315,9 @@ class RarePair:
         self.line = self.lines[0][: self.size] + self.lines[1][: self.size]
         self.log_chosen, self.place = np.log(generator.random(WINDOWS)), generator.random(WINDOWS)
         reach = math.ceil(spec.longest_wavelength / spec.spacing)
-        self.both = sum_of_lines(spec, max(reach + 1, widest))
-        self.covariances = tuple(_both_sides(each, reach + 1) for each in self.both.covariances)
+        self.rms, covariances = sum_of_lines(spec, max(reach + 1, widest))
+        self.correlation = covariances[0] + covariances[1]
+        self.covariances = tuple(_both_sides(each, reach + 1) for each in covariances)
         self.places = _spread(self.size, 2 * reach + 1, RUNS) + reach
 
     def heights(self, log_tail, rms):
@@ -346,7 +328,7 @@ class RarePair:
     def windows(self, film, touching, factor, surfaces=(), answers=()):
         """Mean weights of windows with contact and with a breakthrough."""
         starts = _spread(self.size, film.size, WINDOWS)
-        window = starts, _both_sides(self.both.correlation, film.size), touching, film
+        window = starts, _both_sides(self.correlation, film.size), touching, film
         if any(surface.shapes.size for surface in surfaces):
             return np.array(answered_windows(surfaces, *window, *answers, factor))
         return np.array(touching_windows(self.line, *window, factor))

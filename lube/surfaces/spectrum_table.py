@@ -8,7 +8,7 @@ import scipy.optimize
 from lube.errors import DataError
 from lube.types import Array, Pair
 
-TABLE_VALUES = 200
+TABLE_VALUES = 100
 """Values of a spectrum's table."""
 
 _LAST = 5
@@ -48,9 +48,7 @@ class LineSpectrum:
     limits: tuple[float, float] | None = None
 
 
-def band_table(
-    spectrum: LineSpectrum, q_min: float, q_max: float, values: int = TABLE_VALUES
-) -> Pair:
+def band_table(spectrum: LineSpectrum, q_min: float, q_max: float) -> Pair:
     """Tabulate a spectrum within a band, for drawing lines.
 
     Parameters
@@ -59,21 +57,19 @@ def band_table(
         The spectrum.
     q_min, q_max : float
         Smallest and largest wave vector, rad/m.
-    values : int, optional
-        Number of values.
 
     Returns
     -------
     wave_vector, density : numpy.ndarray
-        Shape (values,), equally spaced in the logarithm, rad/m and m^3; between them the density
-        is a power law.
+        Shape (`TABLE_VALUES`,), equally spaced in the logarithm, rad/m and m^3; between them the
+        density is a power law.
 
     Raises
     ------
     DataError
         If the spectrum does not reach so far, or is not positive in the band.
     """
-    begin, end = _limits(spectrum)
+    begin, end = spectrum.limits or spectrum.wave_vector[[0, -1]]
     if q_min < begin * (1.0 - 1e-9):
         raise DataError(
             f"{spectrum.name}: got waves up to {2.0 * np.pi / begin:.3g} m, half the measured "
@@ -92,12 +88,8 @@ def band_table(
     slope = np.sum(away * levels[-_LAST:]) / np.sum(away**2)
     places = np.append(places, max(np.log(q_max), places[-1]) + 1e-9)
     levels = np.append(levels, levels[-1] + slope * (places[-1] - places[-2]))
-    wave_vector = np.geomspace(q_min, q_max, values)
+    wave_vector = np.geomspace(q_min, q_max, TABLE_VALUES)
     return wave_vector, np.exp(np.interp(np.log(wave_vector), places, levels))
-
-
-def _limits(spectrum):
-    return spectrum.limits or (spectrum.wave_vector[0], spectrum.wave_vector[-1])
 
 
 def power_law_integral(wave_vector: Array, density: Array) -> float:

@@ -236,7 +236,10 @@ def height_distribution(heights: Array) -> dict[str, Estimate]:
     '1.00 0.99 1.01'
     """
     heights = heights - np.mean(heights)
-    sums = np.array([_power_sums(block) for block in _blocks(heights)])
+    columns = 1 if heights.ndim == 1 else round(BLOCKS**0.5)
+    rows = np.array_split(heights, BLOCKS // columns)
+    blocks = (block for row in rows for block in np.array_split(row, columns, axis=-1))
+    sums = np.array([_power_sums(block) for block in blocks])
     whole = sums.sum(axis=0)
     values = _moments(whole)
     without = np.array([_moments(whole - part) for part in sums])
@@ -246,16 +249,6 @@ def height_distribution(heights: Array) -> dict[str, Estimate]:
     names = ("rms_height", "mean_deviation", "skewness", "kurtosis")
     limits = zip(values, values - half, values + half, strict=True)
     return {name: Estimate(*map(float, each)) for name, each in zip(names, limits, strict=True)}
-
-
-def _blocks(heights):
-    """Yield the blocks of a profile or a map."""
-    if heights.ndim == 1:
-        yield from np.array_split(heights, BLOCKS)
-    else:
-        side = round(BLOCKS**0.5)
-        for rows in np.array_split(heights, side):
-            yield from np.array_split(rows, side, axis=1)
 
 
 def _power_sums(block):

@@ -30,58 +30,15 @@ ROLLER_NUMBERS = (1, 2)
 """Labels of the two rollers in files."""
 
 
-class RoughLineLike(Protocol):
-    """Parameters of one roughness line, such as `lube.study.line_spec.RoughLine`.
-
-    Attributes
-    ----------
-    points : int
-        Points N around the roller.
-    rms_height : float
-        Rms height, m.
-    hurst_exponent : float
-        Hurst exponent H.
-    q_min, q_max : float
-        Smallest and largest angular wavenumber, rad/m.
-    q_roll_off : float
-        Angular wavenumber below which the density rises with q, rad/m; `q_min` for nowhere.
-    skewness, kurtosis : float
-        Of the heights.
-    is_gaussian : bool
-        Whether the line is drawn, with Gaussian heights.
-    spectrum : tuple or None
-        Measured wave vectors, rad/m, and densities, m^3, in place of the Hurst exponent.
-    heights : object or None
-        Measured heights; its `steps` is an array of shape (N,), int32 height steps.
-    isotropic : bool
-        Whether the line stands for an isotropic surface.
-    """
-
-    points: int
-    rms_height: float
-    hurst_exponent: float | None
-    q_min: float
-    q_max: float
-    q_roll_off: float
-    skewness: float
-    kurtosis: float
-    is_gaussian: bool
-    spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None
-    heights: Any
-    isotropic: bool
-
-
 class LineSpecLike(Protocol):
     """Parameters of a pair of roughness lines, such as `lube.study.line_spec.LineSpec`; hashable.
 
     Attributes
     ----------
-    lines : tuple of RoughLineLike
-        Parameters of either line.
+    lines : tuple
+        Parameters of either line, such as `lube.study.line_spec.RoughLine`.
     points : tuple of int
         Points N around each roller.
-    is_gaussian : bool
-        Whether the heights of both lines are Gaussian.
     longest_wavelength : float
         Longest wavelength of both lines, m.
     spacing : float
@@ -90,9 +47,8 @@ class LineSpecLike(Protocol):
         Height step, m.
     """
 
-    lines: tuple[RoughLineLike, RoughLineLike]
+    lines: tuple[Any, Any]
     points: tuple[int, int]
-    is_gaussian: bool
     longest_wavelength: float
     spacing: float
     height_step: float
@@ -137,16 +93,15 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     '2e-07'
     """
     line = spec.lines[roller]
+    # Leave out the wave of two points: its rms height on the grid would depend on its phase.
+    last_wave = (line.points - 1) // 2
+    if line.heights is not None:
+        waves = scipy.fft.rfft(line.heights.steps * spec.height_step, norm="forward")
+        return 1, 2.0 * np.abs(waves[1 : last_wave + 1])
     turn = line.points * spec.spacing / (2.0 * np.pi)
     # A limit that is a whole number of waves belongs to the band, despite rounding.
     first_wave = int(np.ceil(line.q_min * turn * (1.0 - 1e-9)))
-    last_wave = int(np.floor(line.q_max * turn * (1.0 + 1e-9)))
-    # Leave out the wave of two points: its rms height on the grid would depend on its phase.
-    last_wave = min(last_wave, (line.points - 1) // 2)
-    if line.heights is not None:
-        first_wave, last_wave = 1, (line.points - 1) // 2
-        waves = scipy.fft.rfft(line.heights.steps * spec.height_step, norm="forward")
-        return 1, 2.0 * np.abs(waves[1 : last_wave + 1])
+    last_wave = min(int(np.floor(line.q_max * turn * (1.0 + 1e-9))), last_wave)
     waves = np.arange(first_wave, last_wave + 1)
     shape = (
         _self_affine(line, waves, turn) if line.spectrum is None else _measured(line, waves / turn)

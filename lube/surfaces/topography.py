@@ -148,7 +148,8 @@ def prepare(topography: Topography, settings: Preparation) -> Topography:
     form = "none" if settings.closed else settings.form
     heights = fill_holes(remove_form(topography.heights, form))
     if settings.closed and settings.form == "tilt":
-        heights = without_drift(heights)
+        # The drift is a straight line.
+        heights = heights + step_at_join(heights) * np.linspace(-0.5, 0.5, heights.size)
     spacing = used_directions(topography.spacing, settings)
     cutoffs = settings.long_cutoff, settings.short_cutoff
     return replace(topography, heights=gaussian_filter(heights, spacing, *cutoffs, settings.closed))
@@ -266,27 +267,6 @@ def step_at_join(heights: Array) -> float:
     """
     step, usual = heights[0] - heights[-1], np.sqrt(np.mean(np.diff(heights) ** 2))
     return step if abs(step) > USUAL_STEPS * usual else 0.0
-
-
-def without_drift(heights: Array) -> Array:
-    """Remove the step between the ends of a closed profile as a straight line.
-
-    Parameters
-    ----------
-    heights : numpy.ndarray
-        Shape (n,), m.
-
-    Returns
-    -------
-    numpy.ndarray
-        Same shape.
-
-    Examples
-    --------
-    >>> without_drift(np.linspace(0.0, 50.0, 400))[[0, 200, -1]].round(9)
-    array([25., 25., 25.])
-    """
-    return heights + step_at_join(heights) * np.linspace(-0.5, 0.5, heights.size)
 
 
 def fill_holes(heights: Array) -> Array:

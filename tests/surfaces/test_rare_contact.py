@@ -24,7 +24,7 @@ def unequal(make_spec):
 
 def estimates(spec, ratios, widths, factor=FACTOR):
     """Mean over pairs of lines, and its standard error, of windows and runs."""
-    films = np.asarray(ratios) * sum_of_lines(spec, 2).rms
+    films = np.asarray(ratios) * sum_of_lines(spec, 2)[0]
     found = [rare_contact(spec, SEED, r, films, np.asarray(widths), factor) for r in range(PAIRS)]
     for each in zip(*found, strict=True):
         yield np.mean(each, axis=0), np.std(each, axis=0, ddof=1) / np.sqrt(PAIRS)
@@ -41,16 +41,16 @@ def within(found, expected, errors=4.0):
 def test_lines_have_the_covariance_of_their_spectrum(unequal):
     """Mean products over draws of both lines, and no correlation between them."""
     lags = np.array([0, 3, 20, 100])
-    covariances = sum_of_lines(unequal, 200)
+    rms, covariances = sum_of_lines(unequal, 200)
     products = []
     for number in range(30):
         lines, _ = draw_pair(unequal, SEED, number)
         each = [[np.mean(line * np.roll(line, lag)) for lag in lags] for line in lines]
         size = min(unequal.points)
         products.append([*each, [np.mean(lines[0][:size] * lines[1][:size])] * 4])
-    found = np.mean(products, axis=0) / covariances.rms**2
-    error = np.std(products, axis=0, ddof=1) / np.sqrt(30) / covariances.rms**2
-    expected = [covariance[lags] for covariance in covariances.covariances] + [np.zeros(4)]
+    found = np.mean(products, axis=0) / rms**2
+    error = np.std(products, axis=0, ddof=1) / np.sqrt(30) / rms**2
+    expected = [covariance[lags] for covariance in covariances] + [np.zeros(4)]
     assert np.all(np.abs(found - expected) < 4.0 * error)
     assert np.max(error) < 0.01
 
@@ -63,7 +63,7 @@ def test_a_window_of_one_point_has_the_gaussian_tail(spec, ratio):
 
 @pytest.mark.parametrize("ratio", [0.5, 2.0, 5.0])
 def test_a_window_of_two_points_and_the_start_of_a_run_have_the_bivariate_tails(spec, ratio):
-    correlation = sum_of_lines(spec, 2).correlation[1]
+    correlation = sum(sum_of_lines(spec, 2)[1])[1]
     both = scipy.stats.multivariate_normal([0.0, 0.0], [[1.0, correlation], [correlation, 1.0]])
     one, together = scipy.stats.norm.sf(ratio), both.cdf([-ratio, -ratio])
     (mean, error), (runs, runs_error) = estimates(spec, [ratio], [2])
@@ -87,7 +87,7 @@ def counted(spec, ratio, width, pairs):
     for number in range(1000, 1000 + pairs):
         lines, _ = draw_pair(spec, SEED, number)
         size = min(spec.points)
-        overlap = lines[0][:size] + lines[1][:size] - ratio * sum_of_lines(spec, 2).rms
+        overlap = lines[0][:size] + lines[1][:size] - ratio * sum_of_lines(spec, 2)[0]
         edges = np.flatnonzero(np.diff(overlap > 0.0)) + 1
         runs = [run for run in np.split(np.arange(size), edges) if overlap[run[0]] > 0.0]
         broken = [run for run in runs if run.size**3 < FACTOR * overlap[run].sum()]
