@@ -119,11 +119,6 @@ def fill_high_stretches(
         return 1
     highest_1 = ahead[0][first_1 : first_1 + line.size : BLOCK]
     highest_2 = ahead[1][first_2 : first_2 + line.size : BLOCK]
-    highest = np.int32(highest_1[0] + highest_2[0])
-    for block in range(1, highest_1.size):  # without a branch, so the compiler vectorises it
-        highest = max(highest, np.int32(highest_1[block] + highest_2[block]))
-    if highest <= film:
-        return 0
     starts, stops = stretches
     found = 0
     inside = False

@@ -104,11 +104,6 @@ def answer_at(surface, first, step, node):
     return total
 
 
-@inlined
-def _is_answered(surfaces):
-    return surfaces[0].shapes.size + surfaces[1].shapes.size > 0
-
-
 @kernel
 def _highest_by_block(lift, shift, highest):
     """Highest answer in each block of a window."""
@@ -223,7 +218,8 @@ def shaped_trace(
     trace = np.empty((len(window.films), windows, 3), np.int64)
     least = _least_by_block(window.films)
     now, then, lift = np.zeros((3, node_count(window)), np.int64)
-    highest, is_answered = np.zeros(least.shape[1], np.int64), _is_answered(surfaces)
+    is_answered = surfaces[0].shapes.size + surfaces[1].shapes.size > 0
+    highest = np.zeros(least.shape[1], np.int64)
     lines = surfaces[0].line, surfaces[1].line
     ahead = surfaces[0].highest, surfaces[1].highest
     answers = is_answered, lift, highest, window.shift, phase_of(window)
@@ -267,8 +263,9 @@ def means_of(traces: Array) -> Array:
     >>> means_of(np.array([[[0, 0, 0], [3, 2, 8]]])).tolist()
     [[0.5, 0.5, 1.0, 4.0]]
     """
-    windows = np.count_nonzero(traces[..., :2], axis=1)
-    return np.hstack([windows, traces[..., 1:].sum(axis=1)]) / traces.shape[1]
+    points, broken, overlap = np.moveaxis(traces, -1, 0)
+    sums = [each.sum(axis=1) for each in (points > 0, broken > 0, broken, overlap)]
+    return np.stack(sums, axis=1) / traces.shape[1]
 
 
 def as_drawn(line: Array) -> Surface:

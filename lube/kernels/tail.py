@@ -8,11 +8,9 @@ import numpy as np
 
 from lube.kernels.compiler import inlined, kernel
 from lube.kernels.layer import layer_breaks
+from lube.kernels.runs import BLOCK
 from lube.kernels.shaped import Surface, answer_at
 from lube.types import Array, Pair
-
-BLOCK = 64
-"""Points that are passed over together."""
 
 
 @kernel
