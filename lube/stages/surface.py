@@ -1,13 +1,11 @@
 """The surface stage: measured topographies by their spectra, roll-offs and heights."""
 
 from collections.abc import Mapping
-from contextlib import suppress
 
 import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.errors import DataError
 from lube.schema import label, values_with_limits
 from lube.study.line_spec import LineSpec
 from lube.study.roller_topography import RollerTopography
@@ -88,10 +86,7 @@ def _described(topography, line):
     numbers = values_with_limits("roll_off_wavelength", bend or _UNKNOWN)
     numbers["resolved_wavelength"] = waves.resolution
     waves = waves if bend is None else waves._replace(longest=bend.value)
-    hurst = _UNKNOWN
-    with suppress(DataError):  # the band is too narrow
-        hurst = hurst_exponent(spectrum, waves)
-    numbers |= values_with_limits("hurst_exponent", hurst)
+    numbers |= values_with_limits("hurst_exponent", hurst_exponent(spectrum, waves) or _UNKNOWN)
     for name, estimate in height_distribution(surface.heights).items():
         numbers |= values_with_limits(name, estimate)
     return spectrum, _histogram(surface.heights), numbers

@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 import scipy.special
 
-from lube.errors import DataError
 from lube.surfaces.spectrum_table import LineSpectrum
 from lube.types import Array
 
@@ -124,7 +123,7 @@ def waves_of_surface(spectrum: LineSpectrum, longest: float, shortest: float) ->
     return Waves(longest, 2.0 * np.pi / end, bool(blur > 0.0), resolution)
 
 
-def hurst_exponent(spectrum: LineSpectrum, waves: Waves) -> Estimate:
+def hurst_exponent(spectrum: LineSpectrum, waves: Waves) -> Estimate | None:
     r"""Fit the Hurst exponent, :math:`C \propto q^{-2H-1}`, to a range of wavelengths.
 
     Parameters
@@ -136,13 +135,9 @@ def hurst_exponent(spectrum: LineSpectrum, waves: Waves) -> Estimate:
 
     Returns
     -------
-    Estimate
-        The exponent; one outside 0 to 1 is that of no self-affine surface.
-
-    Raises
-    ------
-    DataError
-        If fewer than three densities lie in the range.
+    Estimate or None
+        The exponent; None if fewer than three densities lie in the range. A surface with an
+        exponent outside 0 to 1 is not self-affine.
 
     Examples
     --------
@@ -154,10 +149,7 @@ def hurst_exponent(spectrum: LineSpectrum, waves: Waves) -> Estimate:
     """
     wave_vector, logarithm, error = _logarithms(spectrum, waves)
     if wave_vector.size < 3:
-        raise DataError(
-            f"{spectrum.name}: got {wave_vector.size} densities between {waves.shortest:.3g} and "
-            f"{waves.longest:.3g} m, need three or more for the Hurst exponent"
-        )
+        return None
     basis = _basis(np.log(wave_vector), -np.inf, waves.blurred)
     fit, covariance, _ = _least_squares(basis, logarithm, error)
     exponent = 0.5 * float(fit[1] - 1.0 - spectrum.isotropic)

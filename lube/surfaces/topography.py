@@ -28,10 +28,6 @@ from lube.types import Array
 FORMS = ("none", "tilt", "curvature")
 """What is removed: the mean, a straight line or plane, or a polynomial of the second order."""
 
-HOLES = ("refuse", "interpolate")
-TEXTURES = ("isotropic", "along rolling")
-"""The surface is alike in all directions, or only its profile along rolling is used."""
-
 MOST_HOLES = 0.05
 """Largest share of holes that is interpolated. The heights filled in are smoother than measured
 ones: at most this share of the mean square height is lost, and half as much of the rms height."""
@@ -82,7 +78,8 @@ class Preparation:
     Attributes
     ----------
     texture : str
-        One of `TEXTURES`.
+        ``isotropic``: the surface is alike in all directions; or ``along rolling``: only its
+        profile along rolling is used.
     form : str
         One of `FORMS`.
     long_cutoff : float or None
@@ -90,7 +87,7 @@ class Preparation:
     short_cutoff : float or None
         Cutoff of the Gaussian filter that removes short waves, m.
     holes : str
-        One of `HOLES`.
+        ``refuse`` or ``interpolate``.
     rolling : str
         Direction of rolling on a map, ``x`` or ``y``.
     closed : bool
