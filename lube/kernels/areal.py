@@ -65,10 +65,10 @@ def touching_strips(
     Returns
     -------
     contact, breakthrough : numpy.ndarray
-        Shape (R - `around` + 1,) each, sums of weights. First of the known rows, 1/n each for n
-        touching points. Then of the contacts of which no row is touched in the row before their
-        first one, in the two rows before it, and so on, 1/m each for m points. In `breakthrough`
-        only contacts count whose boundary layer breaks.
+        Shape (R - `around` + 1,) each, sums of weights. The first is over the known rows, 1/n for a
+        row of n touching points. The next ones are over contacts of m points, 1/m each, if the
+        strip does not touch in the row before the contact's first one, in the two rows before it,
+        and so on. In `breakthrough` only contacts count whose boundary layer breaks.
     contacts : numpy.ndarray
         Shape (2,), sums of 1/m of all contacts, and of those whose boundary layer breaks.
     """

@@ -8,10 +8,10 @@ sum of filtered lines, each times a function of the position:
 It is smooth, so it is computed at some points of the window, the nodes, and taken as linear between
 them.
 
-Where no line can reach the film, blocks of points are passed over by the highest heights of both
-lines there; where it can, the points are read as in the literal scan, to which this is equal to the
-last bit. Windows a tenth of the contact apart see nearly the same, so for probabilities not every
-time step needs one.
+Blocks of points are passed over where the highest points of both lines do not reach the film. All
+other points are read as in the literal scan, so the results equal it to the last bit. Windows a
+tenth of the contact apart see nearly the same points, so a probability does not need a window at
+every time step.
 """
 
 from typing import NamedTuple

@@ -104,8 +104,8 @@ def answered_windows(
         As in `touching_windows`.
     covariances : numpy.ndarray
         Shape (2, 2, C, C), float32: what the oil adds to the covariance of each line at two nodes
-        of the window, over the variance of the sum as drawn; of a line at the first node that lies
-        one point further back too.
+        of the window, over the variance of the sum as drawn. With the second index 1 the line lies
+        one point further back at the first node.
     shift : int
         As of `lube.kernels.shaped.Window`.
 
@@ -191,7 +191,7 @@ def touching_runs(
 ) -> Array:
     r"""Weigh runs of points above a film, each found from one point that is known to touch.
 
-    The lines are moved as in `touching_windows`, each by its own share of the autocorrelation. A
+    The lines are moved as in `touching_windows`, each by its part of the autocorrelation. A
     run of n points could have been found from any of them, so it counts 1/n. No window cuts it.
 
     Parameters
@@ -215,12 +215,16 @@ def touching_runs(
     Returns
     -------
     numpy.ndarray
-        Shape (10,), sums over the M runs of their weights: of all; of those whose boundary layer
-        breaks; of these without another one within L points behind their known point; of these
-        without a forerunner one relative step earlier; the second and the fourth again, times
-        the points of each run; the third, times the points that were searched behind each; and,
-        of broken runs with another one behind, times the points between the two, the windows that
-        hold neither, and the sum over these windows of the steps until the next run.
+        Shape (10,), sums over the M runs. A run is *broken* if its boundary layer breaks.
+
+        - 0: weights of all runs; 1: of the broken runs;
+        - 2: weights of the broken runs without another one within L points behind the known point;
+        - 3: weights of the broken runs without a forerunner one relative step earlier;
+        - 4, 5: as 1 and 3, each weight times the points of the run;
+        - 6: as 2, each weight times the points that were searched behind the run;
+        - 7 to 9: weights of the broken runs with another one behind, times the points between the
+          two, times the windows that hold neither, and times the sum over these windows of the
+          steps until the next run.
     """
     sums = np.zeros(10)
     reach = correlations[0].size // 2
@@ -283,14 +287,14 @@ def touching_runs_under(
     film : numpy.ndarray
         Shape (W,), float32: film thickness at each point of the window, height steps.
     steps : numpy.ndarray
-        Shape (S, 2), int64: time steps of different kinds, points by which each line moves through
-        the window in one.
+        Shape (S, 2), int64: points by which each line moves through the window in one time step,
+        for S kinds of time steps.
 
     Returns
     -------
     numpy.ndarray
-        Shape (1 + S,), sums over the M runs of their weights: of those whose boundary layer breaks,
-        and of these without a forerunner one step of each kind earlier.
+        Shape (1 + S,), sums of weights: of the runs whose boundary layer breaks, and of these
+        without a forerunner one step of each kind earlier.
     """
     sums = np.zeros(1 + len(steps))
     reach = correlations[0].size // 2
@@ -327,7 +331,7 @@ def touching_runs_under(
 def _answer(answers, surfaces, covariances, offset, known, shift):
     """Answers to each line and what they add to its covariance with the known point, at nodes.
 
-    Of the line as it lies, and of that one point further back.
+    The third index is 0 for the line as it lies, and 1 for the line one point further back.
     """
     for roller in range(2):
         for back in range(2):

@@ -31,7 +31,7 @@ _REACH = 12.0  # cosh(12) = 8e4: the waves beyond are negligible for H >= 0
 _NODES = 240
 
 END_RANGE = 3.0
-"""The power law beyond the last wave vector is that of the densities down to a third of it."""
+"""The power law beyond the last wave vector is fitted to the densities from a third of it on."""
 
 
 def monotone(density: Array, estimates: Array) -> Array:

@@ -22,9 +22,9 @@ from lube.errors import DataError, LubeError
 from lube.types import Array
 
 TOLERANCE = 1e-4
-"""Relative error at which a solution is taken; smaller ones change no area by a thousandth."""
+"""Largest relative error of a solution; a smaller one changes no area by a thousandth."""
 PIXELS = (math.pi - 1.0 + math.log(2.0)) / 24.0
-"""Share of a grid point's area by which the edge of a contact is too wide, per point of edge."""
+"""Excess area of a contact on a grid, in grid points, per side of a grid point on its edge."""
 
 
 class Contact(NamedTuple):

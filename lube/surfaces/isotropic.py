@@ -25,7 +25,7 @@ POINTS_PER_WAVE = 5
 LONGEST_WAVES = 4
 """Longest wavelengths along a side of the surface."""
 POINTS_PER_CONTACT = 4
-"""Grid points in the smallest contacts, if the surface does not get too large by it."""
+"""Grid points in the smallest contacts, unless a side then has more than `LARGE` points."""
 LARGE, LARGEST = 4096, 8192
 """Points along a side up to which the grid is refined for small contacts, and at most."""
 
@@ -111,7 +111,7 @@ def isotropic_surface(
     spec : LineSpecLike
         Parameters of the lines.
     width : float, optional
-        Width that the surface must have, and a longest wavelength besides, m.
+        The surface is wider than this by a longest wavelength at least, m.
     contact : float, optional
         Length of the smallest contacts, m.
     waves : int, optional
@@ -140,12 +140,12 @@ def isotropic_surface(
     points = scipy.fft.next_fast_len(math.ceil(least), real=True)
     waves = np.hypot(np.fft.fftfreq(points, 1.0 / points)[:, None], np.arange(points // 2 + 1))
     step = 2.0 * np.pi / (points * spacing)
-    # The waves of equal length share what the lines' waves of this length have.
+    # The variance of the lines' waves of a length is divided among the surface's waves of it.
     shell = np.rint(waves).astype(np.int64)
     power = sum(
         _power(spec, roller, step, shell.max() + 1) for roller in range(len(ROLLER_NUMBERS))
     )
-    # But in the first column, and in the last of an even number, a wave is also its mirror image.
+    # The first column, and the last of an even number, hold a wave and its mirror image.
     number = np.full(waves.shape, 2)
     number[:, 0] = 1
     number[:, -1] -= 1 - points % 2

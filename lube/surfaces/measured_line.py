@@ -7,8 +7,8 @@ than the study's shortest are left out. Two cases:
 - The profile covers the circumference, so its ends meet; it is prepared as a closed one. Its
   length is made the circumference, from which it may differ by 1 %.
 - The profile is repeated, a whole number of times around the roller, as few as its length allows.
-  Its ends do not meet. It is longer than a repeat by the share `FADED`; over this length at its
-  beginning the surplus of the end is faded out and the beginning is faded in, by weights
+  Its ends do not meet. It is longer than a repeat by `FADED` times the repeat. Over this length
+  at its beginning the surplus of the end is faded out and the beginning is faded in, by weights
   :math:`\cos` and :math:`\sin` of a quarter turn, which keep the mean square of independent
   heights. The line is then scaled to the rms height of the profile.
 """
@@ -23,7 +23,7 @@ from lube.surfaces.topography import Topography, step_at_join
 from lube.types import Array
 
 FADED = 0.02
-"""Length over which the ends of a repeated profile are joined, as a share of the repeat."""
+"""Length over which the ends of a repeated profile are joined, over the length of the repeat."""
 
 CLOSED_TO = 0.01
 """Largest relative difference between the length of a closed profile and the circumference."""

@@ -18,9 +18,9 @@ second.
 A Hann window of mean square one keeps the jump between opposite edges out of the spectrum. It
 blurs the two or three longest waves, so the spectrum begins at two waves on the measured length.
 The window also gives the middle more weight than the edges, so that the mean square height of the
-spectrum differs from that of the measured heights by chance. What is missing or too much is
-added to the densities in proportion to their variance: to those of the long waves, of which there
-are few, and hardly to those of the short ones, which are known much better than the rms height.
+spectrum differs from that of the measured heights by chance. The difference is spread over the
+densities in proportion to their variance. The few long waves take most of it; the short ones, which
+are known much better than the rms height, hardly change.
 This is done only after a filter of long waves: without one the rms height is that of the measured
 length, which no spectrum of shorter waves can have. In both cases the table as a whole has the
 power of the waves it is made of, though a mean in logarithms between scattered values is lower.
@@ -65,10 +65,10 @@ LEAST_WAVES_OF_RING = 50
 """Fewest waves of a ring that counts for the `anisotropy`."""
 
 LEAST_RMS_HEIGHT = 1e-13
-"""A surface smoother than this, m, a thousandth of an atom, is rounding errors."""
+"""Least rms height, m, a thousandth of an atom: smoother heights are rounding errors."""
 
 _BLUR = 1.0 + 2.0 * ((2.0 / 3.0) ** 2 + (1.0 / 6.0) ** 2)
-"""Variance of a mean over neighbouring waves, for the Hann window makes them dependent."""
+"""Variance of a mean over neighbouring waves, over that without a Hann window."""
 
 _REPLICATES = 100
 

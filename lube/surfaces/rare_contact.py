@@ -46,11 +46,11 @@ WINDOWS = 800
 RUNS = 400
 """Runs along each pair of lines."""
 RUN_NUMBERS = 10
-"""Numbers that `rare_contact` gives of the runs."""
+"""Number of sums over runs that `rare_contact` returns."""
 STEPS = np.array([(1, 1), (1, 0), (0, 1)])
 """Kinds of time steps, in points by which each surface moves: both, or the faster one alone."""
 NEGLIGIBLE = 1e-9
-"""Likelihood of contact at a point, over that at the likeliest, that is passed over."""
+"""Points are left out where contact is less likely than this times that at the likeliest point."""
 _NO_ANSWERS = np.zeros((0, 0))
 
 
@@ -142,7 +142,7 @@ def draw_pair(spec: LineSpecLike, seed: int, number: int) -> tuple[Pair, np.rand
     lines : tuple of numpy.ndarray
         Shapes (N1,) and (N2,), float32 height steps.
     generator : numpy.random.Generator
-        For all else that is chosen at random on this pair.
+        Source of all other random choices on this pair.
     """
     # The first two children draw the lines of the realisation of this number.
     children = np.random.SeedSequence((seed, number)).spawn(5)[2:]
@@ -204,13 +204,14 @@ class UnevenWindow:
     film : numpy.ndarray
         Film thickness at each point, shape (W,), height steps, above zero.
     rms : float or numpy.ndarray
-        Rms height of the sum of the lines as it reaches the gap there, over that as drawn.
+        Rms height of the sum of the lines in the gap at each point, over that of the lines as
+        drawn.
     shapes : tuple of numpy.ndarray
-        As of `lube.kernels.shaped.Surface`, of both surfaces.
+        The `shapes` of `lube.kernels.shaped.Surface`, of both surfaces.
     covariances : numpy.ndarray
         As in `lube.kernels.tail.answered_windows`.
     shift : int
-        As of `lube.kernels.shaped.Window`.
+        The `shift` of `lube.kernels.shaped.Window`.
     """
 
     film: Array
@@ -232,7 +233,7 @@ def rare_contact_under(
     windows : sequence of UnevenWindow
         The window of each operating point.
     filtered : sequence of tuple of numpy.ndarray
-        Lines as filtered for each, as of `lube.kernels.shaped.Surface`.
+        The filtered lines at each point, as in `lube.kernels.shaped.Surface`.
     factor : float or numpy.ndarray
         As in `rare_contact`.
 
@@ -241,13 +242,8 @@ def rare_contact_under(
     windows : numpy.ndarray
         Shape (2, P): probabilities of geometric contact and of breakthrough in a window.
     runs : numpy.ndarray
-        Shape (4, P): expected number of runs in a window whose boundary layer breaks; and of those
-        of them that are new, for each kind of time step in `STEPS`.
-
-    Notes
-    -----
-    Points of the window at which contact is less likely by a factor `NEGLIGIBLE` than at the
-    likeliest are left out.
+        Shape (4, P): expected number of runs in a window whose boundary layer breaks, and of the
+        new ones among them, for each kind of time step in `STEPS`.
     """
     shares, runs = np.empty((2, len(windows))), np.empty((1 + len(STEPS), len(windows)))
     factors = np.broadcast_to(factor, len(windows))
@@ -321,7 +317,7 @@ class RarePair:
         self.places = _spread(self.size, 2 * reach + 1, RUNS) + reach
 
     def heights(self, log_tail, rms):
-        """Heights above a film as they are by themselves: the inverse of the Gaussian tail."""
+        """Heights of points that touch a film: the inverse of the Gaussian tail."""
         heights = -rms * scipy.special.ndtri_exp(self.log_chosen + log_tail)
         return heights.astype(np.float32)
 

@@ -67,7 +67,7 @@ def band_table(spectrum: LineSpectrum, q_min: float, q_max: float) -> Pair:
     Raises
     ------
     DataError
-        If the spectrum does not reach so far, or is not positive in the band.
+        If the spectrum does not cover the band, or is not positive in it.
     """
     begin, end = spectrum.limits or spectrum.wave_vector[[0, -1]]
     if q_min < begin * (1.0 - 1e-9):
@@ -83,7 +83,7 @@ def band_table(spectrum: LineSpectrum, q_min: float, q_max: float) -> Pair:
     if not np.all(spectrum.density > 0.0):
         raise DataError(f"{spectrum.name}: got a density of zero or less, need a positive spectrum")
     places, levels = np.log(spectrum.wave_vector), np.log(spectrum.density)
-    # Half a bin beyond the last density: on with the slope before it.
+    # Half a bin beyond the last density the spectrum goes on with the slope before it.
     away = places[-_LAST:] - np.mean(places[-_LAST:])
     slope = np.sum(away * levels[-_LAST:]) / np.sum(away**2)
     places = np.append(places, max(np.log(q_max), places[-1]) + 1e-9)

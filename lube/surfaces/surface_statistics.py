@@ -32,8 +32,8 @@ TOLERANCE = 0.05
 standard errors of the densities."""
 
 PRICE = 9.0
-"""Squared deviation, in standard errors, that a density must save to be left out of the fits; so
-must a blur."""
+"""A density is left out of the fits, or a blur is added, if it reduces the squared deviation, in
+standard errors, by more than this."""
 
 LEAST_DENSITIES = 6
 """Fewest densities that the search for the instrument's resolution keeps."""
@@ -61,8 +61,8 @@ class Waves(NamedTuple):
     blurred : bool
         Whether the instrument blurs them: their power falls as :math:`e^{-b q^2}`.
     resolution : float
-        Shortest wave that shows the surface rather than the instrument, m: NaN if all do. Of a
-        blur `LEAST_TRANSFER` of the power is left there.
+        Shortest wave that shows the surface rather than the instrument, m; NaN if all do. A blur
+        leaves `LEAST_TRANSFER` of the power of this wave.
     """
 
     longest: float

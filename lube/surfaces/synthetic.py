@@ -63,7 +63,7 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
 
     Below the roll-off wavenumber the isotropic surface's density :math:`C_{2D}` is constant, so
     that :math:`C_{1D} = \pi q\, C_{2D}` and :math:`a_k \propto q_k^{1/2}`. With a measured spectrum
-    :math:`a_k \propto C(q_k)^{1/2}`; a measured line has amplitudes of its own.
+    :math:`a_k \propto C(q_k)^{1/2}`; a measured line has those of its heights.
 
     Parameters
     ----------

@@ -127,8 +127,8 @@ def prepare(topography: Topography, settings: Preparation) -> Topography:
     Raises
     ------
     DataError
-        If the topography has holes and none, or not so many, are allowed, is too small, or a
-        cutoff does not suit it.
+        If the topography has holes although none are allowed, too many holes or too few points,
+        or if a cutoff does not suit it.
 
     Examples
     --------
