@@ -222,12 +222,10 @@ def anisotropy(power: Array, lengths: Pair, q_max: float) -> tuple[float, float]
     '1.00 0.00'
     """
     along, across = _wave_vectors(power, lengths)
-    edges = _bin_edges(min(lengths), q_max)
-    ring = np.digitize(np.hypot(along, across), edges)
-    weights = _double_angle(power, along, across)
-    total, cosine, sine = (_binned(ring, each, edges) for each in weights)
+    sums = _sums_by_bin(np.hypot(along, across), min(lengths), q_max)
+    total, cosine, sine = map(sums, _double_angle(power, along, across))
     # Rings of few waves are left out: their scatter alone looks like a direction.
-    many = (_binned(ring, None, edges) >= LEAST_WAVES_OF_RING) & (total > 0)
+    many = (sums() >= LEAST_WAVES_OF_RING) & (total > 0)
     if not many.any():
         return 0.0, 0.0
     cosine, sine = (np.mean(part[many] / total[many]) for part in (cosine, sine))
@@ -237,11 +235,8 @@ def anisotropy(power: Array, lengths: Pair, q_max: float) -> tuple[float, float]
 def _profile_bins(surface, q_max):
     """Means of a profile's density over bins, and the number of independent estimates."""
     wave_vector, density = profile_density(surface.heights, surface.spacing[0])
-    edges = _bin_edges(surface.lengths[0], q_max)
-    inside = np.digitize(wave_vector, edges)
-    counts, total, places = (
-        _binned(inside, values, edges) for values in (None, density, wave_vector**-2.0)
-    )
+    sums = _sums_by_bin(wave_vector, surface.lengths[0], q_max)
+    counts, total, places = map(sums, (None, density, wave_vector**-2.0))
     # Where a power law of the exponent -2 has its mean over the bin.
     middle, estimates = (places / counts) ** -0.5, np.maximum(counts / _BLUR, 1.0)
     powers = (np.sum(part) * wave_vector[0] for part in (total, density))
@@ -267,16 +262,15 @@ def _ring_means(power, lengths, q_max):
     """Density of the isotropic surface's line, by rings of the half plane of wave vectors."""
     along, across = _wave_vectors(power, lengths)
     wave_vector = np.hypot(along, across)
-    edges = _bin_edges(min(lengths), q_max)
-    ring = np.digitize(wave_vector, edges)
+    sums = _sums_by_bin(wave_vector, min(lengths), q_max)
     # Each wave of the half plane stands for two, but not those of the first column.
-    waves = 2 * _binned(ring, None, edges) - _binned(ring[:, 0], None, edges)
+    waves = 2 * sums() - sums(np.broadcast_to(across == 0.0, power.shape))
     wave_vector[0, 0] = 1.0
     wave_vector **= -3.0
     # Where a power law of the exponent -3 has its mean over the ring.
-    middle = (_binned(ring, wave_vector, edges) / _binned(ring, None, edges)) ** (-1.0 / 3.0)
+    middle = (sums(wave_vector) / sums()) ** (-1.0 / 3.0)
     cell = (2.0 * np.pi) ** 2 / (lengths[0] * lengths[1])
-    surface_density = _binned(ring, power, edges) / (waves * cell)
+    surface_density = sums(power) / (waves * cell)
     estimates = np.maximum(0.5 * waves / _BLUR**2, 1.0)
     inside = np.sum(surface_density * waves) * cell
     return middle, 2.0 * np.pi * middle * surface_density, estimates, inside
@@ -287,18 +281,16 @@ def _column_means(power, length, q_max):
     last = (power.shape[0] - 1) // 2
     step = 2.0 * np.pi / length
     wave_vector = step * np.arange(1, last + 1)
-    sums, squares = (
+    powers, squares = (
         np.sum(part[1 : last + 1], axis=1) + np.sum(part[: -last - 1 : -1], axis=1)
         for part in (power, power**2)
     )
-    edges = _bin_edges(length, q_max)
-    inside = np.digitize(wave_vector, edges)
-    counts = _binned(inside, None, edges)
-    total = _binned(inside, sums, edges)
-    middle = (_binned(inside, wave_vector**-2.0, edges) / counts) ** -0.5
+    sums = _sums_by_bin(wave_vector, length, q_max)
+    counts, total, places = map(sums, (None, powers, wave_vector**-2.0))
+    middle = (places / counts) ** -0.5
     # Of exponentially distributed powers P the variance of the sum is half the sum of P^2.
     with np.errstate(invalid="ignore"):
-        estimates = 2.0 * total**2 / _binned(inside, squares, edges)
+        estimates = 2.0 * total**2 / sums(squares)
     most = 2.0 * counts * power.shape[1]
     estimates = np.maximum(np.minimum(estimates, most) / _BLUR**2, 1.0)
     return middle, total / (counts * step), estimates, total.sum()
@@ -341,16 +333,19 @@ def _double_angle(power, along, across):
     yield weighted * (2.0 * along * across)
 
 
-def _bin_edges(length, q_max):
-    """Edges of bins in each of which at least one multiple of 2 pi / length lies, rad/m."""
+def _sums_by_bin(wave_vector, length, q_max):
+    """Return a function that sums values, or counts them, in bins of the wave vector.
+
+    At least one multiple of 2 pi / length lies in each bin. Values outside all bins are left out.
+    """
     step, growth = 2.0 * np.pi / length, 10.0 ** (1.0 / BINS_PER_DECADE)
     edges = [(LEAST_WAVES - 0.5) * step]
     while (following := max(edges[-1] + step, edges[-1] * growth)) <= q_max * (1.0 + 1e-9):
         edges.append(following)
-    return np.array(edges)
+    inside = np.digitize(wave_vector, edges).ravel()
 
+    def sums(values=None):
+        values = None if values is None else values.ravel()
+        return np.bincount(inside, values, len(edges) + 1)[1:-1]
 
-def _binned(inside, values, edges):
-    """Return the sums of values by bin, or numbers of values; without those outside all bins."""
-    values = None if values is None else values.ravel()
-    return np.bincount(inside.ravel(), values, edges.size + 1)[1:-1]
+    return sums
