@@ -78,7 +78,10 @@ class DiscreteContact:
 
     def flow(self, pressure: Array, offset: float) -> Flow:
         """Evaluate the mass flux between the nodes at some pressures P, shape (n,), and offset."""
-        gap = self.gap(pressure, offset)
+        return self.flow_through(self.gap(pressure, offset), pressure)
+
+    def flow_through(self, gap: Array, pressure: Array) -> Flow:
+        """Evaluate the mass flux through a gap H, shape (n - 1,), at some pressures P."""
         density, density_slope = self.contact.density(0.5 * (pressure[1:] + pressure[:-1]))
         logarithm, log_slope = self.contact.log_viscosity(pressure)
         factor, factor_slope = _exponential_fit(0.5 * np.diff(logarithm))
