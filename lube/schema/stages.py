@@ -257,6 +257,14 @@ _ROWS = (
         parallel=True,
     ),
     Stage(
+        "passage",
+        "rough lines pass through the contact by Reynolds' equation with time, about an hour",
+        inputs=("lubricant", "film_profile"),
+        values=_LINES | _LAYER | {"slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"},
+        target="rough_passage",
+        parallel=True,
+    ),
+    Stage(
         "heating_plane",
         "heating at the inlet by every model of it",
         inputs=("lubricant", "film"),
