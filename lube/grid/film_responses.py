@@ -1,7 +1,6 @@
 """Responses of the film to waves of the roughness, over any operating conditions."""
 
 import logging
-from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -11,7 +10,6 @@ from lube.ehl.response import WaveResponse, at_wavelengths
 from lube.grid.film_profiles import film_positions, six_digits
 from lube.grid.operating_points import surface_speeds
 from lube.threads import on_threads
-from lube.types import Array
 
 log = logging.getLogger(__name__)
 
@@ -54,16 +52,19 @@ def wave_responses(
 
     Notes
     -----
-    At each operating point waves are solved for from the longest to the shortest, until the oil
-    changes one by less than `UNCHANGED` anywhere. The response to shorter waves is 1. The error of
+    The wavelengths fall, each by the same ratio, from the lines' longest wave to `SHORTEST` of the
+    narrowest contact's half-width, or to the lines' shortest wave. At each operating point waves
+    are solved for from the longest to the shortest, until the oil changes one by less than
+    `UNCHANGED` anywhere. The response to shorter waves is 1. The error of
     interpolation is the root mean square over the contact, the larger of two wavelengths between
     those stored, on either side of the one at which the response is most curved.
     """
-    widths = contact["contact_half_width"]
-    narrowest = widths.min().item()
-    waves = wavelengths(spec, narrowest, SLIDING_RATIO if slide_to_roll_ratio.any() else None)
-    rough = contact["reduced_radius"].item(), contact["composite_rms_roughness"].item()
-    positions = film_positions(narrowest, *rough, *POSITIONS)
+    widths, longest = contact["contact_half_width"], spec.longest_wavelength
+    shortest = max(SHORTEST * widths.min().item(), 2.0 * np.pi / spec.q_max)
+    ratio = SLIDING_RATIO if slide_to_roll_ratio.any() else ROLLING_RATIO
+    count = int(np.ceil(np.log(longest / shortest) / np.log(ratio)))
+    waves = np.geomspace(longest, shortest, count + 1)
+    positions = film_positions(contact, *POSITIONS)
     films, slips, widths = xr.broadcast(solved, slide_to_roll_ratio, widths)
     at_film = {}  # the same film at several slips
     for index, film in np.ndenumerate(films.values):
@@ -86,63 +87,6 @@ def wave_responses(
     values = (dims, response.real), (dims, response.imag), (dims[:-2], error)
     levels = {"roller": [1, 2], "wavelength": waves, "response_position": positions}
     return xr.Dataset(dict(zip(VARIABLES, values, strict=True)), {**films.coords, **levels})
-
-
-def wavelengths(spec, half_width: float, ratio: float | None = None) -> Array:
-    """Wavelengths for which the response of the film is stored.
-
-    Parameters
-    ----------
-    spec : lube.study.line_spec.LineSpec
-        The roughness lines.
-    half_width : float
-        Half-width of the narrowest contact, m.
-    ratio : float, optional
-        Largest ratio of neighbouring wavelengths; by default that without slip.
-
-    Returns
-    -------
-    numpy.ndarray
-        From the lines' longest wave to `SHORTEST` of the half-width, or to the lines' shortest
-        wave; m, falling, each by the same ratio.
-    """
-    longest = spec.longest_wavelength
-    shortest = max(SHORTEST * half_width, 2.0 * np.pi / spec.q_max)
-    count = int(np.ceil(np.log(longest / shortest) / np.log(ratio or ROLLING_RATIO)))
-    return np.geomspace(longest, shortest, count + 1)
-
-
-def thinned(groups, cold: xr.DataArray, factor: xr.DataArray) -> xr.DataArray:
-    """Solve for films that heating thins.
-
-    The steady film is that of an oil which is thinner at the inlet: so much that the central film
-    is the thinned one. The film is nearly a power of the viscosity at the inlet. The power is found
-    from the film at two viscosities.
-
-    Parameters
-    ----------
-    groups : lube.grid.films.FilmGroups
-        What the films depend on without heating.
-    cold : xarray.DataArray
-        The films without heating.
-    factor : xarray.DataArray
-        Thinned film over that without heating.
-
-    Returns
-    -------
-    xarray.DataArray
-        A `lube.ehl.line_contact.FilmProfile` each; None where it did not converge.
-    """
-    thinner = factor
-    for _ in range(2):
-        solved = replace(groups, speed=groups.speed * thinner).profiles()
-        thinner = thinner ** (np.log(factor) / np.log(_central(solved) / _central(cold)))
-    return replace(groups, speed=groups.speed * thinner).profiles()
-
-
-def _central(solved):
-    of_each = np.vectorize(lambda one: one.central_film if one else np.nan, otypes=[float])
-    return xr.apply_ufunc(of_each, solved)
 
 
 def _of_film(profile, wavelengths, speeds, positions):
