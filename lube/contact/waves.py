@@ -111,16 +111,16 @@ class Answer:
         """Binary logarithm of the points of a line from node to node."""
         return int(np.log2(np.clip(self.half_width / (NODES * spacing), 1, BLOCK)))
 
-    def at(self, position: Array) -> Array:
-        """Functions :math:`u_m` at other positions over the half-width, one row each."""
-        ends = self.position[[0, -1]]
-        return CubicSpline(self.position, self.shapes)(np.clip(position, *ends))
+    def at(self, points: Array, spacing: float) -> Array:
+        """Functions :math:`u_m` at points, counted from the centre with the motion, a row each."""
+        position = points * (spacing / self.half_width)
+        return CubicSpline(self.position, self.shapes)(np.clip(position, *self.position[[0, -1]]))
 
 
 def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:
-    """Return the response of both rollers' longest wave at the line of centres, in numbers.
+    """Return the response to both rollers' longest wave at the line of centres.
 
-    It tells operating points apart that differ in slip alone.
+    This tells operating points apart that differ in slip alone.
 
     Parameters
     ----------
@@ -130,14 +130,11 @@ def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:
     Returns
     -------
     list of xarray.DataArray
-        Real and imaginary part of either roller, over the other dimensions.
+        Of either roller, complex, over the other dimensions.
     """
-    parts = (film[name].isel(wavelength=0) for name in ("response_real", "response_imaginary"))
-    return [
-        part.sel(response_position=0.0, drop=True).isel(roller=roller, drop=True)
-        for part in parts
-        for roller in (0, 1)
-    ]
+    response = film["response_real"] + 1j * film["response_imaginary"]
+    longest = response.isel(wavelength=0).sel(response_position=0.0, drop=True)
+    return [longest.isel(roller=roller, drop=True) for roller in (0, 1)]
 
 
 def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
@@ -157,27 +154,24 @@ def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
         the same for both rollers where the film responds to both alike.
     """
     response = film["response_real"] + 1j * film["response_imaginary"]
-    width = film["contact_half_width"]
-    dims = [name for name in response.dims if name not in _OF_RESPONSE]
-    response = response.transpose(*dims, *_OF_RESPONSE)
-    width = width.broadcast_like(response.isel(dict.fromkeys(_OF_RESPONSE, 0))).transpose(*dims)
-    wavelength, position = (response[name].values for name in _OF_RESPONSE[1:])
-    roughness = film["composite_rms_roughness"].item()
-    answers = np.full((*width.shape, 2), None)
-    for index, half_width in np.ndenumerate(width.values):
-        gap = hertz_gap(position) * (half_width**2 / film["reduced_radius"].item())
+    wavelength, position = response["wavelength"].values, response["response_position"].values
+    radius, roughness = film["reduced_radius"].item(), film["composite_rms_roughness"].item()
+
+    def of_both(response, half_width):
+        gap = hertz_gap(position) * (half_width**2 / radius)
         importance = np.exp(-gap / roughness) if has_shape else np.abs(position) <= 1.0
-        both = response.values[index]
-        for roller, one in enumerate(both):
-            if roller and np.array_equal(one, both[0]):
-                answers[index][1] = answers[index][0]
+        answers = np.full(2, None)
+        for roller, one in enumerate(response):
+            if roller and np.array_equal(one, response[0]):
+                answers[1] = answers[0]
             elif np.isfinite(one).all():
-                own = one, wavelength, position, half_width, importance
-                answers[index][roller] = Answer.of(*own)
-    return xr.DataArray(answers, width.coords, (*dims, "roller"))
+                answers[roller] = Answer.of(one, wavelength, position, half_width, importance)
+        return answers
 
-
-_OF_RESPONSE = "roller", "wavelength", "response_position"
+    core = [["roller", "wavelength", "response_position"], []]
+    options = {"output_core_dims": [["roller"]], "vectorize": True, "output_dtypes": [object]}
+    widths = film["contact_half_width"]
+    return xr.apply_ufunc(of_both, response, widths, input_core_dims=core, **options)
 
 
 def lifted(
@@ -210,7 +204,7 @@ def lifted(
     begin = step >> shift << shift
     at_nodes = np.zeros((2, 2, nodes.size))
     for roller, (line, answer) in enumerate(zip(lines, answers, strict=True)):
-        shapes = answer.at(-nodes * (grid.spacing / answer.half_width))
+        shapes = answer.at(-nodes, grid.spacing)
         surface = Surface(line, line, Waves(line, grid).filtered(answer), shapes)
         for time in (0, 1):
             moved = surface_position(begin + (time << shift), ratios[roller])
@@ -249,60 +243,47 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
     def nodes_of(first, points):
         """Nodes of points of the window from a first one on, and the shapes of both answers."""
         nodes = first + (np.arange((points >> shift) + 2) << shift)
-        position = (before - nodes) * (spec.spacing / answers[0].half_width)
-        return nodes - first, [answer.at(position) for answer in answers]
+        return nodes - first, [answer.at(before - nodes, spec.spacing) for answer in answers]
 
     rms = sum_of_lines(spec, 1).rms
-    lines = [_Covariance(spec, roller, one, film.size) for roller, one in enumerate(answers)]
+    bands = [_bands(spec, roller, one, film.size) for roller, one in enumerate(answers)]
     nodes, shapes = nodes_of(0, film.size)
-    added = sum(one.at_nodes(at) for one, at in zip(lines, shapes, strict=True))
-    ratio = np.sqrt(1.0 + np.interp(np.arange(film.size), nodes, added) / rms**2)
-    _, part = likely_part(film, rms * ratio)
-    nodes, shapes = nodes_of(part.start, part.stop - part.start)
-    covariances = np.empty((2, 2, nodes.size, nodes.size), np.float32)
-    for roller, (one, at) in enumerate(zip(lines, shapes, strict=True)):
-        for back in (0, 1):
-            covariances[roller, back] = one.of_nodes(at, nodes, back) / rms**2
+    with one_blas_thread():
+        added = sum(
+            (np.abs(1.0 + at @ filters) ** 2 - 1.0) @ power
+            for at, (power, _, filters) in zip(shapes, bands, strict=True)
+        )
+        ratio = np.sqrt(1.0 + np.interp(np.arange(film.size), nodes, added) / rms**2)
+        _, part = likely_part(film, rms * ratio)
+        nodes, shapes = nodes_of(part.start, part.stop - part.start)
+        covariances = np.empty((2, 2, nodes.size, nodes.size), np.float32)
+        for roller, (at, (power, by_point, filters)) in enumerate(zip(shapes, bands, strict=True)):
+            drawn = np.exp(1j * nodes[:, None] * by_point)
+            changed = (1.0 + at @ filters) * drawn
+            for back in (0, 1):
+                behind = power * np.exp(-1j * back * by_point)
+                found = (changed * behind) @ changed.conj().T - (drawn * behind) @ drawn.conj().T
+                covariances[roller, back] = found.real / rms**2
     return UnevenWindow(film[part], ratio[part], tuple(shapes), covariances, shift)
 
 
-class _Covariance:
-    """What the oil adds to the covariance of a line in the window, by bands of its waves."""
-
-    def __init__(self, spec, roller, answer, points):
-        first, amplitudes = wave_amplitudes(spec, roller)
-        unit = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
-        amplitudes = amplitudes[: max(int(answer.wavenumber[-1] / unit) - first + 1, 0)]
-        # So few waves in a band that they are in phase over the window.
-        band = max(1, int(_IN_PHASE / (unit * spec.spacing * points)))
-        edges = np.arange(0, amplitudes.size, band)
-        waves = first + np.arange(amplitudes.size)
-        power = (amplitudes / spec.height_step) ** 2 / 2.0
-        self._power = np.add.reduceat(power, edges)
-        middle = np.add.reduceat(power * waves, edges) / self._power
-        self._by_point = unit * spec.spacing * middle
-        numbers = np.log(answer.wavenumber)
-        self._filters = np.array(
-            [np.interp(np.log(unit * middle), numbers, own) for own in answer.filters.T]
-        ).reshape(-1, middle.size)
-
-    def at_nodes(self, shapes):
-        """Compute what it adds to the variance at nodes."""
-        with one_blas_thread():
-            return (np.abs(self._changed(shapes)) ** 2 - 1.0) @ self._power
-
-    def _changed(self, shapes):
-        return 1.0 + shapes @ self._filters.conj()  # against the motion, so conjugate
-
-    def of_nodes(self, shapes, nodes, back):
-        """Compute it for a first node, some points further back, and a second one."""
-        with one_blas_thread():
-            changed = self._changed(shapes)
-            drawn = np.exp(1j * nodes[:, None] * self._by_point)
-            behind = self._power * np.exp(-1j * back * self._by_point)
-            changed *= drawn
-            found = (changed * behind) @ changed.conj().T - (drawn * behind) @ drawn.conj().T
-        return found.real
+def _bands(spec, roller, answer, points):
+    """Bands of a line's waves: their power, phase from point to point, and filters by an answer."""
+    first, amplitudes = wave_amplitudes(spec, roller)
+    unit = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    amplitudes = amplitudes[: max(int(answer.wavenumber[-1] / unit) - first + 1, 0)]
+    # So few waves in a band that they are in phase over the window.
+    band = max(1, int(_IN_PHASE / (unit * spec.spacing * points)))
+    edges = np.arange(0, amplitudes.size, band)
+    waves = first + np.arange(amplitudes.size)
+    powers = (amplitudes / spec.height_step) ** 2 / 2.0
+    power = np.add.reduceat(powers, edges)
+    middle = np.add.reduceat(powers * waves, edges) / power
+    numbers = np.log(answer.wavenumber)
+    filters = [np.interp(np.log(unit * middle), numbers, each) for each in answer.filters.T]
+    # The lines pass against the direction in which positions are counted, so conjugate.
+    filters = np.reshape(filters, (-1, middle.size)).conj()
+    return power, unit * spec.spacing * middle, filters
 
 
 class Waves:
@@ -342,7 +323,7 @@ class Waves:
         kept = amplitude_ratio(wavelength / half_width, moes_load, moes_material)
         return np.rint(self._line(self._waves * kept, self._size)).astype(np.int32)
 
-    def filtered(self, answer: Answer) -> Array:
+    def filtered(self, answer: Answer | None) -> Array:
         """Filter the line by each function of an answer, on a coarser grid.
 
         The line is passed against the direction in which positions are counted, so its waves are
@@ -350,14 +331,16 @@ class Waves:
 
         Parameters
         ----------
-        answer : Answer
-            The answer of the oil.
+        answer : Answer or None
+            The answer of the oil, if it does answer.
 
         Returns
         -------
         numpy.ndarray
             As in `lube.kernels.shaped.Surface`.
         """
+        if answer is None:
+            return np.zeros((2, 0), np.float32)
         count = min(self._waves.size, int(answer.wavenumber[-1] / self._unit))
         wavenumber = np.log(self._unit * np.arange(1, count + 1))
         size = max(-(-self._size >> answer.shift(self._spacing)), 2 * count + 2)

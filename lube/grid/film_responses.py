@@ -55,9 +55,9 @@ def wave_responses(
     The wavelengths fall, each by the same ratio, from the lines' longest wave to `SHORTEST` of the
     narrowest contact's half-width, or to the lines' shortest wave. At each operating point waves
     are solved for from the longest to the shortest, until the oil changes one by less than
-    `UNCHANGED` anywhere. The response to shorter waves is 1. The error of
-    interpolation is the root mean square over the contact, the larger of two wavelengths between
-    those stored, on either side of the one at which the response is most curved.
+    `UNCHANGED` anywhere. The response to shorter waves is 1. The error of interpolation is a root
+    mean square over the contact. It is found at the two wavelengths midway between the stored one
+    at which the response is most curved and its neighbours, and the larger is taken.
     """
     widths, longest = contact["contact_half_width"], spec.longest_wavelength
     shortest = max(SHORTEST * widths.min().item(), 2.0 * np.pi / spec.q_max)
@@ -65,33 +65,27 @@ def wave_responses(
     count = int(np.ceil(np.log(longest / shortest) / np.log(ratio)))
     waves = np.geomspace(longest, shortest, count + 1)
     positions = film_positions(contact, *POSITIONS)
-    films, slips, widths = xr.broadcast(solved, slide_to_roll_ratio, widths)
-    at_film = {}  # the same film at several slips
-    for index, film in np.ndenumerate(films.values):
-        at_film.setdefault(id(film), []).append(index)
+    films, widths = xr.broadcast(solved, widths)
+    slips = slide_to_roll_ratio.broadcast_like(films).transpose(*films.dims, ...)
+    speeds = np.stack(surface_speeds(1.0, slips.values), axis=-1)
 
-    def of_film(places):
-        speeds = np.array([surface_speeds(1.0, slips.values[one]) for one in places])
-        return _of_film(
-            films.values[places[0]], waves / widths.values[places[0]], speeds, positions
-        )
+    def of_film(at):
+        return _of_film(films.values[at], waves / widths.values[at], speeds[at], positions)
 
-    response = np.full((*films.shape, 2, waves.size, positions.size), np.nan + 0j)
-    error = np.full((*films.shape, 2), np.nan)
     with one_blas_thread():
-        found = on_threads(of_film, at_film.values(), threads)
-    for places, each in zip(at_film.values(), found, strict=True):
-        for index, transfer, its_error in zip(places, *each, strict=True):
-            response[index], error[index] = transfer, its_error
-    dims = *films.dims, "roller", "wavelength", "response_position"
+        found = on_threads(of_film, np.ndindex(films.shape), threads)
+    response = np.reshape([each for each, _ in found], (*speeds.shape, waves.size, positions.size))
+    error = np.reshape([each for _, each in found], speeds.shape)
+    dims = *slips.dims, "roller", "wavelength", "response_position"
     values = (dims, response.real), (dims, response.imag), (dims[:-2], error)
     levels = {"roller": [1, 2], "wavelength": waves, "response_position": positions}
-    return xr.Dataset(dict(zip(VARIABLES, values, strict=True)), {**films.coords, **levels})
+    return xr.Dataset(dict(zip(VARIABLES, values, strict=True)), {**slips.coords, **levels})
 
 
 def _of_film(profile, wavelengths, speeds, positions):
-    """Response over (slip, roller, wavelength, position), and its interpolation error."""
-    unknown = np.full((*speeds.shape, 1, 1), np.nan + 0j), np.full(speeds.shape, np.nan)
+    """Response over the speeds, wavelength and position, and its interpolation error."""
+    shape = *speeds.shape, wavelengths.size, positions.size
+    unknown = np.full(shape, np.nan + 0j), np.full(speeds.shape, np.nan)
     if profile is None:
         return unknown
     distinct, inverse = np.unique(speeds, return_inverse=True)
