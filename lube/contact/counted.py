@@ -57,18 +57,17 @@ def contact_at(
     touching, breaking, points, overlap = np.moveaxis(counts, -1, 0)
     spacing = lines.attrs["spacing"]
     stiffness = film["reduced_modulus"].item() * spacing  # of one spring, Eq. 5
-    results = {
-        "geometric_contact_probability": touching,
-        "breakthrough_probability": breaking,
-        "mean_contact_length": points * spacing,
-        "mean_contact_force": overlap * lines.attrs["height_step"] * stiffness,
-    }
     dims = ("realisation", "slide_to_roll_ratio", *thickness.dims)
-    variables = {name: (dims, values) for name, values in results.items()}
-    for name in ("critical_thickness", "shear_strength"):
-        variables[name] = ((), getattr(boundary_layer, name))
+    results = {
+        "geometric_contact_probability": (dims, touching),
+        "breakthrough_probability": (dims, breaking),
+        "mean_contact_length": (dims, points * spacing),
+        "mean_contact_force": (dims, overlap * lines.attrs["height_step"] * stiffness),
+        "critical_thickness": boundary_layer.critical_thickness,
+        "shear_strength": boundary_layer.shear_strength,
+    }
     coords = {"realisation": realisations, **thickness.coords}
     # NaN if both lines are measured: one pair has no ensemble, hence no interval.
     longest = 2.0 * np.pi / np.fmin.reduce(np.atleast_1d(lines.attrs["q_min"]))
     travel = spacing * min(lines.attrs["points"])
-    return xr.Dataset(variables, coords, {"travel": travel, "longest_wavelength": longest})
+    return xr.Dataset(results, coords, {"travel": travel, "longest_wavelength": longest})

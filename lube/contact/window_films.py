@@ -106,7 +106,7 @@ def film_at_places(film: xr.Dataset) -> xr.DataArray:
     return xr.where(place == "central", central, xr.where(place == "minimum", minimum, mean))
 
 
-def window_films(film: xr.Dataset, grid: LineGrid) -> list[WindowFilm | None]:
+def window_films(film: xr.Dataset, grid: LineGrid) -> Array:
     """Films with the computed shape, in whole height steps and points.
 
     Parameters
@@ -118,36 +118,35 @@ def window_films(film: xr.Dataset, grid: LineGrid) -> list[WindowFilm | None]:
 
     Returns
     -------
-    list of WindowFilm
-        Of each operating point, in the order of ``film_thickness``, as far as the profile reaches;
-        None where the film is not known.
+    numpy.ndarray of object
+        A `WindowFilm` of each operating point, in the order of ``film_thickness``, as far as the
+        profile reaches; None where the film is not known.
     """
-    dims = film["film_thickness"].dims
-    widths = film["contact_half_width"].broadcast_like(film["film_thickness"])
-    widths = widths.transpose(*dims).values.ravel()
-    rows = shaped_films(film).expand_dims("one").stack(point=("one", *dims))
-    rows = rows.transpose("point", ...)
-    return [_as_far(row, width, grid) for row, width in zip(rows, widths, strict=True)]
+    position = film["film_position"].values
 
+    def on_points(profile, half_width):
+        if not np.isfinite(profile).all():
+            return None
+        first, last = -position[[-1, 0]] * half_width / grid.spacing
+        points = np.arange(np.ceil(first), np.floor(last) + 1.0)
+        return WindowFilm(
+            film_on_points(position, profile, half_width, points, grid), int(-points[0])
+        )
 
-def _as_far(profile, half_width, grid):
-    """Film at all points of a line that a profile covers."""
-    if not np.isfinite(profile).all():
-        return None
-    ends = -profile["film_position"].values[[-1, 0]] * half_width / grid.spacing
-    points = np.arange(np.ceil(ends[0]), np.floor(ends[1]) + 1.0)
-    return WindowFilm(film_on_points(profile, half_width, points, grid), int(-points[0]))
+    shaped, width = shaped_films(film), film["contact_half_width"]
+    options = {"input_core_dims": [["film_position"], []], "output_dtypes": [object]}
+    return xr.apply_ufunc(on_points, shaped, width, vectorize=True, **options).values.ravel()
 
 
 def film_on_points(
-    profile: xr.DataArray, half_width: float, points: Array, grid: LineGrid
+    position: Array, profile: Array, half_width: float, points: Array, grid: LineGrid
 ) -> Array:
     """Film at points of a line, which moves with the oil: in a time step by a point at most.
 
     Parameters
     ----------
-    profile : xarray.DataArray
-        Film over film_position, m.
+    position, profile : numpy.ndarray
+        Positions over the half-width, rising, and the film there, m.
     half_width : float
         Half-width of the contact, m.
     points : numpy.ndarray, shape (n,)
@@ -160,6 +159,5 @@ def film_on_points(
     numpy.ndarray of int64, shape (n,)
         Film at the points, height steps, from a cubic spline through the profile.
     """
-    film = CubicSpline(profile["film_position"].values, profile.values)
-    position = -points * (grid.spacing / half_width)
-    return np.rint(film(position) / grid.height_step).astype(np.int64)
+    film = CubicSpline(position, profile)(-points * (grid.spacing / half_width))
+    return np.rint(film / grid.height_step).astype(np.int64)

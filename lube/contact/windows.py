@@ -86,9 +86,8 @@ class ContactWindows:
         self._numbers = np.arange(thickness.size)
         self.thickness, self.unknown = thickness / grid.height_step, np.isnan(thickness)
         self._films, self.half_windows = whole_numbers(thickness, half_width, grid)
-        self._shapes = np.full(thickness.size, None)
         if gap.has_shape:
-            self._shapes[:] = window_films(film, grid)
+            self._shapes = window_films(film, grid)
             self.unknown |= [shape is None for shape in self._shapes]
         self._answers = np.full((thickness.size, 2), None)
         if gap.is_answered:

@@ -19,6 +19,9 @@ from lube.physics.starvation import starvation_factor
 
 log = logging.getLogger(__name__)
 
+_THINNED = ["film_thickness", "lambda_ratio"]
+"""Variables that heating at the inlet reduces."""
+
 
 def film_at(
     lubricant: xr.Dataset,
@@ -73,8 +76,7 @@ def film_at(
         heat = inlet_shear_heating, lubricant, contact, groups, slide_to_roll_ratio
         table["inlet_shear_heating_factor"] = factor = _heating_factor(*heat)
         if is_heated:
-            for name in ("film_thickness", "lambda_ratio"):
-                table[name] = table[name] * factor
+            table.update(table[_THINNED] * factor)
         if with_shape:
             profile = over_positions(groups.profiles, FilmProfile.film_at, contact)
             table["film_profile"] = profile * rollers.reduced_radius
@@ -83,9 +85,8 @@ def film_at(
             responses = contact, xr.DataArray(slide_to_roll_ratio), answered_lines, threads
             table = table.merge(wave_responses(solved, *responses), compat="override", join="exact")
             # With slip the oil answers otherwise: each slip has a film of its own.
-            for name in ("film_thickness", "lambda_ratio"):
-                table[name] = table[name].broadcast_like(table["interpolation_error"])
-                table[name] = table[name].isel(roller=0, drop=True)
+            each = table["interpolation_error"].isel(roller=0, drop=True)
+            table.update(table[_THINNED].broadcast_like(each))
     return table
 
 
