@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import DataError
-from lube.grid.discretise import speed_ratios
+from lube.grid.operating_points import surface_speeds
 from lube.schema import MEAN_LIMITS, label, values_with_limits
 from lube.statistics.confidence import probability_interval
 from lube.statistics.sample_size import independent_windows
@@ -57,10 +57,8 @@ def windows_by_force(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
             f"the contact results are at forces {contact['force'].values.tolist()} N, the film "
             f"table has {film['force'].values.tolist()} N"
         ) from None
-    slower = xr.apply_ufunc(
-        lambda ratio: min(speed_ratios(ratio)), contact["slide_to_roll_ratio"], vectorize=True
-    )
-    return windows_in(contact, 2.0 * half_width, slower)
+    speeds = surface_speeds(1.0, contact["slide_to_roll_ratio"])
+    return windows_in(contact, 2.0 * half_width, np.minimum(*speeds) / np.maximum(*speeds))
 
 
 def windows_in(dataset: xr.Dataset, width: Values, slower: Values = 1.0) -> Values:

@@ -57,9 +57,9 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     rollers, formulas = study.rough_rollers, study.film_formulas
     at_records = film_at_records(experiment, oils, rollers, formulas, **study.film_model)
-    windows = study_windows(study, at_records)
+    windows, inverse = study_windows(study, at_records).distinct()
     stored = _stored(study, film, contact)
-    probability = _probability(windows, stored, contact.sizes["realisation"], study)
+    probability = _probability(windows, stored, contact.sizes["realisation"], study)[:, inverse]
     scatter = record_scatter(at_records, experiment, probability, study)
     dims = ("film_formula", "record")
     shape = tuple(at_records.sizes[name] for name in dims)

@@ -228,14 +228,15 @@ def _line_effects(model, study, slips, turns, realisations):
 def _pooled(study, windows, count, mean, persistent):
     """Mean over several pairings of the lines, one of which is known, and its relative variance."""
     pairings = min(PAIRINGS, count)
-    shares, firsts = np.zeros(windows.size), deque(maxlen=pairings - 1)
+    distinct, inverse = windows.distinct()
+    shares, firsts = np.zeros(distinct.size), deque(maxlen=pairings - 1)
     for number in range(count + pairings - 1):
         first, second = drawn(study, number % count)
         if number >= pairings - 1:
-            shares += sum(windows.count((other, second))[:, 1] for other in firsts)
+            shares += sum(distinct.count((other, second))[:, 1] for other in firsts)
         firsts.append(first)
     log.info("each line paired with %d others: done", pairings - 1)
-    mean = (mean + shares / count) / pairings
+    mean = (mean + shares[inverse] / count) / pairings
     return mean, persistent + (1.0 - persistent) / pairings
 
 
