@@ -1,7 +1,7 @@
 """The contact model, counted: probability and extent of contact of rough lines (MDR model).
 
-An operating point reaches the kernels only as its film thickness and contact window, so any
-dimension of the film table passes through unchanged.
+The kernels know an operating point only by its film and its contact window, so any dimension of the
+film table passes through unchanged.
 """
 
 import logging

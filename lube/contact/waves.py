@@ -22,9 +22,9 @@ from lube.types import Array, Pair, Ratios
 PRECISION = 0.01
 """Largest error of the answers to rough lines, over the rms height of the lines."""
 FINER = 4
-"""Wavelengths for each of the stored ones, at which answers are expanded."""
+"""Wavelengths at which answers are expanded, for each of the stored wavelengths."""
 STEEPNESS = 0.7
-"""Waves are weighed by this power of their length, as those of rough surfaces are high."""
+"""Waves are weighed by this power of their length, since long waves of rough surfaces are high."""
 NODES = 20
 """Least number of nodes in a half-width of the contact."""
 _IN_PHASE = 0.2
@@ -39,7 +39,7 @@ class Answer:
 
     .. math:: T_k(X) - 1 = \sum_m u_m(X)\, f_m(k)
 
-    with real :math:`u_m`: as many as the `PRECISION` takes where lines may touch.
+    with real :math:`u_m`, as many as `PRECISION` needs where lines may touch.
 
     Attributes
     ----------
@@ -48,11 +48,11 @@ class Answer:
     position : numpy.ndarray, shape (n,)
         Positions over the half-width, rising.
     shapes : numpy.ndarray, shape (n, M)
-        :math:`u_m` there.
+        :math:`u_m` at these positions.
     wavenumber : numpy.ndarray, shape (K,)
-        Wavenumbers, rad/m, rising. The oil does not change waves of larger ones.
+        Wavenumbers, rad/m, rising. The oil does not change shorter waves.
     filters : numpy.ndarray of complex, shape (K, M)
-        :math:`f_m` of these.
+        :math:`f_m` at these wavenumbers.
     """
 
     half_width: float
@@ -98,7 +98,7 @@ class Answer:
         weight = finer[:, None] ** STEEPNESS
         weighted = np.concatenate([change.real, change.imag]) * np.tile(weight, (2, 1))
         left, values, right = np.linalg.svd(weighted * importance, full_matrices=False)
-        # Square error at each position with the first 0, 1, ... functions.
+        # Largest square error of all positions if the first 0, 1, ... functions are kept.
         parts = (values[:, None] * right) ** 2
         errors = np.cumsum(parts[::-1], axis=0)[::-1].max(axis=1)
         count = np.count_nonzero(errors > PRECISION**2 * np.sum(weight**2))
@@ -130,7 +130,7 @@ def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:
     Returns
     -------
     list of xarray.DataArray
-        Of either roller, complex, over the other dimensions.
+        Complex responses for the first and the second roller, over the other dimensions.
     """
     response = film["response_real"] + 1j * film["response_imaginary"]
     longest = response.isel(wavelength=0).sel(response_position=0.0, drop=True)
@@ -150,8 +150,8 @@ def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
     Returns
     -------
     xarray.DataArray
-        An `Answer` each over roller and the dimensions of the response, None where it is not known;
-        the same for both rollers where the film responds to both alike.
+        Over roller and the dimensions of the response: an `Answer`, or None where the response is
+        not known. Both rollers have the same object where the film responds to both alike.
     """
     response = film["response_real"] + 1j * film["response_imaginary"]
     wavelength, position = response["wavelength"].values, response["response_position"].values
@@ -186,7 +186,7 @@ def lifted(
     grid : LineGrid
         Their grid.
     answers : tuple of Answer
-        To both surfaces.
+        Answers to both surfaces.
     ratios : tuple of float
         Surface speeds over that of the faster surface.
     step : int
@@ -197,7 +197,8 @@ def lifted(
     Returns
     -------
     numpy.ndarray of int64, shape (2, W)
-        Of each line, height steps; together as in `lube.kernels.shaped.shaped_trace`.
+        What is added to each line, height steps; the sum is that of
+        `lube.kernels.shaped.shaped_trace`.
     """
     shift = answers[0].shift(grid.spacing)
     nodes = np.arange(window[0] >> shift, (window[-1] >> shift) + 2) << shift
@@ -231,7 +232,7 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
     before : int
         Points of the window before its centre.
     answers : tuple of Answer
-        To both surfaces.
+        Answers to both surfaces.
 
     Returns
     -------
@@ -294,8 +295,8 @@ class Waves:
     line : numpy.ndarray
         Heights, shape (N,), height steps.
     grid : LineGrid
-        Grid of the line. Waves shorter than those of its band, of the rounding to whole height
-        steps, are left out.
+        Grid of the line. Waves shorter than its band come from the rounding to whole height steps,
+        and are left out.
     """
 
     def __init__(self, line: Array, grid: LineGrid) -> None:
@@ -332,7 +333,7 @@ class Waves:
         Parameters
         ----------
         answer : Answer or None
-            The answer of the oil, if it does answer.
+            The answer of the oil; None if it does not answer.
 
         Returns
         -------

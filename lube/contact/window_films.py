@@ -63,9 +63,9 @@ class WindowFilm:
 def shaped_films(film: xr.Dataset) -> xr.DataArray:
     """Films with the computed shape and the thickness of each film formula.
 
-    The shape is scaled so that its film is the formula's where the formula refers to: at the line
-    of centres, at the thinnest point, or on average over Hertz' contact. The gap of the dry
-    contact, which is zero there and most of the film far outside, is not scaled.
+    The shape is scaled so that its film is the formula's: at the line of centres, at the thinnest
+    point, or on average over Hertz' contact, whichever the formula gives. The gap of the dry
+    contact is not scaled. It is zero in the contact, and most of the film far outside.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def shaped_films(film: xr.Dataset) -> xr.DataArray:
 
 
 def film_at_places(film: xr.Dataset) -> xr.DataArray:
-    """Film with the computed shape, where each film formula refers to.
+    """Find the film with the computed shape that each film formula gives.
 
     Parameters
     ----------

@@ -111,12 +111,12 @@ class ContactWindows:
 
     @property
     def keys(self) -> list[tuple]:
-        """What decides on contact at each point: where it is the same, contact is the same."""
+        """Numbers that decide on contact at each point: contact is equal where they are equal."""
         columns = self._films, self.half_windows, self._factors, *self._contacts.T[1:]
         return list(zip(*(column.tolist() for column in columns), strict=True))
 
     def distinct(self) -> tuple["ContactWindows", Array]:
-        """Return each different point once, and the index among these of every point."""
+        """Select the points that differ, and find the index of every point among them."""
         numbers = {}
         inverse = np.array([numbers.setdefault(key, len(numbers)) for key in self.keys], int)
         return self[np.unique(inverse, return_index=True)[1]], inverse
@@ -194,9 +194,9 @@ class ContactWindows:
         return broken
 
     def count_uncut(self, pair: Pair) -> Array:
-        """Count breakthroughs of whole segments, of which a part lies in the window.
+        """Count breakthroughs of whole segments, if any part of them lies in the window.
 
-        Elsewhere the edges of the window cut segments, and the parts inside are judged.
+        In `count` the edges of the window cut segments, and the parts inside are judged.
 
         Parameters
         ----------
@@ -306,7 +306,7 @@ class ContactWindows:
         return tuple(surfaces), window
 
     def _window(self, points):
-        """Films of points that have the same window."""
+        """Films of some points that have the same window."""
         if self._gap.has_shape:
             shapes = self._shapes[points]
             return WindowFilm(np.stack([one.film for one in shapes]), shapes[0].before)
@@ -316,7 +316,7 @@ class ContactWindows:
 
 
 def _begun(pair, ratios, begin):
-    """Lines as they lie at a time step."""
+    """Lines of a pair, turned to their position at a time step."""
     positions = (surface_position(begin, ratio) for ratio in ratios)
     return tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))
 

@@ -63,7 +63,7 @@ class Formula:
 
     @property
     def depends_on_oil(self) -> bool:
-        """Whether the film is solved for, and depends on the viscosity and on E' besides."""
+        """Whether the film is solved for; then it depends on the viscosity and on E' too."""
         return self.evaluate is None
 
     def holds(self, moes_load: Values, moes_material: Values) -> bool | np.ndarray:

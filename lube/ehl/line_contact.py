@@ -174,15 +174,15 @@ class FilmProfile:
 
     @cached_property
     def central_gap(self) -> float:
-        """Scaled gap at the line of centres, linear between the two nearest places."""
+        """Scaled gap at the line of centres, linear between the two nearest positions."""
         return float(np.interp(0.0, self.middle, self.middle_gap))
 
     @cached_property
     def central_film(self) -> float:
         """Film over R* at the line of centres.
 
-        By the cubic through the four nearest places midway between nodes, where the equation holds:
-        at a node the pressure's kink dents a thin film.
+        It is that of the cubic through the four nearest positions midway between nodes, where the
+        equation holds: at a node the pressure's kink dents a thin film.
         """
         first = int(np.searchsorted(self.middle, 0.0)) - 2
         near = self.middle[first : first + 4]
@@ -303,7 +303,7 @@ def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
     profile : FilmProfile
         The film.
     nodes : numpy.ndarray, shape (n,)
-        Positions over the half-width, rising, with the ends of the film's own.
+        Positions over the half-width, rising, with the same ends as the film's nodes.
 
     Returns
     -------
@@ -320,7 +320,7 @@ def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
 
 
 def one_blas_thread() -> AbstractContextManager:
-    """Have linear algebra done in one thread: on these small matrices, more only slow it down."""
+    """Limit linear algebra to one thread: more threads slow it down on these small matrices."""
     return _libraries().limit(limits=1, user_api="blas")
 
 

@@ -121,8 +121,8 @@ def fitted_mesh(profile, end: float, fineness: float) -> Array:
 def _smooth(values):
     """Remove oscillations from node to node.
 
-    A pressure that does so deflects nothing midway between the nodes. Where the oil is almost solid
-    it drives nothing either, and is no reason for finer nodes.
+    A pressure that oscillates so does not deflect the rollers midway between the nodes. Where the
+    oil is almost solid it drives no oil either, and is no reason for finer nodes.
     """
     smooth = values.copy()
     smooth[1:-1] = 0.25 * (values[:-2] + 2.0 * values[1:-1] + values[2:])

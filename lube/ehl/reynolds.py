@@ -68,7 +68,7 @@ class DiscreteContact:
         self.step = np.diff(nodes)
         self.middle = 0.5 * (nodes[1:] + nodes[:-1])
         self.deflection = deflection_matrix(self.middle, nodes)
-        # Of the trapezoidal rule.
+        # Weights of the trapezoidal rule.
         self.weight = 0.5 * (np.append(self.step, 0.0) + np.append(0.0, self.step))
 
     def gap(self, pressure: Array, offset: float) -> Array:
@@ -99,10 +99,10 @@ class DiscreteContact:
     def newton_step(self, pressure, offset, flow, settling_time):
         """Take one step of Newton's method towards the film after a settling time.
 
-        The equation at a node is that as much oil leaves as enters, less what widens the gap in
-        that time (the squeeze film); after a long time nothing does. A node is either in the film,
-        where this holds, or beyond it, where the pressure is zero: the complementarity condition
-        of cavitation, solved by Newton's method too.
+        The equation at a node is that as much oil leaves as enters, less the oil that fills the
+        widening gap in that time (the squeeze film); after a long time no oil does. A node is
+        either in the film, where this holds, or beyond it, where the pressure is zero: the
+        complementarity condition of cavitation, solved by Newton's method too.
 
         Returns
         -------

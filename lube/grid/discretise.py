@@ -32,12 +32,12 @@ class LineGrid:
     @classmethod
     def of(cls, lines: xr.Dataset) -> "LineGrid":
         """Grid of a ``roughness`` dataset."""
-        own = lines.attrs
-        return cls(own["spacing"], own["height_step"], float(np.max(own["q_max"])))
+        attrs = lines.attrs
+        return cls(attrs["spacing"], attrs["height_step"], float(np.max(attrs["q_max"])))
 
 
 UNKNOWN_FILM = 2**40
-"""Height steps of a film that is not known. No sum of lines reaches so high, and larger films could
+"""Height steps of a film that is not known. No sum of lines is so high, and larger films could
 overflow int64."""
 
 

@@ -6,7 +6,7 @@ import xarray as xr
 from lube.types import Array
 
 _STEP, _EVEN, _GROWTH = 0.01, 1.5, 1.03
-"""Distance of positions in the contact, up to where they are even, and their growth beyond."""
+"""Distance of positions in the contact, end of these even positions, and their growth beyond."""
 _REACH = 12.0
 """Height of the undeformed gap at the last position, over the composite roughness: no roughness
 line is so high."""
@@ -26,7 +26,7 @@ def film_positions(contact: xr.Dataset, step: float = _STEP, growth: float = _GR
     -------
     numpy.ndarray
         Positions over the half-width, rising, symmetric about 0: even in the contact, farther and
-        farther apart outside, up to where no roughness reaches across the gap of the narrowest.
+        farther apart outside, up to a gap that no roughness fills, at the narrowest contact.
 
     Examples
     --------
@@ -80,7 +80,7 @@ def over_positions(solved: xr.DataArray, sample, contact: xr.Dataset) -> xr.Data
     Returns
     -------
     xarray.DataArray
-        Six digits each, over film_position too; NaN where there is no film.
+        Values of six digits, over film_position too; NaN where there is no film.
     """
     positions = film_positions(contact)
 

@@ -16,10 +16,11 @@ log = logging.getLogger(__name__)
 SHORTEST = 0.05
 """Shortest wave that is solved for, over the half-width of the contact."""
 UNCHANGED = 0.003
-"""Largest change by the oil of a wave that is taken for none, of shorter ones too."""
+"""Change of a wave by the oil below which it is neglected, and that of all shorter waves too."""
 ROLLING_RATIO, SLIDING_RATIO = 1.2, 1.15
-"""Largest ratio of neighbouring wavelengths. With slip the response changes faster with them: what
-the oil carries through the contact runs ahead of the wave, or falls behind."""
+"""Largest ratio of neighbouring wavelengths. With slip the response changes faster with the
+wavelength: the part that the oil carries through the contact runs ahead of the wave, or falls
+behind."""
 POSITIONS = 0.02, 1.06
 """Distance of positions in the contact, and their growth beyond."""
 VARIABLES = "response_real", "response_imaginary", "interpolation_error"
@@ -37,9 +38,9 @@ def wave_responses(
     contact : xarray.Dataset
         From `lube.grid.films.hertz_contact`.
     slide_to_roll_ratio : xarray.DataArray
-        Slide-to-roll ratio, over its own or over other dimensions.
+        Slide-to-roll ratio, over the dimension of this name or over those of the films.
     spec : lube.study.line_spec.LineSpec
-        The roughness lines, whose waves are asked for.
+        The roughness lines, which set the longest and the shortest wave.
     threads : int, optional
         Threads that share the work; they do not change the results.
 

@@ -84,7 +84,7 @@ def film_at(
             solved = groups.thinned(factor).profiles if is_heated else groups.profiles
             responses = contact, xr.DataArray(slide_to_roll_ratio), answered_lines, threads
             table = table.merge(wave_responses(solved, *responses), compat="override", join="exact")
-            # With slip the oil answers otherwise: each slip has a film of its own.
+            # The response depends on slip, so each slip has its film.
             each = table["interpolation_error"].isel(roller=0, drop=True)
             table.update(table[_THINNED].broadcast_like(each))
     return table

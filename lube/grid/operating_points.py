@@ -73,14 +73,14 @@ def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Da
 
 
 def known_films(film: xr.Dataset, gap: Gap) -> xr.DataArray:
-    """Find where all of the film that a choice of the gap needs is known.
+    """Find where the film is known, with its shape and response as far as contact needs them.
 
     Parameters
     ----------
     film : xarray.Dataset
         A ``film`` dataset, or rows of one.
     gap : Gap
-        Whether the film has a shape, and whether it answers the roughness.
+        Says whether contact needs the film's shape, and its response to the roughness.
 
     Returns
     -------
