@@ -39,7 +39,7 @@ def profiles(study):
     oil = lubricant_table(study.lubricants[:1], grid.temperature)
     film = film_table(oil, study.rough_rollers, grid.force, grid.speed, ["computed"]).squeeze()
     contact = hertz_contact(study.rough_rollers, film["force"], film["speed"])
-    solved = FilmGroups.at(oil, study.rough_rollers, film["force"], contact).profiles().squeeze()
+    solved = FilmGroups.at(oil, study.rough_rollers, film["force"], contact).profiles.squeeze()
     ratios = film["lambda_ratio"].stack(point=["temperature", "speed", "force"])
     solved = solved.stack(point=["temperature", "speed", "force"])
     for wanted in LAMBDA_RATIOS:

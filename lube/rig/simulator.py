@@ -24,7 +24,7 @@ import xarray as xr
 
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import LineGrid, line_pair, revolution, speed_ratios
-from lube.grid.operating_points import OperatingPoint
+from lube.grid.operating_points import OperatingPoint, surface_speeds
 from lube.kernels.circuit import sampled_voltage
 from lube.physics.electrical import contact_resistance, film_capacitance
 from lube.study.rig_settings import Rig
@@ -115,10 +115,11 @@ class SimulatedRig:
 
     def _revolution(self, contact, number, seed):
         point, spacing = self._points[number], self._lines.attrs["spacing"]
+        faster_speed = max(surface_speeds(point.row["entrainment_speed"].item(), self._slip))
         return Revolution(
             contact,
             point,
-            time_step=spacing / point.faster_speed,
+            time_step=spacing / faster_speed,
             spot_resistance=self._study.resistivity / spacing,
             length=self._study.rollers.length,
             seed=seed,
@@ -172,8 +173,8 @@ class Revolution:
             Shape (samples,), V.
         """
         capacitance = film_capacitance(
-            self.point.film_thickness,
-            self.point.contact_half_width,
+            self.point.row["film_thickness"].item(),
+            self.point.row["contact_half_width"].item(),
             self.length,
             rig.oil_permittivity,
         )

@@ -13,7 +13,7 @@ import xarray as xr
 
 from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError, LubeError
-from lube.grid.operating_points import OperatingPoint, operating_points
+from lube.grid.operating_points import OperatingPoint, known_films, operating_points
 from lube.inference.study_shares import levels_named
 from lube.recordings.manifest import Entry, Manifest, read_manifest
 from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
@@ -64,11 +64,11 @@ def simulated_experiment(lines: xr.Dataset, film: xr.Dataset, study: Study) -> x
         If no film is known.
     """
     every = operating_points(film.isel(film_formula=0), study.rig_slip)
-    points = [point for point in every if point.is_known]
+    points = [point for point in every if known_films(point.row, study.gap)]
     refused = [
         f"{_name_of_point(_conditions_of_point(point, 0, study), study)}: the film is not known"
         for point in every
-        if not point.is_known
+        if point not in points
     ]
     _log_refused(refused)
     if not points:

@@ -5,7 +5,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from lube.ehl.line_contact import FilmProfile
-from lube.grid.films import FilmGroups, hertz_contact, over_positions
+from lube.grid.film_profiles import over_positions
+from lube.grid.films import FilmGroups, hertz_contact
 from lube.schema import POINT_DIMS, label
 from lube.study.rollers import RollerPair
 from lube.study.study import Study
@@ -51,12 +52,10 @@ def film_profile_table(
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = hertz_contact(rollers, axes["force"], axes["speed"])
         groups = FilmGroups.at(lubricant, rollers, axes["force"], contact, inlet_meniscus)
-        solved = groups.profiles().transpose(*POINT_DIMS)
+        solved = groups.profiles.transpose(*POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
-    table["film"] = (
-        over_positions(solved, FilmProfile.film_at, rollers, contact) * rollers.reduced_radius
-    )
-    table["pressure"] = over_positions(solved, FilmProfile.pressure_at, rollers, contact)
+    table["film"] = over_positions(solved, FilmProfile.film_at, contact) * rollers.reduced_radius
+    table["pressure"] = over_positions(solved, FilmProfile.pressure_at, contact)
     table["pressure"] = table["pressure"] * table["hertz_pressure"]
     for name, value in _NUMBERS.items():
         found = [float(f"{value(one):.6g}") if one else np.nan for one in solved.values.ravel()]

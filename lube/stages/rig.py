@@ -5,7 +5,7 @@ import xarray as xr
 
 from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError
-from lube.grid.operating_points import OperatingPoint, operating_points
+from lube.grid.operating_points import OperatingPoint, known_films, operating_points
 from lube.physics.electrical import resistance_from_voltage
 from lube.rig.contact_share import record_counter
 from lube.rig.simulator import Revolution, SimulatedRig
@@ -49,7 +49,7 @@ def rig_records(lines: xr.Dataset, film: xr.Dataset, study: Study) -> xr.Dataset
         If the film is known at none of the points.
     """
     points = [_point_at(levels, film) for levels in study.trace_points]
-    points = [point for point in points if point.is_known]
+    points = [point for point in points if known_films(point.row, study.gap)]
     if not points:
         raise DataError("traces: the film is known at none of the points, need one at least")
     records = [_BandwidthRecord(study) for _ in points]

@@ -80,7 +80,7 @@ def contact_trace(
     DataError
         If the film is known at none of the points.
     """
-    table = _known_rows(film, points)
+    table = _known_rows(film, points, gap)
     windows = ContactWindows(LineGrid.of(lines), table, boundary_layer, gap)
     ratio, spacing = points[0]["slide_to_roll_ratio"], lines.attrs["spacing"]
     length = windows.trace(line_pair(lines, REALISATION), ratio) * spacing
@@ -105,7 +105,7 @@ def contact_trace(
     return label(trace.assign_coords(time=time), "trace")
 
 
-def _known_rows(film, points):
+def _known_rows(film, points, gap):
     """Rows of the film table at the operating points, along ``operating_point``."""
     columns = {
         name: ("operating_point", [point[name] for point in points]) for name in CONTACT_DIMS
@@ -114,7 +114,7 @@ def _known_rows(film, points):
     film = at_slip(film, points[0]["slide_to_roll_ratio"])
     rows = film.sel({name: levels[name] for name in OPERATING_DIMS})
     rows = rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
-    known = known_films(rows).values
+    known = known_films(rows, gap).values
     for number in np.flatnonzero(~known):
         log.warning("traces.%d: left out, the film is not known there", number)
     if not known.any():
@@ -171,7 +171,8 @@ def contact_window(
     film, half_window = whole_numbers(point["film_thickness"], reach or widest, grid)
     window = np.arange(-half_window, half_window + 1)
     if gap.has_shape:
-        film = film_on_points(point["film_profile"], half_width, window, grid)
+        profile = point["film_position"].values, point["film_profile"].values
+        film = film_on_points(*profile, half_width, window, grid)
     ratios = speed_ratios(point["slide_to_roll_ratio"].item())
     pair = line_pair(lines, REALISATION)
     if gap.is_flattened:

@@ -163,7 +163,7 @@ def test_the_faster_surface_passes_one_grid_point_each_time_step(
     one = with_rig(study, revolutions=1)
     lines = lines_of(one)
     _, _, revolution = run(lines, one, slipping)[0]
-    faster = 1.05 * revolution.point.entrainment_speed
+    faster = 1.05 * revolution.point.row["entrainment_speed"].item()
     assert revolution.time_step == pytest.approx(lines.attrs["spacing"] / faster)
     turn = 2.0 * np.pi * study.rollers.first.radius / faster
     assert revolution.contact.size * revolution.time_step == pytest.approx(turn)
