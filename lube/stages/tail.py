@@ -27,8 +27,7 @@ from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.surfaces.rare_contact import check_gaussian
-from lube.surfaces.spectra import spectrum_moments
-from lube.surfaces.synthetic import ROLLER_NUMBERS
+from lube.surfaces.spectra import pair_moments
 from lube.threads import on_threads
 from lube.types import Datasets
 
@@ -44,8 +43,6 @@ _FLATTENED = (
 )
 _ASYMPTOTES = "geometric_contact_asymptote", "breakthrough_asymptote"
 _OF_PAIRS = "breakthrough_probability", "geometric_contact_probability", "breakthrough_rate"
-_PARTS = slice(0, 1), slice(1, None)
-"""The first film formula, and the others."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -134,11 +131,13 @@ def tail_probabilities(
         film = film.sel({_SLIP: levels})
     else:
         film = film.drop_dims(_SLIP, errors="ignore")
-    tables = []
-    outcomes = _sampled(spec, film, boundary_layer, seed, gap, threads)
-    for part, found in zip(_PARTS, outcomes, strict=True):
-        if film["film_formula"][part].size:
-            some = film.isel(film_formula=part)
+    windows, tables = ContactWindows(spec, film, boundary_layer, gap), []
+    of_one = windows.size // film.sizes["film_formula"]
+    first, others = (slice(1), slice(of_one)), (slice(1, None), slice(of_one, None))
+    for (formulas, points), pairs in (first, PAIRS), (others, FEWER_PAIRS):
+        some = film.isel(film_formula=formulas)
+        if some["film_formula"].size:
+            found = _sampled(spec, some, windows[points], seed, pairs, threads)
             tables.append(_table(spec, some, boundary_layer, found, levels, gap))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
@@ -179,12 +178,12 @@ def pair_probabilities(
     if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
         return xr.Dataset(dict.fromkeys(_OF_PAIRS, unknown), attrs={"remarks": remark})
-    # All in the first part, which has most pairs.
-    windows, runs = next(_sampled(spec, film.expand_dims("part"), boundary_layer, seed, gap))
-    contact, breakthrough = windows.transpose("outcome", ...)
+    windows = ContactWindows(spec, film, boundary_layer, gap)
+    in_windows, runs = _sampled(spec, film, windows, seed, PAIRS)
+    contact, breakthrough = in_windows.transpose("outcome", ...)
     rate = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
     values = dict(zip(_OF_PAIRS, (breakthrough, contact, rate), strict=True))
-    table = xr.Dataset(values, attrs={"remarks": ""}).isel(part=0)
+    table = xr.Dataset(values, attrs={"remarks": ""})
     return table.transpose("pair", *film["film_thickness"].dims)
 
 
@@ -223,13 +222,12 @@ def _why_not(spec, gap):
 
 def _unknown(film, slide_to_roll_ratio, remark):
     """Table without any value."""
-    coordinates = {name: film[name] for name in OPERATING_DIMS}
-    coordinates["slide_to_roll_ratio"] = slide_to_roll_ratio
-    sizes = {name: len(values) for name, values in coordinates.items()}
-    empty = {}
-    for name, row in FILES["tail"].items():
-        empty[name] = row.dims, np.full([sizes[dim] for dim in row.dims], np.nan)
-    return label(xr.Dataset(empty, coordinates, {"remarks": remark}), "tail")
+    levels = {name: film[name] for name in OPERATING_DIMS} | {_SLIP: slide_to_roll_ratio}
+    empty = {
+        name: xr.DataArray(np.nan, {dim: levels[dim] for dim in row.dims}, row.dims)
+        for name, row in FILES["tail"].items()
+    }
+    return label(xr.Dataset(empty, attrs={"remarks": remark}), "tail")
 
 
 def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
@@ -303,29 +301,19 @@ def _window_points(spec, film):
     return 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
 
 
-def _sampled(spec, film, boundary_layer, seed, gap, threads=None):
-    """Probabilities of windows and numbers of runs, for each of `_PARTS` of the film formulas.
-
-    Over (pair, outcome, film formula, other operating dimensions).
-    """
+def _sampled(spec, film, windows, seed, pairs, threads=None):
+    """Probabilities of windows and numbers of runs, over pair, outcome and those of the film."""
     thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    points = ContactWindows(spec, film, boundary_layer, gap)
-    # The other film formulas have the first 8 of the 40 pairs.
-    first = points[: points.size // thickness.shape[0]]
+    dims = ("pair", "outcome", *thickness.dims)
 
     def on_one_pair(number):
-        some = points if number < FEWER_PAIRS else first
-        found = some.sample(spec, seed, number)
-        return [values.reshape(len(values), -1, *thickness.shape[1:]) for values in found]
+        return windows.sample(spec, seed, number)
 
-    found = list(zip(*on_threads(on_one_pair, range(PAIRS), threads), strict=True))
-    dims = ("pair", "outcome", *thickness.dims)
-    for part, pairs in zip(_PARTS, (PAIRS, FEWER_PAIRS), strict=True):
-        coordinates = thickness[part].coords
-        yield [
-            xr.DataArray(np.stack([one[:, part] for one in each[:pairs]]), coordinates, dims)
-            for each in found
-        ]
+    found = on_threads(on_one_pair, range(pairs), threads)
+    return [
+        xr.DataArray(np.reshape(each, (pairs, -1, *thickness.shape)), thickness.coords, dims)
+        for each in zip(*found, strict=True)
+    ]
 
 
 def _touching_pairs(groups, breakthrough, windows):
@@ -378,14 +366,12 @@ def _asymptotes(spec, film, boundary_layer, gap):
 
     The boundary layer breaks if the summit behind is sharp enough.
     """
-    lines, layer = [spectrum_moments(spec, n) for n in range(len(ROLLER_NUMBERS))], boundary_layer
-    names = ("rms_height", "rms_slope", "rms_curvature")
-    moments = [sum(line[name] ** 2 for line in lines) for name in names]
-    strength = layer.critical_thickness, layer.shear_strength
-    curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
     if gap.is_answered:  # the moments change along the window
         unknown = xr.full_like(film["film_thickness"], np.nan)
         return dict.fromkeys(_ASYMPTOTES, unknown)
+    strength = boundary_layer.critical_thickness, boundary_layer.shear_strength
+    curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
+    moments = pair_moments(spec)
     if gap.has_shape:
         return _shaped_asymptotes(film, moments, curvature)
     thickness = film["film_thickness"]
