@@ -32,6 +32,7 @@ from lube.kernels.shaped import (
 )
 from lube.kernels.strips import strip_statistics, strip_trace
 from lube.kernels.whole_runs import whole_run_steps
+from lube.study.study import Study
 from lube.surfaces.rare_contact import RarePair, UnevenWindow, rare_contact, rare_contact_under
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair, Values
@@ -340,6 +341,11 @@ class ContactWindows:
         behind = max(one.film.size - one.before for one in reached)
         part = [shape.film[shape.before - before : shape.before + behind] for shape in shapes]
         return np.array(part), before
+
+
+def study_windows(study: Study, film: xr.Dataset, weaker: Values = 1.0) -> ContactWindows:
+    """Contact windows of the films of a study, such as those at the records."""
+    return ContactWindows(study.line_spec, film, study.boundary_layer, study.gap, weaker)
 
 
 def _begun(pair, ratios, begin):

@@ -7,17 +7,17 @@ contact width: nothing is rounded to the nearest level of the operating grid.
 
 import logging
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from lube.contact.rough_pair import drawn
-from lube.grid.film_responses import VARIABLES
+from lube.contact.windows import study_windows
 from lube.grid.films import film_at
 from lube.grid.operating_points import at_slip
-from lube.inference.record_scatter import record_scatter, study_windows
-from lube.schema import OPERATING_DIMS
-from lube.study.line_spec import LineSpec
+from lube.inference.record_scatter import record_scatter
+from lube.schema import FILES, OPERATING_DIMS, with_dims
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import RollerPair
 from lube.study.study import Study
@@ -60,13 +60,10 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     windows, inverse = study_windows(study, at_records).distinct()
     stored = _stored(study, film, contact)
     probability = _probability(windows, stored, contact.sizes["realisation"], study)[:, inverse]
-    scatter = record_scatter(at_records, experiment, probability, study)
-    dims = ("film_formula", "record")
-    shape = tuple(at_records.sizes[name] for name in dims)
-    model = at_records.copy()
-    for name, values in {PROBABILITY: probability, **scatter}.items():
-        lead = ("realisation",) * (values.ndim - 1)
-        model[name] = (*lead, *dims), values.reshape(values.shape[:-1] + shape)
+    shape = at_records.sizes["film_formula"], at_records.sizes["record"]
+    values = {PROBABILITY: probability} | record_scatter(at_records, experiment, probability, study)
+    values = {name: each.reshape(*each.shape[:-1], *shape) for name, each in values.items()}
+    model = at_records.assign(with_dims("comparison", values))
     model = model.assign_coords(realisation=contact["realisation"].values)
     attributes = {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
     return model.assign_attrs(attributes)
@@ -77,10 +74,7 @@ def film_at_records(
     lubricant: xr.Dataset,
     rollers: RollerPair,
     formulas: Sequence[str],
-    with_shape: bool = False,
-    inlet_shear_heating: str = "none",
-    inlet_meniscus: float | None = None,
-    answered_lines: LineSpec | None = None,
+    **film_model: Any,
 ) -> xr.Dataset:
     """Film thickness at the conditions of each record.
 
@@ -90,8 +84,9 @@ def film_at_records(
         An ``experiment`` dataset.
     lubricant : xarray.Dataset
         A ``lubricant`` dataset at all temperatures of the records.
-    rollers, formulas, with_shape, inlet_shear_heating, inlet_meniscus, answered_lines
-        As in `lube.grid.films.film_at`; the slip is that of each record.
+    rollers, formulas, **film_model
+        As in `lube.grid.films.film_at`, such as `Study.film_model`; the slip is that of each
+        record.
 
     Returns
     -------
@@ -107,19 +102,17 @@ def film_at_records(
         for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio")
     )
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
-    options = with_shape, slip, inlet_shear_heating, inlet_meniscus, answered_lines
-    table = film_at(properties, rollers, force, speed, formulas, *options)
-    table["dynamic_viscosity"] = properties["dynamic_viscosity"]
-    names = ["film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width"]
-    names += ["reduced_radius", "reduced_modulus", "composite_rms_roughness", "dynamic_viscosity"]
-    names += ["film_profile", "formula_place"] if with_shape else []
-    names += VARIABLES if answered_lines else []
-    if inlet_shear_heating != "none":
-        names.append("inlet_shear_heating_factor")
-    if inlet_meniscus is not None:
-        names.append("inlet_meniscus")
-        table["inlet_meniscus"] = inlet_meniscus
-    return table[names].transpose("film_formula", "record", ...)
+    table = film_at(
+        properties, rollers, force, speed, formulas, slide_to_roll_ratio=slip, **film_model
+    )
+    unused = [name for name in table if name not in FILES["comparison"]]
+    unused += [] if "film_profile" in table else ["formula_place"]
+    if film_model.get("inlet_shear_heating", "none") == "none":
+        unused.append("inlet_shear_heating_factor")
+    table = table.drop_vars(unused).assign(dynamic_viscosity=properties["dynamic_viscosity"])
+    if film_model.get("inlet_meniscus") is not None:
+        table["inlet_meniscus"] = film_model["inlet_meniscus"]
+    return table.transpose("film_formula", "record", ...)
 
 
 def _stored(study, film, contact):

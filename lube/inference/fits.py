@@ -15,7 +15,7 @@ from lube.contact.ensemble import windows_in
 from lube.ehl.film_formulas import formula
 from lube.grid.films import FilmGroups
 from lube.inference.record_curves import RecordCurves
-from lube.schema import LIMITS, values_with_limits
+from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
 from lube.statistics.sample_size import effective_sample_size
@@ -124,7 +124,12 @@ def strength_logits(
         Over (factor, film_formula, record).
     """
     tried = np.geomspace(*curves.strengths[[0, -1]], STRENGTH_LEVELS)
-    logits = _coarse_strength_logits(curves, comparison, study_strength(contact))
+    # Curves of layers are coarse: they give the difference to the study's layer.
+    ratios = comparison["lambda_ratio"]
+    coarse = curves.layer_logits(ratios)
+    own = coarse.sel(layer_strength=study_strength(contact), method="nearest", drop=True)
+    logits = curves.logits(ratios) + coarse - own
+    logits = logits.transpose("layer_strength", "film_formula", "record")
     # A record is left out if the contact of any layer is too rare for the curves there.
     known = logits.notnull().all("layer_strength")
     spline = scipy.interpolate.PchipInterpolator(
@@ -195,18 +200,6 @@ def _between_nodes(films, factor):
     return np.exp(curve(np.minimum(np.log(factor), last)) + beyond * curve(last, 1))
 
 
-def _coarse_strength_logits(curves, comparison, study):
-    """Logits over (layer_strength, film_formula, record) at the strengths of the curves.
-
-    Those of layers are coarse. They give the difference to the study's layer.
-    """
-    ratios = comparison["lambda_ratio"]
-    coarse = curves.layer_logits(ratios)
-    own = coarse.sel(layer_strength=study, method="nearest", drop=True)
-    logits = curves.logits(ratios) + coarse - own
-    return logits.transpose("layer_strength", "film_formula", "record")
-
-
 def _fits(name, tried, truth, logits, contact, comparison):
     """Fit a factor, with its limits and coverage, for every lubricant and film formula."""
     oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
@@ -217,11 +210,8 @@ def _fits(name, tried, truth, logits, contact, comparison):
         fits[:-1, oil, number] = fit_records(np.log(tried), model, records)
         fits[-1, oil, number] = _coverage(np.log(tried), np.log(truth), model, records)
     variables = values_with_limits(name, fits[:-1]) | {f"{name}_coverage": fits[-1]}
-    dims = ("fitted_lubricant", "film_formula")
-    return xr.Dataset(
-        {each: (dims, values) for each, values in variables.items()},
-        coords={"fitted_lubricant": oils, "film_formula": formulas},
-    )
+    variables |= {"fitted_lubricant": oils, "film_formula": formulas}
+    return xr.Dataset(with_dims("gauge", variables))
 
 
 def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[float, float, float]:

@@ -19,7 +19,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.rough_pair import drawn
-from lube.contact.windows import ContactWindows
+from lube.contact.windows import ContactWindows, study_windows
 from lube.grid.discretise import revolution, speed_ratios
 from lube.statistics.confidence import mean_over_first
 from lube.statistics.one_pair import persistent_share, scatter_ratio
@@ -41,11 +41,6 @@ MOST_STRETCHES = 8
 ALIGNMENT_RATIOS = np.linspace(1.0, 3.75, 12)
 """Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare. With fewer
 the interpolation between them makes the effects of lines alone at neighbouring films too alike."""
-
-
-def study_windows(study: Study, film: Data) -> ContactWindows:
-    """Contact windows of the films of a study, such as those at the records."""
-    return ContactWindows(study.line_spec, film, study.boundary_layer, study.gap)
 
 
 def record_scatter(

@@ -12,8 +12,9 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.grid.operating_points import at_slip
-from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
-from lube.statistics.curves import falling_curve, film_interval
+from lube.inference.record_curves import gauged_ratios
+from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
+from lube.statistics.curves import falling_curve
 from lube.study.study import Study
 from lube.types import Datasets
 
@@ -49,25 +50,20 @@ def gauge_by_surface(
         roughness count as independent trials.
     """
     curve = cache(lambda width: _curve(film, areal, comparison, width))
-    first, realisations = comparison.isel(film_formula=0), comparison.sizes["realisation"]
-    names = ("contact_half_width", "measured_share", "share_error", "scatter_ratio")
-    found = []
-    for half_width, share, noise, ratio in zip(
-        *(first[name].values for name in names), strict=True
-    ):
-        read, shares, errors = curve(2.0 * half_width)
-        noise = np.hypot(noise, np.interp(share, shares, errors))
-        found.append(np.exp(film_interval(read, share, ratio, realisations, noise)))
-    ratios = np.array(found).T
-    ratios[0] = np.where((ratios[0] > 0.0) & np.isfinite(ratios[0]), ratios[0], np.nan)
+    widths, shares = (comparison[name].values for name in ("contact_half_width", "measured_share"))
+    curves, levels, errors = zip(*(curve(2.0 * width) for width in widths), strict=True)
+    of_curves = [np.interp(*one) for one in zip(shares, levels, errors, strict=True)]
+    noise = np.hypot(comparison["share_error"].values, of_curves)
+    ratios = gauged_ratios(curves, comparison, noise)
     line = [gauge[f"gauged_lambda_ratio{limit}"].values for limit in LIMITS]
-    values = values_with_limits("line_lambda_ratio", line)
-    values |= values_with_limits("surface_lambda_ratio", ratios)
-    values["surface_over_line"] = ratios[0] / line[0]
+    values = {
+        **values_with_limits("line_lambda_ratio", line),
+        **values_with_limits("surface_lambda_ratio", ratios),
+        "surface_over_line": ratios[0] / line[0],
+        "lambda_ratio": comparison["lambda_ratio"].values[0],
+    }
     kept = comparison[[*AT_RECORDS, "origin", "pairs", "drift", "measured_share"]].drop_attrs()
-    kept["lambda_ratio"] = "record", first["lambda_ratio"].values
-    kept = kept.assign({name: ("record", each) for name, each in values.items()})
-    return label(kept, "areal_gauge")
+    return label(kept.assign(with_dims("areal_gauge", values)), "areal_gauge")
 
 
 def _curve(film, areal, comparison, width):

@@ -19,8 +19,8 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.inference.at_records import model_at_records
-from lube.inference.study_shares import at_comparison_threshold, levels_named, log_lines
-from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
+from lube.inference.study_shares import levels_named, log_lines
+from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size
@@ -62,16 +62,10 @@ def compare(model: xr.Dataset, experiment: xr.Dataset, levels: xr.Dataset) -> xr
         threshold, with their range for a correct model; and the means of both sides over the
         records at every force, speed and temperature. The attribute ``missing`` lists operating
         points without a record, ``remarks`` records of one point that contradict each other.
-
-    Raises
-    ------
-    DataError
-        If the experiment was not evaluated at its comparison threshold.
     """
     table = _side_by_side(model, experiment)
-    for part in (_agreement(table, experiment), _expected(table), _level_means(table)):
-        table = table.merge(part, join="exact")
-    table = table.set_coords([*AT_RECORDS, "origin"])
+    found = _agreement(table, experiment) | _expected(table) | _level_means(table)
+    table = table.assign(with_dims("comparison", found)).set_coords([*AT_RECORDS, "origin"])
     notes = {"missing": _missing(table, levels), "remarks": _contradictions(table)}
     for lines in notes.values():
         log_lines(log, lines)
@@ -93,32 +87,29 @@ def _side_by_side(model, experiment):
         model[name].values for name in ("pooled_probability", "scatter_ratio", "pooled_error")
     )
     lower, upper = prediction_limits(pooled, size, ratio, len(probabilities), noise, error)
-    shares = at_comparison_threshold(experiment)
-    shares = [shares[f"contact_share{limit}"].values for limit in LIMITS]
-    by_formula = {
+    threshold = experiment["comparison_threshold"].item()
+    measured = experiment.sel(threshold=threshold)
+    measured = [measured[f"contact_share{limit}"].values for limit in LIMITS]
+    values = {
+        **values_with_limits("measured_share", measured),
         **values_with_limits("simulated_probability", (mean, *limits)),
         "predicted_share_lower": lower,
         "predicted_share_upper": upper,
-        "within_prediction": (shares[0] >= lower) & (shares[0] <= upper),
+        "within_prediction": (measured[0] >= lower) & (measured[0] <= upper),
     }
-    table = table.assign(values_with_limits("measured_share", shares, "record"))
-    dims = ("film_formula", "record")
-    return table.assign({name: (dims, values) for name, values in by_formula.items()})
+    return table.assign(with_dims("comparison", values))
 
 
 def _agreement(table, experiment):
-    """Figures of agreement over (film_formula, threshold)."""
-    shares = experiment["contact_share"].transpose("threshold", "record").values
-    formulas = table["film_formula"].values
+    """Figures of agreement for each film formula and threshold."""
     rows = [
-        [_figures(table.sel(film_formula=formula), at_threshold) for at_threshold in shares]
-        for formula in formulas
+        [_figures(table.sel(film_formula=formula), shares) for formula in table["film_formula"]]
+        for shares in experiment["contact_share"].transpose("threshold", "record").values
     ]
-    dims = ("film_formula", "threshold")
-    return xr.Dataset(
-        {name: (dims, [[cell[name] for cell in row] for row in rows]) for name in rows[0][0]},
-        coords={"film_formula": formulas, "threshold": experiment["threshold"].values},
-    )
+    found = {
+        name: np.transpose([[cell[name] for cell in row] for row in rows]) for name in rows[0][0]
+    }
+    return found | {"threshold": experiment["threshold"].values}
 
 
 def _figures(table, shares):
@@ -206,13 +197,11 @@ def _expected(table):
     ranges = np.array(
         [_ranges(row[:, here], windows[here]) for row, here in zip(members, known, strict=True)]
     )
-    return xr.Dataset(
-        {
-            f"{name}_expected_{side}": ("film_formula", ranges[:, figure, end])
-            for figure, name in enumerate(FIGURES)
-            for end, side in enumerate(("lower", "upper"))
-        }
-    )
+    return {
+        f"{name}_expected_{side}": ranges[:, figure, end]
+        for figure, name in enumerate(FIGURES)
+        for end, side in enumerate(("lower", "upper"))
+    }
 
 
 def _ranges(members, windows):
@@ -242,10 +231,10 @@ def _level_means(table):
         rows = np.array([[_mean(row[here & np.isfinite(row)]) for here in at] for row in simulated])
         means |= {
             f"{name}_group": levels,
-            f"simulated_mean_by_{name}": (("film_formula", f"{name}_group"), rows),
-            f"measured_mean_by_{name}": (f"{name}_group", [_mean(measured[here]) for here in at]),
+            f"simulated_mean_by_{name}": rows,
+            f"measured_mean_by_{name}": [_mean(measured[here]) for here in at],
         }
-    return xr.Dataset(means)
+    return means
 
 
 def _missing(table, levels):
