@@ -26,8 +26,6 @@ Data = xr.Dataset
 
 log = logging.getLogger(__name__)
 
-PROBABILITY = "breakthrough_probability"
-
 
 def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) -> Data:
     """Probability at the conditions of each record, and the scatter of one pair there.
@@ -61,7 +59,8 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     stored = _stored(study, film, contact)
     probability = _probability(windows, stored, contact.sizes["realisation"], study)[:, inverse]
     shape = at_records.sizes["film_formula"], at_records.sizes["record"]
-    values = {PROBABILITY: probability} | record_scatter(at_records, experiment, probability, study)
+    scatter = record_scatter(at_records, experiment, probability, study)
+    values = {"breakthrough_probability": probability, **scatter}
     values = {name: each.reshape(*each.shape[:-1], *shape) for name, each in values.items()}
     model = at_records.assign(with_dims("comparison", values))
     model = model.assign_coords(realisation=contact["realisation"].values)
@@ -117,11 +116,11 @@ def film_at_records(
 
 def _stored(study, film, contact):
     """Probability of every realisation at the points of contact.nc in pure rolling, by point."""
-    rolling = contact["slide_to_roll_ratio"].values == 0.0
-    if not rolling.any() or contact["revolutions"].item() != 1:
+    rolling = 0.0 in contact["slide_to_roll_ratio"].values
+    if not rolling or contact["revolutions"].item() != 1:
         return {}
     film = at_slip(film, 0.0).transpose(*OPERATING_DIMS, ...)
-    stored = contact[PROBABILITY].isel(slide_to_roll_ratio=int(np.argmax(rolling))).values
+    stored = contact["breakthrough_probability"].sel(slide_to_roll_ratio=0.0).values
     columns = stored.reshape(len(stored), -1).T
     return dict(zip(study_windows(study, film).keys, columns, strict=True))
 

@@ -53,8 +53,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     StudyError
         If the heights of a line are not Gaussian.
     DataError
-        If the rollers are shorter than the contact is wide, a film thickness is not above zero, or
-        the band of wavelengths is too wide for a surface.
+        If the rollers are shorter than the contact is wide, or the band of wavelengths is too wide
+        for a surface.
 
     Notes
     -----
@@ -77,9 +77,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = inputs["film"].isel(film_formula=[0])
     film = film.transpose(*CONTACT_DIMS, ..., missing_dims="ignore")
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    widest, lowest = 2.0 * half_width.max().item(), thickness.min().item()
-    if not lowest > 0.0:
-        raise DataError(f"film thickness: got {lowest:g} m, need above 0")
+    widest = 2.0 * half_width.max().item()
     if length < widest:
         raise DataError(
             f"rollers.length: got {length:g} m, need the contact width of {widest:g} m or more"

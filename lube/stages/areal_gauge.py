@@ -23,14 +23,7 @@ RESOLUTION = 1e-6
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``areal_gauge.nc``; see `lube.stages`."""
-    return gauge_by_surface(inputs["film"], inputs["areal"], inputs["comparison"], inputs["gauge"])
-
-
-def gauge_by_surface(
-    film: xr.Dataset, areal: xr.Dataset, comparison: xr.Dataset, gauge: xr.Dataset
-) -> xr.Dataset:
-    """Infer the lambda ratio of each record from the surface, and compare it with the line's.
+    """Make ``areal_gauge.nc``: the lambda ratio of each record by the surface, and by the line.
 
     The probability of the strip at the operating points of one force is a curve over the lambda
     ratio. A record's curve is that of the nearest contact width, for which -ln(1 - p) is taken as
@@ -38,8 +31,8 @@ def gauge_by_surface(
 
     Parameters
     ----------
-    film, areal, comparison, gauge : xarray.Dataset
-        Datasets of these kinds, of one study.
+    study, inputs, threads
+        As in `lube.stages`.
 
     Returns
     -------
@@ -49,13 +42,14 @@ def gauge_by_surface(
         error of the curve, and the scatter of one pair of rollers, for which strips that share no
         roughness count as independent trials.
     """
+    film, areal, comparison = (inputs[kind] for kind in ("film", "areal", "comparison"))
     curve = cache(lambda width: _curve(film, areal, comparison, width))
     widths, shares = (comparison[name].values for name in ("contact_half_width", "measured_share"))
     curves, levels, errors = zip(*(curve(2.0 * width) for width in widths), strict=True)
     of_curves = [np.interp(*one) for one in zip(shares, levels, errors, strict=True)]
     noise = np.hypot(comparison["share_error"].values, of_curves)
     ratios = gauged_ratios(curves, comparison, noise)
-    line = [gauge[f"gauged_lambda_ratio{limit}"].values for limit in LIMITS]
+    line = [inputs["gauge"][f"gauged_lambda_ratio{limit}"].values for limit in LIMITS]
     values = {
         **values_with_limits("line_lambda_ratio", line),
         **values_with_limits("surface_lambda_ratio", ratios),

@@ -30,7 +30,6 @@ from lube.types import Array, Datasets
 log = logging.getLogger(__name__)
 
 GROUPS = ("force", "speed", "temperature")
-PROBABILITY = "breakthrough_probability"
 FIGURES = ("bias", "rms_difference", "logit_rms_difference", "overlap_share")
 """Figures of agreement whose range for a correct model is estimated."""
 
@@ -79,7 +78,7 @@ def _side_by_side(model, experiment):
     table = experiment[names].drop_attrs()
     model = model.assign_coords(record=experiment["record"])
     table = table.merge(model, join="exact", compat="no_conflicts").assign_attrs(model.attrs)
-    probabilities = model[PROBABILITY].values
+    probabilities = model["breakthrough_probability"].values
     windows = windows_in(model, 2.0 * model["contact_half_width"].values)
     mean, *limits = probability_interval(probabilities, windows)
     size, noise = effective_sample_size(probabilities, windows), table["share_error"].values
@@ -87,8 +86,7 @@ def _side_by_side(model, experiment):
         model[name].values for name in ("pooled_probability", "scatter_ratio", "pooled_error")
     )
     lower, upper = prediction_limits(pooled, size, ratio, len(probabilities), noise, error)
-    threshold = experiment["comparison_threshold"].item()
-    measured = experiment.sel(threshold=threshold)
+    measured = experiment.sel(threshold=experiment["comparison_threshold"].item())
     measured = [measured[f"contact_share{limit}"].values for limit in LIMITS]
     values = {
         **values_with_limits("measured_share", measured),
@@ -102,21 +100,14 @@ def _side_by_side(model, experiment):
 
 def _agreement(table, experiment):
     """Figures of agreement for each film formula and threshold."""
-    rows = [
-        [_figures(table.sel(film_formula=formula), shares) for formula in table["film_formula"]]
-        for shares in experiment["contact_share"].transpose("threshold", "record").values
-    ]
-    found = {
-        name: np.transpose([[cell[name] for cell in row] for row in rows]) for name in rows[0][0]
-    }
+    rows, names = [], ("simulated_probability", "predicted_share_lower", "predicted_share_upper")
+    for sides in zip(*(table[name].values for name in names), strict=True):
+        for shares in experiment["contact_share"].transpose("threshold", "record").values:
+            known = np.isfinite(shares) & np.isfinite(sides[0])
+            rows.append(agreement(*(each[known] for each in (*sides, shares))))
+    shape = table.sizes["film_formula"], -1
+    found = {name: np.reshape([row[name] for row in rows], shape) for name in rows[0]}
     return found | {"threshold": experiment["threshold"].values}
-
-
-def _figures(table, shares):
-    """Figures of agreement of one film formula with the shares at one threshold."""
-    known = np.isfinite(shares) & np.isfinite(table["simulated_probability"].values)
-    sides = ("simulated_probability", "predicted_share_lower", "predicted_share_upper")
-    return agreement(*(table[name].values[known] for name in sides), shares[known])
 
 
 def agreement(
@@ -192,7 +183,9 @@ def _expected(table):
     """
     measured = np.isfinite(table["measured_share"].values)
     windows = windows_in(table, 2.0 * table["contact_half_width"].values)
-    members = table[PROBABILITY].transpose("film_formula", "realisation", "record").values
+    members = (
+        table["breakthrough_probability"].transpose("film_formula", "realisation", "record").values
+    )
     known = [measured & np.isfinite(of_formula).all(axis=0) for of_formula in members]
     ranges = np.array(
         [_ranges(row[:, here], windows[here]) for row, here in zip(members, known, strict=True)]

@@ -70,9 +70,6 @@ def simulated_experiment(lines: xr.Dataset, film: xr.Dataset, study: Study) -> x
         for point in every
         if not point.is_known
     ]
-    _log_refused(refused)
-    if not points:
-        raise DataError(f"no record can be simulated; the first: {refused[0]}")
     exact = dict.fromkeys(LEVELS, 0.0)
     records = {
         (pair, number): Record(
@@ -81,18 +78,14 @@ def simulated_experiment(lines: xr.Dataset, film: xr.Dataset, study: Study) -> x
         for pair in range(study.rig.pairs)
         for number, point in enumerate(points)
     }
-    for pair, number, revolution in SimulatedRig(lines, study, points).revolutions():
+    revolutions = SimulatedRig(lines, study, points).revolutions() if points else ()
+    for pair, number, revolution in revolutions:
         records[pair, number].add_revolution(revolution)
     rows = [
         record.evaluate() | {"record": _name_of_point(points[number], pair, study)}
         for (pair, number), record in records.items()
     ]
     return _dataset(rows, study, "simulated", refused)
-
-
-def _log_refused(refused: Sequence[str]) -> None:
-    for line in refused:
-        log.warning("Refused: %s", line)
 
 
 def _name_of_point(point: OperatingPoint, pair: int, study: Study) -> str:
@@ -133,11 +126,6 @@ def measured_experiment(manifest: Manifest, study: Study) -> xr.Dataset:
             rows.append(_row_of_entry(entry, study, remarks))
         except LubeError as error:
             refused.append(str(error))
-    _log_refused(refused)
-    for line in remarks:
-        log.warning("%s", line)
-    if not rows:
-        raise DataError(f"no record can be used; the first: {refused[0] if refused else 'none'}")
     return _dataset(rows, study, manifest.origin, refused, remarks)
 
 
@@ -194,7 +182,11 @@ def _dataset(
     refused: Sequence[str] = (),
     remarks: Sequence[str] = (),
 ) -> xr.Dataset:
-    """Dataset of all records' rows; NaN where a row has no value."""
+    """Dataset of all records' rows, NaN where one has no value; logs what was refused."""
+    for line in (*(f"Refused: {line}" for line in refused), *remarks):
+        log.warning("%s", line)
+    if not rows:
+        raise DataError(f"no record can be used; the first: {refused[0] if refused else 'none'}")
     thresholds = np.array(study.experiment.thresholds)
     sizes = {"threshold": thresholds.size, "phase": PHASES, "trace_sample": TRACE_SAMPLES}
     levels = {"threshold": thresholds, "phase": (np.arange(PHASES) + 0.5) / PHASES}

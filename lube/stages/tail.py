@@ -1,14 +1,12 @@
 """The tail stage: probability and rate of contact at any rarity, labelled over the grid."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import scipy.special
 import xarray as xr
 
 from lube.contact.window_films import shaped_films
-from lube.contact.windows import ContactWindows
-from lube.errors import DataError, StudyError
+from lube.contact.windows import ContactWindows, study_windows
+from lube.errors import StudyError
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
@@ -46,45 +44,12 @@ _OF_PAIRS = "breakthrough_probability", "geometric_contact_probability", "breakt
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``tail.nc``; see `lube.stages`."""
-    return tail_probabilities(
-        study.line_spec,
-        inputs["film"],
-        study.boundary_layer,
-        study.seed,
-        study.operating_grid.slide_to_roll_ratio,
-        threads,
-        study.gap,
-    )
-
-
-def tail_probabilities(
-    spec: LineSpec,
-    film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-    seed: int,
-    slide_to_roll_ratio: Sequence[float] = (0.0,),
-    threads: int = 1,
-    gap: Gap = PLAIN,
-) -> xr.Dataset:
-    r"""Compute probability and rate of contact at all operating points, at any rarity.
+    r"""Make ``tail.nc``: probability and rate of contact at any rarity.
 
     Parameters
     ----------
-    spec : LineSpec
-        Parameters of the lines; `Study.line_spec` of a study.
-    film : xarray.Dataset
-        A ``film`` dataset.
-    boundary_layer : BoundaryLayer
-        The boundary layer.
-    seed : int
-        Seed of the study.
-    slide_to_roll_ratio : sequence of float, optional
-        Levels of the slide-to-roll ratio S; the default is pure rolling.
-    threads : int, optional
-        Threads that share the work; they do not change the results.
-    gap : Gap, optional
-        How film and roughness make up the gap; by default flat films, and lines as drawn.
+    study, inputs, threads
+        As in `lube.stages`.
 
     Returns
     -------
@@ -94,11 +59,6 @@ def tail_probabilities(
         uneven windows the share of pairs and the first time are NaN: they depend on the pauses
         between breakthroughs, which are sampled in uniform windows only. The theory for high
         films is for lines as drawn.
-
-    Raises
-    ------
-    DataError
-        If a film thickness is not above zero.
 
     Notes
     -----
@@ -120,25 +80,22 @@ def tail_probabilities(
     apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the
     share of pairs with any is :math:`1 - e^{-\mu}`.
     """
-    film = film.transpose("film_formula", *POINT_DIMS, ...)
-    lowest = film["film_thickness"].min().item()
-    if not lowest > 0.0:
-        raise DataError(f"film thickness: got {lowest:g} m, need above 0")
-    levels = np.asarray(slide_to_roll_ratio, float)
+    film = inputs["film"].transpose("film_formula", *POINT_DIMS, ...)
+    spec, gap, levels = study.line_spec, study.gap, np.asarray(study.slips, float)
     if remark := _why_not(spec, gap):
         return _unknown(film, levels, remark)
     if _SLIP in film["film_thickness"].dims:
         film = film.sel({_SLIP: levels})
     else:
         film = film.drop_dims(_SLIP, errors="ignore")
-    windows, tables = ContactWindows(spec, film, boundary_layer, gap), []
+    windows, tables = study_windows(study, film), []
     of_one = windows.size // film.sizes["film_formula"]
     first, others = (slice(1), slice(of_one)), (slice(1, None), slice(of_one, None))
     for (formulas, points), pairs in (first, PAIRS), (others, FEWER_PAIRS):
         some = film.isel(film_formula=formulas)
         if some["film_formula"].size:
-            found = _sampled(spec, some, windows[points], seed, pairs, threads)
-            tables.append(_table(spec, some, boundary_layer, found, levels, gap))
+            found = _sampled(spec, some, windows[points], study.seed, pairs, threads)
+            tables.append(_table(spec, some, study.boundary_layer, found, levels, gap))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
     table = table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
@@ -157,23 +114,27 @@ def pair_probabilities(
 
     Parameters
     ----------
-    spec, boundary_layer, seed
-        As in `tail_probabilities`.
+    spec : LineSpec
+        Parameters of the lines; `Study.line_spec` of a study.
     film : xarray.Dataset
         ``film_thickness``, ``contact_half_width`` (m) and ``entrainment_speed`` (m/s) over any
         dimensions, and ``reduced_modulus`` (Pa).
+    boundary_layer : BoundaryLayer
+        The boundary layer.
+    seed : int
+        Seed of the study.
     slide_to_roll_ratio : xarray.DataArray or float
         Over the same dimensions.
     gap : Gap, optional
-        As in `tail_probabilities`.
+        How film and roughness make up the gap; by default flat films, and lines as drawn.
 
     Returns
     -------
     xarray.Dataset
         ``breakthrough_probability``, ``geometric_contact_probability`` and ``breakthrough_rate``
         (1/s) over pair and those dimensions. All operating points share the pairs, so a quantity
-        of several points is first computed on each pair. With the attribute ``remarks``, as
-        `tail_probabilities`.
+        of several points is first computed on each pair. With the attribute ``remarks`` of
+        ``tail.nc``.
     """
     if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
@@ -232,7 +193,7 @@ def _unknown(film, slide_to_roll_ratio, remark):
 
 def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
     """Variables of some film formulas, unlabelled."""
-    slip = xr.DataArray(slide_to_roll_ratio, dims=_SLIP).assign_coords({_SLIP: slide_to_roll_ratio})
+    slip = xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
     in_windows, runs = outcomes
     contact, breakthrough = in_windows.transpose("outcome", ...)
     everywhere, speed = xr.ones_like(slip), film["entrainment_speed"]
@@ -372,23 +333,16 @@ def _asymptotes(spec, film, boundary_layer, gap):
     strength = boundary_layer.critical_thickness, boundary_layer.shear_strength
     curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
     moments = pair_moments(spec)
-    if gap.has_shape:
-        return _shaped_asymptotes(film, moments, curvature)
-    thickness = film["film_thickness"]
-    first = scipy.special.ndtr(-thickness / moments[0] ** 0.5)
-    contact = first + 2.0 * film["contact_half_width"] * crossing_rate(thickness, moments)
-    share = sharp_summit_share(thickness.values, moments, curvature)
-    breakthrough = contact * thickness.copy(data=share)
-    return dict(zip(_ASYMPTOTES, (contact, breakthrough), strict=True))
-
-
-def _shaped_asymptotes(film, moments, curvature):
-    """Crossings of a film that changes along the contact, the slope of the film neglected."""
-    films = shaped_films(film)
-    crossings = crossing_rate(films, moments) * film["contact_half_width"]
-    rows = films.values.reshape(-1, films.sizes["film_position"])
+    films = shaped_films(film) if gap.has_shape else film["film_thickness"]
+    rows = films.values.reshape(-1, films.shape[-1])
     # One after the other: the integral over the curvature takes a thousand times their memory.
     shares = [sharp_summit_share(row, moments, curvature) for row in rows]
-    share = films.copy(data=np.reshape(shares, films.shape))
-    values = [each.integrate("film_position") for each in (crossings, crossings * share)]
+    share, rate = films.copy(data=np.reshape(shares, films.shape)), crossing_rate(films, moments)
+    if gap.has_shape:  # the slope of the film is neglected
+        crossings = rate * film["contact_half_width"]
+        values = [each.integrate("film_position") for each in (crossings, crossings * share)]
+    else:
+        first = scipy.special.ndtr(-films / moments[0] ** 0.5)
+        contact = first + 2.0 * film["contact_half_width"] * rate
+        values = contact, contact * share
     return dict(zip(_ASYMPTOTES, values, strict=True))
