@@ -73,7 +73,7 @@ def pairs_of_lines(study, film, seeds):
 
 def limits_of_stage(study, film):
     """Means and lower limits by the stage, shape (2, probabilities, points)."""
-    tail = make(study, {"film": film}, os.cpu_count())
+    tail = make(study, {"film": film}, os.cpu_count()).isel(slide_to_roll_ratio=0)
     return [[tail[name + end].values.ravel() for name in PROBABILITIES] for end in ("", "_lower")]
 
 

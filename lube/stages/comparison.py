@@ -183,15 +183,13 @@ def _expected(table):
     """
     measured = np.isfinite(table["measured_share"].values)
     windows = windows_in(table, 2.0 * table["contact_half_width"].values)
-    members = (
-        table["breakthrough_probability"].transpose("film_formula", "realisation", "record").values
-    )
-    known = [measured & np.isfinite(of_formula).all(axis=0) for of_formula in members]
-    ranges = np.array(
-        [_ranges(row[:, here], windows[here]) for row, here in zip(members, known, strict=True)]
-    )
+    members = table["breakthrough_probability"].values.swapaxes(0, 1)
+    ranges = []
+    for row in members:
+        known = measured & np.isfinite(row).all(axis=0)
+        ranges.append(_ranges(row[:, known], windows[known]))
     return {
-        f"{name}_expected_{side}": ranges[:, figure, end]
+        f"{name}_expected_{side}": np.array(ranges)[:, figure, end]
         for figure, name in enumerate(FIGURES)
         for end, side in enumerate(("lower", "upper"))
     }

@@ -17,20 +17,13 @@ PLACES = ("central", "minimum", "mean")
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``film_plane.nc``; see `lube.stages`."""
-    return film_plane(inputs["lubricant"], study.rollers.reduced_modulus)
-
-
-def film_plane(lubricant: xr.Dataset, reduced_modulus: float) -> xr.Dataset:
-    r"""Compute the film over the Moes numbers M and L, and the error of each film formula.
+    r"""Make ``film_plane.nc``: the film over the Moes numbers M and L, and the formulas' errors.
 
     Parameters
     ----------
-    lubricant : xarray.Dataset
-        A ``lubricant`` dataset. The film is computed with each of its oils at the middle of its
-        temperatures, as Roelands' law needs the viscosity and its coefficient besides M and L.
-    reduced_modulus : float
-        Reduced modulus E*, Pa.
+    study, inputs, threads
+        As in `lube.stages`. The film is computed with each oil at the middle of its temperatures,
+        as Roelands' law needs the viscosity and its coefficient besides M and L.
 
     Returns
     -------
@@ -47,10 +40,11 @@ def film_plane(lubricant: xr.Dataset, reduced_modulus: float) -> xr.Dataset:
     Each formula is compared with the computed film of its place: at the line of centres, the least,
     or the mean of the Hertzian zone.
     """
+    lubricant = inputs["lubricant"]
     levels = np.sort(lubricant["temperature"].values)
     oils = lubricant.sel(temperature=levels[levels.size // 2])
     properties = ["dynamic_viscosity", "pressure_viscosity_coefficient"]
-    film_modulus = 2.0 * reduced_modulus
+    film_modulus = 2.0 * study.rollers.reduced_modulus
     planes = [
         _plane(*oil, film_modulus)
         for oil in zip(*(oils[name].values.tolist() for name in properties), strict=True)

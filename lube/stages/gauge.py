@@ -85,13 +85,10 @@ def gauge_film(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         are the thicker one, and ``gauged_thinner_film_thickness`` (m) is the other, NaN where
         there is none.
     """
-    shares, sigma = (
-        comparison["measured_share"].values,
-        comparison["composite_rms_roughness"].item(),
-    )
+    sigma = comparison["composite_rms_roughness"].item()
     ratios = gauged_ratios(curves.of_records, comparison, comparison["share_error"].values)
-    pairs = zip(curves.of_records, shares, strict=True)
-    thinner = [curve.thinner_film_at(share) for curve, share in pairs]
+    shared = zip(curves.of_records, comparison["measured_share"].values, strict=True)
+    thinner = [curve.thinner_film_at(share) for curve, share in shared]
     found = {
         **values_with_limits("gauged_lambda_ratio", ratios),
         **values_with_limits("gauged_film_thickness", ratios * sigma),
@@ -126,8 +123,9 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         films = np.log(comparison["lambda_ratio"].values[0])
         for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
             held, closed = _leave_one_out(curve, film, members[:, record])
-            by_side = _mean(held[closed]), _mean(held[~closed])
-            coverage[:, record] = np.mean(held), *by_side, np.mean(closed)
+            coverage[:, record] = [
+                _mean(each) for each in (held, held[closed], held[~closed], closed)
+            ]
     names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")
     return xr.Dataset(with_dims("gauge", dict(zip(names, coverage, strict=True))))
 

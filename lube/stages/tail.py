@@ -40,7 +40,7 @@ _FLATTENED = (
     "for lines that a formula flattens"
 )
 _ASYMPTOTES = "geometric_contact_asymptote", "breakthrough_asymptote"
-_OF_PAIRS = "breakthrough_probability", "geometric_contact_probability", "breakthrough_rate"
+_PROBABILITIES = "breakthrough_probability", "geometric_contact_probability"
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -138,14 +138,14 @@ def pair_probabilities(
     """
     if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
-        return xr.Dataset(dict.fromkeys(_OF_PAIRS, unknown), attrs={"remarks": remark})
+        return xr.Dataset(
+            dict.fromkeys((*_PROBABILITIES, "breakthrough_rate"), unknown),
+            attrs={"remarks": remark},
+        )
     windows = ContactWindows(spec, film, boundary_layer, gap)
-    in_windows, runs = _sampled(spec, film, windows, seed, PAIRS)
-    contact, breakthrough = in_windows.transpose("outcome", ...)
-    rate = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
-    values = dict(zip(_OF_PAIRS, (breakthrough, contact, rate), strict=True))
-    table = xr.Dataset(values, attrs={"remarks": ""})
-    return table.transpose("pair", *film["film_thickness"].dims)
+    table, runs = _sampled(spec, film, windows, seed, PAIRS)
+    table["breakthrough_rate"] = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
+    return table.assign_attrs(remarks="").transpose("pair", *film["film_thickness"].dims)
 
 
 def pair_limits(values: xr.Dataset) -> xr.Dataset:
@@ -194,14 +194,13 @@ def _unknown(film, slide_to_roll_ratio, remark):
 def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
     """Variables of some film formulas, unlabelled."""
     slip = xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
-    in_windows, runs = outcomes
-    contact, breakthrough = in_windows.transpose("outcome", ...)
-    everywhere, speed = xr.ones_like(slip), film["entrainment_speed"]
+    of_pairs, runs = outcomes
+    breakthrough = of_pairs["breakthrough_probability"]
     in_window, rate = _in_time(spec, film, runs, slip, gap)
-    turn = spec.points[0] * spec.spacing / surface_speeds(speed, slip)[0]
-    values = (breakthrough * everywhere, contact * everywhere, rate)
+    of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)
+    turn = spec.points[0] * spec.spacing / surface_speeds(film["entrainment_speed"], slip)[0]
     table = {
-        **pair_limits(xr.Dataset(dict(zip(_OF_PAIRS, values, strict=True)))),
+        **pair_limits(of_pairs),
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
         **_in_a_revolution(spec, film, *map(_in_pure_rolling, (runs, breakthrough)), gap),
@@ -263,7 +262,7 @@ def _window_points(spec, film):
 
 
 def _sampled(spec, film, windows, seed, pairs, threads=None):
-    """Probabilities of windows and numbers of runs, over pair, outcome and those of the film."""
+    """Probabilities over pair and the film's dimensions, and numbers of runs, over outcome too."""
     thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     dims = ("pair", "outcome", *thickness.dims)
 
@@ -271,10 +270,12 @@ def _sampled(spec, film, windows, seed, pairs, threads=None):
         return windows.sample(spec, seed, number)
 
     found = on_threads(on_one_pair, range(pairs), threads)
-    return [
+    windows, runs = (
         xr.DataArray(np.reshape(each, (pairs, -1, *thickness.shape)), thickness.coords, dims)
         for each in zip(*found, strict=True)
-    ]
+    )
+    contact, breakthrough = windows.transpose("outcome", ...)
+    return xr.Dataset(dict(zip(_PROBABILITIES, (breakthrough, contact), strict=True))), runs
 
 
 def _touching_pairs(groups, breakthrough, windows):
