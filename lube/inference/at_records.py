@@ -62,8 +62,8 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     scatter = record_scatter(at_records, experiment, probability, study)
     values = {"breakthrough_probability": probability, **scatter}
     values = {name: each.reshape(*each.shape[:-1], *shape) for name, each in values.items()}
+    values["realisation"] = contact["realisation"].values
     model = at_records.assign(with_dims("comparison", values))
-    model = model.assign_coords(realisation=contact["realisation"].values)
     attributes = {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
     return model.assign_attrs(attributes)
 

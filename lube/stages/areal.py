@@ -141,7 +141,12 @@ def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
     longest, around = reach
     first, numbers = [], []
     for film, width, count in points:
-        touching, share = _touching(surface.rms, chosen[2:, :count], film, width)
+        # Known points of strips, and the share of touching rows that each strip stands for, as in
+        # `lube.surfaces.rare_contact`.
+        log_tail = scipy.special.log_ndtr(-film / surface.rms)
+        heights = -surface.rms * scipy.special.ndtri_exp(np.log(chosen[2, :count]) + log_tail)
+        touching = (chosen[3, :count] * width).astype(np.int64), heights.astype(np.float32)
+        share = width * np.exp(log_tail) / count
         room = surface.points - longest - 2 * around, surface.points - width + 1
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
         places = longest + around + row, column
@@ -151,17 +156,6 @@ def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
         first.append(share * np.stack(each))
         numbers.append(share * contacts)
     return np.stack(first), np.stack(numbers)
-
-
-def _touching(rms, chosen, film, width):
-    """Known points of strips, and the share of touching rows that each strip stands for.
-
-    As in `lube.surfaces.rare_contact`.
-    """
-    log_tail = scipy.special.log_ndtr(-film / rms)
-    heights = -rms * scipy.special.ndtri_exp(np.log(chosen[0]) + log_tail)
-    known = (chosen[1] * width).astype(np.int64), heights.astype(np.float32)
-    return known, width * np.exp(log_tail) / chosen.shape[1]
 
 
 def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:

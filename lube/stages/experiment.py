@@ -31,26 +31,23 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``experiment.nc``; see `lube.stages`."""
     if study.experiment.manifest:
         return measured_experiment(read_manifest(study.experiment.manifest), study)
-    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
-    return simulated_experiment(lines, inputs["film"], study)
+    return simulated_experiment(inputs["film"], study)
 
 
 # Simulated records
 
 
-def simulated_experiment(lines: xr.Dataset, film: xr.Dataset, study: Study) -> xr.Dataset:
+def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
     """Let the simulated rig record all operating points, and evaluate its records.
 
     The film thicknesses are those of the film table's first formula.
 
     Parameters
     ----------
-    lines : xarray.Dataset
-        A ``roughness_batch`` dataset of the rig's own realisations, `Study.rig_realisations`.
     film : xarray.Dataset
         A ``film`` dataset.
     study : Study
-        Its rig, evaluation of records, boundary layer, rollers and seed.
+        Its rig and the rig's rollers, evaluation of records, boundary layer and seed.
 
     Returns
     -------
@@ -70,6 +67,7 @@ def simulated_experiment(lines: xr.Dataset, film: xr.Dataset, study: Study) -> x
         for point in every
         if not point.is_known
     ]
+    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     exact = dict.fromkeys(LEVELS, 0.0)
     records = {
         (pair, number): Record(

@@ -48,11 +48,10 @@ def film_profile_table(
         groups = FilmGroups.at(lubricant, rollers, axes["force"], contact, inlet_meniscus)
         solved = groups.profiles().transpose(*POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
-    table["film"] = (
-        over_positions(solved, FilmProfile.film_at, rollers, contact) * rollers.reduced_radius
-    )
-    table["pressure"] = over_positions(solved, FilmProfile.pressure_at, rollers, contact)
-    table["pressure"] = table["pressure"] * table["hertz_pressure"]
+    film = over_positions(solved, FilmProfile.film_at, rollers, contact)
+    pressure = over_positions(solved, FilmProfile.pressure_at, rollers, contact)
+    table["film"] = film * rollers.reduced_radius
+    table["pressure"] = pressure * table["hertz_pressure"]
     for name, digits in _DIGITS.items():
         found = [
             float(f"{getattr(one, name):.{digits}g}") if one else np.nan

@@ -19,22 +19,12 @@ _KEPT = ("bandwidth", "sampling_rate", "bias_voltage")
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``rig.nc``; see `lube.stages`."""
-    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
-    return rig_records(lines, inputs["film"], study)
-
-
-def rig_records(lines: xr.Dataset, film: xr.Dataset, study: Study) -> xr.Dataset:
-    """Record the study's trace points with simulated rigs of several bandwidths.
+    """Make ``rig.nc``: the study's trace points, recorded with rigs of several bandwidths.
 
     Parameters
     ----------
-    lines : xarray.Dataset
-        A ``roughness_batch`` dataset of `Study.rig_realisations`.
-    film : xarray.Dataset
-        A ``film`` dataset.
-    study : Study
-        Its trace points, rig, evaluation of records, boundary layer, rollers and seed.
+    study, inputs, threads
+        As in `lube.stages`.
 
     Returns
     -------
@@ -49,7 +39,8 @@ def rig_records(lines: xr.Dataset, film: xr.Dataset, study: Study) -> xr.Dataset
     DataError
         If the film is known at none of the points.
     """
-    points = [_point_at(levels, film) for levels in study.trace_points]
+    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
+    points = [_point_at(levels, inputs["film"]) for levels in study.trace_points]
     points = [point for point in points if point.is_known]
     if not points:
         raise DataError("traces: the film is known at none of the points, need one at least")
