@@ -1,7 +1,7 @@
 """The model at the conditions of each record.
 
 A record has a force, a speed and a temperature of its own. The film thickness there follows from
-the film formulas, and the probability from the study's own realisations, run at that film and
+the film formulas, and the probability from the study's realisations, run at that film and
 contact width: nothing is rounded to the nearest level of the operating grid.
 """
 
@@ -48,9 +48,9 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
         the same dimensions, most without realisation; and the attributes ``travel`` and
         ``longest_wavelength``, both m, of one realisation.
 
-        The probabilities are those of one revolution of pure rolling, at the film of the record's
-        own slip and with its answer to the roughness: apart from these slip does not change the
-        expected probability. It changes the scatter of a record.
+        The probabilities are those of one revolution of pure rolling, with the film and its
+        response to the roughness at the record's slip. Otherwise slip does not change the
+        expected probability, only the scatter of a record.
     """
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     rollers, formulas = study.rough_rollers, study.film_formulas
@@ -92,9 +92,9 @@ def film_at_records(
     xarray.Dataset
         ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material``,
         ``contact_half_width`` and ``dynamic_viscosity`` over film_formula and record;
-        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. If they have a
+        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. If films have a
         shape, ``film_profile`` over record and film_position, and ``formula_place``. With inlet
-        shear heating its factor over record, and with a meniscus its distance.
+        shear heating the factor over record, and with a meniscus its distance.
     """
     force, speed, temperature, oil, slip = (
         xr.DataArray(experiment[name].values, dims="record")

@@ -26,8 +26,8 @@ Data = xr.Dataset
 ALPHA_FACTORS = np.geomspace(1.0 / 8.0, 8.0, 193)
 """Factors of the pressure-viscosity coefficient that are tried."""
 COMPUTED_FACTORS = np.array([0.125, 0.25, 0.5, 1.0, 2.0])
-"""Factors at which a computed film is solved for. Beyond, it grows as a power of the factor: so
-viscous an oil has a pressure spike too steep to be resolved."""
+"""Factors at which a computed film is solved for. Beyond them it is taken to grow as a power of the
+factor: the pressure spike of so viscous an oil is too steep to be resolved."""
 STRENGTH_LEVELS = 193
 """Number of layer strengths that are tried, between the curves' weakest and strongest."""
 
@@ -46,7 +46,7 @@ def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
     Parameters
     ----------
     curves : RecordCurves
-        Of the records of the comparison.
+        Curves of the records of the comparison.
     contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
@@ -88,7 +88,7 @@ def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) ->
     Parameters
     ----------
     curves : RecordCurves
-        Of the records of the comparison.
+        Curves of the records of the comparison.
     contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
@@ -112,7 +112,7 @@ def strength_logits(
     Parameters
     ----------
     curves : RecordCurves
-        Of the records of the comparison.
+        Curves of the records of the comparison.
     contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
@@ -157,8 +157,7 @@ def study_strength(contact: Data) -> float:
 def _lambda_ratios(comparison, factor):
     """Lambda ratios with the pressure-viscosity coefficient multiplied by a factor.
 
-    How much inlet
-    shear heating thins the film does not depend on the coefficient; starvation depends on the film.
+    Starvation depends on the film, but inlet shear heating does not depend on the coefficient.
     """
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         groups, names = FilmGroups.of(comparison), comparison["film_formula"]
@@ -247,7 +246,7 @@ def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[fl
 def _usable(logits, comparison):
     """Keep the records that have a share and a probability at every factor.
 
-    With the probabilities of the realisations there, and their effective sample size.
+    Also returned are the realisations' probabilities there, and their effective sample size.
     """
     used = np.isfinite(comparison["measured_share"].values) & np.isfinite(logits).all(axis=0)
     comparison = comparison.isel(record=used)

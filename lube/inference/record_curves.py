@@ -1,4 +1,4 @@
-"""Curves of the breakthrough probability against the film, one of each record.
+"""Curves of the breakthrough probability against the film, one for each record.
 
 Where contact depends on the film thickness and the contact width alone, they are read from the
 master map. Elsewhere, under a film with a shape or on lines that the oil flattens, every record has
@@ -29,7 +29,7 @@ PROBABILITY = "breakthrough_probability"
 FILMS = 13
 """Films of a record at which contact is counted or sampled."""
 FINER = 4
-"""Films of its curve for each of these, interpolated."""
+"""Films of the curve for each of these, by interpolation."""
 BEYOND = 0.3, 1.5
 """Thinnest film of the curves over the thinnest of all records, and thickest over the thickest."""
 PAIRS = 8
@@ -41,7 +41,7 @@ LAYER_FACTORS = np.array([1 / 8, 1 / 3, 1.0, 3.0, 8.0])
 LAYER_FILMS, LAYER_PAIRS = 5, 4
 """Films and pairs of lines for boundary layers of other strengths."""
 _LEAST = 1e-40
-"""Probabilities that are taken for none."""
+"""Probability up to which contact is taken as impossible."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -123,7 +123,7 @@ def map_curves(master: xr.Dataset, comparison: xr.Dataset) -> RecordCurves:
     Returns
     -------
     RecordCurves
-        The same curves for records of one width.
+        Records of one width have the same curve.
     """
     widths = 2.0 * comparison["contact_half_width"].values
     layers = master["layer_breakthrough_probability"].mean("realisation")
@@ -176,9 +176,9 @@ def curve_at(master: xr.Dataset, width: float, layer: xr.DataArray | None = None
 def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None) -> RecordCurves:
     """Curves of the films at the records' own conditions, made thinner and thicker.
 
-    The shape of a film, and how much the oil flattens the lines, stay those of the record. As far
-    as the study's realisations know the probability at the record's own film better, the curve is
-    moved there.
+    The shape of a film, and how much the oil flattens the lines, stay those of the record. The
+    curve is shifted towards the mean over the study's realisations at the record's film, the more
+    the better they determine it.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
 
 
 def _offsets(comparison, has_shape):
-    """Logarithms of the films of a shape that the first formula gives, less those of each."""
+    """Logarithm of the film that the first formula gives less that of each, of one shape."""
     if not has_shape:
         return np.zeros(comparison["film_thickness"].shape)
     films = np.log(film_at_places(comparison).transpose("film_formula", "record").values)
@@ -248,12 +248,12 @@ def _on_pairs(study, records, films, weaker, pairs, threads):
 
 
 def _own_curve(films, pairs, record):
-    """Curve of one record, moved to the mean over the realisations as far as that knows more."""
+    """Curve of one record, shifted towards the mean over the realisations."""
     realised = record[PROBABILITY].values
     windows = windows_in(record, 2.0 * record["contact_half_width"].item())
     size = effective_sample_size(realised, windows).item()
     curve = _through(films, pairs.mean(axis=0), size)
-    if len(pairs) == 1:  # it is all that the realisations know
+    if len(pairs) == 1:  # the study has no other realisation
         return curve
     own = np.log(record["lambda_ratio"].item())
     here = curve.logit_at(own)
@@ -273,7 +273,8 @@ def _own_curve(films, pairs, record):
 def _through(films, mean, sample_size):
     """Curve through probabilities at some films, interpolated between them.
 
-    Over the square of the film, in which the logit of a rare probability is nearly linear.
+    The logit is interpolated over the square of the film, in which it is nearly linear where the
+    probability is small.
     """
     known = (mean > _LEAST) & (mean < 1.0)
     if np.count_nonzero(known) < 2:

@@ -1,4 +1,4 @@
-"""Contact shares of a study's records: selected, arranged over the grid, and described in words."""
+"""Contact shares of a study's records: arranged over the grid, and described in words."""
 
 from collections.abc import Mapping, Sequence
 from logging import Logger
@@ -83,7 +83,7 @@ def levels_named(levels: Mapping[str, float]) -> str:
 
 
 def log_lines(log: Logger, lines: Sequence[str]) -> None:
-    """Log lines as warnings; of a long list the first `MOST_LINES`.
+    """Log lines as warnings, the first `MOST_LINES` of a long list.
 
     Parameters
     ----------

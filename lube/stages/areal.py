@@ -1,4 +1,4 @@
-"""The areal stage: contact of the isotropic surface that the lines stand for, over its length."""
+"""The areal stage: contact over the rollers' length of the surface that the lines stand for."""
 
 import math
 from functools import partial
@@ -63,9 +63,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     .. math:: P = \sum_{j=0}^{n-1} g_j
 
-    Importance sampling finds :math:`g_0` from rows that touch, and the others from contacts: a
-    contact begins in row j, and no row of the strip before it touches. Rows further apart than a
-    longest wavelength are independent, so from there on a row is the first with the same
+    Importance sampling finds :math:`g_0` from rows that touch, and the other :math:`g_j` from
+    contacts that begin in row j while no row of the strip before it touches. Rows further apart
+    than a longest wavelength are independent, so from there on a row is the first with the same
     probability if none before it has touched.
 
     A contact breaks its boundary layer if the mean curvature of its highest point exceeds
@@ -134,7 +134,7 @@ def _sampled(spec, surface, points, sharp, length, seed, threads=1):
 
 
 def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
-    """First rows that touch, shape (points, 2, R + 1), and contacts in a row, shape (points, 2)."""
+    """Probability of first rows, shape (points, 2, R + 1), and contacts in a row, (points, 2)."""
     drawing, choosing = map(np.random.default_rng, seeds)
     fields, chosen = surface.draw(drawing), choosing.random((4, STRIPS))
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points, BLOCK), axis=1)

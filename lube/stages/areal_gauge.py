@@ -61,7 +61,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 
 def _curve(film, areal, comparison, width):
-    """Curve of the strip's probability at a contact width; probabilities, rising, and errors."""
+    """Curve of the strip's probability at a contact width, its rising levels, and their errors."""
     widths = 2.0 * film["contact_half_width"].values
     nearest = np.argmin(np.abs(np.log(widths / width)))
     at_force = {"film_formula": 0, "force": nearest}

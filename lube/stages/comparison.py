@@ -58,8 +58,8 @@ def compare(model: xr.Dataset, experiment: xr.Dataset, levels: xr.Dataset) -> xr
         The ``comparison`` file of `lube.schema`: for each record the simulated probability with
         its 95 % interval, the prediction interval of the contact share of one pair, and whether
         the measured share lies in it; figures of agreement for every film formula and
-        threshold, with their range for a correct model; and the means of both sides over the
-        records at every force, speed and temperature. The attribute ``missing`` lists operating
+        threshold, with their range for a correct model; and the simulated and measured means over
+        the records at every force, speed and temperature. The attribute ``missing`` lists operating
         points without a record, ``remarks`` records of one point that contradict each other.
     """
     table = _side_by_side(model, experiment)
@@ -73,7 +73,7 @@ def compare(model: xr.Dataset, experiment: xr.Dataset, levels: xr.Dataset) -> xr
 
 
 def _side_by_side(model, experiment):
-    """Both sides at the comparison threshold, and the prediction interval."""
+    """Values of both sides at the comparison threshold, and the prediction interval."""
     names = [*AT_RECORDS, "origin", "pairs", "drift", "comparison_threshold", "share_error"]
     table = experiment[names].drop_attrs()
     model = model.assign_coords(record=experiment["record"])
@@ -212,7 +212,7 @@ def _ranges(members, windows):
 
 
 def _level_means(table):
-    """Mean of both sides over the records at every level of force, speed and temperature."""
+    """Means of simulated and measured values at every level of force, speed and temperature."""
     simulated, measured = table["simulated_probability"].values, table["measured_share"].values
     means = {}
     for name in GROUPS:

@@ -37,8 +37,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     .. math:: U = \frac{1}{2} \left( \frac{L}{G} \right)^4, \qquad W = M \sqrt{2U}
 
-    Each formula is compared with the computed film of its place: at the line of centres, the least,
-    or the mean of the Hertzian zone.
+    Each formula is compared with the computed film that it refers to: at the line of centres, the
+    least, or the mean over the Hertzian zone.
     """
     lubricant = inputs["lubricant"]
     levels = np.sort(lubricant["temperature"].values)

@@ -39,7 +39,7 @@ def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Data
     Parameters
     ----------
     curves : RecordCurves
-        Of the records of the comparison.
+        Curves of the records of the comparison.
     contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 

@@ -21,7 +21,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     Parameters
     ----------
     study, inputs, threads
-        As in `lube.stages`. The pressure and the film on which a factor depends a little are those
+        As in `lube.stages`. A factor depends a little on the pressure and the film: these are those
         of the middle force, speed and temperature and the first lubricant.
 
     Returns

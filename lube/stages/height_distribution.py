@@ -22,15 +22,14 @@ KURTOSIS = (3.0, 4.0, 6.0)
 LAMBDA_RATIOS = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0])
 """Levels of the lambda ratio."""
 PAIRS = 8
-"""Realisations, the first of the study: all distributions have the same random phases."""
+"""The study's first realisations: lines of all distributions have the same random phases."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``height_distribution.nc``: probabilities by skewness and kurtosis, in pure rolling.
 
-    The contact is that of the largest force. If the film has a shape, or the oil flattens the
-    lines, both are those of this force at the middle speed and temperature and the first lubricant,
-    at all films.
+    The contact is that of the largest force. A shape of the film, and what the oil does to the
+    lines, are those of this force, the middle speed and temperature, and the first lubricant.
 
     Parameters
     ----------

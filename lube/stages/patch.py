@@ -1,4 +1,4 @@
-"""The patch stage: contact mechanics of the isotropic surface, beside those of its line.
+"""The patch stage: contact mechanics of the isotropic surface and of its line.
 
 A square as wide as the longest wavelength of the roughness, which is the largest contact width
 unless the study says otherwise, is pressed against a rigid flat, without oil. The line that stands
@@ -82,7 +82,7 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
         "reduced_modulus": reduced_modulus,
     }
     pressed = [_pressed(spec, surface, values, seed, number) for number in range(REALISATIONS)]
-    # To (which, quantity, realisation, pressure).
+    # Reorder to surface or line, quantity, realisation, pressure.
     of_surface, of_line = np.moveaxis(np.array(pressed), (1, 3), (0, 1))
     values |= zip(_OF_SURFACE, of_surface[[0, 2, 3]], strict=True)
     values |= zip(_OF_LINE, of_line[1:], strict=True)

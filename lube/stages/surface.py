@@ -54,7 +54,7 @@ def measured_surfaces(
     -------
     xarray.Dataset
         The ``surface`` file of `lube.schema`. Its attribute ``remarks`` names waves that show the
-        instrument, and fits that are those of no self-affine surface.
+        instrument, and surfaces that are not self-affine.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def measured_surfaces(
     parts, remarks, known = [], [], {}
     for name, topography in topographies.items():
         line = spec.lines[ROLLERS.index(name)]
-        # Both rollers may have the same one.
+        # Both rollers may have the same topography.
         key = topography.key, line.q_min, line.q_max, line.rms_height
         if key not in known:
             known[key] = _surface(topography, line, hurst)

@@ -1,4 +1,4 @@
-"""The tail stage: probability and rate of contact at any rarity, labelled over the grid."""
+"""The tail stage: probability and rate of contact at any rarity, at all operating points."""
 
 import numpy as np
 import scipy.special
@@ -54,11 +54,11 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty, but where the lines
-        are flattened by a formula or not Gaussian: then it says so, and all values are NaN. In
+        The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty unless the lines
+        are flattened by a formula or not Gaussian; then it says so, and all values are NaN. In
         uneven windows the share of pairs and the first time are NaN: they depend on the pauses
         between breakthroughs, which are sampled in uniform windows only. The theory for high
-        films is for lines as drawn.
+        films holds for lines as drawn.
 
     Notes
     -----
@@ -86,8 +86,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         return _unknown(film, levels, remark)
     if _SLIP in film["film_thickness"].dims:
         film = film.sel({_SLIP: levels})
-    else:
-        film = film.drop_dims(_SLIP, errors="ignore")
     windows, tables = study_windows(study, film), []
     of_one = windows.size // film.sizes["film_formula"]
     first, others = (slice(1), slice(of_one)), (slice(1, None), slice(of_one, None))
@@ -223,10 +221,10 @@ def _in_time(spec, film, runs, slip, gap):
 
 
 def _in_uneven_windows(spec, film, runs, slip):
-    """As `_in_time`, in uneven windows: in time steps as contact is counted in.
+    """As `_in_time`, in uneven windows: by the time steps in which contact is counted.
 
-    In each the faster surface moves by a point. The other does so in a part of them, and rests in
-    the others.
+    In each step the faster surface moves by a point. The other surface moves in a part of the
+    steps only.
     """
     in_window, with_both, with_first, with_second = runs.transpose("outcome", ...)
     alone = xr.where(slip >= 0.0, with_first, with_second)
