@@ -26,6 +26,7 @@ from lube.kernels.shaped import (
 from lube.kernels.strips import strip_statistics, strip_trace
 from lube.kernels.whole_runs import whole_run_steps
 from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
 from lube.surfaces.rare_contact import RarePair, UnevenWindow, rare_contact, rare_contact_under
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair, Values
@@ -313,6 +314,11 @@ class ContactWindows:
         half_window = self.half_windows[points[0]]
         films = np.repeat(self._films[points, None], 2 * half_window + 1, axis=1)
         return WindowFilm(films, half_window)
+
+
+def study_windows(study: Study, film: xr.Dataset, weaker: Values = 1.0) -> ContactWindows:
+    """Contact windows of the films of a study, such as those at the records."""
+    return ContactWindows(study.line_spec, film, study.boundary_layer, study.gap, weaker)
 
 
 def _begun(pair, ratios, begin):

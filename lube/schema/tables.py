@@ -196,3 +196,27 @@ def values_with_limits(
     """
     given = values if dims is None else ((dims, value) for value in values)
     return {f"{name}{end}": value for end, value in zip(names, given, strict=True)}
+
+
+def with_dims(kind: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Give plain arrays the dimensions that they have in a file.
+
+    Parameters
+    ----------
+    kind : str
+        A key of `FILES`.
+    values : mapping of str to array_like
+        Values of its variables and coordinates by their names.
+
+    Returns
+    -------
+    dict of str to tuple
+        Dimensions and values by name, as `xarray.Dataset` takes them.
+
+    Examples
+    --------
+    >>> with_dims("tail", {"force": [800.0]})
+    {'force': (('force',), [800.0])}
+    """
+    rows = COORDINATES | FILES[kind]
+    return {name: (rows[name].dims, value) for name, value in values.items()}

@@ -12,13 +12,8 @@ from lube.study.rollers import RollerPair
 from lube.study.study import Study
 from lube.types import Datasets
 
-_NUMBERS = {
-    "central_film": lambda one: one.central_film,
-    "minimum_film": lambda one: one.minimum_film,
-    "film_end": lambda one: one.film_end,
-    "mass_flux_defect": lambda one: float(f"{one.mass_flux_defect:.0e}"),
-}
-"""Numbers of a film profile by the names of their variables."""
+_DIGITS = {"central_film": 6, "minimum_film": 6, "film_end": 6, "mass_flux_defect": 1}
+"""Numbers of a film profile by the names of their variables, and how many digits are kept."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -54,12 +49,16 @@ def film_profile_table(
         groups = FilmGroups.at(lubricant, rollers, axes["force"], contact, inlet_meniscus)
         solved = groups.profiles.transpose(*POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
-    table["film"] = over_positions(solved, FilmProfile.film_at, contact) * rollers.reduced_radius
-    table["pressure"] = over_positions(solved, FilmProfile.pressure_at, contact)
-    table["pressure"] = table["pressure"] * table["hertz_pressure"]
-    for name, value in _NUMBERS.items():
-        found = [float(f"{value(one):.6g}") if one else np.nan for one in solved.values.ravel()]
-        table[name] = solved.copy(data=np.array(found).reshape(solved.shape))
+    film = over_positions(solved, FilmProfile.film_at, contact)
+    pressure = over_positions(solved, FilmProfile.pressure_at, contact)
+    table["film"] = film * rollers.reduced_radius
+    table["pressure"] = pressure * table["hertz_pressure"]
+    for name, digits in _DIGITS.items():
+        found = [
+            float(f"{getattr(one, name):.{digits}g}") if one else np.nan
+            for one in solved.values.flat
+        ]
+        table[name] = solved.copy(data=np.reshape(found, solved.shape))
     for name in ("central_film", "minimum_film"):
         table[name] = table[name] * rollers.reduced_radius
     return label(table.transpose(*POINT_DIMS, "film_position"), "film_profile")

@@ -17,7 +17,7 @@ from lube.grid.operating_points import at_slip, known_films, surface_speeds
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.physics.electrical import contact_resistance
-from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
+from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, with_dims
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.types import Datasets
@@ -86,7 +86,11 @@ def contact_trace(
     length = windows.trace(line_pair(lines, REALISATION), ratio) * spacing
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
-    trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
+    names = ["film_thickness", "contact_half_width", "entrainment_speed"]
+    names += _MOES if gap.is_flattened else []
+    names += _RESPONSE if gap.is_answered else []
+    trace = table[names].transpose("operating_point", ...)
+    trace = trace.assign(
         contact_length=(dims, length),
         contact_resistance=(dims, contact_resistance(length, resistivity)),
         reduced_modulus=film["reduced_modulus"],
@@ -94,23 +98,16 @@ def contact_trace(
         shear_strength=boundary_layer.shear_strength,
         resistivity=resistivity,
     )
-    trace = trace.assign_attrs(asdict(gap))
     if gap.has_shape:
         trace["film_profile"] = shaped_films(table)
-    if gap.is_flattened:
-        trace = trace.assign({name: table[name] for name in _MOES})
-    if gap.is_answered:
-        trace = trace.assign(table[_RESPONSE].transpose("operating_point", ...))
     time = spacing / faster_surface * np.arange(length.shape[1])
-    return label(trace.assign_coords(time=time), "trace")
+    return label(trace.assign_coords(time=time).assign_attrs(asdict(gap)), "trace")
 
 
 def _known_rows(film, points, gap):
     """Rows of the film table at the operating points, along ``operating_point``."""
-    columns = {
-        name: ("operating_point", [point[name] for point in points]) for name in CONTACT_DIMS
-    }
-    levels = xr.Dataset(columns)
+    columns = {name: [point[name] for point in points] for name in CONTACT_DIMS}
+    levels = xr.Dataset(with_dims("trace", columns))
     film = at_slip(film, points[0]["slide_to_roll_ratio"])
     rows = film.sel({name: levels[name] for name in OPERATING_DIMS})
     rows = rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
