@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 
 from pydantic import NonNegativeInt, model_validator
 
-from lube.errors import DataError, LubeError, nearest, shown
+from lube.errors import DataError, located, right_one, shown
 from lube.recordings.signals import header_cell
 from lube.schema import ORIGINS
 from lube.study.field_types import StrictModel, Text, checked_text, pure_number, quantity, validate
@@ -32,7 +32,8 @@ _UNITS = (
 """Columns whose header needs a unit, with an example; an offset may also be in ohm."""
 
 _TEXTS = ("file", "channel", "unit", "lubricant", "pair", "origin")
-_OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval", "skip")
+OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval", "skip")
+"""Columns that say how to read a recording; arguments of `open_recording`."""
 _OF_SHARES = ("lower", "upper")
 
 
@@ -96,7 +97,7 @@ class Row(StrictModel):
     def _check_file_or_probability(self):
         if (self.file is None) == (self.probability is None):
             raise ValueError("need either file or probability")
-        kind, excluded = ("file", _OF_SHARES) if self.file else ("probability", _OF_FILES)
+        kind, excluded = ("file", _OF_SHARES) if self.file else ("probability", OF_FILES)
         for key in excluded:
             if key in self.model_fields_set:
                 raise ValueError(f"{key}: not allowed with {kind}")
@@ -178,12 +179,9 @@ def read_manifest(path: str | Path) -> Manifest:
     entries, refused = [], []
     for where, content in rows:
         try:
-            entry = _entry(content, where, path.parent)
-            _check_origin(entry, entries)
+            entries.append(_entry(content, where, path.parent, entries))
         except DataError as error:
             refused.append(str(error))
-        else:
-            entries.append(entry)
     origin = entries[0].origin if entries else ORIGINS[0]
     return Manifest(origin, tuple(entries), tuple(refused))
 
@@ -213,11 +211,8 @@ def _columns(cells, where):
     for cell in cells:
         name, units = header_cell(cell)
         if name not in Row.model_fields:
-            near = nearest(name, Row.model_fields)
-            hint = f"did you mean {near!r}? need" if near else "need"
             raise DataError(
-                f"{where}: unknown column {shown(cell)}, {hint} some of "
-                f"{', '.join(Row.model_fields)}, with units such as 'force [N]'"
+                f"{where}: unknown column {shown(cell)}, {right_one(name, Row.model_fields)}"
             )
         if name in columns:
             raise DataError(f"{where}: column {name!r} is repeated")
@@ -235,17 +230,15 @@ def _check_units(name, units, where):
         needed = f"'{name} [{target}]'" if target else f"{name!r} without a unit"
         came = f"the unit {shown(units)}" if units else "no unit"
         raise DataError(f"{where}: {name}: got {came}, need {needed}")
-    try:
+    with located(f"{where}: {name}"):
         if name == "offset":
             electrical_quantity(units)
         elif target is not None:
             convert(1.0, units, target)
-    except LubeError as error:
-        raise DataError(f"{where}: {name}: {error}") from None
 
 
-def _entry(content, where, folder):
-    """Entry of a row's content."""
+def _entry(content, where, folder, earlier):
+    """Entry of a row's content, after the earlier entries."""
     if isinstance(content, DataError):
         raise content
     if not isinstance(content, dict):
@@ -259,17 +252,14 @@ def _entry(content, where, folder):
     file = None if row.file is None else folder / row.file
     if file is not None and not os.path.isfile(file):
         raise DataError(f"{where}: file: got {shown(row.file)}, no such file")
+    if earlier and row.origin != earlier[0].origin:
+        raise DataError(
+            f"{where}: origin: got {row.origin!r} after {earlier[0].origin!r}, need the same in "
+            "all rows"
+        )
     return Entry.model_construct(**dict(row) | {"where": where, "file": file})
 
 
 def _with_point(value):
     """Turn a decimal comma into a point."""
     return re.sub(r"^(\s*[+-]?\d*),(?=\d)", r"\1.", value) if isinstance(value, str) else value
-
-
-def _check_origin(entry, entries):
-    if entries and entry.origin != entries[0].origin:
-        raise DataError(
-            f"{entry.where}: origin: got {entry.origin!r} after {entries[0].origin!r}, need the "
-            "same in all rows"
-        )
