@@ -14,6 +14,7 @@ from lube.errors import RangeError
 from lube.kernels.threshold import count_below, follow_contact
 from lube.physics.electrical import divider_voltage
 from lube.statistics.confidence import probability_limits
+from lube.statistics.folding import phases_of_blocks
 from lube.study.rig_settings import Experiment, Rig
 
 BLOCKS = 2**18
@@ -66,14 +67,15 @@ class ContactShare:
         self, limits: npt.ArrayLike, releases: npt.ArrayLike | None = None, hold: int = 0
     ) -> None:
         self._limits = np.array(limits, float)
-        self._releases = self._limits if releases is None else np.array(releases, float)
-        self._hold = hold
         if self._limits.size == 0 or not np.all(np.diff(self._limits) > 0.0):
             raise RangeError(f"limits: got {limits}, need one or more, rising")
-        if self._releases.size != self._limits.size or np.any(self._releases < self._limits):
+        releases_of = self._limits if releases is None else np.array(releases, float)
+        if releases_of.size != self._limits.size or np.any(releases_of < self._limits):
             raise RangeError(f"releases: got {releases}, need one for each limit, not below it")
-        self._remembers = releases is not None or hold > 0
-        self._states = np.zeros((self._limits.size, 3), np.int64)
+        self._count, self._triggers = count_below, ()
+        if releases is not None or hold > 0:
+            states = np.zeros((self._limits.size, 3), np.int64)
+            self._count, self._triggers = follow_contact, (releases_of, hold, states)
         self._counts = np.zeros((self._limits.size, BLOCKS), np.int64)
         self._doublings = self._samples = 0
 
@@ -88,31 +90,14 @@ class ContactShare:
         values = np.ascontiguousarray(values)
         while values.size:
             room = (BLOCKS << self._doublings) - self._samples
-            self._count(values[:room])
+            seen = self._samples, self._doublings
+            self._count(values[:room], *seen, self._limits, *self._triggers, self._counts)
             self._samples += min(room, values.size)
             values = values[room:]
             if self._samples == BLOCKS << self._doublings:
-                self._merge()
-
-    def _count(self, values):
-        if self._remembers:
-            follow_contact(
-                values,
-                self._samples,
-                self._doublings,
-                self._limits,
-                self._releases,
-                self._hold,
-                self._states,
-                self._counts,
-            )
-        else:
-            count_below(values, self._samples, self._doublings, self._limits, self._counts)
-
-    def _merge(self):
-        self._counts[:, : BLOCKS // 2] = _pairs(self._counts)
-        self._counts[:, BLOCKS // 2 :] = 0
-        self._doublings += 1
+                self._counts[:, : BLOCKS // 2] = _pairs(self._counts)
+                self._counts[:, BLOCKS // 2 :] = 0
+                self._doublings += 1
 
     @property
     def samples(self) -> int:
@@ -193,9 +178,7 @@ def folded_counts(below: np.ndarray, sizes: np.ndarray, interval: float, period:
     >>> folded_counts(np.array([[1, 0, 2, 3, 0, 0]]), np.full(6, 10), 1.0, 3.0)
     (array([[4., 0., 2.]]), array([20., 20., 20.]))
     """
-    phases = min(STRETCHES, max(int(period / interval), 1))
-    turns = (np.arange(sizes.size) + 0.5) * interval / period
-    phase = np.minimum((turns % 1.0 * phases).astype(np.int64), phases - 1)
+    phase, _, phases = phases_of_blocks(sizes.size, interval, period, STRETCHES)
     counts = np.array([np.bincount(phase, row, phases) for row in (*below, sizes)])
     counts = counts[:, counts[-1] > 0]
     return counts[:-1], counts[-1]

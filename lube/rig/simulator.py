@@ -29,7 +29,7 @@ from lube.kernels.circuit import sampled_voltage
 from lube.physics.electrical import contact_resistance, film_capacitance
 from lube.study.rig_settings import Rig
 from lube.study.study import Study
-from lube.types import Array
+from lube.types import Array, Ratios
 
 log = logging.getLogger(__name__)
 
@@ -79,18 +79,13 @@ class SimulatedRig:
 
     def _turns(self, drawn, numbers):
         """Grid points in contact at all time steps of each turn, at some operating points."""
-        rig, contacts, windows = self._study.rig, None, self._windows(numbers)
+        rig, windows = self._study.rig, self._windows(numbers)
         for turn, pair in enumerate(self._rollers(drawn)):
             steps = revolution(pair, self._ratios)
-            if contacts is None or not self._repeats(pair):
+            if not turn or not repeats(self._study, self._ratios):
                 contacts = windows.trace(pair, self._slip, turn * steps)
             part = min(rig.revolutions - turn, 1.0)
             yield contacts[:, : max(round(part * steps), 1)]
-
-    def _repeats(self, pair):
-        """Whether each revolution is the same as the one before."""
-        equal = pair[0].size == pair[1].size and self._ratios[0] == self._ratios[1]
-        return equal and self._study.rig.drift == 0.0
 
     def _rollers(self, drawn):
         """Lines of a pair of rollers in each of its revolutions."""
@@ -114,15 +109,34 @@ class SimulatedRig:
         return ContactWindows(LineGrid.of(self._lines), film, layer, gap)
 
     def _revolution(self, contact, number, seed):
-        point, spacing = self._points[number], self._lines.attrs["spacing"]
-        return Revolution(
-            contact,
-            point,
-            time_step=spacing / point.faster_speed,
-            spot_resistance=self._study.resistivity / spacing,
-            length=self._study.rollers.length,
-            seed=seed,
+        study, point, spacing = self._study, self._points[number], self._lines.attrs["spacing"]
+        capacitance = film_capacitance(
+            point.film_thickness,
+            point.contact_half_width,
+            study.rollers.length,
+            study.rig.oil_permittivity,
         )
+        time_step, resistance = spacing / point.faster_speed, study.resistivity / spacing
+        return Revolution(contact, point, time_step, resistance, capacitance, seed)
+
+
+def repeats(study: Study, ratios: Ratios) -> bool:
+    """Whether each revolution is the same as the one before, except for electrical noise.
+
+    Parameters
+    ----------
+    study : Study
+        Its lines and the drift of their roughness.
+    ratios : tuple of float
+        From `lube.grid.discretise.speed_ratios`.
+
+    Returns
+    -------
+    bool
+        True for equal rollers that roll without slip and do not drift.
+    """
+    first, second = study.line_spec.points
+    return first == second and ratios[0] == ratios[1] and study.rig.drift == 0.0
 
 
 def _renewed(line, other, drift):
@@ -145,8 +159,8 @@ class Revolution:
         Time between two steps, s.
     spot_resistance : float
         Contact resistance of one grid point, rho / dx, ohm (paper, Eq. 1).
-    length : float
-        Length L' of the line contact, m.
+    capacitance : float
+        Capacitance C of the film, F.
     seed : tuple of int
         Seed of the noise.
     """
@@ -155,11 +169,19 @@ class Revolution:
     point: OperatingPoint
     time_step: float
     spot_resistance: float
-    length: float
+    capacitance: float
     seed: tuple[int, ...]
 
     def voltage(self, rig: Rig) -> Array:
-        """Log the revolution with a rig's circuit; the noise differs between rigs by a factor.
+        r"""Log the revolution with a rig's circuit; the noise differs between rigs by a factor.
+
+        With :math:`w` points in contact, conductance :math:`G = 1 / R_c + 1 / R_{leak}` and
+        :math:`R = R_s + R_l`, the voltage over the gap approaches
+
+        .. math:: u_\infty = \frac{U}{1 + R G}
+
+        and in a time step the distance to it decreases by the factor
+        :math:`\exp(-\Delta t (G + 1 / R) / C)`.
 
         Parameters
         ----------
@@ -169,76 +191,28 @@ class Revolution:
         Returns
         -------
         numpy.ndarray
-            Shape (samples,), V.
+            Shape (samples,), float64, V, whole steps of the converter.
         """
-        capacitance = film_capacitance(
-            self.point.film_thickness,
-            self.point.contact_half_width,
-            self.length,
-            rig.oil_permittivity,
+        points = np.arange(self.contact.max() + 1)
+        feed = rig.series_resistance + rig.lead_resistance
+        conductance = 1.0 / contact_resistance(points, self.spot_resistance)
+        conductance += 1.0 / rig.leak_resistance
+        targets = rig.bias_voltage / (1.0 + feed * conductance)
+        decays = np.exp(-self.time_step * (conductance + 1.0 / feed) / self.capacitance)
+        gain = rig.series_resistance / feed
+        voltage = sampled_voltage(
+            self.contact,
+            targets,
+            decays,
+            gain,
+            rig.bias_voltage * (1.0 - gain),
+            rig.amplifier_range,
+            np.exp(-2.0 * np.pi * rig.bandwidth * self.time_step),
+            1.0 / (rig.sampling_rate * self.time_step),
+            int(self.contact.size * self.time_step * rig.sampling_rate) or 1,
         )
-        generator = np.random.default_rng(np.random.SeedSequence(self.seed))
-        return logged_voltage(
-            self.contact, self.time_step, self.spot_resistance, capacitance, rig, generator
-        )
-
-
-def logged_voltage(
-    contact: Array,
-    time_step: float,
-    spot_resistance: float,
-    capacitance: float,
-    rig: Rig,
-    generator: np.random.Generator,
-) -> Array:
-    r"""Simulate the voltage that the rig logs, given the contact at every time step.
-
-    With :math:`w` points in contact, conductance :math:`G = 1 / R_c + 1 / R_{leak}` and
-    :math:`R = R_s + R_l`, the voltage over the gap approaches
-
-    .. math:: u_\infty = \frac{U}{1 + R G}
-
-    and in a time step the distance to it decreases by the factor
-    :math:`\exp(-\Delta t (G + 1 / R) / C)`.
-
-    Parameters
-    ----------
-    contact : numpy.ndarray
-        Shape (T,), grid points in metal contact at each time step.
-    time_step : float
-        Time between two steps, s.
-    spot_resistance : float
-        Contact resistance of one grid point, rho / dx, ohm (paper, Eq. 1).
-    capacitance : float
-        Capacitance C of the film, F.
-    rig : Rig
-        Circuit, amplifier and sampling.
-    generator : numpy.random.Generator
-        Source of the noise.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (samples,), float64, V, whole steps of the converter.
-    """
-    points = np.arange(contact.max() + 1)
-    feed = rig.series_resistance + rig.lead_resistance
-    conductance = 1.0 / contact_resistance(points, spot_resistance) + 1.0 / rig.leak_resistance
-    targets = rig.bias_voltage / (1.0 + feed * conductance)
-    decays = np.exp(-time_step * (conductance + 1.0 / feed) / capacitance)
-    gain = rig.series_resistance / feed
-    voltage = sampled_voltage(
-        contact,
-        targets,
-        decays,
-        gain,
-        rig.bias_voltage * (1.0 - gain),
-        rig.amplifier_range,
-        np.exp(-2.0 * np.pi * rig.bandwidth * time_step),
-        1.0 / (rig.sampling_rate * time_step),
-        int(contact.size * time_step * rig.sampling_rate) or 1,
-    )
-    voltage += rig.noise * generator.standard_normal(voltage.size, np.float32)
-    steps = np.rint(voltage / rig.resolved_voltage)
-    most = 2 ** (rig.resolution - 1)
-    return np.clip(steps, -most, most - 1) * rig.resolved_voltage
+        generator = np.random.default_rng(self.seed)
+        voltage += rig.noise * generator.standard_normal(voltage.size, np.float32)
+        steps = np.rint(voltage / rig.resolved_voltage)
+        most = 2 ** (rig.resolution - 1)
+        return np.clip(steps, -most, most - 1) * rig.resolved_voltage

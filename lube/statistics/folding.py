@@ -151,16 +151,40 @@ def _peak(correlation, middle, reach):
     return top + (0.5 * (before - after) / bend if bend < 0.0 else 0.0)
 
 
-def _phases(count, interval, period):
-    """Phase, as a whole number, and revolution of each block."""
+def phases_of_blocks(
+    count: int, interval: float, period: float, most: int = PHASES
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Divide the blocks of a record by revolution and phase.
+
+    Parameters
+    ----------
+    count : int
+        Number of blocks.
+    interval, period : float
+        Duration of a block and of a revolution, s.
+    most : int, optional
+        Largest number of phases.
+
+    Returns
+    -------
+    phase, turn : numpy.ndarray
+        Shape (count,), int64, phase and revolution in which the middle of each block is.
+    phases : int
+        Number of phases.
+
+    Examples
+    --------
+    >>> phases_of_blocks(5, 1.0, 2.0)
+    (array([0, 1, 0, 1, 0]), array([0, 0, 1, 1, 2]), 2)
+    """
     turns = (np.arange(count) + 0.5) * interval / period
-    phases = min(PHASES, max(int(period / interval), 1))
+    phases = min(most, max(int(period / interval), 1))
     return (turns % 1.0 * phases).astype(np.int64), turns.astype(np.int64), phases
 
 
 def _cells(shares, interval, period):
     """Mean share in each phase of each revolution in the record, and that phase."""
-    phase, turn, phases = _phases(shares.size, interval, period)
+    phase, turn, phases = phases_of_blocks(shares.size, interval, period)
     cell = turn * phases + phase
     counts = np.bincount(cell)
     means = np.bincount(cell, shares) / np.maximum(counts, 1)
@@ -198,7 +222,7 @@ def _profile(shares, interval, period):
 
 def _share_error(shares, interval, period):
     """Calculate the standard error of the share from the scatter between whole revolutions."""
-    _, turn, _ = _phases(shares.size, interval, period)
+    _, turn, _ = phases_of_blocks(shares.size, interval, period)
     whole = int(shares.size * interval / period)
     if whole < 2:
         return 0.0

@@ -16,9 +16,6 @@ import scipy.special
 from lube.statistics.confidence import CONFIDENCE
 from lube.types import Array, Pair, Points, Ratios, Values
 
-MOST_TURNS = 100_000
-"""Turns over which alignments and drift are evaluated; longer records are taken as this long."""
-
 
 def quantile(realisations: int, among: int = 1) -> float:
     """Two-sided 95 % quantile for a scatter estimated from realisations.
@@ -78,35 +75,32 @@ def repeat_factor(turns: npt.ArrayLike) -> npt.ArrayLike:
     return ((whole + 1.0) ** 2 * part + whole**2 * (1.0 - part)) / turns**2
 
 
-def distinct_alignments(turns: float, shift: int, perimeter: int, reach: float) -> int:
+def distinct_alignments(turns: float, ratios: Ratios, points: Points, reach: float) -> float:
     """Count the alignments of two lines that share no roughness.
 
     Parameters
     ----------
-    turns : float
-        Turns of the roller with the faster surface.
-    shift : int
-        Points by which the other surface advances in each of these turns.
-    perimeter : int
-        Points around the other roller.
-    reach : float
-        Distance of two alignments that share no roughness, points.
+    turns, ratios, points, reach
+        As in `scatter_ratio`.
 
     Returns
     -------
-    int
-        At least one; equal rollers without slip keep one alignment.
+    float
+        From 1, as for equal rollers without slip, to the number of turns, which may be below 1.
 
     Examples
     --------
     Rollers of 1000 and 800 points meet again after four turns of the first:
 
-    >>> distinct_alignments(100, 1000, 800, 40.0)
+    >>> distinct_alignments(100, (1.0, 1.0), (1000, 800), 40.0)
     4
     """
-    offsets = np.arange(math.ceil(min(turns, MOST_TURNS))) * (shift % perimeter) % perimeter
+    faster = 0 if ratios[0] == 1.0 else 1
+    # The other surface advances by so many points in each of these turns.
+    shift, perimeter = round(points[faster] * ratios[1 - faster]), points[1 - faster]
+    offsets = np.arange(math.ceil(turns)) * (shift % perimeter) % perimeter
     # Bins centred on the multiples of the reach, so that a return to the start is in the first.
-    return np.unique((offsets + reach / 2.0) % perimeter // reach).size
+    return min(np.unique((offsets + reach / 2.0) % perimeter // reach).size, turns)
 
 
 def drift_factor(turns: float, drift: float) -> float:
@@ -144,7 +138,7 @@ def drift_factor(turns: float, drift: float) -> float:
     >>> [f"{drift_factor(4, drift):.3f}" for drift in (0.0, 0.1, 1.0)]
     ['1.000', '0.937', '0.250']
     """
-    turns = min(max(turns, 1.0), MOST_TURNS)  # the variance does not grow with more turns
+    turns = max(turns, 1.0)
     lags = np.arange(1, math.ceil(turns))
     correlation = np.sqrt(1.0 - drift) ** lags
     return min((1.0 + 2.0 * np.sum((1.0 - lags / turns) * correlation)) / turns, 1.0)
@@ -204,8 +198,7 @@ def scatter_ratio(
         turns_of_each = np.maximum(turns * travel, reach) / points
         return np.sum(weights * repeat_factor(turns_of_each))
 
-    shift = round(travel[1 - faster])
-    alignments = min(distinct_alignments(turns, shift, points[1 - faster], reach), turns)
+    alignments = distinct_alignments(turns, ratios, points, reach)
     visits, renewed = turns / alignments, 1.0 - (1.0 - drift) ** alignments
     together = repeat_factor(visits) / alignments * drift_factor(visits, renewed)
     by_either = min(persistent * alone(1.0), 1.0)

@@ -10,7 +10,7 @@ from lube.grid.gap import Gap
 from lube.grid.operating_points import operating_points
 from lube.physics.electrical import divider_voltage, resistance_from_voltage
 from lube.rig import simulator as module
-from lube.rig.simulator import SimulatedRig, logged_voltage
+from lube.rig.simulator import Revolution, SimulatedRig
 from lube.stages.contact import contact_statistics
 from lube.study.rig_settings import Rig
 
@@ -19,8 +19,8 @@ QUIET = {"noise": "0 V", "resolution": 32}
 
 
 def logged(contact, rig, seed=1, capacitance=CAPACITANCE):
-    rng = np.random.default_rng(seed)
-    return logged_voltage(np.array(contact, np.int32), TIME_STEP, SPOT, capacitance, rig, rng)
+    contact = np.array(contact, np.int32)
+    return Revolution(contact, None, TIME_STEP, SPOT, capacitance, (seed,)).voltage(rig)
 
 
 def test_a_steady_contact_is_logged_with_its_resistance_and_none_as_the_leak():
