@@ -6,7 +6,7 @@ In a NetCDF file they are variables with ``units``, in a TDMS file channels with
 
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -101,7 +101,11 @@ def _channels(path, kind):
 
 @contextmanager
 def _netcdf_channels(path):
-    _check_classic(path)
+    if _is_cut_short(path):
+        raise DataError(
+            f"{path}: not a whole NetCDF file, truncated or damaged, or of the 64-bit data format "
+            "(CDF-5)"
+        )
     with netCDF4.Dataset(path) as file:
         file.set_always_mask(False)
         yield [
@@ -111,25 +115,18 @@ def _netcdf_channels(path):
         ]
 
 
-def _check_classic(path):
-    """Refuse a truncated classic file: the NetCDF library would read zeros, which mean contact."""
+def _is_cut_short(path):
+    """Whether SciPy refuses a classic file, which the NetCDF library would fill up with zeros.
+
+    Zeros mean contact.
+    """
     with open(path, "rb") as file:
-        classic = file.read(3) == b"CDF"
-    if classic and not _is_whole(path):
-        raise DataError(
-            f"{path}: not a whole NetCDF file, truncated or damaged, or of the 64-bit data format "
-            "(CDF-5)"
-        )
-
-
-def _is_whole(path):
-    """Whether a classic file has all the bytes that its header says, by SciPy's reader."""
-    # SciPy warns of the memory map that it cannot close after a failure.
-    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):
-        try:
-            netcdf_file(path).close()
-        except Exception:  # it raises many kinds for a damaged file
+        if file.read(3) != b"CDF":
             return False
+    # SciPy raises many kinds, and warns of the memory map that it cannot close after a failure.
+    with warnings.catch_warnings(action="ignore", category=RuntimeWarning), suppress(Exception):
+        netcdf_file(path).close()
+        return False
     return True
 
 

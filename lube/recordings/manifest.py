@@ -34,7 +34,6 @@ _UNITS = (
 _TEXTS = ("file", "channel", "unit", "lubricant", "pair", "origin")
 OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval", "skip")
 """Columns that say how to read a recording; arguments of `open_recording`."""
-_OF_SHARES = ("lower", "upper")
 
 
 class Row(StrictModel):
@@ -97,7 +96,7 @@ class Row(StrictModel):
     def _check_file_or_probability(self):
         if (self.file is None) == (self.probability is None):
             raise ValueError("need either file or probability")
-        kind, excluded = ("file", _OF_SHARES) if self.file else ("probability", OF_FILES)
+        kind, excluded = ("file", ("lower", "upper")) if self.file else ("probability", OF_FILES)
         for key in excluded:
             if key in self.model_fields_set:
                 raise ValueError(f"{key}: not allowed with {kind}")

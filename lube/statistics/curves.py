@@ -35,9 +35,6 @@ class Curve:
         Effective sample size of one realisation there, shape (n,).
     peak : int
         Index of the largest probability; by default 0: nowhere does it rise.
-    thickest : float
-        Largest film of which the probability is known; levels with one probability are joined, so
-        it may lie beyond the last of `films`.
 
     Examples
     --------
@@ -50,7 +47,6 @@ class Curve:
     logits: Array
     sample_size: Array
     peak: int = 0
-    thickest: float = np.inf
 
     def logit_at(self, films: npt.ArrayLike) -> Array:
         """Logit of the probability at given films, extrapolated linearly beyond the ends.
@@ -146,11 +142,10 @@ def falling_curve(
     falling = scipy.optimize.isotonic_regression(probabilities, increasing=False).x
     inside = (falling >= resolution) & (falling <= 1.0 - resolution)
     sinking, level = np.unique(-scipy.special.logit(falling[inside]), return_inverse=True)
-    thickest = films[inside].max(initial=-np.inf)
     films, sample_size = (
         np.bincount(level, each[inside]) / np.bincount(level) for each in (films, sample_size)
     )
-    return Curve(films, -sinking, sample_size, thickest=thickest)
+    return Curve(films, -sinking, sample_size)
 
 
 def peaked_curve(
@@ -188,7 +183,7 @@ def peaked_curve(
     thin = -rising.films, rising.logits, rising.sample_size
     thick = falling.films, falling.logits, falling.sample_size
     joined = (np.concatenate([a[:0:-1], b]) for a, b in zip(thin, thick, strict=True))
-    return Curve(*joined, peak=rising.films.size - 1, thickest=falling.thickest)
+    return Curve(*joined, peak=rising.films.size - 1)
 
 
 def film_interval(

@@ -183,40 +183,37 @@ def phases_of_blocks(
 
 
 def _cells(shares, interval, period):
-    """Mean share in each phase of each revolution in the record, and that phase."""
+    """Mean share in each phase of each revolution, that phase, and how often each phase occurs."""
     phase, turn, phases = phases_of_blocks(shares.size, interval, period)
     cell = turn * phases + phase
     counts = np.bincount(cell)
     means = np.bincount(cell, shares) / np.maximum(counts, 1)
-    return means[counts > 0], np.flatnonzero(counts) % phases, phases
+    phase = np.flatnonzero(counts) % phases
+    return means[counts > 0], phase, np.bincount(phase, minlength=phases)
 
 
 def _repeatability(shares, interval, period):
     """Mean correlation between two revolutions."""
-    # By the shares themselves: deviations of equal shares need not round to zero.
+    # The shares themselves decide: deviations of equal shares need not round to zero.
     if np.ptp(shares) == 0.0:
         return np.nan
-    values, phase, phases = _cells(shares - shares.mean(), interval, period)
-    times = np.bincount(phase, minlength=phases)
+    values, phase, times = _cells(shares - shares.mean(), interval, period)
     again = times > 1
-    if not again.any() or phases < LEAST_BLOCKS:
-        return np.nan
-    sums, squares = (np.bincount(phase, each, phases)[again] for each in (values, values**2))
-    times = times[again]
-    alike = np.sum((sums**2 - squares) / (times * (times - 1)))
-    total = np.sum(squares / times)
-    return alike / total if total > 0.0 else np.nan
+    sums, squares = (np.bincount(phase, each, times.size)[again] for each in (values, values**2))
+    known = times[again]
+    alike = np.sum((sums**2 - squares) / (known * (known - 1)))
+    total = np.sum(squares / known)
+    return alike / total if total > 0.0 and times.size >= LEAST_BLOCKS else np.nan
 
 
 def _profile(shares, interval, period):
     """Mean over the revolutions at each of `PHASES` phases, and standard deviation."""
-    values, phase, phases = _cells(shares, interval, period)
-    times = np.bincount(phase, minlength=phases)
+    values, phase, times = _cells(shares, interval, period)
     with np.errstate(divide="ignore", invalid="ignore"):
-        mean = np.bincount(phase, values, phases) / times
-        excess = np.bincount(phase, (values - mean[phase]) ** 2, phases) / (times - 1)
+        mean = np.bincount(phase, values, times.size) / times
+        excess = np.bincount(phase, (values - mean[phase]) ** 2, times.size) / (times - 1)
     deviation = np.where(times > 1, np.sqrt(excess), np.nan)
-    wanted = np.arange(PHASES) * phases // PHASES
+    wanted = np.arange(PHASES) * times.size // PHASES
     return mean[wanted], deviation[wanted]
 
 
