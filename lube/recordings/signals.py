@@ -193,13 +193,11 @@ def _selected(channels, name, where):
     ]
     if len(found) == 1:
         return found[0]
+    reason = f"no channel {shown(name)}, need one of"
     if found:
-        listed = _listed([channels[index] for index in found])
-        raise DataError(
-            f"{where}: channel {shown(name)} is ambiguous, need the full name of one: {listed}"
-        )
-    listed = _listed(channels) or "the file has no numeric channel"
-    raise DataError(f"{where}: no channel {shown(name)}, need one of: {listed}")
+        reason = f"channel {shown(name)} is ambiguous, need the full name of one"
+    listed = _listed([channels[index] for index in found] or channels)
+    raise DataError(f"{where}: {reason}: {listed or 'the file has no numeric channel'}")
 
 
 def _listed(channels):

@@ -239,27 +239,23 @@ def share_interval(
     if not windows >= 1.0:
         raise RangeError(f"windows: got {windows:g}, need at least 1")
     share = below.sum(axis=-1) / sizes.sum()
-    variance, degrees = _largest_variance(below, sizes)
-    for counts in folded:
-        by_phase, freedom = _largest_variance(*counts)
-        degrees = np.where(by_phase > variance, freedom, degrees)
-        variance = np.maximum(by_phase, variance)
+    found = [(np.zeros(share.size), 1)]
+    for counts in ((below, sizes), *folded):
+        found += _variances(*counts)
+    variances, degrees = (np.array(each) for each in zip(*found, strict=True))
+    variance, degrees = variances.max(axis=0), degrees[variances.argmax(axis=0)]
     with np.errstate(divide="ignore", invalid="ignore"):
         samples = np.where(variance > 0.0, share * (1.0 - share) / variance, np.nan)
     return share, *probability_limits(share, samples, degrees, windows)
 
 
-def _largest_variance(below, sizes):
-    """Largest variance of the share over all lengths of stretches, with its degrees of freedom."""
-    variance, degrees = np.zeros(below.shape[0]), np.ones(below.shape[0])
+def _variances(below, sizes):
+    """Yield the variance of the share by stretches of each length, and its degrees of freedom."""
     while sizes.size > MOST_STRETCHES:
         below, sizes = _pairs(below), _pairs(sizes)
     while sizes.size >= LEAST_BLOCKS:
-        here = _variance(below, sizes)
-        degrees = np.where(here > variance, sizes.size - 1, degrees)
-        variance = np.maximum(here, variance)
+        yield _variance(below, sizes), sizes.size - 1
         below, sizes = _pairs(below), _pairs(sizes)
-    return variance, degrees
 
 
 def _variance(below, sizes):

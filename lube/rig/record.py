@@ -55,8 +55,7 @@ class Conditions:
 
     def labelled(self, study: Study) -> dict[str, Any]:
         """Conditions by name, and the study's level near each of `LEVELS`, NaN if none is."""
-        names = (*LEVELS, "lubricant", "slide_to_roll_ratio", "pair")
-        row = {name: getattr(self, name) for name in names}
+        row = {name: value for name, value in vars(self).items() if name != "tolerances"}
         for name in LEVELS:
             levels = getattr(study.operating_grid, name)
             found = level_near(levels, row[name], self.tolerances[name])
@@ -140,14 +139,15 @@ class Record:
         block = float(sizes[0]) * self._interval
         at = self._study.experiment.thresholds.index(self._study.experiment.threshold)
         folded = fold(below[at] / sizes, block, self._period)
-        speed_ratio = self._period / folded.period if folded.repeatability >= CLEAR else np.nan
+        period = folded.revolution_period
+        speed_ratio = self._period / period if folded.repeatability >= CLEAR else np.nan
         duration = self._counter.samples * self._interval
         # Of the roller with the faster surface.
         steps_around = self._study.line_spec.points[self._faster]
-        revolutions = duration / folded.period * (self._revolutions[0] / steps_around)
-        periods = {folded.period * each / self._revolutions[0] for each in self._revolutions}
-        periods = sorted(periods) if duration > folded.period else ()
-        folds = [folded_counts(below, sizes, block, period) for period in periods]
+        revolutions = duration / period * (self._revolutions[0] / steps_around)
+        periods = {period * each / self._revolutions[0] for each in self._revolutions}
+        periods = sorted(periods) if duration > period else ()
+        folds = [folded_counts(below, sizes, block, each) for each in periods]
         shares = share_interval(below, sizes, self._windows(revolutions), folds)
         conditions = self._corrected(speed_ratio) if correct_speed else self.conditions
         steps = self._steps
@@ -157,13 +157,10 @@ class Record:
             "duration": duration,
             "sampling_interval": self._interval,
             "turns": revolutions,
-            "revolution_period": folded.period,
-            "repeatability": folded.repeatability,
             "speed_ratio": speed_ratio,
+            **vars(folded),
             "share_error": folded.share_error if repeats(self._study, self._ratios) else 0.0,
-            "folded_share": folded.profile,
-            "folded_deviation": folded.deviation,
-            **self._trace(folded.period),
+            **self._trace(period),
             "true_contact_share": self._steps_in_contact / steps if steps else np.nan,
         }
 

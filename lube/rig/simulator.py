@@ -29,7 +29,7 @@ from lube.kernels.circuit import sampled_voltage
 from lube.physics.electrical import contact_resistance, film_capacitance
 from lube.study.rig_settings import Rig
 from lube.study.study import Study
-from lube.types import Array, Ratios
+from lube.types import Array, Pair, Ratios
 
 log = logging.getLogger(__name__)
 
@@ -37,8 +37,10 @@ TOGETHER = 16
 """Operating points whose contact at all time steps is in memory at once."""
 
 
-class SimulatedRig:
-    """A twin-disc rig that runs its own rollers at given operating points.
+def simulated_revolutions(
+    lines: xr.Dataset, study: Study, points: list[OperatingPoint]
+) -> Iterator[tuple[int, int, "Revolution"]]:
+    """Run all pairs of the rig's rollers, each at all operating points.
 
     Parameters
     ----------
@@ -48,76 +50,82 @@ class SimulatedRig:
         Its rig, boundary layer, rollers, resistivity and seed.
     points : list of OperatingPoint
         From `lube.grid.operating_points.operating_points`; all of one slide-to-roll ratio.
+
+    Yields
+    ------
+    pair : int
+        Index of the pair of rollers.
+    number : int
+        Index of the operating point.
+    revolution : Revolution
+        The next revolution of this pair at this point.
     """
+    for pair, drawn in enumerate(np.split(lines["realisation"].values, study.rig.pairs)):
+        for begin in range(0, len(points), TOGETHER):
+            some = points[begin : begin + TOGETHER]
+            for turn, contacts in enumerate(_turns(lines, study, some, drawn)):
+                for number, contact in enumerate(contacts, begin):
+                    seed = (study.seed, int(drawn[0]), number + 1, turn)
+                    spacing = lines.attrs["spacing"]
+                    yield pair, number, _revolution(contact, points[number], spacing, study, seed)
+            log.info("simulated rig: pair %d, %d operating points", pair + 1, begin + len(some))
 
-    def __init__(self, lines: xr.Dataset, study: Study, points: list[OperatingPoint]) -> None:
-        self._lines, self._study, self._points = lines, study, points
-        self._slip = points[0].slide_to_roll_ratio
-        self._ratios = speed_ratios(self._slip)
 
-    def revolutions(self) -> Iterator[tuple[int, int, "Revolution"]]:
-        """Run all pairs of rollers, each at all operating points.
+def _turns(lines, study, points, drawn):
+    """Grid points in contact at all time steps of each turn, at some operating points."""
+    slip, windows = points[0].slide_to_roll_ratio, _windows(lines, study, points)
+    ratios = speed_ratios(slip)
+    for turn, pair in enumerate(drifting_rollers(lines, study, drawn)):
+        steps = revolution(pair, ratios)
+        if not turn or not repeats(study, ratios):
+            contacts = windows.trace(pair, slip, turn * steps)
+        part = min(study.rig.revolutions - turn, 1.0)
+        yield contacts[:, : max(round(part * steps), 1)]
 
-        Yields
-        ------
-        pair : int
-            Index of the pair of rollers.
-        number : int
-            Index of the operating point.
-        revolution : Revolution
-            The next revolution of this pair at this point.
-        """
-        rig, realisations = self._study.rig, self._lines["realisation"].values
-        for pair, drawn in enumerate(np.split(realisations, rig.pairs)):
-            for begin in range(0, len(self._points), TOGETHER):
-                numbers = range(begin, min(begin + TOGETHER, len(self._points)))
-                for turn, contacts in enumerate(self._turns(drawn, numbers)):
-                    for number, contact in zip(numbers, contacts, strict=True):
-                        seed = (self._study.seed, int(drawn[0]), number + 1, turn)
-                        yield pair, number, self._revolution(contact, number, seed)
-                log.info("simulated rig: pair %d, %d operating points", pair + 1, numbers.stop)
 
-    def _turns(self, drawn, numbers):
-        """Grid points in contact at all time steps of each turn, at some operating points."""
-        rig, windows = self._study.rig, self._windows(numbers)
-        for turn, pair in enumerate(self._rollers(drawn)):
-            steps = revolution(pair, self._ratios)
-            if not turn or not repeats(self._study, self._ratios):
-                contacts = windows.trace(pair, self._slip, turn * steps)
-            part = min(rig.revolutions - turn, 1.0)
-            yield contacts[:, : max(round(part * steps), 1)]
+def _windows(lines, study, points):
+    """Contact windows of some operating points."""
+    rows = [point.row for point in points]
+    film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
+    alike = ["reduced_modulus", "reduced_radius", "composite_rms_roughness"]
+    film = film.assign(rows[0][alike])
+    return ContactWindows(LineGrid.of(lines), film, study.boundary_layer, study.gap)
 
-    def _rollers(self, drawn):
-        """Lines of a pair of rollers in each of its revolutions."""
-        drift = self._study.rig.drift
-        pair = line_pair(self._lines, drawn[0])
-        for turn in range(math.ceil(self._study.rig.revolutions)):
-            if turn and drift > 0.0:
-                pair = tuple(
-                    _renewed(old, new, drift)
-                    for old, new in zip(pair, line_pair(self._lines, drawn[turn]), strict=True)
-                )
-            yield pair
 
-    def _windows(self, numbers):
-        """Contact windows of some operating points."""
-        rows = [self._points[number].row for number in numbers]
-        film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
-        alike = ["reduced_modulus", "reduced_radius", "composite_rms_roughness"]
-        film = film.assign(rows[0][alike])
-        layer, gap = self._study.boundary_layer, self._study.gap
-        return ContactWindows(LineGrid.of(self._lines), film, layer, gap)
+def drifting_rollers(lines: xr.Dataset, study: Study, drawn: Array) -> Iterator[Pair]:
+    """Draw a pair of rollers, whose roughness may drift, for each of its revolutions.
 
-    def _revolution(self, contact, number, seed):
-        study, point, spacing = self._study, self._points[number], self._lines.attrs["spacing"]
-        capacitance = film_capacitance(
-            point.film_thickness,
-            point.contact_half_width,
-            study.rollers.length,
-            study.rig.oil_permittivity,
-        )
-        time_step, resistance = spacing / point.faster_speed, study.resistivity / spacing
-        return Revolution(contact, point, time_step, resistance, capacitance, seed)
+    Parameters
+    ----------
+    lines, study
+        As in `simulated_revolutions`.
+    drawn : numpy.ndarray
+        Realisations of this pair, one for each revolution if the roughness drifts.
+
+    Yields
+    ------
+    tuple of numpy.ndarray
+        The two lines, int32 height steps.
+    """
+    drift, pair = study.rig.drift, line_pair(lines, drawn[0])
+    for turn in range(math.ceil(study.rig.revolutions)):
+        if turn and drift > 0.0:
+            pair = tuple(
+                _renewed(old, new, drift)
+                for old, new in zip(pair, line_pair(lines, drawn[turn]), strict=True)
+            )
+        yield pair
+
+
+def _revolution(contact, point, spacing, study, seed):
+    capacitance = film_capacitance(
+        point.film_thickness,
+        point.contact_half_width,
+        study.rollers.length,
+        study.rig.oil_permittivity,
+    )
+    time_step, resistance = spacing / point.faster_speed, study.resistivity / spacing
+    return Revolution(contact, point, time_step, resistance, capacitance, seed)
 
 
 def repeats(study: Study, ratios: Ratios) -> bool:

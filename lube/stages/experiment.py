@@ -18,7 +18,7 @@ from lube.inference.study_shares import levels_named
 from lube.recordings.manifest import Entry, Manifest, read_manifest
 from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 from lube.rig.record import LEVELS, TRACE_SAMPLES, Conditions, Record
-from lube.rig.simulator import SimulatedRig
+from lube.rig.simulator import simulated_revolutions
 from lube.schema import LIMITS, label, values_with_limits
 from lube.statistics.folding import PHASES
 from lube.study.study import Study
@@ -78,7 +78,7 @@ def simulated_experiment(lines: xr.Dataset, film: xr.Dataset, study: Study) -> x
         for pair in range(study.rig.pairs)
         for number, point in enumerate(points)
     }
-    for pair, number, revolution in SimulatedRig(lines, study, points).revolutions():
+    for pair, number, revolution in simulated_revolutions(lines, study, points):
         records[pair, number].add_revolution(revolution)
     rows = [
         record.evaluate() | {"record": _name_of_point(record.conditions, study)}

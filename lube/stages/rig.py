@@ -8,7 +8,7 @@ from lube.errors import DataError
 from lube.grid.operating_points import OperatingPoint, operating_points
 from lube.physics.electrical import resistance_from_voltage
 from lube.rig.contact_share import record_counter
-from lube.rig.simulator import Revolution, SimulatedRig
+from lube.rig.simulator import Revolution, simulated_revolutions
 from lube.schema import EXPERIMENT_DIMS, POINT_DIMS, label
 from lube.study.study import Study
 from lube.types import Datasets
@@ -53,7 +53,7 @@ def rig_records(lines: xr.Dataset, film: xr.Dataset, study: Study) -> xr.Dataset
     if not points:
         raise DataError("traces: the film is known at none of the points, need one at least")
     records = [_BandwidthRecord(study) for _ in points]
-    for _, number, revolution in SimulatedRig(lines, study, points).revolutions():
+    for _, number, revolution in simulated_revolutions(lines, study, points):
         records[number].add(revolution)
     return label(_dataset(points, records, study), "rig")
 

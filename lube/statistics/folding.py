@@ -25,19 +25,19 @@ CLEAR = 0.5
 
 @dataclass(frozen=True)
 class Fold:
-    """A record folded by the revolution.
+    """A record folded by the revolution, by the names of the ``experiment`` file.
 
     Attributes
     ----------
-    period : float
+    revolution_period : float
         Period of a revolution, s: found in the record if it repeats clearly, else the nominal one.
     repeatability : float
         Mean correlation between two revolutions: 1 if they are the same, 0 if they are
         independent; NaN if the record holds at most one revolution, does not vary, or has too few
         blocks in a revolution.
-    profile : numpy.ndarray
+    folded_share : numpy.ndarray
         Shape (PHASES,), contact share at each phase of a revolution.
-    deviation : numpy.ndarray
+    folded_deviation : numpy.ndarray
         Shape (PHASES,), standard deviation between revolutions; NaN where a phase occurs only
         once.
     share_error : float
@@ -45,10 +45,10 @@ class Fold:
         revolutions; 0 if there are fewer than two.
     """
 
-    period: float
+    revolution_period: float
     repeatability: float
-    profile: np.ndarray
-    deviation: np.ndarray
+    folded_share: np.ndarray
+    folded_deviation: np.ndarray
     share_error: float
 
 
@@ -75,7 +75,7 @@ def fold(shares: np.ndarray, interval: float, nominal_period: float) -> Fold:
 
     >>> turn = np.random.default_rng(1).random(64)
     >>> folded = fold(np.tile(turn, 10), interval=0.01, nominal_period=0.64)
-    >>> f"{folded.period:.3f} s", f"{folded.repeatability:.3f}"
+    >>> f"{folded.revolution_period:.3f} s", f"{folded.repeatability:.3f}"
     ('0.640 s', '1.000')
     """
     period = refined_period(shares, interval, nominal_period)

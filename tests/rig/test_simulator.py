@@ -10,7 +10,7 @@ from lube.grid.gap import Gap
 from lube.grid.operating_points import operating_points
 from lube.physics.electrical import divider_voltage, resistance_from_voltage
 from lube.rig import simulator as module
-from lube.rig.simulator import Revolution, SimulatedRig
+from lube.rig.simulator import Revolution, drifting_rollers, simulated_revolutions
 from lube.stages.contact import contact_statistics
 from lube.study.rig_settings import Rig
 
@@ -95,7 +95,7 @@ def slipping(rig_film):
 
 
 def run(lines, study, points):
-    return list(SimulatedRig(lines, study, points).revolutions())
+    return list(simulated_revolutions(lines, study, points))
 
 
 def test_every_pair_passes_all_points_for_all_its_revolutions(lines_of, study, with_rig, points):
@@ -146,12 +146,10 @@ def test_under_films_with_a_shape_too(lines_of, study, with_rig, shaped_film, de
 
 
 @pytest.mark.parametrize(("drift", "kept"), [(0.3, 0.7**0.5), (1.0, 0.0)])
-def test_drift_renews_its_share_of_the_variance_each_turn(
-    lines_of, study, with_rig, points, drift, kept
-):
+def test_drift_renews_its_share_of_the_variance_each_turn(lines_of, study, with_rig, drift, kept):
     drifting = with_rig(study, drift=drift, revolutions=3)
-    rig = SimulatedRig(lines_of(drifting), drifting, points)
-    first, second, third = (pair[0] for pair in rig._rollers(drifting.rig_realisations))
+    drawn = drifting_rollers(lines_of(drifting), drifting, drifting.rig_realisations)
+    first, second, third = (pair[0] for pair in drawn)
     assert np.corrcoef(first, second)[0, 1] == pytest.approx(kept, abs=0.05)
     assert np.corrcoef(first, third)[0, 1] == pytest.approx(kept**2, abs=0.05)
     assert np.std(third) == pytest.approx(np.std(first), rel=0.05)
