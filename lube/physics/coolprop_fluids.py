@@ -2,8 +2,8 @@
 
 CoolProp does not refuse states outside a fluid's range: it returns negative viscosities above the
 maximum pressure, and properties of the gas above the boiling point. Here the state is checked
-before the call, and the result after it. CoolProp is imported on first use, because that takes a
-second or two. Temperatures are in kelvin.
+before the call, and the result after it. CoolProp is imported on first use, because the import
+takes a second or two. Temperatures are in kelvin.
 """
 
 import functools

@@ -18,7 +18,7 @@ from lube.physics import ZERO_CELSIUS
 from lube.types import Array, Values
 
 CAMERON_POLE = ZERO_CELSIUS - 95.0
-"""Cameron's convention for Vogel's law through two points only, nu = a exp(b/(theta + 95)), K."""
+"""Pole of Vogel's law through two points only, nu = a exp(b/(theta + 95)), by Cameron, K."""
 
 ASTM_D341_LEAST = 0.21
 """Viscosity above which ASTM D341 holds, mm2/s."""
@@ -142,9 +142,9 @@ def fit_vogel(temperature: Array, kinematic_viscosity: Array) -> tuple[float, fl
     -----
     With two temperatures the pole c is Cameron's: T - c = theta + 95, with theta in degC. With
     more, ln nu is fitted by a straight line in 1/(T - c), and the pole is the one that gives the
-    smallest sum of squared residuals. It is searched between 0 K, where the law becomes
-    Andrade's, and 1 K below the lowest temperature: first on a grid, then by bounded
-    minimisation, so that the result does not depend on a starting value.
+    smallest sum of squared residuals. It is sought between 0 K, where the law becomes Andrade's
+    law, and 1 K below the lowest temperature: first on a grid, then by bounded minimisation, so
+    that the result does not depend on a starting value.
 
     References
     ----------

@@ -18,7 +18,7 @@ from lube.errors import DataError, shown
 from lube.recordings.signals import Channel, Signal, find_signals, header_cell
 from lube.study.small_csv import delimiter_of, split_cells
 
-_NUMBER = re.compile(r"[+-]?([.,]?\d|nan\b|inf\b)", re.IGNORECASE)  # as it begins
+_NUMBER = re.compile(r"[+-]?([.,]?\d|nan\b|inf\b)", re.IGNORECASE)  # how a number begins
 
 MOST_LINES = 200
 """Lines among which the line of column names is looked for."""
@@ -156,21 +156,21 @@ def open_text(
 ) -> TextSignal:
     """Find the recording in a CSV file.
 
-    Empty lines and lines that begin with ``#`` may precede the line of column names. Other lines
-    may too: it is then the first one that names a voltage or resistance with its unit and stands
+    Empty lines and lines that begin with ``#`` may precede the line of column names. If other lines
+    precede it, it is the first line that names a voltage or resistance with its unit and stands
     right above a row of as many values. Columns are separated by tabs, semicolons or commas; with
     tabs or semicolons, numbers may have decimal commas.
 
     Parameters
     ----------
     path : Path
-        The file, text in UTF-8 or, where it is not that, in Windows-1252 (or Latin-1).
+        The file; lines that are not UTF-8 text are read as Windows-1252 (or Latin-1).
     channel : str, optional
         Name of the column to read, or its whole header.
     unit : str, optional
         Its unit; overrides the one in the file.
     skip : int, optional
-        Number of lines before the line of column names, which is not looked for then.
+        Number of lines before the line of column names; without it that line is looked for.
 
     Returns
     -------

@@ -76,13 +76,13 @@ class Row(StrictModel):
     speed: Annotated[float, quantity("rpm", above=0.0)]
     """rotation speed, as in the study; `1/min` and `Hz` count turns"""
     temperature: Annotated[float, quantity("degC", above=-273.15)]
-    """of rollers and oil"""
+    """temperature of rollers and oil"""
     force_tolerance: Annotated[float, quantity("N", above=0.0)] | None = None
-    """how far the true force may be from the one stated"""
+    """largest difference between the true force and the one stated"""
     speed_tolerance: Annotated[float, quantity("rpm", above=0.0)] | None = None
-    """how far the true speed may be from the one stated"""
+    """largest difference between the true speed and the one stated"""
     temperature_tolerance: Annotated[float, quantity("K", above=0.0)] | None = None
-    """how far the true temperature may be from the one stated; 1 degC is 1 K here"""
+    """largest difference between the true temperature and the one stated; 1 degC is 1 K here"""
     lubricant: Text | None = None
     """a lubricant of the study; by default its first"""
     slide_to_roll_ratio: Annotated[float, pure_number(least=-2.0, most=2.0)] | None = None
@@ -137,7 +137,7 @@ class Manifest:
     entries : tuple of Entry
         The usable rows, in order.
     refused : tuple of str
-        One line for each row that cannot be used: its position, what came, what is needed.
+        One line for each row that cannot be used, with its position and the reason.
     """
 
     origin: str
@@ -161,7 +161,7 @@ def read_manifest(path: str | Path) -> Manifest:
     Returns
     -------
     Manifest
-        Its usable rows, and why others are refused.
+        The usable rows, and the reasons why others are refused.
 
     Raises
     ------

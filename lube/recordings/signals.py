@@ -66,13 +66,13 @@ class Signal:
     Attributes
     ----------
     index : int
-        Position of the channel among those of the file.
+        Position of the channel among the channels of the file.
     quantity : str
         ``time``, ``voltage`` or ``resistance``.
     factor : float
         Factor by which the file's values are multiplied.
     shift : float
-        Then added, s, V or ohm.
+        Number added to the product, s, V or ohm.
     """
 
     index: int

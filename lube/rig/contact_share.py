@@ -18,10 +18,10 @@ from lube.statistics.folding import phases_of_blocks
 from lube.study.rig_settings import Experiment, Rig
 
 BLOCKS = 2**18
-"""Largest number of blocks; when all are full, each two are added to one."""
+"""Largest number of blocks; when all are full, each two neighbours are added up to one block."""
 
 MOST_STRETCHES = 4096
-"""Largest number of stretches: shorter ones see the same contact as their neighbours."""
+"""Largest number of stretches; shorter stretches see the same contact as their neighbours."""
 
 STRETCHES = 64
 """Largest number of stretches of the circumference that a folded record is divided into."""
@@ -47,7 +47,7 @@ class ContactShare:
         Shape (K,), not below the limits; by default the limits, which is no hysteresis.
     hold : int, optional
         Number of samples that a change of state must last to count; it then counts from its
-        first sample on. 0 is off.
+        first sample on. With 0 every change counts.
 
     Raises
     ------
@@ -169,7 +169,7 @@ def folded_counts(below: np.ndarray, sizes: np.ndarray, interval: float, period:
     Returns
     -------
     below, sizes : numpy.ndarray
-        The same in at most `STRETCHES` phases, those that were seen, shapes (K, F) and (F,).
+        The counts in at most `STRETCHES` phases that the record has, shapes (K, F) and (F,).
 
     Examples
     --------
@@ -189,9 +189,9 @@ def share_interval(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     r"""Contact share of one record and its 95 % interval, from the scatter within the record.
 
-    It is the interval of the mean over pairs of rollers, as far as the record of one pair shows
-    it. Neighbouring samples see the same roughness and are correlated; long stretches nearly are
-    not. The variance of the mean estimated from stretches grows with their length, until they are
+    The interval is that of the mean over pairs of rollers, as far as one pair's record shows it.
+    Neighbouring samples see the same roughness and are correlated; long stretches nearly are not.
+    The variance of the mean estimated from stretches grows with their length, until they are
     longer than the correlation of the record. It is estimated from blocks, from pairs of blocks,
     pairs of pairs and so on, and the largest estimate is used [1]_. Where rollers repeat
     themselves, stretches one revolution apart are correlated too; then the counts are folded by
@@ -259,9 +259,9 @@ def _variances(below, sizes):
 
 
 def _variance(below, sizes):
-    """Variance of the share in all blocks, which need not be equally long."""
+    """Variance of the share over all blocks, which need not be equally long."""
     shares, weights = below / sizes, sizes / sizes.sum()
     excess = weights * (shares - (weights * shares).sum(axis=-1, keepdims=True))
     variance = sizes.size / (sizes.size - 1) * (excess**2).sum(axis=-1)
-    # Decided by the shares: the variance of equal ones need not round to zero.
+    # The shares themselves decide: the variance of equal shares need not round to zero.
     return np.where(np.ptp(shares, axis=-1) > 0.0, variance, 0.0)

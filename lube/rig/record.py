@@ -24,7 +24,7 @@ LEVELS = ("force", "speed", "temperature")
 """Operating variables that are measured, and of which a study has levels."""
 
 TRACE_SAMPLES = 4096
-"""Samples kept of the first revolution of a record; of a longer one, extremes of its parts."""
+"""Samples kept of the first revolution of a record; if it has more, extremes of its parts."""
 
 
 @dataclass(frozen=True)
@@ -127,8 +127,8 @@ class Record:
         Parameters
         ----------
         correct_speed : bool, optional
-            If the record repeats itself at a speed beyond the tolerance of the stated one, use
-            the former.
+            Whether to use the speed at which the record repeats itself, if it differs from the
+            stated speed by more than the tolerance.
 
         Returns
         -------
@@ -142,7 +142,7 @@ class Record:
         period = folded.revolution_period
         speed_ratio = self._period / period if folded.repeatability >= CLEAR else np.nan
         duration = self._counter.samples * self._interval
-        # Of the roller with the faster surface.
+        # Revolutions are counted of the roller with the faster surface.
         steps_around = self._study.line_spec.points[self._faster]
         revolutions = duration / period * (self._revolutions[0] / steps_around)
         periods = {period * each / self._revolutions[0] for each in self._revolutions}

@@ -34,7 +34,7 @@ from lube.types import Array, Pair, Ratios
 log = logging.getLogger(__name__)
 
 TOGETHER = 16
-"""Operating points whose contact at all time steps is in memory at once."""
+"""Number of operating points whose contact at all time steps is in memory at once."""
 
 
 def simulated_revolutions(

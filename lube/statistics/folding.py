@@ -1,4 +1,4 @@
-"""A record folded by the revolution: what repeats in each turn and what does not.
+"""A record folded by the revolution, to see what repeats in each turn.
 
 A roller shows the same roughness again after each turn. If both rollers repeat together (equal
 circumferences, no slip), so does the whole record, except for electrical noise. The repeatability
@@ -15,12 +15,12 @@ PHASES = 512
 SPAN = 0.05
 """Relative distance from the nominal period within which the period is searched."""
 LEAST_BLOCKS = 8
-"""Fewer blocks in a revolution than this do not show whether it repeats."""
+"""Blocks in a revolution that are needed to see whether it repeats."""
 ALIKE = 0.98
-"""Of all peaks of the autocorrelation this close to the highest, the nearest to the nominal period
-is taken."""
+"""Height of a peak of the autocorrelation, over the highest, from which it counts as equally high;
+among these the peak nearest to the nominal period is taken."""
 CLEAR = 0.5
-"""From this repeatability on, the period found in the record replaces the nominal one."""
+"""Repeatability from which the period found in the record replaces the nominal one."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def refined_period(shares: np.ndarray, interval: float, nominal_period: float) -
     Returns
     -------
     float
-        The period, s; the nominal one if the record is shorter than that, does not vary, or has
+        The period, s; the nominal one if the record is shorter than it, does not vary, or has
         too few blocks in a revolution.
 
     Examples

@@ -23,16 +23,16 @@ def quantile(realisations: int, among: int = 1) -> float:
     Parameters
     ----------
     realisations : int
-        Number R of realisations. With one there is no scatter, and the quantile is that of the
-        normal distribution.
+        Number R of realisations. With one there is no scatter, and the quantile of the normal
+        distribution is returned.
     among : int, optional
-        Number of values, none of which exceeds the quantile in 95 of 100 cases (Bonferroni's
+        Number of values; in 95 of 100 cases none of them exceeds the quantile (Bonferroni's
         bound).
 
     Returns
     -------
     float
-        Student's t of R - 1 degrees of freedom.
+        Student's t with R - 1 degrees of freedom.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def repeat_factor(turns: npt.ArrayLike) -> npt.ArrayLike:
 
     .. math:: \frac{(k + 1)^2 f + k^2 (1 - f)}{T^2}
 
-    This is 1/T below one turn, one for whole turns and nearly one for all longer records.
+    The factor is 1/T below one turn, 1 for whole turns and nearly 1 for all longer records.
 
     Parameters
     ----------
@@ -170,8 +170,8 @@ def scatter_ratio(
     reach : float
         Distance of two alignments that share no roughness, points.
     persistent : float
-        :math:`s_\infty^2 / s_1^2`, the part that new alignments do not average out. It does not
-        matter for equal rollers in pure rolling, which keep one alignment.
+        :math:`s_\infty^2 / s_1^2`, the part that new alignments do not average out. It has no
+        effect for equal rollers in pure rolling, which keep one alignment.
     drift : float
         As in `drift_factor`.
 
@@ -271,16 +271,16 @@ def standard_error(
 
     .. math:: \sigma^2 = p (1 - p) \left( \frac{v}{n} + \frac{m}{n R} \right) + \epsilon^2
 
-    The first term is the scatter of the record, the second that of the mean over the realisations.
+    The first term is the scatter of the record, the second the error of the mean over realisations.
 
     Parameters
     ----------
     mean, sample_size, ratio, realisations
         :math:`p`, :math:`n`, :math:`v` and :math:`R`, as in `prediction_limits`.
     noise : float or numpy.ndarray, optional
-        :math:`\epsilon`, as there.
+        :math:`\epsilon`, as in `prediction_limits`.
     mean_error : float or numpy.ndarray, optional
-        :math:`m`, as there.
+        :math:`m`, as in `prediction_limits`.
 
     Returns
     -------
@@ -300,16 +300,16 @@ def standard_error(
 def persistent_share(in_first: Array, in_second: Array) -> Array:
     """Part of one alignment's scatter that new alignments do not average out.
 
-    It is the effect of either line alone, whatever it is paired with. Each first line is paired
-    with each second line, and the effects follow from the analysis of variance of two crossed
-    factors: that of a line from whole turns of it.
+    This part is the effect of either line alone, whatever line it is paired with. Each first line
+    is paired with each second line, and the effects follow from the analysis of variance of two
+    crossed factors. The effect of a line is taken from its whole turns.
 
     Parameters
     ----------
     in_first, in_second : numpy.ndarray
-        Shape (R, K, P): of each of R first lines with each of K second lines, at each of P
-        points, in whole turns of the first and of the second line. For equally long lines both
-        are the same.
+        Shape (R, K, P): contact shares of each of R first lines with each of K second lines, at
+        each of P points, in whole turns of the first and of the second line. For equally long
+        lines both arrays are the same.
 
     Returns
     -------
@@ -333,7 +333,7 @@ def persistent_share(in_first: Array, in_second: Array) -> Array:
 
 
 def _together(shares):
-    """Variance of what two crossed factors do together, shape (P,)."""
+    """Variance due to the interaction of two crossed factors, shape (P,)."""
     firsts, seconds = shares.shape[:2]
     first, second = (shares.mean(axis=axis, keepdims=True) for axis in (1, 0))
     rest = shares - first - second + shares.mean(axis=(0, 1))
