@@ -5,7 +5,8 @@ Every message says which input is meant, what came and what is needed.
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 _WORD = re.compile(r"[^\W_]+")
 
@@ -117,3 +118,23 @@ class DataError(LubeError):
 
 class RangeError(LubeError):
     """A value lies outside the range in which a model or property is valid."""
+
+
+@contextmanager
+def located(where: str) -> Iterator[None]:
+    """Begin the message of an error with the place that it is about.
+
+    Parameters
+    ----------
+    where : str
+        File, and position or key in it.
+
+    Raises
+    ------
+    DataError
+        In place of any LubeError.
+    """
+    try:
+        yield
+    except LubeError as error:
+        raise DataError(f"{where}: {error}") from None

@@ -18,7 +18,7 @@ from lube.inference.study_shares import levels_named
 from lube.recordings.manifest import Entry, Manifest, read_manifest
 from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 from lube.rig.record import LEVELS, TRACE_SAMPLES, Conditions, Record
-from lube.rig.simulator import SimulatedRig
+from lube.rig.simulator import simulated_revolutions
 from lube.schema import AT_RECORDS, FILES, label, values_with_limits, with_dims
 from lube.statistics.folding import PHASES
 from lube.study.study import Study
@@ -76,8 +76,7 @@ def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
         for pair in range(study.rig.pairs)
         for number, point in enumerate(points)
     }
-    revolutions = SimulatedRig(lines, study, points).revolutions() if points else ()
-    for pair, number, revolution in revolutions:
+    for pair, number, revolution in simulated_revolutions(lines, study, points):
         records[pair, number].add_revolution(revolution)
     rows = [
         record.evaluate() | {"record": _name_of_point(points[number], pair, study)}

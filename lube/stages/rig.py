@@ -8,7 +8,7 @@ from lube.errors import DataError
 from lube.grid.operating_points import OperatingPoint, known_films, operating_points
 from lube.physics.electrical import resistance_from_voltage
 from lube.rig.contact_share import record_counter
-from lube.rig.simulator import SimulatedRig
+from lube.rig.simulator import simulated_revolutions
 from lube.schema import EXPERIMENT_DIMS, POINT_DIMS, label, with_dims
 from lube.study.study import Study
 from lube.types import Datasets
@@ -50,7 +50,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         [record_counter(study.experiment, rig, "voltage", interval) for rig in rigs] for _ in points
     ]
     voltages, steps = {}, np.zeros((len(points), 2), int)
-    for _, number, revolution in SimulatedRig(lines, study, points).revolutions():
+    for _, number, revolution in simulated_revolutions(lines, study, points):
         if number not in voltages:
             voltages[number] = revolution.voltage(study.rig)
         for rig, counter in zip(rigs, counters[number], strict=True):
