@@ -38,8 +38,9 @@ _DAMPING = 1.0
 _ENOUGH, _LARGEST, _MOST = 1e-7, 0.5, 300
 """Change of the pressure at which a time step is solved, the largest in a step of Newton's method,
 and the most of these."""
-_SLOW = 0.2
-"""Change of the pressure over that before, above which the derivatives are formed anew."""
+_SLOW, _PATIENCE = 0.2, 40
+"""Change of the pressure over that before, above which the derivatives are formed anew; and the
+steps of Newton's method after which they always are."""
 
 
 def passage_nodes(profile: FilmProfile, step: float) -> Array:
@@ -143,12 +144,12 @@ class RoughPassage:
         """
         had, state = self._left_over(), self._first_guess()
         is_slow, change = False, np.inf
-        for _ in range(_MOST):
+        for number in range(_MOST):
             gap, flow = self._flow_at(heights, *state)
             before, (state, change) = change, self._newton(had, gap, flow, state, is_slow)
             if change < _ENOUGH or not np.isfinite(change):
                 break
-            is_slow = change > _SLOW * before
+            is_slow = change > _SLOW * before or number > _PATIENCE
         if not change < _ENOUGH:
             raise ConvergenceError(
                 f"{self._discrete.contact.name}: roughness that passes did not converge in a time "

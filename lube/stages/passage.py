@@ -75,7 +75,7 @@ def _passed(study, oil, temperature, speed, force):
         rolling(study.operating_grid.slide_to_roll_ratio),
     )
     contact = hertz_contact(rollers, force, speed)
-    profile = FilmGroups.at(oil, rollers, force, contact, meniscus).profiles().item()
+    profile = FilmGroups.at(oil, rollers, force, contact, meniscus).profiles.item()
     width, spec = contact["contact_half_width"].item(), study.line_spec
     piece = RoughPiece(drawn(study, REALISATION), spec, width, slip)
     lines = _of_lines(piece, profile, study.boundary_layer, rollers.reduced_radius)
