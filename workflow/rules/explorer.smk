@@ -9,9 +9,6 @@ rule explorer:
     """A page on which to move over the operating points."""
     input:
         **{kind: result(f"{kind}.nc") for kind in EXPLORED},
-        templates=[
-            from_here(path) for path in sorted(Path(ROOT, "lube/explorer/templates").iterdir())
-        ],
         sources=script_sources("explorer"),
     output:
         result("explorer.html"),
