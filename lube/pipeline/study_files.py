@@ -2,7 +2,6 @@
 
 import contextlib
 import hashlib
-import itertools
 import json
 import os
 import sys
@@ -186,8 +185,9 @@ class StudyFiles:
 
     def products(self, figures: Iterable[str]) -> list[str]:
         """List the files that the jobs of some figures make: pictures, origin, notebook."""
-        names = [(*products(figure), origin(figure)) for figure in figures]
-        return [self.result(name) for name in itertools.chain.from_iterable(names)]
+        return [
+            self.result(name) for figure in figures for name in (*products(figure), origin(figure))
+        ]
 
     def benchmarks(self, figures: Iterable[str]) -> dict[str, list[str]]:
         """List the benchmark files of all jobs, by the steps of the study.
