@@ -103,19 +103,12 @@ class LogHandler(LogHandlerBase):
         self._console.print(Text(text, style), soft_wrap=True)
 
     def _begin(self, jobs):
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            Progress,
-            TextColumn,
-            TimeElapsedColumn,
-            TimeRemainingColumn,
-        )
+        from rich import progress
 
-        times = TextColumn("jobs,"), TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("left")
-        message = TextColumn("[dim]{task.description}")
-        columns = BarColumn(20), MofNCompleteColumn(), *times, message
-        self._bar = Progress(*columns, console=self._console, refresh_per_second=2)
+        bar, done = progress.BarColumn(20), progress.MofNCompleteColumn()
+        elapsed, remaining = progress.TimeElapsedColumn(), progress.TimeRemainingColumn()
+        columns = (bar, done, "jobs,", elapsed, remaining, "left", "[dim]{task.description}")
+        self._bar = progress.Progress(*columns, console=self._console, refresh_per_second=2)
         self._task = self._bar.add_task("", total=jobs)
         self._bar.start()
 

@@ -39,13 +39,9 @@ def label(dataset: xr.Dataset, kind: str) -> xr.Dataset:
     labelled = dataset.copy()
     for name in labelled.variables:
         expected = _expected(kind, name)
-        if expected is None:
-            continue  # refused by `check`
-        attributes = {"long_name": expected.long_name, **expected.attributes}
-        if expected.units is not None:
-            attributes["units"] = expected.units
-        attributes["coverage_content_type"] = _content(expected.content, labelled)
-        labelled[name].attrs = attributes
+        if expected is not None:  # else refused by `check`
+            content = _content(expected.content, labelled)
+            labelled[name].attrs = {**expected.attributes, "coverage_content_type": content}
     return check(labelled, kind)
 
 
