@@ -18,7 +18,6 @@ from ipykernel.inprocess import InProcessKernelManager
 from traitlets.config import Config
 
 from lube.errors import LubeError
-from lube.pipeline.cells import parameters_of
 from lube.pipeline.stamps import DRAWN_BY
 from lube.storage.files import written_whole
 
@@ -40,14 +39,14 @@ def execute_notebook(
     Parameters
     ----------
     notebook : str or Path
-        Notebook to execute; it is not changed.
+        Notebook to execute; it is not changed. It has a cell tagged ``parameters``.
     output : str or Path
         Path of the executed copy, such as ``fig02_film.ipynb``, written only if all cells
         succeed. It has the notebook's own cells, without the given parameters. If a cell fails,
         the cells up to it are saved beside it as ``fig02_film.failed.ipynb``, which the next
         success removes, and the traceback goes to the log.
     parameters : dict
-        Values for the names in the cell tagged ``parameters``.
+        Values for the names in that cell, given after it.
     drawn_by : str
         What the figure's stamp says of notebook and code, from `lube.pipeline.stamps.drawn_by`.
     code : str or Path, optional
@@ -56,10 +55,8 @@ def execute_notebook(
     Raises
     ------
     LubeError
-        If the file is not a notebook, has no cell tagged ``parameters``, does not know a
-        parameter, a cell fails, the kernel is killed, or the copy cannot be written.
+        If a cell fails, the kernel is killed, or the copy cannot be written.
     """
-    _check_parameters(notebook, parameters)
     output = Path(output)
     failed = output.with_name(f"{output.stem}.failed.ipynb")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
@@ -176,16 +173,6 @@ def _failure(cells, exit_code):
     lines = re.findall(rf"Cell {number}, line (\d+)", _CAUSE.split(traceback)[-1])
     where = f" at line {lines[0]}" if lines else ""
     return f"cell {number} fails{where}: {' '.join(f'{error.ename}: {error.evalue}'.split())}"
-
-
-def _check_parameters(notebook, parameters):
-    known = parameters_of(notebook)
-    for name in parameters:
-        if name not in known:
-            raise LubeError(
-                f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
-                f"{', '.join(known)}"
-            )
 
 
 def _save(executed, path):

@@ -181,19 +181,3 @@ def test_a_killed_kernel_is_reported(write, output):
     reason = "its kernel was killed in cell 4, perhaps because memory ran out"
     assert reason in refusal(notebook, output, {})
     assert output.with_suffix(".failed.ipynb").exists()
-
-
-# A notebook that cannot be executed
-
-
-def test_what_is_not_a_notebook_with_the_wanted_parameters_is_refused(write, output):
-    cases = [
-        ({"tag": "another"}, {"film": "film.nc"}, "no cell is tagged 'parameters'"),
-        ({"parameters": "film ="}, {}, "got 'film =', which is not Python"),
-        ({}, {"trace": "trace.nc"}, "parameter 'trace' is not in its parameters cell, which has"),
-    ]
-    for written, parameters, reason in cases:
-        assert reason in refusal(write("x = 1", **written), output, parameters)
-    path = write()
-    path.write_text("no notebook", encoding="utf-8")
-    assert "not a Jupyter notebook" in refusal(path, output, {})
