@@ -71,7 +71,7 @@ def explain(path: File, realisation: int | None = 0, **levels: float | str) -> E
     **levels
         The operating point, by the coordinates of the file, such as ``force=800``; a number
         within half a per cent of a level selects that level. A coordinate with one level may be
-        omitted; of lubricant, film_formula and slide_to_roll_ratio the first is the default.
+        omitted; for lubricant, film_formula and slide_to_roll_ratio the first is the default.
 
     Returns
     -------

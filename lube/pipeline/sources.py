@@ -113,7 +113,7 @@ def sources(code: str, root: Path = ROOT) -> list[str]:
 
 @functools.cache
 def _file_of(module, root):
-    """File of a module of the package, if it is one and counts."""
+    """File of a module of the package; None for other modules and for those in `_BY_VALUE`."""
     if not module.startswith("lube.") or module in _BY_VALUE:
         return None
     path = root / Path(*module.split("."))

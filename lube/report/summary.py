@@ -280,6 +280,6 @@ def _measured_near(comparison, point):
 
 
 def _lines(results, attribute):
-    """Lines about records, of the experiment and of what is made from it."""
+    """Lines about records, from the experiment and the comparison."""
     made = [results[kind] for kind in ("experiment", "comparison") if kind in results]
     return [line for one in made for line in one.attrs.get(attribute, "").splitlines()]

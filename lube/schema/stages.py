@@ -37,7 +37,7 @@ class Stage:
         Attribute of `lube.pipeline.study_files.StudyFiles` that lists the files which people wrote
         and the stage reads; none by default.
     parameters : tuple of str
-        Attributes of the study that change the file beside the `values`, but not what is in it.
+        Further attributes of the study that the file depends on; its ``config`` leaves them out.
     priority : int
         Jobs of a higher one are started first.
     parallel : bool
@@ -144,7 +144,7 @@ _ROWS = (
         "probabilities by skewness and kurtosis",
         inputs=("film",),
         values=_LINES | _LAYER | _named("roughness_deformation"),
-        same_values=("roughness",),  # whose lines have other distributions here
+        same_values=("roughness",),  # its lines have other height distributions here
         only_with=("line_spec.is_drawn",),
         priority=2,
     ),
@@ -286,7 +286,7 @@ STAGES = {row.name: row for row in _ROWS}
 """The registry: from name to `Stage`, each after those it depends on."""
 
 DATASETS = tuple(row.name for row in _ROWS if row.target == "all")
-"""The results of a study, one file each, some of them `only_with` what the study may lack."""
+"""The results of a study, one file each; a study may lack some of them (`only_with`)."""
 
 ON_REQUEST = {row.name: row.target for row in _ROWS if row.target != "all"}
 """Files that are made on request only, each with the target of Snakemake that makes it."""

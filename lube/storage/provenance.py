@@ -161,7 +161,7 @@ def merged_config(datasets: Iterable[xr.Dataset]) -> str:
     Returns
     -------
     str
-        As from `config_text`; of a single file, its attribute ``config``.
+        As from `config_text`; for a single file, its attribute ``config``.
 
     Raises
     ------
