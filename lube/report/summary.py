@@ -58,8 +58,6 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
         study=study,
         oils=oils,
         points=math.prod(len(levels) for levels in study.operating_grid.model_dump().values()),
-        rms=study.line_spec.rms_height,
-        lines=study.line_spec.lines,
         two_pi=2.0 * math.pi,
     )
 
