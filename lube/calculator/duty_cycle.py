@@ -1,6 +1,5 @@
 """Duty cycles: the answer at each duty point, and the weighted whole."""
 
-import difflib
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -35,8 +34,6 @@ _COLUMNS = {
 """Columns of a table of duty points, each with the unit that it is converted to."""
 _NUMBER = re.compile(r"\s*[-+]?[\d.]+\s*([ %]|$)")
 """Beginning of a number with or without unit, but not of a name such as ``2nd gear``."""
-_NEAR = 0.75
-"""Likeness to a column's name from which a header counts as a misspelling of it."""
 _SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed")
 
 
@@ -185,7 +182,7 @@ def _columns(points):
 def _is_label(header, values):
     """Whether a column holds texts, not numbers, under a name that is not one of `_COLUMNS`."""
     words = all(isinstance(value, str) and not _NUMBER.match(value) for value in values)
-    return words and not difflib.get_close_matches(header.lower(), _COLUMNS, cutoff=_NEAR)
+    return words and header not in _COLUMNS
 
 
 def _column(header, values):

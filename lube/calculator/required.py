@@ -40,8 +40,7 @@ LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
 NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
 """Lambda ratios of the second look, over the one at which the first look finds the share."""
 AROUND = np.exp(np.linspace(-1.0, 0.6, 17))
-"""The same where the film has a shape or the oil flattens or answers the lines: the first look
-ignores both."""
+"""The same if the film has a shape or the oil changes the lines, which the first look ignores."""
 FALLING = 0.9
 """Share, over the largest probability, below which it lies well on the falling branch."""
 OFTEN = 10.0

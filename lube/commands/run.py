@@ -9,8 +9,7 @@ from typing import NoReturn
 from lube.errors import LubeError
 from lube.storage.git import ROOT
 
-_SIGN = "workflow/rules/study.smk"
-"""File beside the Snakefile of lube, and of no other."""
+_SIGN = "workflow/rules/study.smk"  # only beside the Snakefile of lube
 
 
 def snakemake_command(arguments: Sequence[str]) -> list[str]:
