@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, PlainSerializer
 
-from lube.errors import LubeError, StudyError
+from lube.errors import StudyError, located
 from lube.statistics.sample_size import independent_windows
 from lube.study.field_types import StrictModel
 from lube.study.roller_topography import MeasuredHeights
@@ -213,7 +213,8 @@ def _rough_line(rollers, roughness, name, rms, lengths):
     spacing, width = lengths
     roller = getattr(rollers, name)
     own, key = roughness.of(roller.roughness), partial(_key, name, roller.roughness)
-    longest, shortest = own.wavelengths(width, spacing)
+    with located(key("shortest_wavelength")):
+        longest, shortest = own.wavelengths(width, spacing)
     points = round(roughness.points * roller.radius / rollers.first.radius)
     if roller.topography and roller.topography.is_line:
         longest = roller.topography.long_cutoff or points * spacing
@@ -225,12 +226,10 @@ def _rough_line(rollers, roughness, name, rms, lengths):
     _check_perimeter(points * spacing, longest, shortest, name)
     _check_distribution(own, key)
     if roller.topography:
-        try:
+        with located(f"rollers.{name}.topography", StudyError):
             grid = points, spacing, (longest, shortest)
             shape = roller.topography.line(grid, width, roughness.height_step)
             shape["isotropic"] = roller.topography.texture == "isotropic"
-        except LubeError as error:
-            raise StudyError(f"rollers.{name}.topography: {error}") from None
     elif own.hurst_exponent is None:
         raise StudyError(f"{key('hurst_exponent')}: missing, need it for the {name} roller")
     else:

@@ -16,14 +16,14 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
-from lube.errors import LubeError, RangeError, RecordError, right_one, shown
+from lube.errors import RangeError, RecordError, located, right_one, shown
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_property, liquid_range
 from lube.physics.density import linear_density
 from lube.physics.pressure_viscosity import DEFINITIONS, FORMULA_DEFINITION, GOLD_BASES
 from lube.physics.viscosity_index import viscosity_at_100
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
-from lube.study.field_types import Slug, StrictModel, Text, pure_number, quantity, validate
+from lube.study.field_types import Slug, StrictModel, Text, quantity, validate
 from lube.study.text_files import read_yaml
 from lube.study.viscosity_checks import ROUNDING, check_points
 from lube.study.viscosity_points import OilTemperature, ViscosityPoint, read_viscosity_csv
@@ -56,7 +56,7 @@ class Viscosity(Sourced):
     """CSV file in the record's folder"""
     iso_vg: Literal[ISO_GRADES] | None = None
     """ISO viscosity grade, with `viscosity_index`"""
-    viscosity_index: Annotated[float, pure_number(least=0.0, most=400.0)] | None = None
+    viscosity_index: Annotated[float, quantity(None, least=0.0, most=400.0)] | None = None
     """viscosity index (ASTM D2270) of an oil of that grade"""
     coolprop_fluid: Text | None = None
     """CoolProp's name of a pure fluid"""
@@ -469,10 +469,8 @@ def check_fluid(record: LubricantRecord, temperatures: Sequence[float]) -> None:
     if fluid is None or (record.files and record.files[0].parent == SHIPPED_FOLDER):
         return
     kelvin = np.array(temperatures, dtype=float) + ZERO_CELSIUS
-    try:
+    with located(record.name):
         for name in ("viscosity", "density"):
             liquid_property(fluid, name, kelvin)
         if record.pressure_viscosity.pressure is not None:
             liquid_property(fluid, "viscosity", kelvin, record.pressure_viscosity.pressure)
-    except LubeError as error:
-        raise type(error)(f"{record.name}: {error}") from None

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from lube.errors import RangeError, RecordError
+from lube.errors import RangeError, RecordError, located
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import (
     initial_pressure_viscosity,
@@ -199,12 +199,10 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
 def _row(record, temperature, fit_temperature):
     """Variables of one lubricant."""
     check_temperatures(record, temperature)
-    try:
+    with located(record.name):
         substance = (_CoolPropFluid if record.law_used == "coolprop" else _MeasuredOil)(record)
         properties = _properties(record, substance, temperature + ZERO_CELSIUS)
         index = _viscosity_index(record, substance)
-    except (RangeError, RecordError) as error:
-        raise type(error)(f"{record.name}: {error}") from None
     row = xr.Dataset({name: ("temperature", values) for name, values in properties.items()})
     return row.merge(_fits(record, substance, fit_temperature)).assign(
         viscosity_index=index,

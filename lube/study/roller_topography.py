@@ -14,8 +14,8 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import PrivateAttr, ValidationInfo, model_validator
 
-from lube.errors import DataError
-from lube.study.field_types import Length, StrictModel, Text, collected
+from lube.errors import DataError, located
+from lube.study.field_types import Length, StrictModel, Text
 from lube.types import Array
 
 
@@ -71,7 +71,7 @@ class RollerTopography(StrictModel):
             )
         from lube.study import topography_lines
 
-        with collected():
+        with located(kind=ValueError):
             known = (info.context or {}).get(self.key)
             self._measured = topography_lines.measured(self, known)
         return self

@@ -16,7 +16,7 @@ from lube.study.field_types import (
     Pressure,
     StrictModel,
     bounded,
-    pure_number,
+    quantity,
     quantity_or_words,
 )
 from lube.study.roller_topography import RollerTopography
@@ -64,10 +64,6 @@ def grid_points(radius: float, shortest: float) -> int:
     return scipy.fft.next_fast_len(points, real=True)
 
 
-def _is_points(value):
-    return isinstance(value, str) and value.endswith(" points") and bool(_points_of(value))
-
-
 def _points_of(wavelength):
     """``"10 points"`` -> 10.0; a wave has at least two."""
     number = parse_number(wavelength.removesuffix(" points"))
@@ -76,20 +72,15 @@ def _points_of(wavelength):
 
 _LongestWavelength = Annotated[
     float | str,
-    quantity_or_words(
-        "m",
-        lambda text: text == AUTOMATIC_WAVELENGTH,
-        f"the words `{AUTOMATIC_WAVELENGTH}`",
-        f"^{AUTOMATIC_WAVELENGTH}$",
-    ),
+    quantity_or_words("m", f"the words `{AUTOMATIC_WAVELENGTH}`", f"^{AUTOMATIC_WAVELENGTH}$"),
 ]
 _ShortestWavelength = Annotated[
     float | str,
-    quantity_or_words("m", _is_points, "a number of grid points such as `10 points`", " points$"),
+    quantity_or_words("m", "a number of grid points such as `10 points`", " points$"),
 ]
-_Hurst = Annotated[float, pure_number(above=0.0, below=1.0)]
-_Skewness = Annotated[float, pure_number(least=-3.0, most=3.0)]
-_Kurtosis = Annotated[float, pure_number(above=1.0, most=20.0)]
+_Hurst = Annotated[float, quantity(None, above=0.0, below=1.0)]
+_Skewness = Annotated[float, quantity(None, least=-3.0, most=3.0)]
+_Kurtosis = Annotated[float, quantity(None, above=1.0, most=20.0)]
 
 
 class _Cutoffs(StrictModel):
@@ -131,7 +122,7 @@ class Roller(StrictModel):
     """radius of the cylinder"""
     young_modulus: Pressure
     """Young's modulus"""
-    poisson_ratio: Annotated[float, pure_number(least=0.0, most=0.5)]
+    poisson_ratio: Annotated[float, quantity(None, least=0.0, most=0.5)]
     """Poisson's ratio"""
     rms_roughness: Length | None = None
     """rms height Rq of the roughness"""

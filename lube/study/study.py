@@ -11,11 +11,11 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, StrictInt, field_validator, model_validator
+from pydantic import Field, StrictInt, WithJsonSchema, field_validator, model_validator
 from pydantic_core import to_jsonable_python
 
 from lube.ehl.film_formulas import FORMULAS, formula
-from lube.errors import LubeError, StudyError, shown
+from lube.errors import StudyError, located, shown
 from lube.grid.gap import Gap
 from lube.grid.levels import SAME, level_index, rolling
 from lube.physics.electrical import divider_voltage
@@ -24,10 +24,9 @@ from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import (
     Slug,
     StrictModel,
-    Written,
-    collected,
     each_once,
     quantity_or_words,
+    read_by,
     validate,
 )
 from lube.study.line_spec import LineSpec, band_in_words, check_width, line_spec
@@ -46,26 +45,15 @@ from lube.study.size_limits import check_sizes
 from lube.types import File
 from lube.units import with_unit
 
-
-@collected()
-def _known_formula(name):
-    return formula(name).name
-
-
 _Formula = Annotated[
     str,
-    AfterValidator(_known_formula),
-    Written({"type": "string", "format": "text", "enum": list(FORMULAS)}),
+    read_by(
+        lambda name: formula(f"{name}").name,
+        {"type": "string", "format": "text", "enum": list(FORMULAS)},
+    ),
 ]
-
-
-_Meniscus = Annotated[
-    float | str, quantity_or_words("m", lambda value: value == "none", "none", "^none$")
-]
-_Resistivity = Annotated[
-    float | str,
-    quantity_or_words("ohm*m", lambda value: value == INSULATOR, INSULATOR, f"^{INSULATOR}$"),
-]
+_Meniscus = Annotated[float | str, quantity_or_words("m", "none", "^none$")]
+_Resistivity = Annotated[float | str, quantity_or_words("ohm*m", INSULATOR, f"^{INSULATOR}$")]
 
 
 class Study(StrictModel):
@@ -91,7 +79,7 @@ class Study(StrictModel):
     lubricants: Annotated[
         tuple[LubricantRecord, ...],
         Field(min_length=1),
-        Written({"form": "records", "format": "list of names or paths"}),
+        WithJsonSchema({"form": "records", "format": "list of names or paths"}),
     ]
     """names of shipped records, or paths of your own YAML records"""
     film_formulas: tuple[_Formula, ...] = Field(min_length=1)
@@ -339,14 +327,13 @@ class Study(StrictModel):
 
     @model_validator(mode="after")
     def _check_levels(self):
-        with collected("lubricants"):
-            each_once(tuple(record.name for record in self.lubricants))
-        with collected("operating_grid.temperature"):
+        each_once(tuple(record.name for record in self.lubricants))
+        with located("operating_grid.temperature", ValueError):
             for record in self.lubricants:
                 check_temperatures(record, self.operating_grid.temperature)
         if self.inlet_shear_heating != "none":
             self._check_conductivity()
-        with collected():
+        with located(kind=ValueError):
             for force in self.operating_grid.force:
                 self.check_window(force)
             check_sizes(self)
@@ -468,10 +455,8 @@ def load_study(
     content = resolved_content(path, changes)
     folder = Path(path).parent
     if isinstance(content.get("lubricants"), list):
-        try:
+        with located(f"{path}: lubricants"):
             records = tuple(load_record(name, folder) for name in content["lubricants"])
-        except LubeError as error:
-            raise type(error)(f"{path}: lubricants: {error}") from None
         content = content | {"lubricants": records}
     content = with_topographies(content, lambda file: str(folder / file))
     study = validate(Study, content, path, StudyError, readings)

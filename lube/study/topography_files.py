@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from lube.errors import DataError, LubeError, shown
+from lube.errors import DataError, LubeError, located, shown
 from lube.study.small_csv import read_cells, units_of
 from lube.surfaces.topography import Topography
 from lube.types import File
@@ -152,10 +152,8 @@ def _reason(error):
 def _in_metres(path, values, unit):
     if unit is None:
         raise DataError(f"{path}: got no unit, need `units` of the heights and of the positions")
-    try:
+    with located(f"{path}", DataError):
         return np.asarray(convert(values, unit, "m"))
-    except LubeError as error:
-        raise DataError(f"{path}: {error}") from None
 
 
 def _even_spacing(path, position):

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from lube.errors import RecordError
+from lube.errors import RecordError, located
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE
 from lube.types import File
 
@@ -46,11 +46,9 @@ def check_points(record: LubricantRecord, where: File) -> None:
         kinematic; if they are all at one temperature, rise with the temperature or fall with
         pressure; if they leave the pressure-viscosity coefficient open, or give a second one.
     """
-    try:
+    with located(f"{where}"):
         _check_ambient(record)
         _check_isotherms(record)
-    except RecordError as error:
-        raise RecordError(f"{where}: {error}") from None
     lowest, highest = record.valid_temperatures
     if lowest > highest:
         raise RecordError(
