@@ -1,23 +1,33 @@
 """What determines the roughness lines of a pair of rollers, checked against the grid."""
 
+import functools
+import hashlib
 import math
-from functools import partial
 from typing import Annotated
 
 from pydantic import Field, PlainSerializer
 
 from lube.errors import StudyError, located
 from lube.statistics.sample_size import independent_windows
-from lube.study.field_types import StrictModel
-from lube.study.roller_topography import MeasuredHeights
-from lube.study.rollers import AUTOMATIC_WAVELENGTH, ROLLERS, RollerPair, Roughness
+from lube.study.field_types import StrictModel, given_keys
+from lube.study.rollers import (
+    AUTOMATIC_WAVELENGTH,
+    ROLLERS,
+    ROUGHNESS_KEYS,
+    RollerPair,
+    Roughness,
+)
 from lube.types import Values
 from lube.units import with_unit
 
-_Heights = Annotated[MeasuredHeights, PlainSerializer(lambda heights: heights.sha256)]
+
+@functools.lru_cache(maxsize=2)
+def _digest(heights):
+    """SHA-256 sum of a measured line, which stands for it among plain data."""
+    return hashlib.sha256(heights).hexdigest()
 
 
-class RoughLine(StrictModel, arbitrary_types_allowed=True):
+class RoughLine(StrictModel):
     """Everything that determines the roughness line of one roller, except seed and realisation.
 
     Attributes
@@ -36,8 +46,8 @@ class RoughLine(StrictModel, arbitrary_types_allowed=True):
         Of the heights; by default 0 and 3: Gaussian.
     spectrum : tuple of tuple of float, optional
         Measured spectrum: wave vectors, rad/m, and densities, m^3, between which it is a power law.
-    heights : MeasuredHeights, optional
-        Measured heights of the line itself.
+    heights : bytes, optional
+        Measured heights of the line itself: `points` numbers int32, in height steps.
     isotropic : bool
         Whether the line stands for an isotropic surface; by default it does.
     """
@@ -51,7 +61,7 @@ class RoughLine(StrictModel, arbitrary_types_allowed=True):
     skewness: float = 0.0
     kurtosis: float = 3.0
     spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None = None
-    heights: _Heights | None = None
+    heights: Annotated[bytes, PlainSerializer(_digest)] | None = Field(None, repr=False)
     isotropic: bool = True
 
     @property
@@ -212,7 +222,7 @@ def _rough_line(rollers, roughness, name, rms, lengths):
     """Line of one roller, at a grid spacing and the largest contact width."""
     spacing, width = lengths
     roller = getattr(rollers, name)
-    own, key = roughness.of(roller.roughness), partial(_key, name, roller.roughness)
+    own, key = roughness.of(roller.roughness), functools.partial(_key, name, roller.roughness)
     with located(key("shortest_wavelength")):
         longest, shortest = own.wavelengths(width, spacing)
     points = round(roughness.points * roller.radius / rollers.first.radius)
@@ -342,8 +352,8 @@ def _check_height_step(rms, step, name, roller):
             f"roughness.height_step: got {step:.3g} m, need {rms / 1e7:.3g} "
             f"to {rms / 1e3:.3g} m for a roughness of {rms:.3g} m"
         )
-    own = [key for key in ("ra_roughness", "rms_roughness", "topography") if getattr(roller, key)]
-    key = f"rollers.{name}.{own[0]}" if own else "rollers.composite_rms_roughness"
+    kinds = given_keys(roller, ROUGHNESS_KEYS)
+    key = f"rollers.{name}.{kinds[0]}" if kinds else "rollers.composite_rms_roughness"
     raise StudyError(f"{key}: got {rms:.3g} m, need an rms height of 1e-09 to 1e-05 m")
 
 

@@ -11,33 +11,10 @@ import hashlib
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
 from pydantic import PrivateAttr, ValidationInfo, model_validator
 
 from lube.errors import DataError, located
 from lube.study.field_types import Length, StrictModel, Text
-from lube.types import Array
-
-
-class MeasuredHeights:
-    """Heights of a measured line. Two are equal if their SHA-256 sums are.
-
-    Parameters
-    ----------
-    steps : numpy.ndarray
-        Shape (N,), int32: heights in height steps.
-    """
-
-    def __init__(self, steps: Array):
-        self.steps = steps
-        self.steps.flags.writeable = False
-        self.sha256 = hashlib.sha256(steps.tobytes()).hexdigest()
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, MeasuredHeights) and other.sha256 == self.sha256
-
-    def __hash__(self) -> int:
-        return hash(self.sha256)
 
 
 class RollerTopography(StrictModel):
@@ -136,9 +113,6 @@ class RollerTopography(StrictModel):
                 f"{self.file}: got a profile of {length:.3g} m, need one longer than the contact "
                 f"is wide, {width:.3g} m"
             )
-        line = points, spacing, band[1]
-        steps = topography_lines.steps(self, self._measured, line, height_step)
-        return {
-            "rms_height": float(np.std(steps)) * height_step,
-            "heights": MeasuredHeights(steps),
-        }
+        line = points, spacing, band[1], height_step
+        rms, heights = topography_lines.measured_line(self.use, self._measured, *line)
+        return {"rms_height": rms, "heights": heights}

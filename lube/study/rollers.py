@@ -16,6 +16,7 @@ from lube.study.field_types import (
     Pressure,
     StrictModel,
     bounded,
+    given_keys,
     quantity,
     quantity_or_words,
 )
@@ -25,6 +26,10 @@ from lube.units import parse_number
 
 ROLLERS = ("first", "second")
 """Keys of the two rollers."""
+ROUGHNESS_KEYS = ("rms_roughness", "ra_roughness", "topography")
+"""Keys of a roller's roughness, of which it has one."""
+_OF_SPECTRUM = ("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff")
+"""Keys of its section `roughness` that a measured spectrum replaces."""
 INSULATOR = "insulator"
 """In place of the resistivity of rollers of which one does not conduct."""
 
@@ -83,7 +88,19 @@ _Skewness = Annotated[float, quantity(None, least=-3.0, most=3.0)]
 _Kurtosis = Annotated[float, quantity(None, above=1.0, most=20.0)]
 
 
-class _Cutoffs(StrictModel):
+class OwnRoughness(StrictModel):
+    """What one roller has in place of the values of the study's section `roughness`."""
+
+    hurst_exponent: _Hurst | None = None
+    """Hurst exponent H; a measured surface needs none"""
+    longest_wavelength: _LongestWavelength | None = None
+    """2 pi / q_min"""
+    shortest_wavelength: _ShortestWavelength | None = None
+    """2 pi / q_max"""
+    roll_off_wavelength: Length | None = None
+    """2 pi / q_r: longer waves have the spectral density of the isotropic surface at q_r; without
+    any there is no roll-off
+    """
     long_cutoff: Length | None = None
     """lambda_c that the stated height was measured with: it is the rms height of the waves up to
     this one, and longer ones add to it; by default the longest wavelength
@@ -92,19 +109,6 @@ class _Cutoffs(StrictModel):
     """lambda_s that the stated height was measured with: it is the rms height of the waves down to
     this one, and shorter ones add to it; by default the shortest wavelength
     """
-
-
-class OwnRoughness(_Cutoffs):
-    """What one roller has in place of the values of the study's section `roughness`."""
-
-    hurst_exponent: _Hurst | None = None
-    """Hurst exponent H"""
-    longest_wavelength: _LongestWavelength | None = None
-    """2 pi / q_min"""
-    shortest_wavelength: _ShortestWavelength | None = None
-    """2 pi / q_max"""
-    roll_off_wavelength: Length | None = None
-    """2 pi / q_r"""
     skewness: _Skewness | None = None
     """skewness of the heights"""
     kurtosis: _Kurtosis | None = None
@@ -141,18 +145,11 @@ class Roller(StrictModel):
 
     @model_validator(mode="after")
     def _check_roughness(self):
-        if self.rms_roughness and self.ra_roughness:
-            raise ValueError(
-                f"ra_roughness: got {self.ra_roughness:g} m beside an rms_roughness of "
-                f"{self.rms_roughness:g} m, need one of the two"
-            )
-        if self.topography and self.rms_height:
-            raise ValueError(
-                f"topography: got {self.topography.file} beside a roughness of "
-                f"{self.rms_height:.3g} m rms, need one of the two"
-            )
-        for name in ("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff"):
-            if self.topography and self.roughness and getattr(self.roughness, name):
+        kinds = given_keys(self, ROUGHNESS_KEYS)
+        if len(kinds) > 1:
+            raise ValueError(f"{kinds[1]}: got one beside {kinds[0]}, need one of the two")
+        if self.topography and self.roughness:
+            for name in given_keys(self.roughness, _OF_SPECTRUM):
                 raise ValueError(
                     f"roughness.{name}: got {getattr(self.roughness, name):g} beside a topography, "
                     "whose spectrum has its own, need one of the two"
@@ -214,29 +211,23 @@ class RollerPair(StrictModel):
     @model_validator(mode="after")
     def _check_roughness(self):
         for name in ROLLERS:
-            roller = getattr(self, name)
-            rms = roller.rms_height
-            if rms is None and self.composite is None and not roller.topography:
+            kinds = given_keys(getattr(self, name), ROUGHNESS_KEYS)
+            if not kinds and self.composite is None:
                 raise ValueError(
                     f"{name}.rms_roughness: missing, need it, or ra_roughness, or a topography, or "
                     "composite_rms_roughness of both rollers"
                 )
-            if self.composite is not None and (roller.topography or rms):
-                kind, height = ("roughness", f", {rms:.3g} m rms") if rms else ("topography", "")
+            if kinds and self.composite is not None:
                 raise ValueError(
-                    f"composite_rms_roughness: got {self.composite:g} m beside a {kind} of the "
-                    f"{name} roller{height}, need one of the two"
+                    f"composite_rms_roughness: got one beside {name}.{kinds[0]}, need one of the "
+                    "two"
                 )
         return self
 
 
-class Roughness(_Cutoffs):
+class Roughness(OwnRoughness):
     """Statistics and grid of the random roughness lines of both rollers."""
 
-    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
-    """points N around the first roller"""
-    hurst_exponent: _Hurst | None = None
-    """Hurst exponent H; not needed where both rollers have a measured surface"""
     longest_wavelength: _LongestWavelength
     """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
     the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
@@ -244,16 +235,14 @@ class Roughness(_Cutoffs):
     """
     shortest_wavelength: _ShortestWavelength
     """2 pi / q_max; the break-up of the boundary layer depends on it"""
-    roll_off_wavelength: Length | None = None
-    """2 pi / q_r: longer waves have the spectral density of the isotropic surface at q_r; by
-    default there is no roll-off
-    """
     skewness: _Skewness = 0.0
     """skewness of the heights, 0 for Gaussian heights; negative where peaks are worn"""
     kurtosis: _Kurtosis = 3.0
     """kurtosis of the heights, 3 for Gaussian heights; at least 1.5 plus 1.25 times the skewness
     squared
     """
+    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
+    """points N around the first roller"""
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
 
