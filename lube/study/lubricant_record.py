@@ -23,11 +23,11 @@ from lube.physics.density import linear_density
 from lube.physics.pressure_viscosity import DEFINITIONS, FORMULA_DEFINITION, GOLD_BASES
 from lube.physics.viscosity_index import viscosity_at_100
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
-from lube.study.field_types import Slug, StrictModel, Text, quantity, validate
+from lube.study.field_types import Slug, StrictModel, Text, given_keys, quantity, validate
 from lube.study.text_files import read_yaml
 from lube.study.viscosity_checks import ROUNDING, check_points
 from lube.study.viscosity_points import OilTemperature, ViscosityPoint, read_viscosity_csv
-from lube.types import File
+from lube.types import File, Values
 
 SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
 
@@ -64,7 +64,7 @@ class Viscosity(Sourced):
     @model_validator(mode="after")
     def _check_one_way(self):
         ways = ("points", "csv", "iso_vg", "coolprop_fluid")
-        given = [way for way in ways if getattr(self, way) is not None]
+        given = given_keys(self, ways)
         if len(given) != 1:
             raise ValueError(f"got {' and '.join(given) or 'none'}, need one of {', '.join(ways)}")
         if (self.iso_vg is None) != (self.viscosity_index is None):
@@ -139,7 +139,7 @@ class PressureViscosity(Sourced):
     @property
     def given(self) -> list[str]:
         """Which of its keys give the coefficient; none where viscosities under pressure do."""
-        return [way for way in ("gold_base", "value", "points") if getattr(self, way) is not None]
+        return given_keys(self, ("gold_base", "value", "points"))
 
     @property
     def span(self) -> float | None:
@@ -207,8 +207,7 @@ class LubricantRecord(StrictModel):
                 raise ValueError("density: missing, need it unless CoolProp gives it")
             return self
         given = [f"pressure_viscosity.{key}" for key in alpha.given]
-        optional = ("density", "thermal_conductivity", "viscosity_law")
-        for key in given + [key for key in optional if getattr(self, key) is not None]:
+        for key in given + given_keys(self, ("density", "thermal_conductivity", "viscosity_law")):
             raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
         if alpha.definition == "reciprocal-asymptotic":
             raise ValueError(
@@ -254,16 +253,16 @@ class LubricantRecord(StrictModel):
         points = self.pressure_viscosity.points
         return [point.temperature for point in points] if points else list(self.isotherms)
 
-    def density_at(self, temperature: float) -> float:
-        """Density, kg/m3, at a temperature in degC."""
-        density, kelvin = self.density, temperature + ZERO_CELSIUS
+    def density_at(self, kelvin: Values) -> Values:
+        """Density, kg/m3, at a temperature in K."""
+        density = self.density
         return linear_density(kelvin, density.at_15_degC, density.thermal_coefficient)
 
     def kinematic_viscosity(self, point: ViscosityPoint) -> float:
         """Kinematic viscosity of a point, m2/s: as given, or dynamic viscosity over density."""
         if point.kinematic_viscosity is not None:
             return point.kinematic_viscosity
-        return point.dynamic_viscosity / self.density_at(point.temperature)
+        return point.dynamic_viscosity / self.density_at(point.temperature + ZERO_CELSIUS)
 
     @property
     def data(self) -> list[tuple[float, float]]:
@@ -291,7 +290,7 @@ class LubricantRecord(StrictModel):
                 f"viscosity: got pressures at {temperature:g} degC without atmospheric pressure, "
                 "need a value there as well"
             )
-        ambient = sum(same) / len(same) * self.density_at(temperature)
+        ambient = sum(same) / len(same) * self.density_at(temperature + ZERO_CELSIUS)
         pairs = [(p.pressure - ATMOSPHERIC_PRESSURE, p.dynamic_viscosity / ambient) for p in points]
         return sorted(pairs)
 
@@ -360,20 +359,18 @@ def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
         content = _regraded(content, name_or_path, grade)
     record = validate(LubricantRecord, content, path, RecordError)
     viscosity, files = record.viscosity, (path,)
+    points = viscosity.points
     if viscosity.csv is not None:
         files += (_beside(path, viscosity.csv),)
-        record = _with_points(record, read_viscosity_csv(files[1]))
-    if viscosity.iso_vg is not None:
-        record = _with_points(record, _points_of_grade(viscosity))
-    if record.viscosity.points is not None:
+        points = read_viscosity_csv(files[1])
+    elif viscosity.iso_vg is not None:
+        points = _points_of_grade(viscosity)
+    if points is not None:
+        viscosity = viscosity.model_copy(update={"points": points})
+        record = record.model_copy(update={"viscosity": viscosity})
         check_points(record, files[-1])
     record._files = files
     return record
-
-
-def _with_points(record, points):
-    viscosity = record.viscosity.model_copy(update={"points": points})
-    return record.model_copy(update={"viscosity": viscosity})
 
 
 def _points_of_grade(viscosity):

@@ -19,7 +19,6 @@ from lube.physics.coolprop_fluids import (
     liquid_range,
     secant_pressure_viscosity,
 )
-from lube.physics.density import linear_density
 from lube.physics.pressure_viscosity import (
     fit_mcewen,
     gold_pressure_viscosity,
@@ -50,7 +49,7 @@ class _MeasuredOil:
     """Properties of a lubricant record with measured viscosities, interpolated by a law."""
 
     def __init__(self, record):
-        self._record = record
+        self._record, self.density = record, record.density_at
         temperature, viscosity = (np.array(column) for column in zip(*record.data, strict=True))
         self.data_temperature = temperature + ZERO_CELSIUS
         self.data_viscosity = viscosity
@@ -59,10 +58,6 @@ class _MeasuredOil:
         # The law also holds a little outside the range of the data.
         self.temperature_limits = -np.inf, np.inf
         self._coefficients, self.pressure_fit_residual = _measured_coefficients(record)
-
-    def density(self, temperature):
-        density = self._record.density
-        return linear_density(temperature, density.at_15_degC, density.thermal_coefficient)
 
     def kinematic_viscosity(self, temperature):
         return self._law.evaluate(temperature, *self._parameters) * MM2_PER_S

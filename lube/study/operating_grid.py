@@ -4,9 +4,6 @@ from typing import Annotated
 
 from lube.study.field_types import StrictModel, levels, quantity
 
-TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "speed", "force")
-"""Variables that a trace names a level of."""
-
 
 class OperatingGrid(StrictModel):
     """Levels of the operating variables; every combination is an operating point."""

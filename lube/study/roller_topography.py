@@ -65,10 +65,10 @@ class RollerTopography(StrictModel):
 
     @property
     def reading(self) -> dict[str, Any]:
-        """What was read, as plain data, so that jobs need not read it again; empty for a line."""
+        """The measured spectrum as plain data, so that jobs need not read the file again."""
         from lube.study import topography_lines
 
-        return {} if self.is_line else {self.key: topography_lines.plain(self._measured)}
+        return topography_lines.plain(self._measured)
 
     @property
     def content(self) -> dict[str, Any]:

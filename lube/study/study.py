@@ -36,8 +36,8 @@ from lube.study.lubricant_record import (
     load_record,
 )
 from lube.study.metadata import About
-from lube.study.operating_grid import TRACED, OperatingGrid, TracePoint
-from lube.study.resolve import resolved_content, with_topographies
+from lube.study.operating_grid import OperatingGrid, TracePoint
+from lube.study.resolve import resolved_content, with_paths
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import INSULATOR, ROLLERS, BoundaryLayer, RollerPair, Roughness
@@ -167,8 +167,7 @@ class Study(StrictModel):
     @property
     def lubricant_values(self) -> list[dict]:
         """The lubricant records as plain data, without their titles: they change no result."""
-        options = {"mode": "json", "by_alias": True, "exclude": {"title"}}
-        return [record.model_dump(**options) for record in self.lubricants]
+        return [record.model_dump(exclude={"title"}) for record in self.lubricants]
 
     @property
     def gap(self) -> Gap:
@@ -188,10 +187,8 @@ class Study(StrictModel):
     @property
     def readings(self) -> dict[str, dict]:
         """Argument of `load_study` that saves it from reading large topographies again."""
-        read = {}
-        for topography in self.topographies.values():
-            read |= topography.reading
-        return {"readings": read} if read else {}
+        drawn = [one for one in self.topographies.values() if not one.is_line]
+        return {"readings": {one.key: one.reading for one in drawn}}
 
     @property
     def datasets(self) -> tuple[str, ...]:
@@ -291,8 +288,8 @@ class Study(StrictModel):
 
         Measured files are identified by their contents, not by their paths.
         """
-        values = self.experiment.model_dump(mode="json")
-        return values | {"manifest": self.experiment.manifest is not None}
+        manifest = self.experiment.manifest
+        return self.experiment.model_dump() | {"manifest": manifest is not None}
 
     def stage_inputs(self, stage: str) -> dict:
         """Return the values of the study that a stage depends on, as plain data.
@@ -406,7 +403,7 @@ class Study(StrictModel):
             "film_formula": self.film_formulas,
         }
         found = {}
-        for variable in TRACED:
+        for variable in TracePoint.model_fields:
             wanted, given = getattr(point, variable), available[variable]
             index = 0 if wanted is None else level_index(given, wanted, SAME)
             if index is None:
@@ -452,18 +449,14 @@ def load_study(
     RecordError
         If a lubricant record that the study names cannot be used.
     """
-    content = resolved_content(path, changes)
     folder = Path(path).parent
+    content = with_paths(resolved_content(path, changes), lambda name: str(folder / name))
     if isinstance(content.get("lubricants"), list):
         with located(f"{path}: lubricants"):
-            records = tuple(load_record(name, folder) for name in content["lubricants"])
+            records = tuple(map(load_record, content["lubricants"]))
         content = content | {"lubricants": records}
-    content = with_topographies(content, lambda file: str(folder / file))
     study = validate(Study, content, path, StudyError, readings)
-    if study.experiment.manifest is None:
-        return study
-    manifest = folder / study.experiment.manifest
-    if not manifest.is_file():
+    manifest = study.experiment.manifest
+    if manifest is not None and not Path(manifest).is_file():
         raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that exists")
-    experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
-    return study.model_copy(update={"experiment": experiment})
+    return study

@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from lube.errors import RecordError, located
+from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE
 from lube.types import File
 
@@ -80,7 +81,7 @@ def _states(record, point) -> Iterable[tuple[float, float, str]]:
         value = point.kinematic_viscosity
         yield point.temperature, value, f"{1e6 * value:.4g} mm2/s"
     if point.dynamic_viscosity is not None:
-        density = record.density_at(point.temperature)
+        density = record.density_at(point.temperature + ZERO_CELSIUS)
         value = point.dynamic_viscosity / density
         words = f"{1e3 * point.dynamic_viscosity:.4g} mPa s over {density:.4g} kg/m3"
         yield point.temperature, value, f"{1e6 * value:.4g} mm2/s ({words})"
