@@ -9,14 +9,8 @@ from pydantic import Field, PlainSerializer
 
 from lube.errors import StudyError, located
 from lube.statistics.sample_size import independent_windows
-from lube.study.field_types import StrictModel, given_keys
-from lube.study.rollers import (
-    AUTOMATIC_WAVELENGTH,
-    ROLLERS,
-    ROUGHNESS_KEYS,
-    RollerPair,
-    Roughness,
-)
+from lube.study.field_types import StrictModel
+from lube.study.rollers import AUTOMATIC_WAVELENGTH, ROLLERS, RollerPair, Roughness
 from lube.types import Values
 from lube.units import with_unit
 
@@ -352,9 +346,8 @@ def _check_height_step(rms, step, name, roller):
             f"roughness.height_step: got {step:.3g} m, need {rms / 1e7:.3g} "
             f"to {rms / 1e3:.3g} m for a roughness of {rms:.3g} m"
         )
-    kinds = given_keys(roller, ROUGHNESS_KEYS)
-    key = f"rollers.{name}.{kinds[0]}" if kinds else "rollers.composite_rms_roughness"
-    raise StudyError(f"{key}: got {rms:.3g} m, need an rms height of 1e-09 to 1e-05 m")
+    key = f"{name}.{roller.kinds[0]}" if roller.kinds else "composite_rms_roughness"
+    raise StudyError(f"rollers.{key}: got {rms:.3g} m, need an rms height of 1e-09 to 1e-05 m")
 
 
 def _check_distribution(own, key):

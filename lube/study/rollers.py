@@ -136,6 +136,11 @@ class Roller(StrictModel):
     topography: RollerTopography | None = None
 
     @property
+    def kinds(self) -> list[str]:
+        """Keys of its roughness that are given: one, or none if only that of both is known."""
+        return given_keys(self, ROUGHNESS_KEYS)
+
+    @property
     def rms_height(self) -> float | None:
         """Rms height of the roughness, m.
 
@@ -145,9 +150,9 @@ class Roller(StrictModel):
 
     @model_validator(mode="after")
     def _check_roughness(self):
-        kinds = given_keys(self, ROUGHNESS_KEYS)
-        if len(kinds) > 1:
-            raise ValueError(f"{kinds[1]}: got one beside {kinds[0]}, need one of the two")
+        if len(self.kinds) > 1:
+            one, other, *_ = self.kinds
+            raise ValueError(f"{other}: got one beside {one}, need one of the two")
         if self.topography and self.roughness:
             for name in given_keys(self.roughness, _OF_SPECTRUM):
                 raise ValueError(
@@ -211,7 +216,7 @@ class RollerPair(StrictModel):
     @model_validator(mode="after")
     def _check_roughness(self):
         for name in ROLLERS:
-            kinds = given_keys(getattr(self, name), ROUGHNESS_KEYS)
+            kinds = getattr(self, name).kinds
             if not kinds and self.composite is None:
                 raise ValueError(
                     f"{name}.rms_roughness: missing, need it, or ra_roughness, or a topography, or "
