@@ -299,7 +299,7 @@ def validate(
     try:
         return model.model_validate(content, context=context)
     except ValidationError as error:
-        # A misspelt key comes first: that the right one is missing only follows from it.
+        # A misspelt key comes first: the missing key only follows from it.
         mistakes = sorted(error.errors(), key=lambda mistake: mistake["type"] not in _UNKNOWN)
         more = f" (and {len(mistakes) - 1} more)" if len(mistakes) > 1 else ""
         line = _as_written(_in_one_line(mistakes[0], model), content)
@@ -307,7 +307,7 @@ def validate(
 
 
 def _as_written(line, content):
-    """Quote in an error message the value as it is written, not as it is understood, in SI."""
+    """Quote in an error message the value as written in the file, not as converted to SI."""
     message = re.match(
         r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)?(?: (?!beside)[^\s,]+)?)(?![^\s,])", line
     )

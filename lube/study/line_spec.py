@@ -1,4 +1,4 @@
-"""What determines the roughness lines of a pair of rollers, checked against the grid."""
+"""Parameters of the roughness lines of a pair of rollers, checked against the grid."""
 
 import functools
 import hashlib
@@ -37,7 +37,7 @@ class RoughLine(StrictModel):
     q_roll_off : float
         Wave number below which C1D ~ q, rad/m; by default `q_min`: nowhere.
     skewness, kurtosis : float
-        Of the heights; by default 0 and 3: Gaussian.
+        Skewness and kurtosis of the heights; by default 0 and 3, those of Gaussian heights.
     spectrum : tuple of tuple of float, optional
         Measured spectrum: wave vectors, rad/m, and densities, m^3, between which it is a power law.
     heights : bytes, optional
@@ -60,12 +60,12 @@ class RoughLine(StrictModel):
 
     @property
     def longest_wavelength(self) -> float:
-        """Of its waves, m."""
+        """Longest wavelength of the line, m."""
         return 2.0 * math.pi / self.q_min
 
     @property
     def shortest_wavelength(self) -> float:
-        """Of its waves, m."""
+        """Shortest wavelength of the line, m."""
         return 2.0 * math.pi / self.q_max
 
     @property
@@ -80,7 +80,7 @@ class LineSpec(StrictModel):
     Attributes
     ----------
     lines : tuple of RoughLine
-        Line of either roller.
+        Line of each roller.
     spacing : float
         Distance dx of neighbouring points, m.
     height_step : float
@@ -93,12 +93,12 @@ class LineSpec(StrictModel):
 
     @property
     def points(self) -> tuple[int, int]:
-        """Points around either roller."""
+        """Points around each roller."""
         return tuple(line.points for line in self.lines)
 
     @property
     def rms_height(self) -> tuple[float, float]:
-        """Rms height of either line, m."""
+        """Rms height of each line, m."""
         return tuple(line.rms_height for line in self.lines)
 
     @property
@@ -133,7 +133,7 @@ class LineSpec(StrictModel):
 
     @property
     def longest_wavelength(self) -> float:
-        """Of the waves of both lines, m."""
+        """Longest wavelength of both lines, m."""
         return 2.0 * math.pi / self.q_min
 
     @property
@@ -157,7 +157,7 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     rollers : RollerPair
         The rollers.
     roughness : Roughness
-        Statistics and grid of their lines, where a roller has none of its own.
+        Statistics and grid of the lines; the values of a roller come before these.
     largest_force : float
         Largest force of the study, N; its contact width may set the longest wavelength.
 
@@ -261,7 +261,7 @@ def check_width(spec: LineSpec, width: float, what: str) -> None:
     width : float
         Width of the contact, m.
     what : str
-        What is so wide, for the message.
+        Name of the contact, for the message.
 
     Raises
     ------
@@ -283,9 +283,10 @@ def _key(roller, own, name):
 
 
 def _beyond_cutoffs(own, longest, shortest, key):
-    r"""Rms height of all waves of a line over that of the waves within the cutoffs.
+    r"""Ratio of the rms height of all waves of a line to that of the waves within the cutoffs.
 
-    The integrals of :math:`C \propto q^{-2H-1}`, below the roll-off :math:`C \propto q`.
+    Both follow from the integral of :math:`C \propto q^{-2H-1}`, below the roll-off
+    :math:`C \propto q`.
     """
     if own.long_cutoff is None and own.short_cutoff is None:
         return 1.0
@@ -351,12 +352,12 @@ def _check_height_step(rms, step, name, roller):
 
 
 def _check_distribution(own, key):
-    """Close to the least kurtosis the heights are two levels, whose spectrum cannot be chosen."""
+    """Close to the least kurtosis the heights have two levels, and no spectrum can be chosen."""
     square = own.skewness**2
     least = 1.5 + 1.25 * square
     if own.kurtosis < least:
         raise StudyError(
             f"{key('kurtosis')}: got {own.kurtosis:g} with a skewness of {own.skewness:g}, need at "
-            f"least {least:g}: none is below {square + 1.0:g}, the skewness squared plus one, and "
-            "close to it the spectrum cannot be kept"
+            f"least {least:g}: no kurtosis is below {square + 1.0:g}, the skewness squared plus "
+            "one, and close to that the spectrum cannot be kept"
         )

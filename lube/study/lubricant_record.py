@@ -35,7 +35,7 @@ ISO_GRADES = (10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500)
 """Grades of ISO 3448 by their kinematic viscosity at 40 degC, mm2/s."""
 
 GEAR_OIL_GRADES = tuple(grade for grade in ISO_GRADES if 32 <= grade <= 680)
-"""Grades in which each shipped record with a grade in its name can be had."""
+"""Grades of the shipped gear oils, whose file has one of them in its name."""
 
 _GRADED = re.compile(r"(.+-iso-vg-)\d+")
 
@@ -81,7 +81,7 @@ class Density(Sourced):
     """relative fall of the density per kelvin"""
 
 
-# Of all liquids that lubricate.
+# The range holds all liquids that lubricate.
 _COEFFICIENT = Annotated[float, quantity("1/GPa", least=1.0, most=100.0)]
 
 
@@ -118,7 +118,7 @@ class PressureViscosity(Sourced):
     points: Annotated[tuple[CoefficientPoint, ...], Field(min_length=1)] | None = None
     """measured coefficients; between them its logarithm is linear in temperature"""
     definition: Literal[tuple(DEFINITIONS)] | None = None
-    """definition of the measured coefficient, or of that from viscosities under pressure"""
+    """definition of the measured coefficient, or of the one from viscosities under pressure"""
     pressure: Annotated[float, quantity("Pa", above=ATMOSPHERIC_PRESSURE)] | None = None
     """pressure to which the secant runs"""
 
@@ -138,7 +138,7 @@ class PressureViscosity(Sourced):
 
     @property
     def given(self) -> list[str]:
-        """Which of its keys give the coefficient; none where viscosities under pressure do."""
+        """Keys that give the coefficient; none if it follows from viscosities under pressure."""
         return given_keys(self, ("gold_base", "value", "points"))
 
     @property
@@ -230,9 +230,8 @@ class LubricantRecord(StrictModel):
     def valid_temperatures(self) -> tuple[float, float]:
         """Lowest and highest temperature at which the lubricant record is valid, degC.
 
-        From `temperature_range` if it is given, else those at which the data give both viscosity
-        and pressure-viscosity coefficient, else the liquid range of CoolProp, which is imported
-        for it.
+        They are those of `temperature_range` if it is given, else those at which the data give
+        both viscosity and pressure-viscosity coefficient, else CoolProp's liquid range.
         """
         if self.temperature_range is not None:
             return self.temperature_range.lowest, self.temperature_range.highest
@@ -311,7 +310,7 @@ def shipped_records() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        The names, sorted; of the gear oils one for each ISO grade from 32 to 680.
+        The names, sorted; a gear oil has one for each ISO grade from 32 to 680.
 
     Examples
     --------
@@ -420,7 +419,8 @@ def _beside(record_path, name):
 def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -> None:
     """Refuse temperatures at which a lubricant record is not valid.
 
-    Cheap, unless the record names a CoolProp fluid and no range: CoolProp is imported to give one.
+    CoolProp, which takes seconds to import, is asked for the range of a fluid if the record has
+    none.
 
     Parameters
     ----------
@@ -446,8 +446,7 @@ def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -
 def check_fluid(record: LubricantRecord, temperatures: Sequence[float]) -> None:
     """Refuse a CoolProp fluid without viscosity or density at the temperatures of a study.
 
-    CoolProp, which takes seconds to import, is imported for a fluid of one's own; the shipped
-    ones are known to be fit.
+    The shipped fluids are known to be fit and are not checked: CoolProp takes seconds to import.
 
     Parameters
     ----------

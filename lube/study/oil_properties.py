@@ -90,9 +90,9 @@ def _measured_coefficients(record):
 
 
 def _interpolated(temperature, coefficients):
-    """Coefficient whose logarithm is linear between the temperatures, and goes on so beyond them.
+    """Interpolate coefficients: their logarithm is linear in temperature, also beyond the data.
 
-    With one temperature it is the same everywhere.
+    A single coefficient is the same at all temperatures.
     """
     known = np.array(sorted(coefficients))
     logarithms = np.log([coefficients[each] for each in known])
@@ -150,13 +150,13 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
         lubricant record names. For comparison all viscosity laws are fitted to the data as
         well: parameters, relative residuals, and curves at whole degrees within the record's
         temperature range. The data of a CoolProp fluid are samples of it, and its properties
-        come from CoolProp itself. Pressure-viscosity coefficients by another definition than the
-        film formulas take are converted to theirs by Roelands' law; from viscosities under
-        pressure they follow by McEwen's law, fitted at each temperature. Values that do not exist
-        are NaN: parameters that a law does
-        not have, data points beyond a lubricant's own, fits that a law does not allow, the
-        viscosity index of a thin liquid, the residual of a fit under pressure where there is
-        none, and a thermal conductivity that is not given.
+        come from CoolProp itself. Pressure-viscosity coefficients by a definition other than that
+        of the film formulas are converted by Roelands' law. If there are viscosities under
+        pressure, the coefficients follow by McEwen's law, fitted at each temperature. Values that
+        do not exist are NaN: parameters that a law does not have, data points that a lubricant
+        does not have, fits that a law does not allow, the viscosity index of a thin liquid, the
+        residual of a fit under pressure where there is none, and a thermal conductivity that is
+        not given.
 
     Raises
     ------
@@ -230,7 +230,7 @@ def _properties(record, substance, temperature):
 
 
 def _for_formulas(section, stated, dynamic_viscosity):
-    """Coefficients by the definition that film formulas take; those of Gold's form as they are."""
+    """Convert coefficients to the definition of the film formulas; Gold's form needs no change."""
     if section.definition is None:
         return stated
     pairs = zip(stated, dynamic_viscosity, strict=True)

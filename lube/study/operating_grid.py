@@ -1,4 +1,4 @@
-"""The operating points of a study, and those of them that are traced."""
+"""The operating points of a study, and the traced ones among them."""
 
 from typing import Annotated
 

@@ -27,7 +27,7 @@ _OF_BOTH = "composite_rms_roughness"
 _PATHS = {("rollers", name, "topography", "file") for name in ROLLERS} | {
     ("experiment", "manifest")
 }
-"""Keys of the paths that a study names, apart from lubricant records."""
+"""Keys of these paths, apart from those in the list of lubricants."""
 
 _OF_ONE_STUDY = {"title", "summary", "date", "doi"}
 """Keys of ``about`` that a study does not take over from its base."""
@@ -183,7 +183,7 @@ def _with_paths_from(content, here, there):
 
 
 def with_paths(content: Any, moved: Callable[[str], str], keys: tuple = ()) -> Any:
-    """Rewrite the paths that a study names, but that of its base.
+    """Rewrite all paths that a study names, except `based_on`.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from pydantic import Field, StrictInt
 from lube.study.field_types import StrictModel, levels, quantity
 
 RIG_REALISATIONS = 1_000_000
-"""First realisation of the simulated rig's own rollers; those of a study are below it."""
+"""First realisation of the simulated rig's rollers; a study's realisations are below it."""
 
 _Resistance = Annotated[float, quantity("ohm", above=0.0)]
 
@@ -40,14 +40,14 @@ class Rig(StrictModel, validate_default=True):
     noise: Annotated[float, quantity("V", least=0.0)] = "20 uV"
     """rms noise at the amplifier's input"""
     revolutions: Annotated[float, quantity(None, least=0.01, most=1000.0)] = 12
-    """of the roller with the faster surface in each simulated record"""
+    """revolutions of the roller with the faster surface in each simulated record"""
     pairs: Annotated[StrictInt, Field(ge=1, le=1000)] = 1
     """pairs of rollers that the simulated rig runs, one after the other; each makes a record at
     every operating point
     """
     drift: Annotated[float, quantity(None, least=0.0, most=1.0)] = 0
-    """share of the variance of the roughness that each revolution renews, of the simulated
-    rollers and, as an assumption, of measured ones; at 0 the roughness stays the same
+    """part of the roughness variance that each revolution renews, on the simulated rollers and, as
+    an assumption, on measured ones; at 0 the roughness stays the same
     """
 
     @property

@@ -1,10 +1,10 @@
 """The measured topography of a roller, in place of an rms height and a Hurst exponent.
 
-It is read, without form and holes and filtered, when the study is checked. It then stands for the
-roller in one of three ways: new lines are drawn from its spectrum, or the profile itself is the
-line, which it closes around the roller or repeats along it.
+Its file is read when the study is checked; form and holes are removed, and heights are filtered.
+The roller gets its lines in one of three ways: new lines are drawn from the spectrum, or the
+profile is the line, as one turn around the roller or repeated along it.
 
-What reads and computes is imported on first use: most studies have no topography.
+The modules that read and compute are imported on first use: most studies have no topography.
 """
 
 import hashlib

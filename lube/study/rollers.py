@@ -31,16 +31,16 @@ ROUGHNESS_KEYS = ("rms_roughness", "ra_roughness", "topography")
 _OF_SPECTRUM = ("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff")
 """Keys of its section `roughness` that a measured spectrum replaces."""
 INSULATOR = "insulator"
-"""In place of the resistivity of rollers of which one does not conduct."""
+"""Resistivity of rollers if either does not conduct."""
 
 AUTOMATIC_WAVELENGTH = "contact width at the largest force"
 
 LONGEST_WAVELENGTH = "0.8 mm"
-"""Longest wave of the roughness where nothing else is said: the default cutoff of ISO 4288 and
-ISO 21920-3 for an Ra from 0.1 to 2 um, so that a customary Ra or Rq is that of the lines."""
+"""Default longest wavelength: the cutoff of ISO 4288 and ISO 21920-3 for an Ra from 0.1 to 2 um,
+so that the lines have an Ra or Rq as it is customarily measured."""
 
 SHORTEST_WAVELENGTH = "3.1416 um"
-"""Shortest wave where nothing else is said: the paper's."""
+"""Default shortest wavelength: the paper's."""
 
 _POINTS_PER_WAVE = 10  # of the shortest waves, as in the paper
 
@@ -170,8 +170,8 @@ class RollerPair(StrictModel):
     first: Roller
     second: Roller
     composite: Length | None = Field(None, alias="composite_rms_roughness")
-    """rms height of both rough surfaces together, in place of one of each roller, which is taken
-    as this / 2^0.5
+    """rms height of both rough surfaces together, in place of one for each roller; each roller
+    then has this / 2^0.5
     """
 
     @property
@@ -189,7 +189,7 @@ class RollerPair(StrictModel):
 
     @property
     def rms_heights(self) -> tuple[float, float]:
-        """Rms height of the roughness of either roller, m."""
+        """Rms height of the roughness of each roller, m."""
         if self.composite is None:
             return self.first.rms_height, self.second.rms_height
         return self.composite / math.sqrt(2.0), self.composite / math.sqrt(2.0)

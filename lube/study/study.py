@@ -17,7 +17,7 @@ from pydantic_core import to_jsonable_python
 from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import StudyError, located, shown
 from lube.grid.gap import Gap
-from lube.grid.levels import SAME, level_index, rolling
+from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
@@ -68,8 +68,8 @@ class Study(StrictModel):
     realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
     """number of pairs of roughness lines"""
     revolutions: Annotated[StrictInt, Field(ge=1, le=1000)]
-    """of the roller with the faster surface; equal rollers without slip repeat themselves after
-    one
+    """revolutions of the roller with the faster surface; equal rollers without slip repeat
+    themselves after one
     """
     batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
     """realisations per job; changes no result"""
@@ -114,7 +114,7 @@ class Study(StrictModel):
     rig: Rig = Field(default_factory=Rig)
     """the simulated rig, and the drift assumed for measured records"""
     experiment: Experiment = Field(default_factory=Experiment)
-    """its records and their evaluation"""
+    """records of the rig and their evaluation"""
 
     _each_once = field_validator("kept_realisations", "film_formulas")(each_once)
 
@@ -135,7 +135,7 @@ class Study(StrictModel):
 
     @property
     def rough_rollers(self) -> RollerPair:
-        """The rollers with the rms heights of their lines."""
+        """The rollers, with the rms heights that their lines have."""
         return self.rollers.with_rms_heights(self.line_spec.rms_height)
 
     @property
@@ -222,11 +222,6 @@ class Study(StrictModel):
     def slips(self) -> tuple[float, ...]:
         """Levels of the slide-to-roll ratio."""
         return self.operating_grid.slide_to_roll_ratio
-
-    @property
-    def rig_slip(self) -> float:
-        """Slide-to-roll ratio of the simulated rig: pure rolling if the study has it."""
-        return rolling(self.slips)
 
     @property
     def rig_realisations(self) -> range:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # a record checks its points
     from lube.study.lubricant_record import LubricantRecord
 
 ROUNDING = 1e-6
-"""Temperatures converted from K or degF to degC may miss a limit by so much, degC."""
+"""Temperatures converted from K or degF to degC may miss a limit by this much, degC."""
 
 AGREEMENT = 0.02
 """Relative difference up to which two viscosities in the same state count as one, repeated."""
@@ -43,8 +43,8 @@ def check_points(record: LubricantRecord, where: File) -> None:
     Raises
     ------
     RecordError
-        If two viscosities in the same state differ by more than `AGREEMENT`, be they dynamic or
-        kinematic; if they are all at one temperature, rise with the temperature or fall with
+        If two viscosities in the same state, dynamic or kinematic, differ by more than
+        `AGREEMENT`; if all are at one temperature; if they rise with temperature or fall with
         pressure; if they leave the pressure-viscosity coefficient open, or give a second one.
     """
     with located(f"{where}"):
