@@ -16,12 +16,12 @@ from pydantic import NonNegativeInt, model_validator
 from lube.errors import DataError, located, right_one, shown
 from lube.recordings.signals import header_cell
 from lube.schema import ORIGINS
-from lube.study.field_types import StrictModel, Text, checked_text, pure_number, quantity, validate
+from lube.study.field_types import StrictModel, Text, checked_text, quantity, validate
 from lube.study.small_csv import read_cells
 from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
 
-Share = Annotated[float, pure_number(least=0.0, most=1.0)]
+Share = Annotated[float, quantity(None, least=0.0, most=1.0)]
 
 _UNITS = (
     dict.fromkeys(("force", "force_tolerance"), "N")
@@ -51,7 +51,7 @@ class Row(StrictModel):
     """unit of that channel; overrides the one in the file, and decides between voltage and
     resistance where the channel's name does not
     """
-    gain: Annotated[float, pure_number(other_than=0.0)] = 1.0
+    gain: Annotated[float, quantity(None, other_than=0.0)] = 1.0
     """factor of an amplifier between rig and recorder, below 0 if it inverts: recorded = gain ×
     true + offset
     """
@@ -85,7 +85,7 @@ class Row(StrictModel):
     """largest difference between the true temperature and the one stated; 1 degC is 1 K here"""
     lubricant: Text | None = None
     """a lubricant of the study; by default its first"""
-    slide_to_roll_ratio: Annotated[float, pure_number(least=-2.0, most=2.0)] | None = None
+    slide_to_roll_ratio: Annotated[float, quantity(None, least=-2.0, most=2.0)] | None = None
     """a ratio of the study; by default 0, or the study's first if 0 is not among them"""
     pair: Text | None = None
     """label of the pair of rollers measured; all rows without a label are of one pair"""

@@ -96,7 +96,7 @@ def keys(
         else:
             value = _value(field, inner) + (section if required else _default(field))
             meaning = field.get("description", inner.get("description", ""))
-            rows.append((f"`{path}{name}`", value, meaning))
+            rows.append((f"`{path}{name}`", value, " ".join(meaning.split())))
     return rows
 
 

@@ -13,6 +13,7 @@ import xarray as xr
 
 from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError, LubeError
+from lube.grid.levels import rolling
 from lube.grid.operating_points import OperatingPoint, known_films, operating_points
 from lube.inference.study_shares import levels_named
 from lube.recordings.manifest import Entry, Manifest, read_manifest
@@ -60,7 +61,7 @@ def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
     DataError
         If no film is known.
     """
-    every = operating_points(film.isel(film_formula=0), study.rig_slip)
+    every = operating_points(film.isel(film_formula=0), rolling(study.slips))
     points = [point for point in every if known_films(point.row, study.gap)]
     refused = [
         f"{_name_of_point(point, 0, study)}: the film is not known"
@@ -150,7 +151,7 @@ def _conditions_of_entry(entry: Entry, study: Study) -> Conditions:
     return Conditions(
         **{name: getattr(entry, name) for name in LEVELS},
         lubricant=lubricant_of(entry, study),
-        slide_to_roll_ratio=study.rig_slip if slip is None else slip,
+        slide_to_roll_ratio=rolling(study.slips) if slip is None else slip,
         pair=entry.pair or "1",
         tolerances={
             "force": entry.force_tolerance or of_study.force_tolerance * entry.force,

@@ -18,7 +18,7 @@ line, see `lube.surfaces.translation`.
 """
 
 import functools
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import scipy.fft
@@ -56,8 +56,8 @@ class RoughLineLike(Protocol):
         Whether the line is drawn, with Gaussian heights.
     spectrum : tuple or None
         Measured wave vectors, rad/m, and densities, m^3, in place of the Hurst exponent.
-    heights : object or None
-        Measured heights; its `steps` is an array of shape (N,), int32 height steps.
+    heights : bytes or None
+        Measured heights of the line itself: numbers int32, in height steps.
     isotropic : bool
         Whether the line stands for an isotropic surface.
     """
@@ -72,7 +72,7 @@ class RoughLineLike(Protocol):
     kurtosis: float
     is_gaussian: bool
     spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None
-    heights: Any
+    heights: bytes | None
     isotropic: bool
 
 
@@ -150,7 +150,7 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     last_wave = min(last_wave, (line.points - 1) // 2)
     if line.heights is not None:
         first_wave, last_wave = 1, (line.points - 1) // 2
-        waves = scipy.fft.rfft(line.heights.steps * spec.height_step, norm="forward")
+        waves = scipy.fft.rfft(_measured_steps(line) * spec.height_step, norm="forward")
         return 1, 2.0 * np.abs(waves[1 : last_wave + 1])
     waves = np.arange(first_wave, last_wave + 1)
     shape = (
@@ -168,6 +168,10 @@ def _self_affine(line, waves, turn):
     shape[below] = (roll_off / waves[0]) ** (-line.hurst_exponent - 0.5)
     shape[below] *= np.sqrt(waves[below] / roll_off)
     return shape
+
+
+def _measured_steps(line):
+    return np.frombuffer(line.heights, np.int32)
 
 
 def _measured(line, wave_vector):
@@ -215,7 +219,7 @@ def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> 
     """
     generator, line = np.random.default_rng(seed), spec.lines[roller]
     if line.heights is not None:
-        return line.heights.steps
+        return _measured_steps(line)
     if line.is_gaussian:
         spectrum = _spectrum(spec, roller)
         return whole_steps(_superposition(spectrum, line.points, random_phasors, generator))

@@ -43,7 +43,7 @@ def test_rollers_take_a_measured_surface_and_have_the_rms_height_of_its_lines():
     assert both.pair.first.rms_roughness == pytest.approx(0.19e-6, rel=0.01)
     one = Rollers("50 mm", "0.1 um", second=surface, **band)
     assert one.pair.rms_heights == (0.1e-6, both.lines.rms_height[1])
-    with pytest.raises(LubeError, match=r"Rollers: topography: got .* beside a roughness of 1e-07"):
+    with pytest.raises(LubeError, match="Rollers: topography: got one beside rms_roughness"):
         Rollers("50 mm", "0.1 um", **surface, **band)
 
 
