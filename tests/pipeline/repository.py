@@ -160,12 +160,22 @@ def digest(path):
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
+def not_copied(folder, names):
+    """Names that a copy does without: machine code of kernels, which is shared instead. Bytecode
+    of modules is copied, so that not each copy compiles them anew."""
+    in_cache = Path(folder).name == "__pycache__"
+    return [
+        name
+        for name in names
+        if name == ".ipynb_checkpoints" or (in_cache and Path(folder, name).is_dir())
+    ]
+
+
 def copy_of_the_repository(folder):
     folder.mkdir(parents=True)
     for name in COPIED:
         if (ROOT / name).is_dir():
-            ignored = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints")
-            shutil.copytree(ROOT / name, folder / name, ignore=ignored)
+            shutil.copytree(ROOT / name, folder / name, ignore=not_copied)
         else:
             shutil.copy2(ROOT / name, folder / name)
     repository = Repository(folder)
