@@ -163,12 +163,9 @@ def digest(path):
 def not_copied(folder, names):
     """Names that a copy does without: machine code of kernels, which is shared instead. Bytecode
     of modules is copied, so that not each copy compiles them anew."""
-    in_cache = Path(folder).name == "__pycache__"
-    return [
-        name
-        for name in names
-        if name == ".ipynb_checkpoints" or (in_cache and Path(folder, name).is_dir())
-    ]
+    if Path(folder).parts[-2:] == ("kernels", "__pycache__"):
+        return [name for name in names if Path(folder, name).is_dir()]
+    return [name for name in names if name == ".ipynb_checkpoints"]
 
 
 def copy_of_the_repository(folder):

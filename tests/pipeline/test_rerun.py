@@ -31,22 +31,26 @@ def test_unchanged_contents_rerun_nothing(spare):
     assert spare.planned(spare.with_values()) == set()
 
 
-def test_a_changed_module_reruns_the_jobs_that_import_it_and_what_follows(spare):
+def test_changed_modules_rerun_the_jobs_that_import_them_and_what_follows(spare):
     spare.append("lube/stages/trace.py", "# changed")
-    spare.append("lube/study/study.py", "# changed")  # which works by its values alone
-    assert spare.planned() == after(spare, "trace")
-
-
-def test_a_changed_stage_or_lubricant_record_reruns_what_follows(spare):
     spare.append("lube/stages/gauge.py", "# changed")
+    spare.append("lube/study/study.py", "# changed")  # which works by its values alone
     spare.append("lube/study/lubricants/n-dodecane.yaml", "# not of this study")
-    assert spare.planned() == after(spare, "gauge")
-    record = spare / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"
+    change_record(spare, "title: ", "title: New ")
+    assert spare.planned() == after(spare, "trace", "gauge")
+
+
+def test_a_changed_lubricant_record_reruns_what_follows(spare):
+    change_record(spare, "335 mm^2/s", "336 mm^2/s")
+    assert spare.planned() == after(spare, "lubricant") | BATCHES
+
+
+def change_record(repository, old, new):
+    """Change a text in the record of the study's lubricant."""
+    record = repository / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"
     text = record.read_text(encoding="utf-8")
-    record.write_text(text.replace("title: ", "title: New "), encoding="utf-8")
-    assert spare.planned() == after(spare, "gauge")
-    record.write_text(text.replace("335 mm^2/s", "336 mm^2/s"), encoding="utf-8")
-    assert spare.planned() == after(spare, "lubricant", "gauge") | BATCHES
+    assert old in text
+    record.write_text(text.replace(old, new), encoding="utf-8")
 
 
 @pytest.mark.parametrize(
