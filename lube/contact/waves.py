@@ -173,7 +173,8 @@ def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
                 answers[index][1] = answers[index][0]
             elif np.isfinite(one).all():
                 own = one, wavelength, position, half_width, importance
-                answers[index][roller] = Answer.of(*own)
+                with one_blas_thread():
+                    answers[index][roller] = Answer.of(*own)
     return xr.DataArray(answers, width.coords, (*dims, "roller"))
 
 

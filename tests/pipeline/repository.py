@@ -77,13 +77,9 @@ class Repository:
 
     def planned(self, study=SMOKE):
         """Results that the next run would make, but for pages, which follow all."""
-        return {name for name in self._planned(study) if not name.endswith(".html")}
+        return {name for name in self.all_planned(study) if not name.endswith(".html")}
 
-    def planned_pages(self, study=SMOKE):
-        """Pages of the report that the next run would make."""
-        return {name for name in self._planned(study) if name.startswith("report/")}
-
-    def _planned(self, study):
+    def all_planned(self, study=SMOKE):
         """All files that the next run would make, by Snakemake's own dry plan."""
         rows = [line.split("\t") for line in self.run("--summary", study=study).splitlines()]
         made = {row[0] for row in rows if row[-1] == "update pending"}

@@ -74,14 +74,12 @@ def test_a_changed_value_reruns_the_stages_that_use_it_and_what_follows(
 # Notebooks
 
 
-def changed_notebook(repository, change):
-    """Change a notebook, as Jupyter would write it, and return its figure's name."""
-    figure = repository.notebooks[-1]
+def change_notebook(repository, figure, change):
+    """Change a notebook, as Jupyter would write it."""
     path = repository / f"notebooks/{figure}.ipynb"
     notebook = json.loads(path.read_text("utf-8"))
     change(notebook, [cell for cell in notebook["cells"] if cell["cell_type"] == "code"][-1])
     path.write_text(json.dumps(notebook, indent=1), encoding="utf-8")
-    return figure
 
 
 def test_saved_outputs_rerun_nothing_and_a_changed_cell_its_figure_alone(spare):
@@ -93,10 +91,10 @@ def test_saved_outputs_rerun_nothing_and_a_changed_cell_its_figure_alone(spare):
     def change_cell(notebook, cell):
         cell["source"] = ["# changed\n", *cell["source"]]
 
-    changed_notebook(spare, save_outputs)
-    assert spare.planned() == set()
-    figure = changed_notebook(spare, change_cell)
-    assert spare.planned() == products_of(figure)
+    *_, saved, changed = spare.notebooks
+    change_notebook(spare, saved, save_outputs)
+    change_notebook(spare, changed, change_cell)
+    assert spare.planned() == products_of(changed)
 
 
 # Which study
