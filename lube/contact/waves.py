@@ -165,7 +165,8 @@ def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
             if roller and np.array_equal(one, response[0]):
                 answers[1] = answers[0]
             elif np.isfinite(one).all():
-                answers[roller] = Answer.of(one, wavelength, position, half_width, importance)
+                with one_blas_thread():
+                    answers[roller] = Answer.of(one, wavelength, position, half_width, importance)
         return answers
 
     core = [["roller", "wavelength", "response_position"], []]
