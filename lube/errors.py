@@ -151,23 +151,3 @@ class DataError(LubeError):
 
 class RangeError(LubeError):
     """A value lies outside the range in which a model or property is valid."""
-
-
-@contextmanager
-def located(where: str) -> Iterator[None]:
-    """Begin the message of an error with the place that it is about.
-
-    Parameters
-    ----------
-    where : str
-        File, and position or key in it.
-
-    Raises
-    ------
-    DataError
-        In place of any LubeError.
-    """
-    try:
-        yield
-    except LubeError as error:
-        raise DataError(f"{where}: {error}") from None
