@@ -1,6 +1,8 @@
 """Executing a figure's notebook, strictly and reproducibly.
 
-An executed notebook holds no clock times, so that it is the same whenever it is made.
+Papermill by itself ignores a missing parameters cell and only warns of a parameter that the
+notebook does not know, and it writes clock times into its output. Here the first two are errors
+and the times are removed, so that an executed notebook is the same whenever it is made.
 """
 
 import logging
@@ -14,16 +16,30 @@ from pathlib import Path
 
 import matplotlib
 import nbformat
+import papermill
 from ipykernel.inprocess import InProcessKernelManager
+from papermill.engines import Engine, papermill_engines
+from papermill.exceptions import PapermillExecutionError
 from traitlets.config import Config
 
 from lube.errors import LubeError
+from lube.pipeline.cells import parameters_of
 from lube.pipeline.stamps import DRAWN_BY
 from lube.storage.files import written_whole
 
 log = logging.getLogger(__name__)
+# Papermill's own reading of the parameters, which warns of all but the simplest Python.
+logging.getLogger("papermill.translators").setLevel(logging.ERROR)
 
-# Between the errors of a traceback.
+_CELL_FAILED = 3
+"""Exit code of the process that executes a notebook; 1 is Python's own, of any other error."""
+
+_INJECTED = "injected-parameters"
+_ADDED = {_INJECTED, "papermill-error-cell-tag"}
+"""Tags of the cells that papermill adds."""
+
+# Parts of IPython's tracebacks.
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 _CAUSE = re.compile(r"The above exception was the direct cause|During handling of the above")
 
 
@@ -39,14 +55,14 @@ def execute_notebook(
     Parameters
     ----------
     notebook : str or Path
-        Notebook to execute; it is not changed. It has a cell tagged ``parameters``.
+        Notebook to execute; it is not changed.
     output : str or Path
         Path of the executed copy, such as ``fig02_film.ipynb``, written only if all cells
         succeed. It has the notebook's own cells, without the given parameters. If a cell fails,
-        the cells up to it are saved beside it as ``fig02_film.failed.ipynb``, which the next
+        those executed so far are saved beside it as ``fig02_film.failed.ipynb``, which the next
         success removes, and the traceback goes to the log.
     parameters : dict
-        Values for the names in that cell, given after it.
+        Values for the names in the cell tagged ``parameters``.
     drawn_by : str
         What the figure's stamp says of notebook and code, from `lube.pipeline.stamps.drawn_by`.
     code : str or Path, optional
@@ -55,22 +71,24 @@ def execute_notebook(
     Raises
     ------
     LubeError
-        If a cell fails, the kernel is killed, or the copy cannot be written.
+        If the file is not a notebook, has no cell tagged ``parameters``, does not know a
+        parameter, a cell fails, the kernel is killed, or the copy cannot be written.
     """
+    _check_parameters(notebook, parameters)
     output = Path(output)
     failed = output.with_name(f"{output.stem}.failed.ipynb")
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
-        copy = Path(scratch) / output.name
-        exit_code = _execute_apart(notebook, copy, parameters, drawn_by, code)
+        executed = Path(scratch) / output.name
+        exit_code = _execute_apart(str(notebook), str(executed), dict(parameters), drawn_by, code)
         if exit_code == 1:
             raise LubeError(f"{notebook}: could not be executed, for the reason printed above")
-        executed = nbformat.read(copy, as_version=4)
-    failure = _failure(executed.cells, exit_code)
-    if failure:
-        _save(executed, failed)
+        cells = nbformat.read(executed, as_version=4)
+    if exit_code != 0:
+        message = _failure(cells, exit_code)
+        _save(cells, failed)
         log.debug("The cells executed so far: %s", failed)
-        raise LubeError(f"{notebook}: {failure}")
-    _save(executed, output)
+        raise LubeError(f"{notebook}: {message}")
+    _save(cells, output)
     failed.unlink(missing_ok=True)
 
 
@@ -88,28 +106,25 @@ def _execute_apart(*arguments):
     return process.exitcode
 
 
-def _execute(notebook, copy, parameters, drawn_by, code):
-    """Execute a notebook until a cell fails; keep a copy of the cells that were started."""
+def _execute(notebook, output, parameters, drawn_by, code):
+    """Execute a notebook with papermill; its output is written even if a cell fails."""
     os.environ[DRAWN_BY] = drawn_by
     # Jupyter's debugger, not used here, would print a warning.
     os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"
     if code is not None:
         _use_package_in(code)
-    client = _kernel_client()
-    executed = nbformat.v4.upgrade(nbformat.read(notebook, as_version=4))
-    executed.metadata.language_info = client.kernel.language_info
-    given = "\n".join(f"{name} = {value!r}" for name, value in parameters.items())
-    cells, executed.cells = executed.cells, []
-    for cell in cells:
-        executed.cells.append(cell)
-        nbformat.write(executed, copy)
-        if cell.cell_type == "code":
-            _run(cell, client)
-        if _error_of(cell):
-            break
-        if given and "parameters" in cell.metadata.get("tags", ()):
-            _run(nbformat.v4.new_code_cell(given), client)
-    nbformat.write(executed, copy)
+    try:
+        papermill.execute_notebook(
+            notebook,
+            output,
+            parameters,
+            engine_name=_ENGINE,
+            kernel_name="python3",
+            language="python",
+            progress_bar=False,
+        )
+    except PapermillExecutionError:
+        raise SystemExit(_CELL_FAILED) from None
 
 
 def _use_package_in(folder):
@@ -119,29 +134,47 @@ def _use_package_in(folder):
     sys.path.insert(0, str(folder))
 
 
-def _kernel_client():
-    """Start a kernel in this process; a second process takes longer than drawing most figures."""
-    # Nothing is added to the user's history of IPython.
-    options = {"HistoryManager": {"enabled": False}, "InteractiveShell": {"colors": "nocolor"}}
-    manager = InProcessKernelManager(config=Config(options))
-    manager.start_kernel()
-    # Pictures appear below the cells, in Matplotlib's defaults, not in the user's own style.
-    manager.kernel.shell.enable_matplotlib("inline")
-    matplotlib.pyplot.close("all")  # figures of the process that this one was forked from
-    matplotlib.rcdefaults()
-    client = manager.client()
-    client.start_channels()
-    return client
+class _InProcess(Engine):
+    """Engine of papermill that executes the cells in this process.
+
+    Papermill's own engine starts a second process, which takes longer than drawing most figures.
+    """
+
+    @classmethod
+    def execute_managed_notebook(cls, nb_man, kernel_name, **options):
+        # Nothing is added to the user's history of IPython.
+        manager = InProcessKernelManager(config=Config({"HistoryManager": {"enabled": False}}))
+        manager.start_kernel()
+        # Pictures appear below the cells, in Matplotlib's defaults, not in the user's own style.
+        manager.kernel.shell.enable_matplotlib("inline")
+        matplotlib.pyplot.close("all")  # figures of the process that this one was forked from
+        matplotlib.rcdefaults()
+        client = manager.client()
+        client.start_channels()
+        nb_man.nb.metadata.language_info = manager.kernel.language_info
+        for cell in nb_man.nb.cells:
+            nb_man.cell_start(cell)
+            failed = cell.cell_type == "code" and _run(cell, client) == "error"
+            if failed:
+                nb_man.cell_exception(cell)
+            nb_man.cell_complete(cell)
+            if failed:
+                break
+
+
+papermill_engines.register(_ENGINE := "in-process", _InProcess)
 
 
 def _run(cell, client):
-    """Run a code cell and put its outputs below it."""
+    """Run a code cell and put its outputs below it; return `ok` or `error`."""
     client.execute(cell.source)
-    cell.execution_count, cell.outputs = client.get_shell_msg()["content"]["execution_count"], []
+    reply = client.get_shell_msg()["content"]
+    cell.execution_count = reply["execution_count"]
     # A thread delivers the outputs; the last message says that there are no more.
     while (message := client.get_iopub_msg())["content"].get("execution_state") != "idle":
         if message["msg_type"] in ("stream", "display_data", "execute_result", "error"):
             _add_output(cell, nbformat.v4.output_from_msg(message))
+    return reply["status"]
 
 
 def _add_output(cell, output):
@@ -153,19 +186,20 @@ def _add_output(cell, output):
         cell.outputs.append(output)
 
 
-def _error_of(cell):
-    return next((one for one in cell.get("outputs", ()) if one.output_type == "error"), None)
-
-
-def _failure(cells, exit_code):
-    """Say in one line where and why the last cell fails, and log the traceback; empty if none."""
-    number = len(cells)  # text included, as a reader of the notebook counts
-    if exit_code != 0:
-        return f"its kernel was killed in cell {number}, perhaps because memory ran out"
-    error = _error_of(cells[-1])
-    if error is None:
-        return ""
-    traceback = "\n".join(error.traceback)
+def _failure(executed, exit_code):
+    """Say in one line which cell fails, where and why; log the whole traceback."""
+    cells = [cell for cell in executed.cells if _ADDED.isdisjoint(_tags(cell))]
+    # Counted from 1, text included, as a reader of the notebook counts.
+    started = [n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time]
+    if exit_code != _CELL_FAILED:
+        return f"its kernel was killed in cell {started[-1]}, perhaps because memory ran out"
+    outputs = [(n, one) for n, cell in enumerate(cells, 1) for one in cell.get("outputs", ())]
+    errors = [(n, one) for n, one in outputs if one.output_type == "error"]
+    if not errors:
+        return f"cell {started[-1]} fails without an error message"
+    # Not always in the cell that ran last: a cell may show an error and go on.
+    number, error = errors[-1]
+    traceback = _COLOUR.sub("", "\n".join(error.traceback))
     for n, cell in enumerate(cells, 1):
         traceback = traceback.replace(f"Cell In[{cell.get('execution_count')}]", f"Cell {n}")
     log.debug("%s", traceback)
@@ -175,15 +209,36 @@ def _failure(cells, exit_code):
     return f"cell {number} fails{where}: {' '.join(f'{error.ename}: {error.evalue}'.split())}"
 
 
-def _save(executed, path):
-    """Write an executed notebook, the same bytes each time: its cells are named by their numbers.
+def _tags(cell):
+    return cell.metadata.get("tags", [])
 
-    It does not hold the paths of this run. Opened and run by hand, it shows the study in whose
-    folder it lies, and writes nothing.
-    """
-    for number, cell in enumerate(executed.cells):
-        cell.id = f"cell-{number}"
-        cell.metadata.setdefault("tags", [])
-        cell.metadata.pop("execution", None)
+
+def _save(executed, path):
+    """Write an executed notebook, the same bytes each time."""
     with written_whole(path) as part:
-        nbformat.write(executed, part)
+        nbformat.write(_to_keep(executed), part)
+
+
+def _check_parameters(notebook, parameters):
+    known = parameters_of(notebook)
+    for name in parameters:
+        if name not in known:
+            raise LubeError(
+                f"{notebook}: parameter {name!r} is not in its parameters cell, which has "
+                f"{', '.join(known)}"
+            )
+
+
+def _to_keep(executed):
+    """Remove papermill's clock times and random cell names, and the cell of this run's paths.
+
+    Without that cell the copy, opened and run by hand, shows the study in whose folder it lies,
+    and writes nothing.
+    """
+    executed.metadata.pop("papermill", None)
+    executed.cells = [cell for cell in executed.cells if _INJECTED not in _tags(cell)]
+    for number, cell in enumerate(executed.cells):
+        cell.metadata.pop("papermill", None)
+        cell.metadata.pop("execution", None)
+        cell.id = f"cell-{number}"
+    return executed

@@ -198,7 +198,7 @@ def open_binary(
         first, measured = (channels[signals[each].index] for each in (0, -1))
         interval = measured.interval
         if interval is not None:
-            with located(f"{path}: sampling interval of {shown(measured.name)}"):
+            with located(f"{path}: sampling interval of {shown(measured.name)}", DataError):
                 interval = parse_quantity(interval, "s")
             if first.group != measured.group:
                 # A channel's own interval takes precedence over another group's time.

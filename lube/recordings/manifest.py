@@ -229,7 +229,7 @@ def _check_units(name, units, where):
         needed = f"'{name} [{target}]'" if target else f"{name!r} without a unit"
         came = f"the unit {shown(units)}" if units else "no unit"
         raise DataError(f"{where}: {name}: got {came}, need {needed}")
-    with located(f"{where}: {name}"):
+    with located(f"{where}: {name}", DataError):
         if name == "offset":
             electrical_quantity(units)
         elif target is not None:

@@ -184,9 +184,9 @@ def _kind(path):
 
 def _before_amplifier(path, measured, gain, offset):
     """Undo the gain and offset of an amplifier."""
-    with located(f"{path}: gain"):
+    with located(f"{path}: gain", DataError):
         gain = bounded(parse_number(gain), None, other_than=0.0)
-    with located(f"{path}: offset"):
+    with located(f"{path}: offset", DataError):
         offset = _offset(offset, measured.quantity)
     return replace(measured, factor=measured.factor / gain, shift=(0.0 - offset) / gain)
 

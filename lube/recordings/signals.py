@@ -228,7 +228,7 @@ def _signal(index, channel, quantity, where):
         raise DataError(
             f"{where}: {shown(channel.name)} has no unit, need one such as {example}{other}"
         )
-    with located(f"{where}: {shown(channel.name)}"):
+    with located(f"{where}: {shown(channel.name)}", DataError):
         quantity = quantity or electrical_quantity(channel.units)
         factor = convert(1.0, usual_spelling(channel.units), UNITS[quantity])
     return Signal(index, quantity, factor)

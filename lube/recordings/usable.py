@@ -42,7 +42,7 @@ def lubricant_of(entry: Entry, study: Study) -> str:
             f"{entry.where}: lubricant: got {name}, need one of the study's: "
             f"{', '.join(lubricants)}"
         )
-    with located(entry.where):
+    with located(entry.where, DataError):
         check_temperatures(lubricants[name], [entry.temperature])
         study.check_window(entry.force)
         study.check_slip(entry.slide_to_roll_ratio or 0.0)

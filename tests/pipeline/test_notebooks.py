@@ -146,10 +146,13 @@ def test_a_failing_cell_is_named_in_one_line(write, output):
             assert message.startswith(f"{notebook}: cell 4 fails {reason}")
 
 
-def test_an_error_that_a_cell_shows_is_found_even_if_the_cell_goes_on(write, output):
+def test_an_error_is_found_in_whichever_cell_it_is_and_even_where_none_is_shown(write, output):
     handled = "try:\n    1 / 0\nexcept ZeroDivisionError:\n    get_ipython().showtraceback()"
     message = refusal(write(handled, "x = 1"), output, {})
     assert "cell 3 fails" in message and "ZeroDivisionError: division by zero" in message
+    hidden = "get_ipython()._showtraceback = lambda *_: None"
+    message = refusal(write(hidden, "1 / 0"), output, {})
+    assert message.endswith("cell 4 fails without an error message")
 
 
 def test_the_log_gets_the_traceback_with_cells_and_lines(write, output, caplog):
@@ -181,3 +184,19 @@ def test_a_killed_kernel_is_reported(write, output):
     reason = "its kernel was killed in cell 4, perhaps because memory ran out"
     assert reason in refusal(notebook, output, {})
     assert output.with_suffix(".failed.ipynb").exists()
+
+
+# A notebook that cannot be executed
+
+
+def test_what_is_not_a_notebook_with_the_wanted_parameters_is_refused(write, output):
+    cases = [
+        ({"tag": "another"}, {"film": "film.nc"}, "no cell is tagged 'parameters'"),
+        ({"parameters": "film ="}, {}, "got 'film =', which is not Python"),
+        ({}, {"trace": "trace.nc"}, "parameter 'trace' is not in its parameters cell, which has"),
+    ]
+    for written, parameters, reason in cases:
+        assert reason in refusal(write("x = 1", **written), output, parameters)
+    path = write()
+    path.write_text("no notebook", encoding="utf-8")
+    assert "not a Jupyter notebook" in refusal(path, output, {})
