@@ -104,7 +104,7 @@ class RoughPiece:
             size = 2 * cut.size
             waves = scipy.fft.rfft(np.roll(np.pad(cut, (0, size - cut.size)), -(cut.size // 2)))
             unit = 2.0 * np.pi / (size * self.grid.spacing)
-            waves = waves[: int(1.1 * self.grid.q_max / unit) + 1] * (2.0 / size)
+            waves = waves[:-1] * (2.0 / size)
             waves[0] /= 2.0
             wavenumber = unit * self.half_width * np.arange(waves.size)
             # Points of a line that are ahead come first, so its waves are conjugate.

@@ -40,7 +40,7 @@ _ENOUGH, _LARGEST, _MOST = 1e-7, 0.5, 300
 and the most of these."""
 _SLOW, _PATIENCE = 0.2, 40
 """Change of the pressure over that before, above which the derivatives are formed anew; and the
-steps of Newton's method after which they always are."""
+steps of Newton's method after which smaller ones are taken."""
 
 
 def passage_nodes(profile: FilmProfile, step: float) -> Array:
@@ -143,13 +143,16 @@ class RoughPassage:
             With the pressure's last change.
         """
         had, state = self._left_over(), self._first_guess()
-        is_slow, change = False, np.inf
+        is_slow, change, largest = False, np.inf, _LARGEST
         for number in range(_MOST):
             gap, flow = self._flow_at(heights, *state)
-            before, (state, change) = change, self._newton(had, gap, flow, state, is_slow)
+            before, (state, change) = change, self._newton(had, gap, flow, state, is_slow, largest)
             if change < _ENOUGH or not np.isfinite(change):
                 break
-            is_slow = change > _SLOW * before or number > _PATIENCE
+            is_slow = change > _SLOW * before
+            largest = (
+                _LARGEST / (1 + number // _PATIENCE) ** 2
+            )  # so that sets of nodes do not cycle
         if not change < _ENOUGH:
             raise ConvergenceError(
                 f"{self._discrete.contact.name}: roughness that passes did not converge in a time "
@@ -178,7 +181,7 @@ class RoughPassage:
         balance = np.diff(0.5 * drag) - early * np.diff(self._flow.pressure_flow)
         return balance - self._squeeze * (drag[1:] + drag[:-1])
 
-    def _newton(self, had, gap, flow, state, is_slow):
+    def _newton(self, had, gap, flow, state, is_slow, largest):
         """Step of Newton's method for pressure, offset and contact pressure; the largest change.
 
         Nodes outside the film get no pressure of the oil, and cells without contact none of the
@@ -236,12 +239,12 @@ class RoughPassage:
         extra = np.linalg.solve(corner - rows @ answers, border)
         *change, shift = free - answers @ extra
         change, cell_change = np.array(change), extra[count:]
-        largest = np.abs(np.append(change, cell_change)).max()
-        part = _LARGEST / max(largest, _LARGEST)
+        greatest = np.abs(np.append(change, cell_change)).max()
+        part = largest / max(greatest, largest)
         pressure, solid = pressure.copy(), solid.copy()
         pressure[1:-1] = np.maximum(pressure[1:-1] + part * change, 0.0)
         solid[cells] += part * cell_change
-        return (pressure, offset + part * shift, solid), largest
+        return (pressure, offset + part * shift, solid), greatest
 
 
 @dataclass(frozen=True)
