@@ -55,6 +55,14 @@ rule computed:
         f"Done: the computed films, what they do to contact, and their figures are in {RESULTS}"
 
 
+rule rough_passage:
+    """Rough lines that pass through the contact, by Reynolds' equation with time."""
+    input:
+        products(made_by("rough_passage", FIGURES)),
+    message:
+        f"Done: passage.nc and its figure are in {RESULTS}"
+
+
 rule benchmark:
     """Measured times and coverage of intervals."""
     input:

@@ -45,7 +45,7 @@ from lube.inference.fits import (
 )
 from lube.inference.record_curves import map_curves
 from lube.recordings.manifest import Entry, Manifest, read_manifest
-from lube.rig.simulator import SimulatedRig
+from lube.rig.simulator import simulated_revolutions
 from lube.schema import LIMITS, label
 from lube.stages.comparison import compare
 from lube.stages.contact import contact_statistics
@@ -358,7 +358,7 @@ def records_on_file(study, table, film, folder):
     lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     rows = ["file,force [N],speed [rpm],temperature [degC],pair,origin"]
     parts = defaultdict(list)
-    for pair, number, part in SimulatedRig(lines, study, points).revolutions():
+    for pair, number, part in simulated_revolutions(lines, study, points):
         parts[pair, number].append(part.voltage(study.rig))
         if len(parts[pair, number]) == math.ceil(study.rig.revolutions):
             _write(folder / f"{pair}_{number}.nc", parts.pop((pair, number)), study.rig)

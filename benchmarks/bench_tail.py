@@ -19,7 +19,6 @@ import resource
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-from functools import partial
 
 import numpy as np
 import scipy.special
@@ -30,7 +29,7 @@ from lube.grid.discretise import layer_factor_of
 from lube.schema import OPERATING_DIMS
 from lube.stages.contact import contact_statistics
 from lube.stages.film import film_table
-from lube.stages.tail import FEWER_PAIRS, PAIRS, tail_probabilities
+from lube.stages.tail import FEWER_PAIRS, PAIRS, make
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import load_study
 from lube.surfaces.rare_contact import draw_pair, rare_contact
@@ -74,9 +73,7 @@ def pairs_of_lines(study, film, seeds):
 
 def limits_of_stage(study, film):
     """Means and lower limits by the stage, shape (2, probabilities, points)."""
-    tail = tail_probabilities(
-        study.line_spec, film, study.boundary_layer, study.seed, threads=os.cpu_count()
-    )
+    tail = make(study, {"film": film}, os.cpu_count()).isel(slide_to_roll_ratio=0)
     return [[tail[name + end].values.ravel() for name in PROBABILITIES] for end in ("", "_lower")]
 
 
@@ -223,10 +220,10 @@ def print_cost(study, film, values, errors):
 def _cost_of(study_file, formulas, threads):
     """Wall time (s), processor time (s) and peak memory (MiB), compiled before."""
     study, film = prepared(study_file)
-    run = partial(tail_probabilities, study.line_spec, boundary_layer=study.boundary_layer, seed=1)
-    run(film.isel(film_formula=[0], temperature=[0], speed=[0], force=[0]), threads=threads)
+    one = film.isel(film_formula=[0], temperature=[0], speed=[0], force=[0])
+    make(study, {"film": one}, threads)
     begin, busy = time.perf_counter(), time.process_time()
-    run(film.isel(film_formula=slice(formulas)), threads=threads)
+    make(study, {"film": film.isel(film_formula=slice(formulas))}, threads)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return time.perf_counter() - begin, time.process_time() - busy, peak
 

@@ -26,15 +26,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 if all is well, 1 if something is wrong or differs, 2 if the command could not be carried
         out.
     """
+    compute_alike()  # before anything imports NumPy
     parser = _parser()
     options, more = parser.parse_known_args(arguments)
     if "figure" in options and not any(word.startswith("-") for word in more):
         options.figure += more  # argparse does not know those after --to
     elif more:
         parser.error(f"unrecognized arguments: {' '.join(more)}")
-    compute_alike()
     try:
-        code = options.run(options) if hasattr(options, "run") else parser.print_help() or 0
+        code = options.run(options) or 0
         sys.stdout.flush()
         return code
     except LubeError as error:
@@ -50,18 +50,42 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser():
+    from lube.study.schema_files import KINDS
+
     parser = argparse.ArgumentParser(prog="lube", description=__doc__.splitlines()[0])
     parser.add_argument("--version", action="version", version=f"lube {lube.__version__}")
+    parser.set_defaults(run=lambda _: parser.print_help())
     commands = parser.add_subparsers(metavar="COMMAND")
-    for add in (_add_new, _add_check, _add_run, _add_compare, _add_schema):
-        add(commands)
-    for add in (_add_explain, _add_verify, _add_figures):
-        add(commands)
+    _add_new(commands)
+    check = _add(commands, _check, "check a study and its records without running it")
+    check.add_argument("study", help="its YAML file")
+    help_text = "changes key=value, as with snakemake"
+    check.add_argument("--config", "-C", nargs="+", default=[], help=help_text)
+    _add_run(commands)
+    compare = _add(commands, _compare, "say what differs between two results")
+    compare.add_argument("first", help="a folder of results, an archive's folder, or a dataset")
+    compare.add_argument("second", help="another one of the same kind")
+    schema = _add(commands, _schema, "print the JSON Schema of a kind of file")
+    schema.add_argument("kind", nargs="?", choices=KINDS, default=KINDS[0], help="default: study")
+    _add_explain(commands)
+    verify = _add(commands, _verify, "check an archive")
+    verify.add_argument("path", help="its folder or zip")
+    figures = _add(commands, _figures, "draw an archive's figures again and compare")
+    figures.add_argument("path", help="its folder or zip")
+    figures.add_argument("figure", nargs="*", help="such as fig02_film; by default all")
+    figures.add_argument("--to", required=True, help="folder for the new figures")
     return parser
 
 
+def _add(commands, run, help_text, **options):
+    """Add a command that has the name of the function it runs."""
+    command = commands.add_parser(run.__name__.removeprefix("_"), help=help_text, **options)
+    command.set_defaults(run=run)
+    return command
+
+
 def _add_new(commands):
-    new = commands.add_parser("new", help="write a study, based on the paper's")
+    new = _add(commands, _new, "write a study, based on the paper's")
     new.add_argument("study", help="YAML file to write; results go to results/<its stem>")
     for name, example in (
         ("radius", "50 mm, or 50 30 mm for the first and the second roller"),
@@ -74,60 +98,22 @@ def _add_new(commands):
     new.add_argument("--oil", nargs="+", default=[], help="lubricants: shipped names or records")
     new.add_argument("--realisations", type=int, help="pairs of rollers")
     new.add_argument("--records", help="list of measured records; a new one is written if missing")
-    new.set_defaults(run=_new)
-
-
-def _add_check(commands):
-    check = commands.add_parser("check", help="check a study and its records without running it")
-    check.add_argument("study", help="its YAML file")
-    help_text = "changes key=value, as with snakemake"
-    check.add_argument("--config", "-C", nargs="+", default=[], help=help_text)
-    check.set_defaults(run=_check)
 
 
 def _add_run(commands):
-    run = commands.add_parser(
-        "run",
-        help="run a study: snakemake, from any folder",
+    run = _add(
+        commands,
+        _run,
+        "run a study: snakemake, from any folder",
         usage="lube run [STUDY] [targets and options of snakemake]",
         add_help=False,
         prefix_chars="\0",  # all options are Snakemake's
     )
     run.add_argument("arguments", nargs=argparse.REMAINDER)
-    run.set_defaults(run=_run)
-
-
-def _add_compare(commands):
-    compare = commands.add_parser("compare", help="say what differs between two results")
-    compare.add_argument("first", help="a folder of results, an archive's folder, or a dataset")
-    compare.add_argument("second", help="another one of the same kind")
-    compare.set_defaults(run=_compare)
-
-
-def _add_schema(commands):
-    from lube.study.schema_files import KINDS
-
-    schema = commands.add_parser("schema", help="print the JSON Schema of a kind of file")
-    schema.add_argument("kind", nargs="?", choices=KINDS, default=KINDS[0], help="default: study")
-    schema.set_defaults(run=_schema)
-
-
-def _add_verify(commands):
-    verify = commands.add_parser("verify", help="check an archive")
-    verify.add_argument("path", help="its folder or zip")
-    verify.set_defaults(run=_verify)
-
-
-def _add_figures(commands):
-    figures = commands.add_parser("figures", help="draw an archive's figures again and compare")
-    figures.add_argument("path", help="its folder or zip")
-    figures.add_argument("figure", nargs="*", help="such as fig02_film; by default all")
-    figures.add_argument("--to", required=True, help="folder for the new figures")
-    figures.set_defaults(run=_figures)
 
 
 def _add_explain(commands):
-    explain = commands.add_parser("explain", help="trace and recompute a number of contact.nc")
+    explain = _add(commands, _explain, "trace and recompute a number of contact.nc")
     explain.add_argument("path", help="a contact.nc, with its film.nc and lubricant.nc beside it")
     units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
     for name in (*units, "slide-to-roll-ratio"):
@@ -137,7 +123,6 @@ def _add_explain(commands):
         explain.add_argument(f"--{name}", help="by name; by default the first")
     help_text = "its number, or `all` for the mean and its interval; by default 0"
     explain.add_argument("--realisation", type=number_or_all, default=0, help=help_text)
-    explain.set_defaults(run=_explain)
 
 
 def number_or_all(text: str) -> int | None:
@@ -153,7 +138,6 @@ def _new(options):
     for path in new_study(options.study, texts, options.oil, options.realisations, options.records):
         print(f"Written: {path}")
     print(f"Next: lube check {options.study}")
-    return 0
 
 
 def _check(options):
@@ -187,7 +171,6 @@ def _schema(options):
     from lube.study.schema_files import schema_file
 
     print(schema_file(options.kind).read_text(encoding="utf-8"), end="")
-    return 0
 
 
 def _verify(options):

@@ -5,7 +5,8 @@ Every message says which input is meant, what came and what is needed.
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 _WORD = re.compile(r"[^\W_]+")
 
@@ -101,6 +102,39 @@ class LubeError(Exception):
     def __init__(self, message: str) -> None:
         escaped = (char if char.isprintable() else ascii(char)[1:-1] for char in message)
         super().__init__("".join(escaped))
+
+
+@contextmanager
+def located(where: str = "", kind: type[Exception] | None = None, hint: str = "") -> Iterator[None]:
+    """Say in the message of a LubeError what it is about; also a decorator.
+
+    Parameters
+    ----------
+    where : str, optional
+        File, key or name, put before the message.
+    kind : type, optional
+        Kind of the new error, by default that of the old one; ``ValueError`` for pydantic, which
+        collects errors of this kind only.
+    hint : str, optional
+        Put after the message.
+
+    Raises
+    ------
+    Exception
+        Of this kind, in place of the LubeError.
+
+    Examples
+    --------
+    >>> with located("oil.yaml"):
+    ...     raise RecordError("no density")
+    Traceback (most recent call last):
+    lube.errors.RecordError: oil.yaml: no density
+    """
+    try:
+        yield
+    except LubeError as error:
+        message = f"{where}: {error}{hint}".removeprefix(": ")
+        raise (kind or type(error))(message) from None
 
 
 class StudyError(LubeError):

@@ -41,7 +41,7 @@ EDGE_MARK = "edge-mark"
 """Group identifier of the marks that `mark_outside` draws."""
 
 NOT_POINTS = ("None", "none", "", " ", "_", "|")
-"""Markers that are no points: none, and the caps of bars."""
+"""Markers that are not points: no marker, and the caps of bars."""
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
@@ -69,7 +69,8 @@ _STYLE = {
     "agg.path.chunksize": 10000,  # long traces are drawn in pieces
 }
 
-# Coordinates that force, speed and temperature leave open, and the words before their values.
+# Coordinates of an operating point besides force, speed and temperature, with the words before
+# their values.
 _OTHER_COORDINATES = {
     "lubricant": "",
     "film_formula": "film formula ",
@@ -186,7 +187,7 @@ def point_name(point: xr.Dataset | xr.DataArray, *variables: str) -> str:
     point : xarray.Dataset or xarray.DataArray
         With scalar coordinates.
     *variables : str
-        Which of them; force, speed and temperature if none is named.
+        Coordinates to name; force, speed and temperature if none is given.
 
     Returns
     -------
@@ -198,7 +199,7 @@ def point_name(point: xr.Dataset | xr.DataArray, *variables: str) -> str:
 
 
 def other_names(points: xr.Dataset) -> list[str]:
-    """Operating points as text, by that in which they differ besides force, speed and temperature.
+    """Operating points as text: what differs besides force, speed and temperature.
 
     Parameters
     ----------
@@ -264,7 +265,7 @@ def record_name(record: xr.Dataset, pairs: int = 1) -> str:
 def level_groups(
     records: xr.Dataset, name: str
 ) -> list[tuple[str, np.ndarray | str, str, xr.Dataset]]:
-    """Group records by the level of the study that they are at, with a style for each level.
+    """Group records by the study's level that they are at, with a style for each level.
 
     Parameters
     ----------
@@ -276,8 +277,8 @@ def level_groups(
     Returns
     -------
     list of tuple
-        For each level, rising, its name, colour, marker and records; at the end those that are
-        not at a level, if there are any.
+        For each level, rising, its name, colour, marker and records; at the end the records that
+        are not at a level, if there are any.
     """
     near = records[f"{name}_level"].values
     levels = np.unique(near[np.isfinite(near)])
@@ -301,7 +302,7 @@ def footnote(figure: Figure, *shown: xr.Dataset | xr.DataArray) -> None:
     figure : matplotlib.figure.Figure
         The figure, in constrained layout.
     *shown : xarray.Dataset or xarray.DataArray
-        What it shows; of a coordinate with several values all are written.
+        What the figure shows; all values of a coordinate are written.
     """
     parts = []
     for name, word in _OTHER_COORDINATES.items():
@@ -322,8 +323,8 @@ def plain_log_ticks(axis: Axis, numbers: Sequence[int] = (1, 2, 5)) -> None:
     axis : matplotlib.axis.Axis
         The axis, on a logarithmic scale, with its final limits.
     numbers : sequence of int, optional
-        Multiples of the powers of ten that get a label. On an axis too short for two of these
-        labels, evenly spaced round numbers get one; on one of many powers, these alone.
+        Multiples of the powers of ten that get a label. On an axis too short for two of them,
+        evenly spaced round numbers get one; on an axis of many powers, the powers alone.
     """
     low, high = sorted(axis.get_view_interval())
     axis.set_major_locator(LogLocator(subs=numbers))
@@ -362,8 +363,8 @@ def legend_above(
     figure : matplotlib.figure.Figure
         The figure, in constrained layout.
     panels : iterable of matplotlib.axes.Axes
-        Panels whose labelled lines it explains; a label that several use appears once. Without
-        any label there is no legend.
+        Panels whose labelled lines the legend explains; a label of several lines appears once.
+        Without any label there is no legend.
     title : str, optional
         Title of the legend.
     **more : matplotlib.artist.Artist
@@ -428,9 +429,9 @@ def interval_bars(
 
 
 def probability_limits(*panels: Axes, least: float = 0.0) -> None:
-    """End axes of probabilities above the largest that is shown, at 1 at most.
+    """End axes of probabilities above the largest probability shown, at 1 at most.
 
-    Points at an end are drawn whole.
+    Points at either end are not cut.
 
     Parameters
     ----------
@@ -462,8 +463,8 @@ def probability_limits(*panels: Axes, least: float = 0.0) -> None:
 def mark_outside(*panels: Axes) -> None:
     """Mark at the panels' edges the points that lie beyond them.
 
-    Each gets a triangle at the nearest place of the edge, in its own colour, that points to where
-    it lies.
+    Each point gets a triangle of its colour at the nearest position on the edge, directed at the
+    point.
 
     Parameters
     ----------
@@ -513,10 +514,10 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        Figure to save; in constrained layout, as `use_style` sets it, the stamp gets a strip of
-        its own.
+        Figure to save; in constrained layout, as `use_style` sets it, the stamp gets a strip below
+        everything else.
     stem : str or Path or None
-        Path without suffix. With None, as where a notebook is run by hand, nothing is written:
+        Path without suffix. With None, as in a notebook that is run by hand, nothing is written:
         Jupyter shows the figure itself below the cell.
     *shown : xarray.Dataset
         What the figure shows, as loaded, or selections of it.
@@ -526,7 +527,7 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     DataError
         As from `lube.pipeline.stamps.stamp`, or if a file cannot be written.
     """
-    # Here, as only notebooks need it: the plots of answers work without.
+    # Imported here because only notebooks need it, and the plots of answers work without it.
     from IPython import get_ipython
     from IPython.display import Image, display
 
@@ -535,8 +536,8 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     _fold_labels(figure)
     if stem is None:
         return
-    # The layout is found: to find it again takes as long as to draw the picture. What `"none"`
-    # leaves behind would make Matplotlib draw every picture twice.
+    # The layout is final, and to find it again takes as long as to draw the picture. The engine
+    # "none" would leave a placeholder, with which Matplotlib draws every picture twice.
     with plt.rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
         figure.set_layout_engine(None)
         # Without clock time or software version, so that the bytes are the same each time.
@@ -584,16 +585,16 @@ def _folded(label, excess):
 
 
 def _picture(figure, suffix, metadata):
-    """Bytes of a figure's file, drawn in memory: on a full disk Matplotlib's error says little."""
+    """Draw a figure's file in memory: on a full disk Matplotlib's error would say little."""
     picture = io.BytesIO()
     figure.savefig(picture, format=suffix, metadata=metadata)
     return picture.getvalue()
 
 
 def _write_below(figure, line):
-    """Write a small line into a strip of its own below a figure."""
+    """Write a small line into a strip below a figure."""
     strip = _STAMP_STRIP / figure.get_figheight()
-    free = not figure.get_supxlabel()  # no footnote that leaves room for it
+    free = not figure.get_supxlabel()  # a footnote would leave room for the line
     if free and isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
         figure.get_layout_engine().set(rect=(0.0, strip, 1.0, 1.0 - strip))
     figure.text(0.006, 0.25 * strip, line, fontsize=5, color="#8A8A8A", va="bottom")

@@ -7,11 +7,8 @@ when it cannot.
 
 import functools
 import math
-import os
 import re
-import tempfile
 import unicodedata
-from pathlib import Path
 
 import numpy as np
 
@@ -45,17 +42,11 @@ SYMBOLS = {"ohm": "Ω", "ohm*m": "Ω m", "degC": "°C", "rpm": "r/min", "Pa*s": 
 def _registry():
     import pint  # imported on first use: it costs more than the rest of the package
 
-    # What pint reads from its definitions is kept: every job needs it.
-    kept = Path(__file__).parent / "__pycache__" / f"pint-{pint.__version__}"
     try:
-        if not kept.exists():
-            kept.parent.mkdir(exist_ok=True)
-            # Moved when it is complete, because several jobs may begin at the same time.
-            with tempfile.TemporaryDirectory(dir=kept.parent) as new:
-                pint.UnitRegistry(cache_folder=new)
-                os.rename(new, kept)
-        return pint.UnitRegistry(cache_folder=kept)
-    except OSError:  # a folder that cannot be written, or another job was first
+        # In the user's cache folder pint keeps what it reads from its definitions: every job needs
+        # it, and without the cache it takes ten times as long.
+        return pint.UnitRegistry(cache_folder=":auto:")
+    except Exception:  # a folder that cannot be written, or a file that another job is writing
         return pint.UnitRegistry()
 
 

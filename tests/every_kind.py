@@ -38,8 +38,9 @@ def datasets_of_every_kind(study):
         "realisations": 2,
     }
     own = study.model_copy(update=own)
-    # Measured times, and what a package makes that need not be installed.
-    others = [kind for kind, stage in STAGES.items() if stage.target == "benchmark"] + ["patch"]
+    # Measured times, what a package makes that need not be installed, and what takes minutes.
+    others = [kind for kind, stage in STAGES.items() if stage.target == "benchmark"]
+    others += ["patch", "passage"]
     return {
         **made(own, [kind for kind in STAGES if kind not in others]),
         "surface": measured_surfaces({"first": example_surface()}, own.line_spec, 0.7),

@@ -7,7 +7,7 @@ from studies import CONFIG, PAPER_CONTENT
 
 from lube.contact.rough_pair import roughness_batch
 from lube.grid.operating_points import operating_points
-from lube.rig.simulator import SimulatedRig
+from lube.rig.simulator import simulated_revolutions
 from lube.stages.film import film_table
 from lube.storage.netcdf import save
 from lube.study.oil_properties import lubricant_table
@@ -236,7 +236,7 @@ def _write_records(study, manifest):
     points = operating_points(film.isel(film_formula=0), 0.0)
     lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     voltages = {}
-    for _, number, revolution in SimulatedRig(lines, study, points).revolutions():
+    for _, number, revolution in simulated_revolutions(lines, study, points):
         voltages.setdefault(number, []).append(revolution.voltage(study.rig))
     rows = ["file,force [N],speed [rpm],temperature [degC]"]
     for number, parts in voltages.items():

@@ -89,6 +89,8 @@ def _simplified(schema, definitions):
     schema = {key: value for key, value in schema.items() if key not in ("$ref", "title")}
     if "default" in schema and schema["default"] in (None, {}):
         del schema["default"]
+    if "description" in schema:
+        schema["description"] = " ".join(schema["description"].split())
     if "format" in schema:
         schema = {"title": schema.pop("format")} | schema
     if "properties" in schema:

@@ -26,8 +26,8 @@ from lube.storage.files import why_not, write_text, written_whole
 from lube.storage.git import ROOT, code_files, commit
 from lube.storage.netcdf import load
 from lube.storage.provenance import config_text, digest, fingerprint
-from lube.study.lubricant_record import SHIPPED_FOLDER, is_record_path
-from lube.study.resolve import study_files, with_topographies
+from lube.study.lubricant_record import SHIPPED_FOLDER
+from lube.study.resolve import study_files, with_paths
 from lube.study.study import Study
 from lube.study.text_files import read_yaml
 from lube.types import File
@@ -161,11 +161,9 @@ def _check_paths(study_file):
     folder would not exist in the archive.
     """
     content, folder = read_yaml(study_file, StudyError), os.path.abspath(Path(study_file).parent)
-    records = [name for name in content.get("lubricants", ()) if is_record_path(name)]
-    manifest = content.get("experiment", {}).get("manifest")
-    topographies = []
-    with_topographies(content, lambda file: topographies.append(file) or file)
-    for name in filter(None, [content.get("based_on"), *records, *topographies, manifest]):
+    names = [content.get("based_on")]
+    with_paths(content, lambda name: names.append(name) or name)
+    for name in filter(None, names):
         direct = os.path.relpath(os.path.join(folder, name), folder)
         if Path(name) != Path(direct):
             message = f"got {shown(name)}, an archive needs the direct relative path"

@@ -14,7 +14,7 @@ from lube.study.study import Study
 
 
 def publication_date(study: Study) -> datetime.date:
-    """Date of publication of an archive: the study's, or else that of the code's commit.
+    """Date of publication of an archive: the study's date, or else the date of the commit.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def _cff_person(creator):
     family, comma, given = (part.strip() for part in creator.name.partition(","))
     names = {"family-names": family, "given-names": given} if comma else {"name": creator.name}
     if comma and creator.affiliation:
-        names["affiliation"] = creator.affiliation  # CFF has none for an entity
+        names["affiliation"] = creator.affiliation  # CFF has no affiliation of an entity
     return names | ({"orcid": f"https://orcid.org/{creator.orcid}"} if creator.orcid else {})
 
 

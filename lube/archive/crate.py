@@ -57,9 +57,11 @@ def crate_metadata(study: Study, files: dict[str, int]) -> str:
     crate.name, crate.description = study.title, about.summary
     crate.datePublished = publication_date(study)
     crate.keywords = ", ".join(about.keywords)
-    crate.license = crate.add(_licence(crate, about.licence))
+    licence = {"name": about.licence, "description": f"The licence {about.licence}."}
+    licence = ContextEntity(crate, LICENCES[about.licence], {"@type": "CreativeWork", **licence})
+    crate.license = crate.add(licence)
     people = [_person(crate, *numbered) for numbered in enumerate(about.creators, start=1)]
-    crate.creator = _one_or_all(people)
+    crate.root_dataset.append_to("creator", people, compact=True)
     # The publisher is the first creator's institution, or else that creator.
     crate.publisher = people[0].get("affiliation") or people[0]
     if about.doi:
@@ -72,13 +74,8 @@ def crate_metadata(study: Study, files: dict[str, int]) -> str:
             properties = {"name": folder, "description": _FOLDERS[folder]}
             entity = crate.add(Dataset(crate, None, f"{folder}/", properties=properties))
             if described:
-                entity["hasPart"] = _one_or_all(described)
+                entity.append_to("hasPart", described, compact=True)
     return json.dumps(crate.metadata.generate(), indent=2, ensure_ascii=False) + "\n"
-
-
-def _licence(crate, name):
-    properties = {"@type": "CreativeWork", "name": name, "description": f"The licence {name}."}
-    return ContextEntity(crate, LICENCES[name], properties=properties)
 
 
 def _person(crate, number, creator):
@@ -93,15 +90,9 @@ def _person(crate, number, creator):
     return person
 
 
-def _one_or_all(entities):
-    """Replace a list of one entity by the entity, as RO-Crate requires."""
-    return entities[0] if len(entities) == 1 else entities
-
-
 def _folder_of(path):
     """First folder of a path below the archive's root; empty for a file in the root."""
-    first, slash, _ = path.partition("/")
-    return first if slash else ""
+    return path.rpartition("/")[0].partition("/")[0]
 
 
 def _file(crate, path, size):

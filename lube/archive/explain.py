@@ -19,7 +19,7 @@ from lube.report.pages import render
 from lube.schema import CONTACT_DIMS
 from lube.stages.contact import contact_statistics
 from lube.storage.netcdf import load
-from lube.storage.provenance import fingerprint, input_sums, json_attribute
+from lube.storage.provenance import fingerprint, json_attribute
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.types import File
@@ -71,7 +71,7 @@ def explain(path: File, realisation: int | None = 0, **levels: float | str) -> E
     **levels
         The operating point, by the coordinates of the file, such as ``force=800``; a number
         within half a per cent of a level selects that level. A coordinate with one level may be
-        omitted; of lubricant, film_formula and slide_to_roll_ratio the first is the default.
+        omitted; for lubricant, film_formula and slide_to_roll_ratio the first is the default.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def _input_of(dataset, path, kind):
     """Load one of the files that a dataset was made from, from the same folder."""
     other = path.with_name(f"{kind}.nc")
     loaded = load(other, kind)
-    if fingerprint(other) not in input_sums(dataset, path).get(other.name, ()):
+    if fingerprint(other) not in json_attribute(dataset, "inputs_sha256", path).values():
         raise DataError(f"{other}: not the file that {path} was made from")
     return loaded
 

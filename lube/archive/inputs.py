@@ -1,4 +1,7 @@
-"""The inputs of the Snakemake rule `archive`. Heavy imports wait: each start needs this module."""
+"""The inputs of the Snakemake rule `archive`.
+
+Every start of Snakemake needs this module, so heavy modules are imported in the function.
+"""
 
 from lube.errors import LubeError
 from lube.pipeline.sources import from_here

@@ -33,19 +33,15 @@ def archive_page(
     str
         Markdown.
     """
-    grid = study.operating_grid
     return render(
         "archive.md",
-        title=study.title,
-        about=study.about,
+        study=study,
         licence=LICENCES[study.about.licence],
         paper=PAPER,
         datasets={kind: SUMMARIES[kind] for kind in kinds},
         study_file=study_file,
         commit=commit(),
         changed=changed_code(),
-        measured=study.experiment.manifest is not None,
         facts=facts(study, results["lubricant"]),
         findings=findings(study, results),
-        example={name: getattr(grid, name)[-1] for name in ("force", "speed", "temperature")},
     )

@@ -17,7 +17,7 @@ from lube.archive.build import SUMS, VALUES, check_is_archive, files_of, values_
 from lube.errors import DataError, LubeError, shown
 from lube.pipeline.figures import wrong_figures
 from lube.storage.netcdf import load
-from lube.storage.provenance import REMEDY, descriptive_attributes, fingerprint, input_sums
+from lube.storage.provenance import REMEDY, descriptive_attributes, fingerprint, json_attribute
 from lube.study.study import load_study
 from lube.types import File
 
@@ -134,17 +134,16 @@ def _wrong_origin(dataset, path, kind, study):
     for name, needed in descriptive_attributes(study, kind).items():
         if dataset.attrs.get(name) != needed:
             yield f"{path}: {name} is {shown(dataset.attrs.get(name))}, need {shown(needed)}"
-    made_from = input_sums(dataset, path)
+    made_from = json_attribute(dataset, "inputs_sha256", path)
     if kind == "experiment" and study.experiment.manifest is not None:
         # The measured records themselves are not in the archive.
         files = [path.with_name("film.nc"), Path(study.experiment.manifest)]
-        sums = {file.name: fingerprint(file) for file in files}
-        other = [name for name, sha in sums.items() if sha not in made_from.get(name, ())]
+        other = [file.name for file in files if fingerprint(file) not in made_from.values()]
     else:
         sums = _sums(path.parents[1]).items()
         folders = ("data/", "lubricants/", "study/")
         archived = {sha for name, sha in sums if name.startswith(folders)}
-        other = [name for name, shas in made_from.items() if not shas <= archived]
+        other = [name for name, sha in made_from.items() if sha not in archived]
     for name in other:
         yield f"{path}: was made from another {name} than the archive's"
 

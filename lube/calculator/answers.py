@@ -1,11 +1,49 @@
-"""What the answers are: labelled datasets, which are also tables and plots."""
+"""What the answers are: labelled datasets in the units people use, also tables and plots."""
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 
+from lube.schema import COORDINATES, FILES, REGIMES
+
+_CUSTOMARY = {
+    "m": ("um", 1e6),
+    "Pa": ("MPa", 1e-6),
+    "Pa s": ("mPa s", 1e3),
+    "m2 s-1": ("mm2 s-1", 1e6),
+    "Pa-1": ("GPa-1", 1e9),
+    "s": ("ms", 1e3),
+    "s-1": ("h-1", 3600.0),
+    **dict.fromkeys(("radius", "second_radius", "reduced_radius"), ("mm", 1e3)),
+    "reduced_modulus": ("GPa", 1e-9),
+}
+"""By SI unit, or by variable: the customary unit, and how many of it are one SI unit."""
+_TAIL, _WHOLE = "by importance sampling", "of the whole duty cycle"
+_OF_NO_FILE = {
+    "radius": ("radius of the first roller", "m"),
+    "second_radius": ("radius of the second roller", "m"),
+    "surface_speed": ("surface speed of the first roller", "m s-1"),
+    "second_surface_speed": ("surface speed of the second roller", "m s-1"),
+    "share": ("share of the duty cycle", "1"),
+    "roughness_factor": ("factor of the roughness of both rollers", "1"),
+    "position": ("position from the line of centres", "m"),
+    "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
+    "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
+    "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
+}
+"""Long name and SI unit of the variables that no file has."""
+_KINDS = ("film_profile", "lubricant", "trace", "film", "contact")
+_ROWS = (COORDINATES, *(FILES[kind] for kind in _KINDS))
+_WORDS = {name: (row.long_name, row.units) for rows in _ROWS for name, row in rows.items()}
+_WORDS |= _OF_NO_FILE
+# Those of `tail.nc` get a prefix: some of `contact.nc` have the same names.
+_WORDS |= {
+    f"tail_{name}": (f"{row.long_name}, {_TAIL}", row.units) for name, row in FILES["tail"].items()
+}
+
 
 class _Plots(xr.Dataset.plot):
-    """The plots of xarray, such as ``plot.scatter``, and the one of an answer."""
+    """The plots of xarray, such as ``plot.scatter``; called, the plot of an answer."""
 
     __slots__ = ()
 
@@ -19,8 +57,8 @@ class _Plots(xr.Dataset.plot):
 class Answer(xr.Dataset):
     """An answer: a dataset of xarray that is also a table and a plot.
 
-    Selections, copies and pickles of it are answers, too. A file gives a plain dataset back, which
-    ``Answer(dataset.data_vars, dataset.coords, dataset.attrs)`` makes an answer again.
+    Selections, copies and pickles of it are answers, too. A saved answer is loaded as a plain
+    dataset; ``Answer(dataset.data_vars, dataset.coords, dataset.attrs)`` makes it an answer again.
 
     Examples
     --------
@@ -36,13 +74,13 @@ class Answer(xr.Dataset):
     def plot(self) -> _Plots:
         """Draw the answer: ``plot()``, or ``plot(x=..., y=...)``.
 
-        Probabilities come with their 95 % intervals and, as a curve, by importance sampling. They
-        are over ``x``: force, speed or temperature, by default the one with most values. A duty
-        cycle is drawn along its points, with its first column of labels; a profile across the
-        contact; other answers by their film, or by the variable ``y``.
+        Counted probabilities have their 95 % intervals, and sampled ones are a curve. They are
+        drawn over ``x``: force, speed or temperature, by default the one with most values. A duty
+        cycle is drawn along its points, under its first column of labels, and a profile across the
+        contact. Of other answers the film is drawn, or the variable ``y``.
 
-        The result is the axes of Matplotlib. The plots of xarray are there as well, such as
-        ``plot.scatter``.
+        The result is the axes of Matplotlib. The plots of xarray, such as ``plot.scatter``, work
+        as well.
         """
         return _Plots(self)
 
@@ -52,19 +90,51 @@ class Answer(xr.Dataset):
         Returns
         -------
         pandas.DataFrame
-            Columns are named with their units, such as ``force [N]``. The single realisations, and
-            the values of a whole duty cycle, are left out.
+            Columns are named with their units, such as ``force [N]``. The single realisations and
+            the values of a whole duty cycle are left out.
         """
-        left = [
-            name
-            for name, variable in self.variables.items()
-            if "realisation" in variable.dims or name.startswith("whole_")
-        ]
-        rows = self.drop_vars(left)
+        whole = [name for name in self if name.startswith("whole_")]
+        rows = self.drop_vars(whole).drop_dims("realisation", errors="ignore")
         frame = (rows if rows.sizes else rows.expand_dims("point")).to_dataframe()
         frame = frame.reset_index(drop=not rows.sizes)
-        return frame.rename(columns={name: self._header(name) for name in frame.columns})
+        return frame.rename(columns=self._header)
 
     def _header(self, name):
         units = self[name].attrs.get("units", "")
         return name if units in ("", "1") else f"{name} [{units}]"
+
+
+def described(results: xr.Dataset) -> Answer:
+    """Convert results to customary units, and label them.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Variables of the ``lubricant``, ``film``, ``contact`` or ``trace`` file, in SI units.
+
+    Returns
+    -------
+    Answer
+        Films and lengths in um, pressures in MPa; each variable with ``units`` and
+        ``long_name``, the regime in words.
+
+    Examples
+    --------
+    >>> described(xr.Dataset({"film_thickness": 1.07e-6})).film_thickness.attrs["units"]
+    'um'
+    """
+    found = Answer(results.data_vars, results.coords, results.attrs)
+    for name in results.variables:
+        # A limit without a row in the tables has the words of its variable.
+        known = name if name in _WORDS else name.removesuffix("_lower").removesuffix("_upper")
+        if known not in _WORDS:
+            continue
+        (long_name, si), values = _WORDS[known], results[name].values
+        units, factor = _CUSTOMARY.get(known, _CUSTOMARY.get(si, (si, None)))
+        if factor is not None:
+            values = factor * values
+        elif name == "regime":
+            values = np.array(REGIMES)[values]
+        labels = {"long_name": long_name, "units": units or ""}
+        found[name] = xr.Variable(results[name].dims, values, labels)
+    return found

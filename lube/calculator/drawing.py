@@ -10,15 +10,15 @@ from lube.errors import LubeError
 
 _COUNTED, _SAMPLED = "breakthrough_probability", "tail_breakthrough_probability"
 _SHOWN = (f"{_COUNTED}_mean", "pressure", "contact_length", "film_thickness")
-"""Variables to show where none is named: the first of these that the answer has."""
+"""Variable that is drawn where none is named: the first of these that the answer has."""
 _ALONG = ("temperature", "speed", "force")
-"""Dimensions along which an answer is drawn rather than along others."""
+"""Dimensions along which an answer is drawn, if it has one of them."""
 _DECADE = 0.1
-"""Least probability over the greatest, below which the axis is logarithmic."""
+"""Ratio of the least to the greatest probability below which the axis is logarithmic."""
 _BORNE = 0.02
-"""Pressure over its maximum, from which a profile is drawn."""
+"""Ratio of the pressure to its maximum from which a profile is drawn."""
 _MOST_FILM = 4.0
-"""Greatest gap in a profile, over the central film."""
+"""Ratio of the greatest gap that is drawn to the central film."""
 
 
 def draw(found: xr.Dataset, x: str | None = None, y: str | None = None) -> Axes:
@@ -29,17 +29,17 @@ def draw(found: xr.Dataset, x: str | None = None, y: str | None = None) -> Axes:
     found : xarray.Dataset
         The answer.
     x, y : str, optional
-        Dimension along the axis, and variable, as of `lube.Answer.plot`.
+        Dimension along the axis, and variable, as in `lube.Answer.plot`.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The panel, of a figure of its own.
+        The panel of a new figure.
 
     Raises
     ------
     LubeError
-        If it has no such dimension or variable, or a single value only.
+        If the answer has no such dimension or variable, or a single value only.
     """
     y = y or next(name for name in (*_SHOWN, *found.data_vars) if name in found)
     dims = found[y].dims if y in found else ()
@@ -57,8 +57,7 @@ def draw(found: xr.Dataset, x: str | None = None, y: str | None = None) -> Axes:
             _label_points(axes, found, y)
         if y == "pressure":
             _draw_film(axes, found)
-        if axes.get_legend_handles_labels()[1]:
-            plots.legend_above(axes.figure, axes.figure.axes)
+        plots.legend_above(axes.figure, axes.figure.axes)
     return axes
 
 
@@ -85,7 +84,7 @@ def _level(value):
 
 
 def _scale(axes, found):
-    """Name, scale and limits of the axis of probabilities."""
+    """Set name, scale and limits of the axis of probabilities."""
     names = (f"{_COUNTED}_mean", f"{_COUNTED}_upper", _SAMPLED)
     values = np.concatenate([found[name].values.ravel() for name in names if name in found])
     least, most = values[values > 0.0].min(), np.nanmax(values)
@@ -98,7 +97,7 @@ def _scale(axes, found):
 
 
 def _draw_probability(axes, one, x, color, name):
-    """Draw counted probabilities where any is seen, and the curve of the sampled ones."""
+    """Draw counted probabilities where contact was seen, and the curve of the sampled ones."""
     mean, lower, upper = (one[f"{_COUNTED}{end}"].values for end in ("_mean", "_lower", "_upper"))
     known = _SAMPLED in one and bool(one[_SAMPLED].notnull().all())
     seen = (mean > 0.0) | (not known)
@@ -113,7 +112,7 @@ def _draw_probability(axes, one, x, color, name):
 
 
 def _label_points(axes, found, y):
-    """Name the points of a duty cycle, and mark the probability of the whole of it."""
+    """Name the points of a duty cycle, and mark the probability of the whole cycle."""
     # Labels are the only columns without a unit.
     texts = [n for n, one in found.items() if one.dims == ("point",) and "units" not in one.attrs]
     numbers = found["point"].values
@@ -127,7 +126,7 @@ def _label_points(axes, found, y):
 
 
 def _draw_film(axes, found):
-    """Draw the film of a profile, on an axis of its own."""
+    """Draw the film of a profile, on a second axis."""
     axes.lines[0].set_label("pressure")
     borne = found["position"].values[found["pressure"] > _BORNE * found["pressure"].max()]
     axes.set(xlim=1.3 * borne[[0, -1]], ylim=(0.0, None))

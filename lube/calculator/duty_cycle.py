@@ -1,6 +1,5 @@
 """Duty cycles: the answer at each duty point, and the weighted whole."""
 
-import difflib
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,18 +9,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from lube.calculator.amounts import amount
 from lube.calculator.answers import Answer
-from lube.calculator.operating_points import (
-    FORMULA,
-    REALISATIONS,
-    SEED,
-    ensemble,
-    film_of_oil,
-    joined,
-    one_formula,
-    with_remarks,
-)
+from lube.calculator.arguments import FORMULA, REALISATIONS, SEED, amount, one_formula
+from lube.calculator.operating_points import ensemble, film_of_oil, joined, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import DataError, LubeError, right_one, shown
 from lube.schema import LIMITS, values_with_limits
@@ -44,8 +34,6 @@ _COLUMNS = {
 """Columns of a table of duty points, each with the unit that it is converted to."""
 _NUMBER = re.compile(r"\s*[-+]?[\d.]+\s*([ %]|$)")
 """Beginning of a number with or without unit, but not of a name such as ``2nd gear``."""
-_NEAR = 0.75
-"""Likeness to the name of a column from which a name is taken for a slip."""
 _SPEEDS = ("speed", "entrainment_speed", "surface_speed and second_surface_speed")
 
 
@@ -61,8 +49,8 @@ def duty(
 ) -> Answer:
     """Film and probability of contact along a duty cycle, and over the whole of it.
 
-    The model's probability depends on film thickness and contact width. So each duty point has
-    the film and width of its own radii, and all share the roughness lines of `rollers`.
+    The model's probability depends on film thickness and contact width. So each duty point has the
+    film and width of its radii, and all points have the roughness lines of `rollers`.
 
     Parameters
     ----------
@@ -72,10 +60,10 @@ def duty(
         and one of ``speed`` (rotation of the first roller in pure rolling, such as rpm),
         ``entrainment_speed``, or the two of ``surface_speed`` and ``second_surface_speed``.
         Optional are ``radius`` and ``second_radius``, by default those of `rollers`, and
-        ``share``, the point's part of the time, by default equal parts. Other columns of text,
-        such as names of the points, are kept.
+        ``share``, the point's share of time, by default equal shares. Other columns of text, such
+        as names of the points, are kept.
     rollers : Rollers
-        Material, roughness and, where the points have none, radii.
+        Material, roughness and, for points without radii, the radii.
     oil : Oil
         The oil.
     film_formula, realisations, seed
@@ -85,11 +73,11 @@ def duty(
     -------
     Answer
         The variables of `lube.contact_probability` over ``point``, the columns of `points`, and
-        ``share`` (normalised). Of the whole time: ``whole_probability``, the share with metal
-        contact, counted; ``whole_tail_probability``, the same by importance sampling; and
-        ``whole_tail_rate``, breakthroughs per hour; each with ``_lower`` and ``_upper``. The
-        intervals are those of the mean over pairs of rollers. All points share these pairs, so
-        the whole is computed on each pair first. Its attribute ``remarks`` is that of
+        ``share`` (normalised). For the whole cycle: ``whole_probability``, the share of time with
+        metal contact, counted; ``whole_tail_probability``, the same by importance sampling; and
+        ``whole_tail_rate``, breakthroughs per hour; each with ``_lower`` and ``_upper``. These
+        limits are those of the mean over pairs of rollers. All points have the same pairs, so the
+        whole cycle is computed on each pair first. The attribute ``remarks`` is as in
         `lube.contact_probability`.
 
     Raises
@@ -133,10 +121,10 @@ def _slip(columns):
 
 
 def _whole(contact, on_pairs, share, windows):
-    """Probabilities and rate of the whole cycle, with their intervals."""
+    """Probabilities and rate over the whole cycle, with their limits."""
     counted = (contact["breakthrough_probability"] * share).sum("point")
     limits = probability_interval(counted.values, windows)
-    # On each pair of lines first: at all points the lines are the same.
+    # Summed on each pair of lines first: the lines are the same at all points.
     sampled = pair_limits((on_pairs * share).sum("point", skipna=False))
     whole = values_with_limits("whole_probability", limits)
     for end in LIMITS:
@@ -146,21 +134,17 @@ def _whole(contact, on_pairs, share, windows):
 
 
 def _film(columns, rollers, oil, film_formula):
-    """Film table over ``point``, each with its own radii."""
+    """Film table over ``point``, with the radii of each point."""
     pair = rollers.pair
-    first = columns.get("radius", pair.first.radius)
-    second = columns.get("second_radius", pair.second.radius)
-    radii = {"first": first, "second": second}
-    own = pair.model_copy(
-        update={
-            name: getattr(pair, name).model_copy(update={"radius": radius})
-            for name, radius in radii.items()
-        }
-    )
+    radius = columns.get("radius", pair.first.radius)
+    second_radius = columns.get("second_radius", pair.second.radius)
+    first = pair.first.model_copy(update={"radius": radius})
+    second = pair.second.model_copy(update={"radius": second_radius})
+    own = pair.model_copy(update={"first": first, "second": second})
     if (rotation := columns.get("speed")) is None:
         if (entrainment := columns.get("entrainment_speed")) is None:
             entrainment = 0.5 * (columns["surface_speed"] + columns["second_surface_speed"])
-        rotation = entrainment * 60.0 / (2.0 * np.pi * first)
+        rotation = entrainment * 60.0 / (2.0 * np.pi * radius)
     formulas = [one_formula(film_formula)]
     table = film_of_oil(oil, own, columns["force"], rotation, columns["temperature"], formulas)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
@@ -198,7 +182,7 @@ def _columns(points):
 def _is_label(header, values):
     """Whether a column holds texts, not numbers, under a name that is not one of `_COLUMNS`."""
     words = all(isinstance(value, str) and not _NUMBER.match(value) for value in values)
-    return words and not difflib.get_close_matches(header.lower(), _COLUMNS, cutoff=_NEAR)
+    return words and header not in _COLUMNS
 
 
 def _column(header, values):

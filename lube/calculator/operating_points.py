@@ -1,18 +1,28 @@
 """Film, probability of contact and resistance at operating points."""
 
 from collections.abc import Sequence
-from typing import get_args
 
 import numpy as np
 import xarray as xr
 
-from lube.calculator.amounts import Amount, amount, bare_number, described
-from lube.calculator.answers import Answer
+from lube.calculator.answers import Answer, described
+from lube.calculator.arguments import (
+    FORMULA,
+    REALISATIONS,
+    SEED,
+    Amount,
+    bare_number,
+    check_realisations,
+    conditions,
+    gap_of,
+    one_formula,
+    single,
+)
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.ensemble import with_limits
 from lube.contact.rough_pair import roughness_batch
 from lube.contact.windows import ContactWindows
-from lube.errors import LubeError, RangeError, StudyError, right_one, shown
+from lube.errors import RangeError, StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
@@ -25,15 +35,8 @@ from lube.stages.trace import contact_trace
 from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import check_width
 from lube.study.oil_properties import lubricant_table
-from lube.study.rig_settings import RIG_REALISATIONS
-from lube.study.study import Study
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
-
-FORMULA = "pan-hamrock"
-"""Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
-REALISATIONS = 64
-SEED = 1
 
 FILM_VARIABLES = (
     "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
@@ -75,9 +78,8 @@ def film(
     -------
     Answer
         Over those of film_formula, temperature, speed and force of which several are given, in
-        customary units. Its attribute ``remarks`` says, a line each, what is unlikely to be meant
-        and what the model cannot hold, as ``lube check`` does; of several film formulas the first
-        counts.
+        customary units. Its attribute ``remarks`` lists what is unlikely to be meant and what the
+        model cannot hold, a line each, as ``lube check`` does; the first film formula counts.
 
     Raises
     ------
@@ -92,7 +94,7 @@ def film(
     '1.05 um, lambda ratio 3.7'
     """
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
-    return with_remarks(table[list(FILM_VARIABLES)], table, rollers)
+    return with_remarks(table[FILM_VARIABLES], table, rollers)
 
 
 def film_in_si(
@@ -105,16 +107,13 @@ def film_in_si(
     gap: Gap = PLAIN,
     slip: float = 0.0,
 ) -> xr.Dataset:
-    """All variables of the film table in SI units, and the oil's.
+    """All variables of the film table in SI units, and the oil's viscosity.
 
-    Arguments as in `film` and `ensemble`.
+    The arguments are those of `film` and `ensemble`.
     """
-    force, speed, temperature = _conditions(rollers, force, speed, temperature)
-    if not temperature.dims:
-        temperature = temperature.assign_coords(temperature=temperature)
-    several = not isinstance(film_formula, str) and np.iterable(film_formula)
-    formulas = list(film_formula) if several else [film_formula]
-    if not formulas or not all(isinstance(one, str) for one in formulas):
+    force, speed, temperature = conditions(force, speed, temperature, rollers.pair.first.radius)
+    formulas = np.ravel(film_formula).tolist()
+    if not formulas or not isinstance(formulas[0], str):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
     choices = {
         "with_shape": gap.has_shape,
@@ -122,10 +121,10 @@ def film_in_si(
         "answered_lines": rollers.lines if gap.is_answered else None,
     }
     table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, **choices)
-    table = table.assign_coords(force=force, speed=speed)
     dims = ("film_formula", "temperature", "speed", "force")
+    table = table.assign_coords(force=force, speed=speed)
     table = table.transpose(*dims, ..., missing_dims="ignore")
-    return table if several else table.isel(film_formula=0)
+    return table if np.ndim(film_formula) else table.isel(film_formula=0)
 
 
 def film_of_oil(oil, pair, force, speed, temperature, formulas, **choices) -> xr.Dataset:
@@ -135,17 +134,8 @@ def film_of_oil(oil, pair, force, speed, temperature, formulas, **choices) -> xr
     return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
 
 
-def _conditions(rollers, force, speed, temperature):
-    """Force in N, speed in rpm and temperature in degC."""
-    return (
-        amount("force", force, "N", above=0.0),
-        rotation_speed(speed, rollers.pair.first.radius),
-        amount("temperature", temperature, "degC", above=-273.15),
-    )
-
-
 def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answer:
-    """Answer in customary units, with the remarks of `lube check` after its own.
+    """Answer in customary units, with its remarks and those of `lube check`.
 
     Parameters
     ----------
@@ -165,67 +155,6 @@ def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answ
     return described(found.assign_attrs(remarks="\n".join(filter(None, notes))))
 
 
-def rotation_speed(speed: Amount, radius: float | xr.DataArray) -> xr.DataArray:
-    """Rotation speed in rpm, from itself or from the entrainment speed at a radius in m.
-
-    Raises
-    ------
-    StudyError
-        If it is neither.
-    """
-    try:
-        return amount("speed", speed, "rpm", above=0.0)
-    except LubeError as error:
-        try:
-            entrainment = amount("speed", speed, "m/s", above=0.0)
-        except LubeError:
-            raise StudyError(f"{error}, or 'm/s'") from None
-        rotation = entrainment * (60.0 / (2.0 * np.pi * radius))
-        return rotation.assign_coords(speed=rotation) if rotation.dims else rotation
-
-
-def single(name: str, values: xr.DataArray) -> float:
-    """Value of an argument of which there must be one.
-
-    Raises
-    ------
-    StudyError
-        If there are several.
-    """
-    if values.dims:
-        raise StudyError(f"{name}: got {values.size} values, need one")
-    return values.item()
-
-
-def gap_of(film_shape: str = "flat", roughness_deformation: str = "none") -> Gap:
-    """How film and roughness make up the gap, by the words that a study has for it.
-
-    Raises
-    ------
-    StudyError
-        If a study has no such choice.
-    """
-    given = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
-    for name, value in given.items():
-        options = get_args(Study.model_fields[name].annotation)
-        if value not in options:
-            raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
-    return Gap(**given)
-
-
-def one_formula(name: str) -> str:
-    """Return the name of a film formula, of which there must be one.
-
-    Raises
-    ------
-    StudyError
-        If there are several.
-    """
-    if not isinstance(name, str):
-        raise StudyError(f"film_formula: got {shown(name)}, need one name")
-    return name
-
-
 @with_parts
 def contact_probability(
     rollers: Rollers,
@@ -243,13 +172,13 @@ def contact_probability(
 ) -> Answer:
     """Probability of metal contact, with its 95 % interval, and the film.
 
-    The probability is that of a line, and the mean over pairs of rollers: one pair, and rollers
-    of a length, touch more or less often.
+    It is the probability of a line, as a mean over pairs of rollers. One pair, or rollers of some
+    length, touch more or less often.
 
-    It comes in two ways. The realisations are counted, as in ``contact.nc`` of a study; where they
-    see no contact, the upper limit says how rare it is at least. Importance sampling, as in
-    ``tail.nc``, knows it at any rarity, with a standard error of about 2 %: take that where contact
-    is rare. Both agree where both see it.
+    The probability is found in two ways. Realisations are counted, as in ``contact.nc`` of a study;
+    where they see no contact, the upper limit says how rare it is at least. Importance sampling,
+    as in ``tail.nc``, works at any rarity, with a standard error of about 2 %: use it where contact
+    is rare. Both agree where both see contact.
 
     Parameters
     ----------
@@ -305,10 +234,10 @@ def contact_probability(
 
 
 def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.Dataset:
-    """Film, probabilities as counted, and by importance sampling under names with ``tail_``."""
+    """Film, counted probabilities, and those by importance sampling, whose names get ``tail_``."""
     sampled = pair_limits(on_pairs)
     tail = {f"tail_{name}": values for name, values in sampled.items()}
-    found = table[list(FILM_VARIABLES)].assign(dict(contact.data_vars) | tail)
+    found = table[FILM_VARIABLES].assign(dict(contact.data_vars) | tail)
     return found.assign_attrs(contact.attrs | sampled.attrs)
 
 
@@ -328,7 +257,7 @@ def ensemble(
         With ``film_thickness`` and ``contact_half_width`` (m) over any dimensions, and
         ``reduced_modulus`` (Pa); as `lube.contact.windows.ContactWindows` needs it.
     rollers : Rollers
-        Their lines and boundary layer are used.
+        The two rollers, for their lines and boundary layer.
     realisations, seed : int
         As in `contact_probability`.
     slip : float, optional
@@ -348,13 +277,11 @@ def ensemble(
         If the lines are too short for a contact, or the number of realisations or the seed is not
         a suitable whole number.
     """
-    half_width = table["contact_half_width"]
-    for width in (2.0 * half_width.min().item(), 2.0 * half_width.max().item()):
-        check_width(rollers.lines, width, "force: the contact")
-    check_realisations(realisations, seed)
-
     spec = rollers.lines
-    thickness, width = xr.broadcast(table["film_thickness"], 2.0 * half_width)
+    thickness, width = xr.broadcast(table["film_thickness"], 2.0 * table["contact_half_width"])
+    for end in (width.min().item(), width.max().item()):
+        check_width(spec, end, "force: the contact")
+    check_realisations(realisations, seed)
     windows = ContactWindows(spec, table, rollers.layer, gap)
 
     def of_realisation(number):
@@ -368,22 +295,6 @@ def ensemble(
     moved = spec.travel * min(speed_ratios(slip))
     independent = independent_windows(moved, width, spec.longest_wavelength)
     return with_limits(xr.Dataset(contact, levels, {"seed": seed}), independent)
-
-
-def check_realisations(realisations: int, seed: int) -> int:
-    """Return the number of realisations, if it and the seed are suitable whole numbers.
-
-    Raises
-    ------
-    StudyError
-        If one of them is not.
-    """
-    for name, number, least in (("realisations", realisations, 1), ("seed", seed, 0)):
-        if isinstance(number, bool) or not isinstance(number, int) or number < least:
-            raise StudyError(f"{name}: got {shown(number)}, need a whole number, at least {least}")
-    if realisations > RIG_REALISATIONS:
-        raise StudyError(f"realisations: got {realisations}, need at most {RIG_REALISATIONS}")
-    return realisations
 
 
 @with_parts
@@ -476,7 +387,6 @@ def profile(rollers: Rollers, oil: Oil, force: str, speed: str, temperature: str
 
 def _one_point(rollers, oil, force, speed, temperature):
     """Oil at the temperature, pair of rollers, force in N and speed in rpm, of one point."""
-    given = _conditions(rollers, force, speed, temperature)
-    names = ("force", "speed", "temperature")
-    force, speed, temperature = ([single(*one)] for one in zip(names, given, strict=True))
+    given = conditions(force, speed, temperature, rollers.pair.first.radius)
+    force, speed, temperature = ([single(one)] for one in given)
     return lubricant_table([oil.record], temperature), rollers.pair, force, speed

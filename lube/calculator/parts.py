@@ -10,12 +10,12 @@ from typing import TypeVar
 import numpy as np
 import xarray as xr
 
-from lube.calculator.amounts import Amount, amount, bare_number, described
-from lube.calculator.answers import Answer
+from lube.calculator.answers import Answer, described
+from lube.calculator.arguments import Amount, amount
 from lube.errors import LubeError, RecordError, StudyError, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.study.field_types import validate
-from lube.study.line_spec import LineSpec, band_in_words, line_spec
+from lube.study.line_spec import band_in_words, line_spec
 from lube.study.lubricant_record import LubricantRecord, TemperatureRange, base_oil, load_record
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import (
@@ -35,8 +35,6 @@ from lube.types import File
 from lube.units import parse_quantity
 
 _HEIGHT_STEP = "1 pm"
-_ROUGHNESS = {"least": 1e-9, "most": 1e-5}
-"""Rms roughness that suits this step, m."""
 _SOURCE = "assumed: given in Python"
 _MODELS = (
     ("radius", "young_modulus", "poisson_ratio"),
@@ -50,14 +48,14 @@ _MODELS = (
         "kurtosis",
     ),
 )
-"""Arguments that a roller, the heights of its roughness and the roughness of both are made of."""
+"""Arguments for a roller, for the heights of its roughness, and for the roughness of both."""
 _LENGTHS = ("longest_wavelength", "shortest_wavelength")
 _LAYER = ("critical_thickness", "shear_strength")
 _Function = TypeVar("_Function", bound=Callable)
 
 
 def with_parts(function: _Function) -> _Function:
-    """Make a function refuse unknown arguments, and other `rollers` and `oil` than such objects."""
+    """Make a function refuse unknown arguments, and `rollers` and `oil` of other types."""
     signature, owner = inspect.signature(function), function.__qualname__.split(".")[0]
 
     @functools.wraps(function)
@@ -78,7 +76,7 @@ def with_parts(function: _Function) -> _Function:
 
 
 def _meant(name, signature):
-    """Name the arguments that were probably meant: all that contain the name, or the nearest."""
+    """Name the arguments that were probably meant: those that contain the name, or the nearest."""
     names = [each for each in signature.parameters if each != "self"]
     longer = [each for each in names if name in each]
     return f"did you mean {' or '.join(longer)}?" if longer else right_one(name, names)
@@ -97,18 +95,18 @@ class Rollers:
     length : str, optional
         Length of the line contact.
     young_modulus, poisson_ratio : str, float, optional
-        Of the first roller's material; the default is steel.
+        Elastic constants of the first roller; the default is steel.
     second : dict, optional
-        What differs of the second roller, such as ``{"radius": "30 mm"}`` or
-        ``{"roughness": {"hurst_exponent": 0.8}}``. Without it the rollers are equal.
+        Values of the second roller that differ from the first's, such as ``{"radius": "30 mm"}``
+        or ``{"roughness": {"hurst_exponent": 0.8}}``. Without it the rollers are equal.
     longest_wavelength, shortest_wavelength : str, optional
-        Of the roughness: `lube.study.rollers.LONGEST_WAVELENGTH`, the cutoff with which an Ra
-        from 0.1 to 2 um is customarily measured, and the paper's shortest. The answer depends on
-        them more than on anything else.
+        Ends of the roughness band. The defaults are `lube.study.rollers.LONGEST_WAVELENGTH`, the
+        cutoff with which an Ra from 0.1 to 2 um is customarily measured, and the paper's shortest
+        wavelength. The answers depend on them more than on anything else.
     long_cutoff, short_cutoff : str, optional
         Cutoffs lambda_c and lambda_s that the roughness was measured with: its height is that of
-        the waves within them, and waves beyond add to it. By default the longest and the
-        shortest wavelength.
+        the waves between them, and other waves add to it. By default the longest and the shortest
+        wavelength.
     hurst_exponent : float, optional
         Hurst exponent of the roughness, from 0 to 1.
     ra_roughness : str, optional
@@ -122,19 +120,19 @@ class Rollers:
     roll_off_wavelength : str, optional
         Beyond it the spectral density of the surface is constant; by default nowhere.
     skewness, kurtosis : float, optional
-        Of the heights; by default Gaussian.
+        Skewness and kurtosis of the heights, by default Gaussian.
     points : int, optional
         Grid points around the first roller; by default about ten in the shortest wavelength.
     critical_thickness, shear_strength : str, optional
-        Of the boundary layer; the paper's.
+        Properties of the boundary layer, by default the paper's.
     roughness : Roughness, optional
-        That of a study, such as ``study.roughness``, in place of the arguments on it but the
-        heights.
+        Roughness of a study, such as ``study.roughness``, in place of all arguments on the
+        roughness except its heights.
     boundary_layer : BoundaryLayer, optional
-        That of a study, in place of the arguments on it.
+        Boundary layer of a study, in place of the two arguments on it.
     resistivity : str, optional
-        Of the rollers' material; by default hardened bearing steel. ``"insulator"`` if either does
-        not conduct: contact then has no resistance.
+        Resistivity of the rollers' material, by default hardened bearing steel. ``"insulator"`` if
+        either roller does not conduct: contact then has no resistance.
 
     Attributes
     ----------
@@ -143,11 +141,11 @@ class Rollers:
     lines : LineSpec
         What determines the roughness lines.
     band : str
-        From which to which wave the roughness reaches.
+        Longest and shortest wave of the roughness, in words.
     layer : BoundaryLayer
         The boundary layer.
     resistivity : float
-        In ohm m; NaN if either roller does not conduct.
+        Resistivity, ohm m; NaN if either roller does not conduct.
 
     Raises
     ------
@@ -160,12 +158,6 @@ class Rollers:
     >>> f"{1e6 * rollers.pair.composite_rms_roughness:.3f} um"
     '0.283 um'
     """
-
-    pair: RollerPair
-    lines: LineSpec
-    band: str
-    layer: BoundaryLayer
-    resistivity: float
 
     @with_parts
     def __init__(
@@ -216,14 +208,12 @@ class Rollers:
             "composite_rms_roughness": composite_rms_roughness,
         }
         self.pair = validate(RollerPair, pair, "Rollers", StudyError)
-        for rms in filter(None, self.pair.rms_heights):
-            bare_number("Rollers: rms_roughness", rms, "m", **_ROUGHNESS)
         layer = {name: given[name] for name in _LAYER}
         self.layer = boundary_layer or validate(BoundaryLayer, layer, "Rollers", StudyError)
         self.resistivity = math.nan
         if resistivity != INSULATOR:
             self.resistivity = amount("resistivity", resistivity, "ohm*m", above=0.0).item()
-        # Lengths only: the other choices of a study depend on its grid.
+        # Lengths only: a study's other choices depend on its grid.
         waves |= {name: _metres(name, given[name]) for name in _LENGTHS}
         if points is None:
             shortest = parse_quantity(waves["shortest_wavelength"], "m")
@@ -255,7 +245,7 @@ class Rollers:
 
 
 def _one_of_two(given, model, name, short):
-    """Refuse short arguments beside the model that has their values."""
+    """Refuse single arguments beside a part of a study that has their values."""
     usual = inspect.signature(Rollers).parameters
     for argument in short if model is not None else ():
         if given[argument] != usual[argument].default:
@@ -287,10 +277,10 @@ class Oil:
         ``PAG``.
     pressure_viscosity : str, optional
         Without a record: pressure-viscosity coefficient such as ``"18 1/GPa"``, the slope at
-        atmospheric pressure, in place of that of the base oil.
+        atmospheric pressure, in place of the base oil's.
     temperature_range : sequence of str or tuple, optional
         Lowest and highest temperature at which the oil may be used, such as
-        ``["20 degC", "120 degC"]``; by default those of its data. Beyond these the viscosity
+        ``["20 degC", "120 degC"]``; by default those of its data. Beyond its data the viscosity
         follows its law.
 
     Attributes
@@ -309,8 +299,6 @@ class Oil:
     >>> f"{oil.properties('60 degC').dynamic_viscosity.item():.0f} mPa s"
     '114 mPa s'
     """
-
-    record: LubricantRecord
 
     @with_parts
     def __init__(

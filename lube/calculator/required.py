@@ -1,26 +1,27 @@
 """What keeps contact rare: the film, viscosity, speed, temperature or roughness that it takes.
 
-Each is found where the curve of the breakthrough probability crosses the share asked for, and its
-limits where the limits of the probability cross it. So the 95 % interval is that of the mean over
-pairs of rollers.
+Each answer lies where the breakthrough probability crosses the share asked for, and its limits lie
+where the limits of the probability cross it. So the 95 % interval is one of the mean over pairs of
+rollers.
 """
 
 import numpy as np
 import xarray as xr
 
-from lube.calculator.amounts import amount, bare_number, described
-from lube.calculator.answers import Answer
-from lube.calculator.operating_points import (
+from lube.calculator.answers import Answer, described
+from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
+    amount,
+    bare_number,
     check_realisations,
-    film_in_si,
     gap_of,
     one_formula,
     rotation_speed,
     single,
 )
+from lube.calculator.operating_points import film_in_si
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.window_films import shaped_films
 from lube.contact.windows import ContactWindows
@@ -35,23 +36,23 @@ from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 
 LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
-"""Lambda ratios that are tried at first; even at the last, contact has a probability of 1e-37."""
+"""Lambda ratios of the first look; at the last, contact has a probability of 1e-37."""
 NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
-"""Lambda ratios that are tried then, over that of the share at first sight."""
+"""Lambda ratios of the second look, over the one at which the first look finds the share."""
 AROUND = np.exp(np.linspace(-1.0, 0.6, 17))
-"""The same where the film has a shape or the oil flattens the lines: at first sight neither has."""
+"""The same if the film has a shape or the oil changes the lines, which the first look ignores."""
 FALLING = 0.9
-"""Share, over the largest there is, below which it lies well on the falling branch."""
+"""Share, over the largest probability, below which it lies well on the falling branch."""
 OFTEN = 10.0
 """Independent windows with contact, in all realisations, from which contact is counted."""
 FEW_PAIRS = 2
 """Pairs of lines of the first look."""
 _LEAST = 1e-40
-"""Probabilities that are taken for none."""
+"""Probability below which contact counts as impossible."""
 FACTORS = np.geomspace(1e-3, 1e3, 601)
 """Factors of the viscosity, and entrainment speeds in m/s, that are tried."""
 TEMPERATURES = 241
-"""Number of temperatures that are tried, over the range of the lubricant record."""
+"""Number of temperatures that are tried in the range of the lubricant record."""
 
 
 @with_parts
@@ -93,9 +94,10 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    force = single("force", amount("force", force, "N", above=0.0))
+    search = _Search(rollers, share, realisations, seed, "flat", "none")
+    force = single(amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
-    return _labelled(_Search(rollers, share, realisations, seed).films(half_width))
+    return _labelled(search.films(half_width))
 
 
 @with_parts
@@ -134,7 +136,7 @@ def required_viscosity(
     LubeError
         Which argument, what came, what is needed; or that no viscosity is enough.
     """
-    rotation = single("speed", rotation_speed(speed, rollers.pair.first.radius))
+    rotation = single(rotation_speed(speed, rollers.pair.first.radius))
     one = one_formula(film_formula)
 
     def table(factors, gap=PLAIN):
@@ -142,10 +144,10 @@ def required_viscosity(
         speeds = rotation * factors, "rpm"
         return film_in_si(rollers, oil, force, speeds, temperature, one, gap)
 
-    search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
+    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors = search.along(table, FACTORS, tried)
-    properties = oil.at(table(FACTORS[:1])["temperature"])
+    properties = oil.at(amount("temperature", temperature, "degC"))
     viscosity = properties["dynamic_viscosity"].item() * factors
     kinematic = viscosity / properties["density"].item()
     return _labelled({"dynamic_viscosity": viscosity, "kinematic_viscosity": kinematic} | films)
@@ -190,7 +192,7 @@ def required_speed(
     def table(speeds, gap=PLAIN):
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, gap)
 
-    search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
+    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
@@ -235,7 +237,7 @@ def required_temperature(
     def table(temperatures, gap=PLAIN):
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, gap)
 
-    search = _Search(rollers, share, realisations, seed, gap_of(film_shape, roughness_deformation))
+    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
@@ -272,23 +274,20 @@ def required_roughness(
     Returns
     -------
     Answer
-        ``composite_rms_roughness`` (um), ``lambda_ratio`` and ``roughness_factor``, that of both
-        rollers' roughness, each with ``_lower`` and ``_upper``.
+        ``composite_rms_roughness`` (um), ``lambda_ratio`` and ``roughness_factor``, the factor of
+        both rollers' heights, each with ``_lower`` and ``_upper``.
 
     Raises
     ------
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
+    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
     one = one_formula(film_formula)
-    chosen = gap_of(film_shape, roughness_deformation)
-    film = film_in_si(rollers, oil, force, speed, temperature, one, chosen)
-    for name, size in film["film_thickness"].sizes.items():
-        raise StudyError(f"{name}: got {size} values, need one")
-    own = film["lambda_ratio"].item()
-    search = _Search(rollers, share, realisations, seed, chosen)
+    film = film_in_si(rollers, oil, force, speed, temperature, one, search.gap)
+    own = single(film["lambda_ratio"])
 
-    def gap(ratios):
+    def table_at(ratios):
         # Lines of s times the height break as the given ones do under the film over s.
         scale = xr.DataArray(ratios / own, dims="film")
         scaled = {"film_thickness": scale * film["film_thickness"]}
@@ -296,7 +295,7 @@ def required_roughness(
             scaled["film_profile"] = scale * shaped_films(film)
         return film.assign(scaled)
 
-    found = search.films(film["contact_half_width"].item(), gap, own=own)
+    found = search.films(film["contact_half_width"].item(), table_at, own=own)
     ratios = found["lambda_ratio"]
     sigma = rollers.pair.composite_rms_roughness * own / ratios
     found = {"roughness_factor": own / ratios, "composite_rms_roughness": sigma}
@@ -306,17 +305,18 @@ def required_roughness(
 class _Search:
     """Search for the films at which contact has a share.
 
-    Contact is counted in the realisations where they see enough of it, else sampled.
+    Contact is counted where the realisations see enough of it, else sampled.
     """
 
-    def __init__(self, rollers, share, realisations, seed, gap=PLAIN):
+    def __init__(self, rollers, share, realisations, seed, film_shape, roughness_deformation):
         self._share = bare_number("share", share, above=0.0, below=1.0)
-        self._rollers, self._realisations, self._seed = rollers, realisations, seed
-        self.gap = gap
+        self.gap = gap_of(film_shape, roughness_deformation)
+        self._realisations = check_realisations(realisations, seed)
+        self._rollers, self._seed = rollers, seed
         self._sigma = rollers.pair.composite_rms_roughness
 
     def along(self, table, levels, tried):
-        """Films with the share, and the levels of a condition that give them."""
+        """Find the films with the share, and the levels of a condition that give them."""
         whole = table(levels)
         for name, size in whole["film_thickness"].sizes.items():
             if size != levels.size:
@@ -325,29 +325,29 @@ class _Search:
         known = np.flatnonzero(np.isfinite(ratios))
         known = known[np.argsort(ratios[known])]
 
-        def gap(sought):
+        def table_at(sought):
             here = np.interp(sought, ratios[known], known)
             return table(np.interp(here, np.arange(levels.size), levels), self.gap)
 
         ends = ratios[known[[0, -1]]]
-        films = self.films(whole["contact_half_width"].item(), gap, ends)
+        films = self.films(whole["contact_half_width"].item(), table_at, ends)
         return films, _reached(films, whole, levels, tried)
 
-    def films(self, half_width, gap=None, ends=(0.0, np.inf), own=None):
-        """Films at which the probability, its lower and its upper limit have the share.
+    def films(self, half_width, table_at=None, ends=(0.0, np.inf), own=None):
+        """Find the films at which the probability, its lower and its upper limit have the share.
 
         Parameters
         ----------
         half_width : float
             Half-width of the contact, m.
-        gap : callable, optional
-            From lambda ratios to a film table of them, if the film has a shape or the oil flattens
-            the lines; by default flat films.
+        table_at : callable, optional
+            Film table at some lambda ratios, for films with a shape and for lines that the oil
+            flattens or answers.
         ends : tuple of float, optional
-            Least and greatest lambda ratio of `gap`.
+            Least and greatest lambda ratio of `table_at`.
         own : float, optional
-            Lambda ratio of the rollers if their roughness changes and not the film: so does the
-            layer's strength in proportion then, as of `required_roughness`.
+            Lambda ratio of the rollers, if their roughness changes and not the film. The layer's
+            strength then changes in proportion, as `required_roughness` explains.
         """
         spec = self._rollers.lines
         check_width(spec, 2.0 * half_width, "force: the contact")
@@ -369,9 +369,9 @@ class _Search:
                 ratios = np.unique(np.clip(found * AROUND, *ends))
             elif self._share < FALLING * first[0].max():
                 ratios = found * NEAR
-            else:  # the maximum is flat: to find it takes them all
+            else:  # the maximum is flat: to find it takes all thinner films
                 ratios = ratios[ratios < 2.0 * found * NEAR[-1]]
-        table = self._flat(ratios, half_width) if is_plain else gap(ratios)
+        table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
         is_seen = self._share * windows >= OFTEN or not can_sample
         method = self._counted if is_seen else self._sampled
         limits = method(self._windows(table, own, self.gap))
@@ -396,24 +396,23 @@ class _Search:
 
     def _sampled(self, windows, pairs=PAIRS):
         """Mean and limits of the breakthrough probability, by importance sampling."""
-        spec = self._rollers.lines
-        found = _on_pairs(lambda number: windows.sample(spec, self._seed, number)[0], pairs)
-        return mean_interval(found, 1.0)
+        spec, seed = self._rollers.lines, self._seed
+
+        def on_pair(number):
+            return windows.sample(spec, seed, number)[0][1]
+
+        return mean_interval(np.stack(on_threads(on_pair, range(pairs))), 1.0)
 
     def _counted(self, windows):
         """Mean and limits of the breakthrough probability, counted in realisations."""
         spec, seed = self._rollers.lines, self._seed
-        found = _on_pairs(
-            lambda number: windows.count(draw_realisation(spec, seed, number)).T,
-            check_realisations(self._realisations, seed),
-        )
+
+        def on_pair(number):
+            return windows.count(draw_realisation(spec, seed, number))[:, 1]
+
+        found = np.stack(on_threads(on_pair, range(self._realisations)))
         widths = 2.0 * spec.spacing * windows.half_windows
         return probability_interval(found, spec.independent_windows(widths))
-
-
-def _on_pairs(found_on, pairs):
-    """Breakthrough probability on pairs of lines, which share the processors."""
-    return np.stack([found[1] for found in on_threads(found_on, range(pairs))])
 
 
 def _crossing(ratios, probabilities, share):
@@ -429,7 +428,7 @@ def _crossing(ratios, probabilities, share):
 
 
 def _reached(films, table, levels, tried):
-    """Levels at which the film of a table has some thicknesses; infinite beyond the table."""
+    """Levels at which a table has the films; infinite beyond the table."""
     thickness = np.log(table["film_thickness"].values)
     rising = 1 if thickness[-1] > thickness[0] else -1
     ends = {"left": -rising * np.inf, "right": rising * np.inf}
@@ -444,7 +443,7 @@ def _reached(films, table, levels, tried):
 
 
 def _labelled(found):
-    """Values and their limits, the smaller one first, in customary units."""
+    """Answer of values and their limits, the smaller limit first."""
     rows = {}
     for name, (value, *limits) in found.items():
         rows |= values_with_limits(name, [value, *np.sort(limits)])

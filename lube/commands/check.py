@@ -12,6 +12,7 @@ from lube.errors import LubeError
 from lube.grid.plausibility import overview, remarks
 from lube.pipeline.command_line import changes_of, study_of_command
 from lube.pipeline.study_files import StudyFiles
+from lube.report.pages import count
 from lube.stages.film import film_table
 from lube.study.oil_properties import lubricant_table
 from lube.types import File
@@ -20,7 +21,7 @@ from lube.types import File
 def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], list[str]]:
     """Check a study as the workflow does, without running it.
 
-    What an engineer looks at first is said; what is unlikely to be meant is remarked.
+    The summary has what an engineer looks at first, and remarks on what is unlikely to be meant.
 
     Parameters
     ----------
@@ -46,16 +47,14 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     counts = {name: len(levels) for name, levels in study.operating_grid}
     counts["lubricant"] = len(study.lubricants)
     points = math.prod(counts.values())
-    factors = [_many(count, name) for name, count in counts.items() if count > 1]
+    factors = [_many(number, name) for name, number in counts.items() if number > 1]
     formulas, realisations = len(study.film_formulas), study.realisations
-    more = _many(formulas, "film_formula"), _many(realisations, "realisation")
+    more = count(formulas, "film formula"), count(realisations, "realisation")
     runs = points * formulas * realisations
     records, refused = _records(study)
-    oil = lubricant_table(study.lubricants, study.operating_grid.temperature)
-    grid, model = (
-        study.operating_grid,
-        study.film_model | {"with_shape": False, "answered_lines": None},
-    )
+    grid = study.operating_grid
+    oil = lubricant_table(study.lubricants, grid.temperature)
+    model = study.film_model | {"with_shape": False, "answered_lines": None}
     levels = grid.force, grid.speed, study.film_formulas[:1]
     film = film_table(oil, study.rough_rollers, *levels, slide_to_roll_ratio=study.slips, **model)
     question = film, study.line_spec, study.rough_rollers
@@ -88,15 +87,14 @@ def _expected_run(study, points):
     cores = os.cpu_count()
     minutes = max(1, round(seconds / 60.0 / cores))
     return (
-        f"some {minutes:,} min on {_many(cores, 'core')}, by a rough estimate; up to "
+        f"some {minutes:,} min on {count(cores, 'core')}, by a rough estimate; up to "
         f"{0.4 + size:.1f} GB for each job"
     )
 
 
-def _many(count, name):
-    """``5 forces``."""
-    words = name.replace("slide_to_roll", "slide-to-roll").replace("_", " ")
-    return f"{count} {words}{'s' * (count != 1)}"
+def _many(number, name):
+    """``5 forces``, by the name of their dimension."""
+    return count(number, name.replace("slide_to_roll", "slide-to-roll").replace("_", " "))
 
 
 def _records(study):
@@ -105,7 +103,7 @@ def _records(study):
         return "none: rollers that do not conduct", []
     manifest = study.experiment.manifest
     if manifest is None:
-        return f"simulated, {_many(study.rig.pairs, 'pair')} of rollers", []
+        return f"simulated, {count(study.rig.pairs, 'pair')} of rollers", []
     from lube.recordings.manifest import read_manifest
 
     content = read_manifest(manifest)

@@ -15,8 +15,8 @@ from lube.types import File
 STAMP_STRIP = 27
 """Height of the strip below a figure that names study and commit, in pixels."""
 
-_MOST_CHANGES = 10  # values of the study that are listed
-_MOST_NAMED = 5  # coordinates that only one has
+_MOST_CHANGES = 10  # values of the studies that are listed
+_MOST_NAMED = 5  # coordinates in only one dataset that are listed
 
 
 def compare_results(first: File, second: File) -> Iterator[str]:
@@ -38,7 +38,7 @@ def compare_results(first: File, second: File) -> Iterator[str]:
     Raises
     ------
     DataError
-        If one of them is missing or damaged, or they have nothing in common to compare.
+        If either is missing or damaged, or they have nothing in common to compare.
     """
     first, second = Path(first), Path(second)
     for path in (first, second):
@@ -46,10 +46,9 @@ def compare_results(first: File, second: File) -> Iterator[str]:
             raise DataError(f"{path}: no such file, need a folder of results or a dataset")
     if first.is_dir() != second.is_dir():
         raise DataError(f"got {first} and {second}, need two folders or two datasets")
-    if not first.is_dir():
-        yield from _datasets(first, second, first.name)
-        return
     one, other = _files(first), _files(second)
+    if not first.is_dir():
+        one, other = {first.name: first}, {first.name: second}
     if not one.keys() & other.keys():
         raise DataError(f"got {first} and {second}, need two folders with results of one kind")
     yield from _only_in_one(one, other)
@@ -96,7 +95,7 @@ def _datasets(first, second, where):
     shared = sorted(set(one.variables) & set(other.variables) - set(labelled))
     differing = {name: line for name in shared if (line := _variables(one, other, name))}
     for name in differing:
-        # The limits of an interval are beside its value.
+        # The line of a value has its limits.
         value = name.removesuffix("_lower").removesuffix("_upper")
         if value == name or not differing.keys() & {value, f"{value}_mean"}:
             lines.append(f"{name}: {differing[name]}")
@@ -114,7 +113,7 @@ def _read(path):
 
 
 def _at_common_labels(one, other, dim):
-    """Bring two datasets to the labels of a dimension that both have; and name the others."""
+    """Select the labels of a dimension that both datasets have, and name the others."""
     here, there = one.indexes[dim], other.indexes[dim]
     if not (here.is_unique and there.is_unique):
         return one, other, [] if here.equals(there) else [f"{dim}: other labels, some repeated"]
@@ -133,21 +132,21 @@ def _short(value):
 
 
 def _variables(one, other, name):
-    """Say how the values of a variable differ; nothing if they are the same."""
+    """Say how the values of a variable differ; an empty text if they are the same."""
     here, there = one[name], other[name]
     if dict(here.sizes) != dict(there.sizes):
         return f"{_sizes(here)} against {_sizes(there)}"
     there = there.transpose(*here.dims)
     numbers = here.dtype.kind in "fiu" and there.dtype.kind in "fiu"
     lacking = here.isnull().values & there.isnull().values
-    # Of scalars NumPy makes a number, into which nothing can be written.
+    # NumPy returns a number for two scalars; an array is needed below.
     differ = np.asarray((here.values != there.values) & ~lacking)
     if not differ.any():
         return ""
     gap = differ.astype(float)
     if numbers:
         gap[differ] = np.abs(there.values[differ].astype(float) - here.values[differ])
-    # A value that one has and the other lacks is the largest difference.
+    # A value that only one dataset has counts as the largest difference.
     place = np.unravel_index(np.argmax(np.where(np.isnan(gap), np.inf, gap)), gap.shape)
     line = f"{np.count_nonzero(differ)} of {gap.size} differ, {'most' if numbers else 'first'}"
     line += f"{_coordinates(here, place)}: {_value(one, name, place)} against "
@@ -174,7 +173,7 @@ def _coordinates(variable, place):
 
 
 def _value(dataset, name, place, dims=None):
-    """Print a value, with its interval if it has one."""
+    """Format a value, with its interval if it has one."""
     at = dict(zip(dims or dataset[name].dims, place, strict=True))
     value, *interval = (one.isel(at).item() for one in (dataset[name], *_limits(dataset, name)))
     between = f" ({_short(interval[0])} to {_short(interval[1])})" if interval else ""
@@ -199,7 +198,7 @@ def _intervals_apart(one, other, name):
 
 
 def _values_of_studies(one, other):
-    """Name the values of the two studies that differ, which explains the results that do."""
+    """Name the values of the two studies that differ: they explain different results."""
     configs = []
     for dataset in (one, other):
         stages = json.loads(dataset.attrs.get("config", "{}")).values()

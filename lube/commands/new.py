@@ -1,4 +1,4 @@
-"""``lube new``: write a commented study of one's own rollers and oil, based on the paper's."""
+"""``lube new``: write a commented study of given rollers and oils, based on the paper's."""
 
 import json
 import os
@@ -24,7 +24,8 @@ OF_ROLLERS = {"radius": "m", "roughness": "m"}
 OF_GRID = {"force": "N", "speed": "rpm", "temperature": "degC"}
 """Options for levels with a unit, and the kind of unit."""
 
-_THINNEST = {"force": "1600 N", "speed": "600/7 rpm", "temperature": "80 degC"}  # of the paper
+# Operating point of the thinnest film in the paper's study.
+_THINNEST = {"force": "1600 N", "speed": "600/7 rpm", "temperature": "80 degC"}
 _RADIUS = "50 mm"  # of the paper's rollers
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+)?"
@@ -52,13 +53,13 @@ def new_study(
     path : str or Path
         YAML file to write; its stem is the study's name.
     quantities : dict of str to str
-        Any of `OF_ROLLERS` and `OF_GRID`: numbers with a unit, such as ``100 200 N``.
+        Numbers with a unit, such as ``100 200 N``, for any of `OF_ROLLERS` and `OF_GRID`.
     oils : sequence of str, optional
         Names of shipped lubricant records, or paths of records.
     realisations : int, optional
         Number of pairs of roughness lines.
     records : str or Path, optional
-        List of measured records, CSV; if there is none, one without records is written.
+        List of measured records, CSV; if the file is missing, an empty list is written.
 
     Returns
     -------

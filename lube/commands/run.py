@@ -9,8 +9,7 @@ from typing import NoReturn
 from lube.errors import LubeError
 from lube.storage.git import ROOT
 
-_SNAKEFILE = "Snakefile"
-_SIGN = "workflow/rules/study.smk"  # of a Snakefile that is this one
+_SIGN = "workflow/rules/study.smk"  # only beside the Snakefile of lube
 
 
 def snakemake_command(arguments: Sequence[str]) -> list[str]:
@@ -52,7 +51,7 @@ def repository(here: Path | None = None) -> Path:
     """
     here = here or Path.cwd()
     for folder in (here, *here.parents, ROOT):
-        if (folder / _SNAKEFILE).is_file() and (folder / _SIGN).is_file():
+        if (folder / _SIGN).is_file():
             return folder
     raise LubeError(
         f"{here}: no Snakefile of lube, need a clone of its repository or a folder in it"
@@ -60,7 +59,7 @@ def repository(here: Path | None = None) -> Path:
 
 
 def run(arguments: Sequence[str]) -> NoReturn:
-    """Become Snakemake, so that signals and the exit status are its own.
+    """Become Snakemake, which then gets the signals and sets the exit status.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """The contact model, counted: probability and extent of contact of rough lines (MDR model).
 
-An operating point reaches the kernels only as its film thickness and contact window, so any
-dimension of the film table passes through unchanged.
+The kernels know an operating point only by its film and its contact window, so any dimension of the
+film table passes through unchanged.
 """
 
 import logging
@@ -34,45 +34,40 @@ def contact_at(
     lines, boundary_layer, slide_to_roll_ratio, revolutions, gap
         As in `contact_statistics`.
     film : xarray.Dataset
-        With ``film_thickness`` and ``contact_half_width``, m, over any dimensions, and
-        ``reduced_modulus``, Pa. With ``film_profile`` the film has the computed shape, else it is
-        flat and ends at the edges of the contact.
+        As in `lube.contact.windows.ContactWindows`; the films may depend on slip.
 
     Returns
     -------
     xarray.Dataset
         The results of `contact_statistics` but the share of the load, over (realisation,
-        slide_to_roll_ratio, dimensions of the films), without attributes of their variables.
-        Its own are ``travel`` and ``longest_wavelength``, both m, of a realisation.
+        slide_to_roll_ratio, dimensions of the films), without attributes of their variables. The
+        dataset's attributes are ``travel`` and ``longest_wavelength`` of a realisation, both m.
     """
-    # At each slip a film of its own, if inlet shear heating thins it.
-    has_own = "slide_to_roll_ratio" in film["film_thickness"].dims
-    films = [at_slip(film, ratio) for ratio in (slide_to_roll_ratio if has_own else [None])]
-    grid = LineGrid.of(lines)
+    grid, realisations = LineGrid.of(lines), lines["realisation"].values
+    films = [at_slip(film, ratio) for ratio in slide_to_roll_ratio]
     windows = [ContactWindows(grid, one, boundary_layer, gap) for one in films]
-    thickness, _ = xr.broadcast(films[0]["film_thickness"], films[0]["contact_half_width"])
-    counts = np.empty((lines.sizes["realisation"], len(slide_to_roll_ratio), thickness.size, 4))
-    for r, realisation in enumerate(lines["realisation"].values):
+    counts = []
+    for realisation in realisations:
         pair = line_pair(lines, realisation)
-        for s, ratio in enumerate(slide_to_roll_ratio):
-            counts[r, s] = windows[s if has_own else 0].count(pair, ratio, revolutions)
+        for ratio, at_ratio in zip(slide_to_roll_ratio, windows, strict=True):
+            counts.append(at_ratio.count(pair, ratio, revolutions))
             log.info("realisation %d, slide-to-roll ratio %g: done", realisation, ratio)
+    thickness, _ = xr.broadcast(films[0]["film_thickness"], film["contact_half_width"])
+    counts = np.reshape(counts, (realisations.size, len(windows), *thickness.shape, 4))
     touching, breaking, points, overlap = np.moveaxis(counts, -1, 0)
     spacing = lines.attrs["spacing"]
     stiffness = film["reduced_modulus"].item() * spacing  # of one spring, Eq. 5
-    results = {
-        "geometric_contact_probability": touching,
-        "breakthrough_probability": breaking,
-        "mean_contact_length": points * spacing,
-        "mean_contact_force": overlap * lines.attrs["height_step"] * stiffness,
-    }
     dims = ("realisation", "slide_to_roll_ratio", *thickness.dims)
-    shape = counts.shape[:2] + thickness.shape
-    variables = {name: (dims, values.reshape(shape)) for name, values in results.items()}
-    for name in ("critical_thickness", "shear_strength"):
-        variables[name] = ((), getattr(boundary_layer, name))
-    coords = {"realisation": lines["realisation"].values, **thickness.coords}
+    results = {
+        "geometric_contact_probability": (dims, touching),
+        "breakthrough_probability": (dims, breaking),
+        "mean_contact_length": (dims, points * spacing),
+        "mean_contact_force": (dims, overlap * lines.attrs["height_step"] * stiffness),
+        "critical_thickness": boundary_layer.critical_thickness,
+        "shear_strength": boundary_layer.shear_strength,
+    }
+    coords = {"realisation": realisations, **thickness.coords}
     # NaN if both lines are measured: one pair has no ensemble, hence no interval.
     longest = 2.0 * np.pi / np.fmin.reduce(np.atleast_1d(lines.attrs["q_min"]))
     travel = spacing * min(lines.attrs["points"])
-    return xr.Dataset(variables, coords, {"travel": travel, "longest_wavelength": longest})
+    return xr.Dataset(results, coords, {"travel": travel, "longest_wavelength": longest})

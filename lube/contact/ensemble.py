@@ -16,10 +16,10 @@ import numpy as np
 import xarray as xr
 
 from lube.errors import DataError
-from lube.grid.discretise import speed_ratios
+from lube.grid.operating_points import surface_speeds
 from lube.schema import MEAN_LIMITS, label, values_with_limits
-from lube.statistics import sample_size
 from lube.statistics.confidence import probability_interval
+from lube.statistics.sample_size import independent_windows
 from lube.types import Values
 
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
@@ -57,15 +57,11 @@ def windows_by_force(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
             f"the contact results are at forces {contact['force'].values.tolist()} N, the film "
             f"table has {film['force'].values.tolist()} N"
         ) from None
-    slower = xr.apply_ufunc(
-        lambda ratio: min(speed_ratios(ratio)), contact["slide_to_roll_ratio"], vectorize=True
-    )
-    return sample_size.independent_windows(
-        contact.attrs["travel"] * slower, 2.0 * half_width, contact.attrs["longest_wavelength"]
-    )
+    speeds = surface_speeds(1.0, contact["slide_to_roll_ratio"])
+    return windows_in(contact, 2.0 * half_width, np.minimum(*speeds) / np.maximum(*speeds))
 
 
-def windows_in(dataset: xr.Dataset, width: Values) -> Values:
+def windows_in(dataset: xr.Dataset, width: Values, slower: Values = 1.0) -> Values:
     """Count the independent contact windows in one realisation of a dataset.
 
     Parameters
@@ -74,15 +70,16 @@ def windows_in(dataset: xr.Dataset, width: Values) -> Values:
         With the attributes ``travel`` and ``longest_wavelength`` of a realisation, m.
     width : float, numpy.ndarray or xarray.DataArray
         Contact width, m.
+    slower : float or xarray.DataArray, optional
+        Speed of the slower surface over that of the faster; by default they roll without slip.
 
     Returns
     -------
     float, numpy.ndarray or xarray.DataArray
         From `lube.statistics.sample_size.independent_windows`.
     """
-    return sample_size.independent_windows(
-        dataset.attrs["travel"], width, dataset.attrs["longest_wavelength"]
-    )
+    travel = dataset.attrs["travel"] * slower
+    return independent_windows(travel, width, dataset.attrs["longest_wavelength"])
 
 
 def gather(batches: Sequence[xr.Dataset], film: xr.Dataset) -> xr.Dataset:
@@ -154,7 +151,7 @@ def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
 
 
 def _join(batches):
-    """All realisations in order, each once."""
+    """Join all realisations in order, and check that each comes once."""
     # Other attributes may differ: batches of one study may come from different commits.
     batches = [
         batch.drop_attrs(deep=False).assign_attrs({name: batch.attrs[name] for name in ATTRIBUTES})

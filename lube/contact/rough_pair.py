@@ -21,12 +21,12 @@ def drawn(study: Study, realisation: int) -> Pair:
 
 
 def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> xr.Dataset:
-    """Draw realisations as whole height steps, which the other stages use without a file.
+    """Draw realisations in whole height steps; other stages use them without a file.
 
     Parameters
     ----------
     spec, seed, realisations
-        As in `roughness_lines`.
+        As in `lube.stages.roughness.roughness_lines`.
 
     Returns
     -------
@@ -40,9 +40,6 @@ def roughness_batch(spec: LineSpec, seed: int, realisations: Sequence[int]) -> x
             heights[row, roller, : line.size] = line
     return xr.Dataset(
         {"height": (("realisation", "roller", "position"), heights)},
-        {
-            "realisation": np.asarray(realisations, np.int64),
-            "roller": np.asarray(ROLLER_NUMBERS, np.int64),
-        },
+        {"realisation": list(realisations), "roller": list(ROLLER_NUMBERS)},
         line_attributes(spec),
     )

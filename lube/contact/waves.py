@@ -23,9 +23,9 @@ from lube.types import Array, Pair, Ratios
 PRECISION = 0.01
 """Largest error of the answers to rough lines, over the rms height of the lines."""
 FINER = 4
-"""Wavelengths for each of the stored ones, at which answers are expanded."""
+"""Wavelengths at which answers are expanded, for each of the stored wavelengths."""
 STEEPNESS = 0.7
-"""Waves are weighed by this power of their length, as those of rough surfaces are high."""
+"""Waves are weighed by this power of their length, since long waves of rough surfaces are high."""
 NODES = 20
 """Least number of nodes in a half-width of the contact."""
 _IN_PHASE = 0.2
@@ -40,7 +40,7 @@ class Answer:
 
     .. math:: T_k(X) - 1 = \sum_m u_m(X)\, f_m(k)
 
-    with real :math:`u_m`: as many as the `PRECISION` takes where lines may touch.
+    with real :math:`u_m`, as many as `PRECISION` needs where lines may touch.
 
     Attributes
     ----------
@@ -49,11 +49,11 @@ class Answer:
     position : numpy.ndarray, shape (n,)
         Positions over the half-width, rising.
     shapes : numpy.ndarray, shape (n, M)
-        :math:`u_m` there.
+        :math:`u_m` at these positions.
     wavenumber : numpy.ndarray, shape (K,)
-        Wavenumbers, rad/m, rising. The oil does not change waves of larger ones.
+        Wavenumbers, rad/m, rising. The oil does not change shorter waves.
     filters : numpy.ndarray of complex, shape (K, M)
-        :math:`f_m` of these.
+        :math:`f_m` at these wavenumbers.
     """
 
     half_width: float
@@ -99,7 +99,7 @@ class Answer:
         weight = finer[:, None] ** STEEPNESS
         weighted = np.concatenate([change.real, change.imag]) * np.tile(weight, (2, 1))
         left, values, right = np.linalg.svd(weighted * importance, full_matrices=False)
-        # Square error at each position with the first 0, 1, ... functions.
+        # Largest square error of all positions if the first 0, 1, ... functions are kept.
         parts = (values[:, None] * right) ** 2
         errors = np.cumsum(parts[::-1], axis=0)[::-1].max(axis=1)
         count = np.count_nonzero(errors > PRECISION**2 * np.sum(weight**2))
@@ -112,16 +112,16 @@ class Answer:
         """Binary logarithm of the points of a line from node to node."""
         return int(np.log2(np.clip(self.half_width / (NODES * spacing), 1, BLOCK)))
 
-    def at(self, position: Array) -> Array:
-        """Functions :math:`u_m` at other positions over the half-width, one row each."""
-        ends = self.position[[0, -1]]
-        return CubicSpline(self.position, self.shapes)(np.clip(position, *ends))
+    def at(self, points: Array, spacing: float) -> Array:
+        """Functions :math:`u_m` at points, counted from the centre with the motion, a row each."""
+        position = points * (spacing / self.half_width)
+        return CubicSpline(self.position, self.shapes)(np.clip(position, *self.position[[0, -1]]))
 
 
 def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:
-    """Return the response of both rollers' longest wave at the line of centres, in numbers.
+    """Return the response to both rollers' longest wave at the line of centres.
 
-    It tells operating points apart that differ in slip alone.
+    This tells operating points apart that differ in slip alone.
 
     Parameters
     ----------
@@ -131,14 +131,11 @@ def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:
     Returns
     -------
     list of xarray.DataArray
-        Real and imaginary part of either roller, over the other dimensions.
+        Complex responses for the first and the second roller, over the other dimensions.
     """
-    parts = (film[name].isel(wavelength=0) for name in ("response_real", "response_imaginary"))
-    return [
-        part.sel(response_position=0.0, drop=True).isel(roller=roller, drop=True)
-        for part in parts
-        for roller in (0, 1)
-    ]
+    response = film["response_real"] + 1j * film["response_imaginary"]
+    longest = response.isel(wavelength=0).sel(response_position=0.0, drop=True)
+    return [longest.isel(roller=roller, drop=True) for roller in (0, 1)]
 
 
 def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
@@ -154,31 +151,29 @@ def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
     Returns
     -------
     xarray.DataArray
-        An `Answer` each over roller and the dimensions of the response, None where it is not known;
-        the same for both rollers where the film responds to both alike.
+        Over roller and the dimensions of the response: an `Answer`, or None where the response is
+        not known. Both rollers have the same object where the film responds to both alike.
     """
     response = film["response_real"] + 1j * film["response_imaginary"]
-    width = film["contact_half_width"]
-    dims = [name for name in response.dims if name not in _OF_RESPONSE]
-    response = response.transpose(*dims, *_OF_RESPONSE)
-    width = width.broadcast_like(response.isel(dict.fromkeys(_OF_RESPONSE, 0))).transpose(*dims)
-    wavelength, position = (response[name].values for name in _OF_RESPONSE[1:])
-    roughness = film["composite_rms_roughness"].item()
-    answers = np.full((*width.shape, 2), None)
-    for index, half_width in np.ndenumerate(width.values):
-        gap = hertz_gap(position) * (half_width**2 / film["reduced_radius"].item())
+    wavelength, position = response["wavelength"].values, response["response_position"].values
+    radius, roughness = film["reduced_radius"].item(), film["composite_rms_roughness"].item()
+
+    def of_both(response, half_width):
+        gap = hertz_gap(position) * (half_width**2 / radius)
         importance = np.exp(-gap / roughness) if has_shape else np.abs(position) <= 1.0
-        both = response.values[index]
-        for roller, one in enumerate(both):
-            if roller and np.array_equal(one, both[0]):
-                answers[index][1] = answers[index][0]
+        answers = np.full(2, None)
+        for roller, one in enumerate(response):
+            if roller and np.array_equal(one, response[0]):
+                answers[1] = answers[0]
             elif np.isfinite(one).all():
-                own = one, wavelength, position, half_width, importance
-                answers[index][roller] = Answer.of(*own)
-    return xr.DataArray(answers, width.coords, (*dims, "roller"))
+                with one_blas_thread():
+                    answers[roller] = Answer.of(one, wavelength, position, half_width, importance)
+        return answers
 
-
-_OF_RESPONSE = "roller", "wavelength", "response_position"
+    core = [["roller", "wavelength", "response_position"], []]
+    options = {"output_core_dims": [["roller"]], "vectorize": True, "output_dtypes": [object]}
+    widths = film["contact_half_width"]
+    return xr.apply_ufunc(of_both, response, widths, input_core_dims=core, **options)
 
 
 def lifted(
@@ -193,7 +188,7 @@ def lifted(
     grid : LineGrid
         Their grid.
     answers : tuple of Answer
-        To both surfaces.
+        Answers to both surfaces.
     ratios : tuple of float
         Surface speeds over that of the faster surface.
     step : int
@@ -204,14 +199,15 @@ def lifted(
     Returns
     -------
     numpy.ndarray of int64, shape (2, W)
-        Of each line, height steps; together as in `lube.kernels.shaped.shaped_trace`.
+        What is added to each line, height steps; the sum is that of
+        `lube.kernels.shaped.shaped_trace`.
     """
     shift = answers[0].shift(grid.spacing)
     nodes = np.arange(window[0] >> shift, (window[-1] >> shift) + 2) << shift
     begin = step >> shift << shift
     at_nodes = np.zeros((2, 2, nodes.size))
     for roller, (line, answer) in enumerate(zip(lines, answers, strict=True)):
-        shapes = answer.at(-nodes * (grid.spacing / answer.half_width))
+        shapes = answer.at(-nodes, grid.spacing)
         surface = Surface(line, line, Waves(line, grid).filtered(answer), shapes)
         for time in (0, 1):
             moved = surface_position(begin + (time << shift), ratios[roller])
@@ -238,7 +234,7 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
     before : int
         Points of the window before its centre.
     answers : tuple of Answer
-        To both surfaces.
+        Answers to both surfaces.
 
     Returns
     -------
@@ -250,60 +246,47 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
     def nodes_of(first, points):
         """Nodes of points of the window from a first one on, and the shapes of both answers."""
         nodes = first + (np.arange((points >> shift) + 2) << shift)
-        position = (before - nodes) * (spec.spacing / answers[0].half_width)
-        return nodes - first, [answer.at(position) for answer in answers]
+        return nodes - first, [answer.at(before - nodes, spec.spacing) for answer in answers]
 
     rms, _ = sum_of_lines(spec, 1)
-    lines = [_Covariance(spec, roller, one, film.size) for roller, one in enumerate(answers)]
+    bands = [_bands(spec, roller, one, film.size) for roller, one in enumerate(answers)]
     nodes, shapes = nodes_of(0, film.size)
-    added = sum(one.at_nodes(at) for one, at in zip(lines, shapes, strict=True))
-    ratio = np.sqrt(1.0 + np.interp(np.arange(film.size), nodes, added) / rms**2)
-    _, part = likely_part(film, rms * ratio)
-    nodes, shapes = nodes_of(part.start, part.stop - part.start)
-    covariances = np.empty((2, 2, nodes.size, nodes.size), np.float32)
-    for roller, (one, at) in enumerate(zip(lines, shapes, strict=True)):
-        for back in (0, 1):
-            covariances[roller, back] = one.of_nodes(at, nodes, back) / rms**2
+    with one_blas_thread():
+        added = sum(
+            (np.abs(1.0 + at @ filters) ** 2 - 1.0) @ power
+            for at, (power, _, filters) in zip(shapes, bands, strict=True)
+        )
+        ratio = np.sqrt(1.0 + np.interp(np.arange(film.size), nodes, added) / rms**2)
+        _, part = likely_part(film, rms * ratio)
+        nodes, shapes = nodes_of(part.start, part.stop - part.start)
+        covariances = np.empty((2, 2, nodes.size, nodes.size), np.float32)
+        for roller, (at, (power, by_point, filters)) in enumerate(zip(shapes, bands, strict=True)):
+            drawn = np.exp(1j * nodes[:, None] * by_point)
+            changed = (1.0 + at @ filters) * drawn
+            for back in (0, 1):
+                behind = power * np.exp(-1j * back * by_point)
+                found = (changed * behind) @ changed.conj().T - (drawn * behind) @ drawn.conj().T
+                covariances[roller, back] = found.real / rms**2
     return UnevenWindow(film[part], ratio[part], tuple(shapes), covariances, shift)
 
 
-class _Covariance:
-    """What the oil adds to the covariance of a line in the window, by bands of its waves."""
-
-    def __init__(self, spec, roller, answer, points):
-        first, amplitudes = wave_amplitudes(spec, roller)
-        unit = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
-        amplitudes = amplitudes[: max(int(answer.wavenumber[-1] / unit) - first + 1, 0)]
-        # So few waves in a band that they are in phase over the window.
-        band = max(1, int(_IN_PHASE / (unit * spec.spacing * points)))
-        edges = np.arange(0, amplitudes.size, band)
-        waves = first + np.arange(amplitudes.size)
-        power = (amplitudes / spec.height_step) ** 2 / 2.0
-        self._power = np.add.reduceat(power, edges)
-        middle = np.add.reduceat(power * waves, edges) / self._power
-        self._by_point = unit * spec.spacing * middle
-        numbers = np.log(answer.wavenumber)
-        self._filters = np.array(
-            [np.interp(np.log(unit * middle), numbers, own) for own in answer.filters.T]
-        ).reshape(-1, middle.size)
-
-    def at_nodes(self, shapes):
-        """Compute what it adds to the variance at nodes."""
-        with one_blas_thread():
-            return (np.abs(self._changed(shapes)) ** 2 - 1.0) @ self._power
-
-    def _changed(self, shapes):
-        return 1.0 + shapes @ self._filters.conj()  # against the motion, so conjugate
-
-    def of_nodes(self, shapes, nodes, back):
-        """Compute it for a first node, some points further back, and a second one."""
-        with one_blas_thread():
-            changed = self._changed(shapes)
-            drawn = np.exp(1j * nodes[:, None] * self._by_point)
-            behind = self._power * np.exp(-1j * back * self._by_point)
-            changed *= drawn
-            found = (changed * behind) @ changed.conj().T - (drawn * behind) @ drawn.conj().T
-        return found.real
+def _bands(spec, roller, answer, points):
+    """Bands of a line's waves: their power, phase from point to point, and filters by an answer."""
+    first, amplitudes = wave_amplitudes(spec, roller)
+    unit = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    amplitudes = amplitudes[: max(int(answer.wavenumber[-1] / unit) - first + 1, 0)]
+    # So few waves in a band that they are in phase over the window.
+    band = max(1, int(_IN_PHASE / (unit * spec.spacing * points)))
+    edges = np.arange(0, amplitudes.size, band)
+    waves = first + np.arange(amplitudes.size)
+    powers = (amplitudes / spec.height_step) ** 2 / 2.0
+    power = np.add.reduceat(powers, edges)
+    middle = np.add.reduceat(powers * waves, edges) / power
+    numbers = np.log(answer.wavenumber)
+    filters = [np.interp(np.log(unit * middle), numbers, each) for each in answer.filters.T]
+    # The lines pass against the direction in which positions are counted, so conjugate.
+    filters = np.reshape(filters, (-1, middle.size)).conj()
+    return power, unit * spec.spacing * middle, filters
 
 
 class Waves:
@@ -314,8 +297,8 @@ class Waves:
     line : numpy.ndarray
         Heights, shape (N,), height steps.
     grid : LineGrid
-        Grid of the line. Waves shorter than those of its band, of the rounding to whole height
-        steps, are left out.
+        Grid of the line. Waves shorter than its band come from the rounding to whole height steps,
+        and are left out.
     """
 
     def __init__(self, line: Array, grid: LineGrid) -> None:
@@ -343,7 +326,7 @@ class Waves:
         kept = amplitude_ratio(wavelength / half_width, moes_load, moes_material)
         return np.rint(self._line(self._waves * kept, self._size)).astype(np.int32)
 
-    def filtered(self, answer: Answer) -> Array:
+    def filtered(self, answer: Answer | None) -> Array:
         """Filter the line by each function of an answer, on a coarser grid.
 
         The line is passed against the direction in which positions are counted, so its waves are
@@ -351,14 +334,16 @@ class Waves:
 
         Parameters
         ----------
-        answer : Answer
-            The answer of the oil.
+        answer : Answer or None
+            The answer of the oil; None if it does not answer.
 
         Returns
         -------
         numpy.ndarray
             As in `lube.kernels.shaped.Surface`.
         """
+        if answer is None:
+            return np.zeros((2, 0), np.float32)
         count = min(self._waves.size, int(answer.wavenumber[-1] / self._unit))
         wavenumber = np.log(self._unit * np.arange(1, count + 1))
         size = max(-(-self._size >> answer.shift(self._spacing)), 2 * count + 2)

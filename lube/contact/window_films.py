@@ -21,7 +21,8 @@ class WindowFilm:
     Attributes
     ----------
     film : numpy.ndarray
-        Film thickness, or gap outside the contact, at each point, shape (W,), height steps.
+        Film thickness, or gap outside the contact, at each point, shape (W,) or, of several
+        operating points with the same window, (F, W), height steps.
     before : int
         Points before that at the line of centres.
     """
@@ -40,31 +41,31 @@ class WindowFilm:
         Returns
         -------
         WindowFilm
-            The points from the first to the last with a lower film.
+            The points from the first to the last at which a film is lower.
 
         Raises
         ------
         DataError
-            If the film is lower still at an end, so that points may be missing.
+            If a film is lower still at an end, so that points may be missing.
         """
-        reached = np.flatnonzero(self.film < height)
-        if reached.size == 0:
-            reached = np.array([self.before])
-        first, last = reached[0], reached[-1]
-        if height > 0 and (first == 0 or last == self.film.size - 1) and self.film.size > 1:
+        films = np.atleast_2d(self.film)
+        reached = np.flatnonzero((films < height).any(axis=0))
+        first, last = reached[[0, -1]] if reached.size else (self.before, self.before)
+        if first == 0 or last == films.shape[1] - 1:
             raise DataError(
-                f"film profile: the gap at its end, {self.film[[0, -1]].min():.3g} height steps, "
-                f"is within reach of the lines, {height:.3g} height steps high; need a longer one"
+                f"film profile: the gap at its end, {films[:, [0, -1]].min():.3g} height steps, "
+                f"is within reach of the lines, {height:.3g} height steps high; need a longer "
+                "profile"
             )
-        return WindowFilm(self.film[first : last + 1], int(self.before - first))
+        return WindowFilm(self.film[..., first : last + 1], int(self.before - first))
 
 
 def shaped_films(film: xr.Dataset) -> xr.DataArray:
     """Films with the computed shape and the thickness of each film formula.
 
-    The shape is scaled so that its film is the formula's where the formula refers to: at the line
-    of centres, at the thinnest point, or on average over Hertz' contact. The gap of the dry
-    contact, which is zero there and most of the film far outside, is not scaled.
+    The shape is scaled so that its film is the formula's: at the line of centres, at the thinnest
+    point, or on average over Hertz' contact, whichever the formula gives. The gap of the dry
+    contact is not scaled. It is zero in the contact, and most of the film far outside.
 
     Parameters
     ----------
@@ -76,14 +77,16 @@ def shaped_films(film: xr.Dataset) -> xr.DataArray:
     xarray.DataArray
         Over the dimensions of ``film_thickness`` and film_position, m.
     """
-    profile, own = film["film_profile"], film_at_places(film)
+    profile = film["film_profile"]
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
-        shaped = scaled_film(profile, film["film_thickness"] / own, film)
+        gap = xr.apply_ufunc(hertz_gap, profile["film_position"])
+        gap = gap * film["contact_half_width"] ** 2 / film["reduced_radius"]
+        shaped = film["film_thickness"] / film_at_places(film) * (profile - gap) + gap
     return shaped.transpose(*film["film_thickness"].dims, "film_position")
 
 
 def film_at_places(film: xr.Dataset) -> xr.DataArray:
-    """Film with the computed shape, there where each film formula refers to.
+    """Find the film with the computed shape that each film formula gives.
 
     Parameters
     ----------
@@ -103,30 +106,7 @@ def film_at_places(film: xr.Dataset) -> xr.DataArray:
     return xr.where(place == "central", central, xr.where(place == "minimum", minimum, mean))
 
 
-def scaled_film(profile: xr.DataArray, scale: xr.DataArray, film: xr.Dataset) -> xr.DataArray:
-    """Scale a film with a shape, but not the gap of the dry contact that is part of it.
-
-    Parameters
-    ----------
-    profile : xarray.DataArray
-        Film over film_position and other dimensions, m.
-    scale : xarray.DataArray
-        What the film in the contact is multiplied by.
-    film : xarray.Dataset
-        With ``contact_half_width`` and ``reduced_radius``, m.
-
-    Returns
-    -------
-    xarray.DataArray
-        Over the dimensions of both, m.
-    """
-    position = profile["film_position"]
-    gap = position.copy(data=hertz_gap(position.values)).drop_attrs()
-    gap = gap * film["contact_half_width"] ** 2 / film["reduced_radius"]
-    return scale * (profile - gap) + gap
-
-
-def window_films(film: xr.Dataset, grid: LineGrid) -> list[WindowFilm | None]:
+def window_films(film: xr.Dataset, grid: LineGrid) -> Array:
     """Films with the computed shape, in whole height steps and points.
 
     Parameters
@@ -138,36 +118,35 @@ def window_films(film: xr.Dataset, grid: LineGrid) -> list[WindowFilm | None]:
 
     Returns
     -------
-    list of WindowFilm
-        Of each operating point, in the order of ``film_thickness``, as far as the profile reaches;
-        None where the film is not known.
+    numpy.ndarray of object
+        A `WindowFilm` of each operating point, in the order of ``film_thickness``, as far as the
+        profile reaches; None where the film is not known.
     """
-    shaped = shaped_films(film)
-    widths = film["contact_half_width"].broadcast_like(film["film_thickness"])
-    widths = widths.transpose(*film["film_thickness"].dims).values.ravel()
-    rows = shaped.expand_dims("one").stack(point=("one", *film["film_thickness"].dims))
-    rows = rows.transpose("point", ...)
-    return [_as_far(row, width, grid) for row, width in zip(rows, widths, strict=True)]
+    position = film["film_position"].values
 
+    def on_points(profile, half_width):
+        if not np.isfinite(profile).all():
+            return None
+        first, last = -position[[-1, 0]] * half_width / grid.spacing
+        points = np.arange(np.ceil(first), np.floor(last) + 1.0)
+        return WindowFilm(
+            film_on_points(position, profile, half_width, points, grid), int(-points[0])
+        )
 
-def _as_far(profile, half_width, grid):
-    """Film at all points of a line to which a profile reaches."""
-    if not np.isfinite(profile).all():
-        return None
-    ends = -profile["film_position"].values[[-1, 0]] * half_width / grid.spacing
-    points = np.arange(np.ceil(ends[0]), np.floor(ends[1]) + 1.0)
-    return WindowFilm(film_on_points(profile, half_width, points, grid), int(-points[0]))
+    shaped, width = shaped_films(film), film["contact_half_width"]
+    options = {"input_core_dims": [["film_position"], []], "output_dtypes": [object]}
+    return xr.apply_ufunc(on_points, shaped, width, vectorize=True, **options).values.ravel()
 
 
 def film_on_points(
-    profile: xr.DataArray, half_width: float, points: Array, grid: LineGrid
+    position: Array, profile: Array, half_width: float, points: Array, grid: LineGrid
 ) -> Array:
     """Film at points of a line, which moves with the oil: in a time step by a point at most.
 
     Parameters
     ----------
-    profile : xarray.DataArray
-        Film over film_position, m.
+    position, profile : numpy.ndarray
+        Positions over the half-width, rising, and the film there, m.
     half_width : float
         Half-width of the contact, m.
     points : numpy.ndarray, shape (n,)
@@ -180,6 +159,5 @@ def film_on_points(
     numpy.ndarray of int64, shape (n,)
         Film at the points, height steps, from a cubic spline through the profile.
     """
-    film = CubicSpline(profile["film_position"].values, profile.values)
-    position = -points * (grid.spacing / half_width)
-    return np.rint(film(position) / grid.height_step).astype(np.int64)
+    film = CubicSpline(position, profile)(-points * (grid.spacing / half_width))
+    return np.rint(film / grid.height_step).astype(np.int64)

@@ -10,21 +10,16 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.waves import Waves, answered_window, answers_at, longest_answers
-from lube.contact.window_films import window_films
-from lube.grid.discretise import (
-    Layer,
-    LineGrid,
-    layer_factor_of,
-    revolution,
-    speed_ratios,
-    whole_numbers,
-)
+from lube.contact.window_films import WindowFilm, window_films
+from lube.grid.discretise import LineGrid, layer_factor_of, revolution, speed_ratios, whole_numbers
 from lube.grid.gap import PLAIN, Gap
 from lube.kernels.motion import surface_position
 from lube.kernels.runs import BLOCK_SHIFT
 from lube.kernels.shaped import Window, as_drawn, means_of, node_count, phase_of, shaped_trace
 from lube.kernels.strips import strip_statistics, strip_trace
 from lube.kernels.whole_runs import whole_run_steps
+from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
 from lube.surfaces.rare_contact import RarePair, UnevenWindow, rare_contact, rare_contact_under
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair, Values
@@ -45,9 +40,9 @@ class ContactWindows:
         Grid of the lines.
     film : xarray.Dataset
         With ``film_thickness`` and ``contact_half_width``, m, over any dimensions, and
-        ``reduced_modulus``, Pa. With ``film_profile`` the film has the computed shape, else it is
-        flat and ends at the edges of the contact.
-    boundary_layer : Layer
+        ``reduced_modulus``, Pa; for a film with a shape also ``film_profile``, for lines that the
+        oil answers also its response.
+    boundary_layer : BoundaryLayer
         The boundary layer.
     gap : Gap, optional
         How film and roughness make up the gap; by default flat films, and lines as drawn.
@@ -56,11 +51,9 @@ class ContactWindows:
 
     Attributes
     ----------
-    shape : tuple of int
-        Lengths of the dimensions of ``film_thickness`` and of those that the half-width has alone;
-        the operating points are in their order.
     thickness : numpy.ndarray, shape (P,)
-        Film thickness, height steps, NaN where it is not known.
+        Film thickness, height steps, NaN where it is not known. The operating points are in the
+        order of the dimensions of ``film_thickness`` and of those that the half-width has alone.
     half_windows : numpy.ndarray, shape (P,)
         Points on either side of the contact's centre.
     unknown : numpy.ndarray of bool, shape (P,)
@@ -71,25 +64,24 @@ class ContactWindows:
         self,
         grid: LineGrid,
         film: xr.Dataset,
-        boundary_layer: Layer,
+        boundary_layer: BoundaryLayer,
         gap: Gap = PLAIN,
         weaker: Values = 1.0,
     ) -> None:
-        self._gap = gap
+        self._grid, self._gap, self._places = grid, gap, {}
         names = ["film_thickness", "contact_half_width"]
-        # Where more than film and width decides on contact, Moes' numbers tell the points apart.
+        # Where more than film and width decides on contact, Moes' numbers tell the points apart,
+        # and with slip the answer to the longest wave.
         names += ["moes_load", "moes_material"] if not gap.is_plain else []
-        spread = xr.broadcast(*(film[name] for name in names))
-        self.shape = spread[0].shape
-        if gap.is_answered:  # and with slip the answer to the longest wave
-            spread = xr.broadcast(*spread, *longest_answers(film))
+        longest = longest_answers(film) if gap.is_answered else []
+        spread = xr.broadcast(*(film[name] for name in names), *longest)
         thickness, half_width, *others = (each.values.ravel() for each in spread)
-        self._grid, self._contacts = grid, np.stack([half_width, *others], axis=1)
+        self._contacts = np.stack([half_width, *others], axis=1)
+        self._numbers = np.arange(thickness.size)
         self.thickness, self.unknown = thickness / grid.height_step, np.isnan(thickness)
         self._films, self.half_windows = whole_numbers(thickness, half_width, grid)
-        self._shapes = np.full(thickness.size, None)
         if gap.has_shape:
-            self._shapes[:] = window_films(film, grid)
+            self._shapes = window_films(film, grid)
             self.unknown |= [shape is None for shape in self._shapes]
         self._answers = np.full((thickness.size, 2), None)
         if gap.is_answered:
@@ -98,14 +90,12 @@ class ContactWindows:
             self.unknown |= [answer is None for answer in self._answers[:, 0]]
         factor = layer_factor_of(grid, film["reduced_modulus"].item(), boundary_layer)
         self._factors = factor * np.broadcast_to(weaker, thickness.shape)
-        self._numbers, self._places = np.arange(thickness.size), {}
 
     def __getitem__(self, points: Array | slice) -> "ContactWindows":
         some = copy.copy(self)
-        names = ("_films", "_shapes", "_answers", "_contacts", "_factors", "_numbers")
-        for name in (*names, "thickness", "half_windows", "unknown"):
-            setattr(some, name, getattr(self, name)[points])
-        some.shape = some.unknown.shape
+        for name, values in vars(self).items():
+            if isinstance(values, np.ndarray):
+                setattr(some, name, values[points])
         return some
 
     @property
@@ -115,12 +105,12 @@ class ContactWindows:
 
     @property
     def keys(self) -> list[tuple]:
-        """What decides on contact at each point: where it is the same, contact is the same."""
+        """Numbers that decide on contact at each point: contact is equal where they are equal."""
         columns = self._films, self.half_windows, self._factors, *self._contacts.T[1:]
         return list(zip(*(column.tolist() for column in columns), strict=True))
 
     def distinct(self) -> tuple["ContactWindows", Array]:
-        """Return each different point once, and the index among these of every point."""
+        """Select the points that differ, and find the index of every point among them."""
         numbers = {}
         inverse = np.array([numbers.setdefault(key, len(numbers)) for key in self.keys], int)
         return self[np.unique(inverse, return_index=True)[1]], inverse
@@ -147,6 +137,9 @@ class ContactWindows:
             boundary layer, broken points, and overlap (height steps); NaN where the film is not
             known.
         """
+        distinct, inverse = self.distinct()
+        if distinct.size < self.size:
+            return distinct.count(pair, slip, turns, begin)[inverse]
         ratios = speed_ratios(slip)
         steps = max(round(turns * revolution(pair, ratios)), 1)
         pair, counts = _begun(pair, ratios, begin), np.full((self.size, 4), np.nan)
@@ -155,8 +148,10 @@ class ContactWindows:
         if is_one and not self._gap.is_plain:
             pair = pair[0] + pair[1], np.zeros(1, np.int32)  # one line passes the contact
         if self._gap.is_uniform:
-            for lines, factor, here in self._under_flat_films(pair):
-                counts[here] = self._strips(lines, ratios, steps, here, factor)
+            for here, lines, films in self._under_flat_films(pair):
+                if lines[1].size == 1:
+                    lines = lines[0], np.zeros_like(lines[0])  # read faster than point after point
+                counts[here] = strip_statistics(lines, ratios, steps, *films) / steps
             counts[self.unknown] = np.nan
             return counts
         for points, surfaces, window in self._meetings(pair):
@@ -184,9 +179,8 @@ class ContactWindows:
         broken = np.zeros((self.size, steps), np.int32)
         pair = _begun(pair, ratios, begin)
         if self._gap.is_uniform:
-            for lines, factor, here in self._under_flat_films(pair):
-                films = self._films[here], self.half_windows[here]
-                broken[here] = strip_trace(lines, ratios, steps, *films, factor)
+            for here, lines, films in self._under_flat_films(pair):
+                broken[here] = strip_trace(lines, ratios, steps, *films)
             return broken
         for points, surfaces, window in self._meetings(pair):
             found = shaped_trace(surfaces, ratios, steps, steps, window, self._factors[points])
@@ -194,9 +188,9 @@ class ContactWindows:
         return broken
 
     def count_uncut(self, pair: Pair) -> Array:
-        """Count breakthroughs of whole segments, of which a part lies in the window.
+        """Count breakthroughs of whole segments, if any part of them lies in the window.
 
-        Elsewhere the edges of the window cut segments, and the parts inside are judged.
+        In `count` the edges of the window cut segments, and the parts inside are judged.
 
         Parameters
         ----------
@@ -212,9 +206,8 @@ class ContactWindows:
         """
         line = pair[0] + np.resize(pair[1], pair[0].size)
         shares = np.full(self.size, np.nan)
-        for (one,), factor, here in self._under_flat_films((line,)):
-            films = self._films[here], self.half_windows[here]
-            shares[here] = whole_run_steps(one, *films, factor) / line.size
+        for here, (one,), films in self._under_flat_films((line,)):
+            shares[here] = whole_run_steps(one, *films) / line.size
         return np.where(self.unknown, np.nan, shares)
 
     def sample(self, spec: LineSpecLike, seed: int, number: int) -> Pair:
@@ -238,14 +231,8 @@ class ContactWindows:
         known = np.flatnonzero(~self.unknown)
         places = [self._place(point, spec) for point in known]
         pair = RarePair(spec, seed, number, max((one.film.size for one in places), default=1))
-        waves = [Waves(line, self._grid) for line in pair.lines] if self._gap.is_answered else []
-        nothing = np.zeros((2, 0), np.float32)
-        filtered = (
-            [wave.filtered(one) for wave, one in zip(waves, self._answers[point], strict=True)]
-            if waves
-            else (nothing, nothing)
-            for point in known
-        )
+        waves = [Waves(line, self._grid) for line in pair.lines]
+        filtered = (_filtered(waves, self._answers[point]) for point in known)
         found = rare_contact_under(pair, places, filtered, self._factors[known])
         windows, runs = (np.full((len(each), self.size), np.nan) for each in found)
         windows[:, known], runs[:, known] = found
@@ -253,14 +240,13 @@ class ContactWindows:
 
     def _place(self, point, spec):
         """Contact window of a point, in which lines are sampled."""
-        if not self._gap.is_answered:
-            return UnevenWindow(self._shapes[point].film.astype(float))
         key = self._numbers[point]
         if key not in self._places:
-            shape = self._shapes[point]
-            film, before = (shape.film, shape.before) if shape else self._reached([point], 0)
-            film = np.ravel(film).astype(float)
-            self._places[key] = answered_window(spec, film, before, tuple(self._answers[point]))
+            window = self._window([point])
+            place = UnevenWindow(window.film[0].astype(float))
+            if self._gap.is_answered:
+                place = answered_window(spec, place.film, window.before, self._answers[point])
+            self._places[key] = place
         return self._places[key]
 
     def _in_contact(self, pair):
@@ -275,69 +261,65 @@ class ContactWindows:
             yield lines, np.flatnonzero(inverse.ravel() == number)
 
     def _under_flat_films(self, pair):
-        """Yield lines, a layer's factor, and the points at which both are the same."""
-        for lines, here in self._in_contact(pair):
-            for factor in np.unique(self._factors[here]):
-                yield lines, factor, here[self._factors[here] == factor]
-
-    def _strips(self, lines, ratios, steps, points, factor):
-        films = np.stack([self._films[points], self.half_windows[points]])
-        (films, half_windows), inverse = np.unique(films, axis=1, return_inverse=True)
-        if lines[1].size == 1:
-            lines = lines[0], np.zeros_like(lines[0])  # read faster than point after point
-        counts = strip_statistics(lines, ratios, steps, films, half_windows, factor)
-        return (counts / steps)[inverse.ravel()]
+        """Yield points of the same lines and layer, the lines, and films, half-windows, factor."""
+        for lines, some in self._in_contact(pair):
+            for factor in np.unique(self._factors[some]):
+                here = some[self._factors[some] == factor]
+                yield here, lines, (self._films[here], self.half_windows[here], factor)
 
     def _meetings(self, pair):
         """Yield known points of one window, with the surfaces and the window that meet there."""
         for lines, here in self._in_contact(pair):
             drawn = [as_drawn(line) for line in lines]
-            highest = sum(line.max() for line in lines)
-            known = here[~self.unknown[here]]
-            if not self._gap.is_answered:
-                for point in known:
-                    films, before = self._reached([point], highest)
-                    yield [point], tuple(drawn), Window(films, before, BLOCK_SHIFT)
-                continue
-            waves = [Waves(line, self._grid) for line in lines]
+            waves = [Waves(line, self._grid) for line in lines] if self._gap.is_answered else []
             alike = {}
-            for point in known:
-                alike.setdefault(tuple(map(id, self._answers[point])), []).append(point)
+            for point in here[~self.unknown[here]]:
+                key = tuple(map(id, self._answers[point])) if waves else point
+                alike.setdefault(key, []).append(point)
             for points in alike.values():
-                yield points, *self._answered(points, drawn, waves, highest)
+                yield points, *self._meeting(points, drawn, waves)
 
-    def _answered(self, points, drawn, waves, highest):
-        """Surfaces that the oil answers, and the window of points at which it answers alike."""
-        answers = self._answers[points[0]]
-        filtered = [wave.filtered(one) for wave, one in zip(waves, answers, strict=True)]
+    def _meeting(self, points, drawn, waves):
+        """Both surfaces, with the answer of the oil if it answers, and the window of the points."""
+        answers = self._answers[points[0]] if waves else []
+        filtered = _filtered(waves, answers)
+        highest = sum(surface.line.max() for surface in drawn)
         for answer, lines in zip(answers, filtered, strict=True):
             highest += np.sum(np.abs(answer.shapes) * np.abs(lines).max(axis=0), axis=1).max()
-        shift = answers[0].shift(self._grid.spacing)
-        window = Window(*self._reached(points, highest), shift)
+        shift = answers[0].shift(self._grid.spacing) if waves else BLOCK_SHIFT
+        reached = self._window(points)
+        if self._gap.has_shape:
+            reached = reached.below(highest)
+        window = Window(reached.film, reached.before, shift)
         nodes = (np.arange(node_count(window)) << shift) - phase_of(window)
-        position = (window.before - nodes) * (self._grid.spacing / answers[0].half_width)
-        both = zip(drawn, filtered, answers, strict=True)
-        return tuple(
-            surface._replace(filtered=lines, shapes=answer.at(position)) if lines.any() else surface
-            for surface, lines, answer in both
-        ), window
+        surfaces = list(drawn)
+        for roller, (lines, answer) in enumerate(zip(filtered, answers, strict=True)):
+            if lines.any():
+                shapes = answer.at(window.before - nodes, self._grid.spacing)
+                surfaces[roller] = drawn[roller]._replace(filtered=lines, shapes=shapes)
+        return tuple(surfaces), window
 
-    def _reached(self, points, highest):
-        """Films over the window of some points as far as a height reaches, and points before."""
-        if not self._gap.has_shape:
-            half_window = self.half_windows[points[0]]
-            return np.repeat(self._films[points, None], 2 * half_window + 1, axis=1), half_window
-        shapes = self._shapes[points]
-        reached = [shape.below(highest) for shape in shapes]
-        before = max(one.before for one in reached)
-        behind = max(one.film.size - one.before for one in reached)
-        part = [shape.film[shape.before - before : shape.before + behind] for shape in shapes]
-        return np.array(part), before
+    def _window(self, points):
+        """Films of some points that have the same window."""
+        if self._gap.has_shape:
+            shapes = self._shapes[points]
+            return WindowFilm(np.stack([one.film for one in shapes]), shapes[0].before)
+        half_window = self.half_windows[points[0]]
+        films = np.repeat(self._films[points, None], 2 * half_window + 1, axis=1)
+        return WindowFilm(films, half_window)
+
+
+def study_windows(study: Study, film: xr.Dataset, weaker: Values = 1.0) -> ContactWindows:
+    """Contact windows of the films of a study, such as those at the records."""
+    return ContactWindows(study.line_spec, film, study.boundary_layer, study.gap, weaker)
 
 
 def _begun(pair, ratios, begin):
-    """Lines as they lie at a time step."""
-    if not begin:
-        return pair
+    """Lines of a pair, turned to their position at a time step."""
     positions = (surface_position(begin, ratio) for ratio in ratios)
     return tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))
+
+
+def _filtered(waves, answers):
+    """Two lines as the oil's answers filter them."""
+    return [wave.filtered(answer) for wave, answer in zip(waves, answers, strict=True)]

@@ -3,7 +3,7 @@
 Each formula is a plain function of the groups W, U and G of `lube.physics.dimensionless` (numbers,
 or arrays that broadcast) and returns the film thickness over R*. The row of `FORMULAS` stands above
 it: to add a formula, write the function and its row. The last row is no formula but the solution of
-Reynolds' equation, which depends on the oil's viscosity and on E' besides.
+Reynolds' equation, which `lube.grid.films` asks for.
 """
 
 from collections.abc import Callable
@@ -11,11 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lube.ehl.line_contact import profiles_of
 from lube.errors import StudyError, right_one
 from lube.physics.dimensionless import moes_numbers
 from lube.physics.regimes import moes_asymptotes
-from lube.physics.starvation import starvation_factor
 from lube.types import Values
 
 TOLERANCE = 0.15
@@ -28,9 +26,9 @@ than that is as accurate as the model needs.
 The validity ranges in the rows below were determined in this study. Each is the largest box in M
 and L in which the formula stayed within the tolerance of numerical solutions of the Reynolds
 equation (Roelands viscosity, Dowson-Higginson density, fully flooded), at M 0.1 to 100 and L 5 to
-12, with the paper's oil at 40, 60 and 80 degC: ``python tests/film_ranges.py``. Each is
-compared with the computed film of its place: at the line of centres, the least, or the mean of the
-Hertzian zone.
+12, with the paper's oil at 40, 60 and 80 degC: ``python tests/film_ranges.py``. Each formula is
+compared with the computed film at the line of centres, the least one, or the mean one of the
+Hertzian zone, whichever it gives.
 """
 
 
@@ -44,69 +42,29 @@ class Formula:
         Label along the dimension ``film_formula``.
     thickness : str
         Which film thickness it gives: ``central``, ``minimum`` or ``mean``.
-    evaluate : callable
-        Film thickness over R* of (load, speed, material), that is of W, U and G; the computed
-        one of (load, speed, material, viscosity, film_modulus, meniscus).
+    evaluate : callable or None
+        Film thickness over R* of (load, speed, material), that is of W, U and G; None for the
+        solution of Reynolds' equation.
     source : str
         Publication.
     remark : str
         Its error against the numerical solution in its range of validity, and other remarks.
     moes_load, moes_material : tuple of float
         Lowest and highest M and L of that range, both included; by default all L computed.
-    depends_on_oil : bool
-        Whether it depends on the viscosity and on E' besides.
     """
 
     name: str
     thickness: str
-    evaluate: Callable[..., Values]
+    evaluate: Callable[..., Values] | None
     source: str
     remark: str
     moes_load: tuple[float, float]
     moes_material: tuple[float, float] = (5.0, 12.0)
-    depends_on_oil: bool = False
 
-    def film(
-        self,
-        load: Values,
-        speed: Values,
-        material: Values,
-        viscosity: Values,
-        film_modulus: Values,
-        meniscus: float | None = None,
-    ) -> Values:
-        """Film thickness over R*.
-
-        Parameters
-        ----------
-        load, speed, material : float or numpy.ndarray
-            W, U and G.
-        viscosity : float or numpy.ndarray
-            Dynamic viscosity at ambient pressure, Pa s.
-        film_modulus : float
-            E', Pa.
-        meniscus : float, optional
-            Distance over R*, from the line of centres, at which the oil begins; by default far
-            away. A formula's film is reduced by `starvation_factor`, the computed one solved for.
-
-        Returns
-        -------
-        float or numpy.ndarray
-            The film; NaN where a computed one did not converge.
-
-        Examples
-        --------
-        >>> film = formula("grubin").film(1.39e-5, 2.52e-11, 3696.0, 0.28, 2.31e11)
-        >>> film == grubin(1.39e-5, 2.52e-11, 3696.0)
-        True
-        """
-        if self.depends_on_oil:
-            return self.evaluate(load, speed, material, viscosity, film_modulus, meniscus)
-        film = self.evaluate(load, speed, material)
-        if meniscus is None:
-            return film
-        half_width = np.sqrt(8.0 * load / np.pi)
-        return film * starvation_factor(film / half_width**2, meniscus / half_width)
+    @property
+    def depends_on_oil(self) -> bool:
+        """Whether the film is solved for; then it depends on the viscosity and on E' too."""
+        return self.evaluate is None
 
     def holds(self, moes_load: Values, moes_material: Values) -> bool | np.ndarray:
         """Check whether points lie within the formula's range of validity.
@@ -171,10 +129,11 @@ def formula(name: str) -> Formula:
     return FORMULAS[name]
 
 
-def _register(name, thickness, source, remark, **limits):
-    """Enter the function below into the registry."""
+def _register(thickness, source, remark, **limits):
+    """Enter the function below into the registry, by its name with hyphens."""
 
     def enter(evaluate):
+        name = evaluate.__name__.replace("_", "-")
         FORMULAS[name] = Formula(name, thickness, evaluate, source, remark, **limits)
         return evaluate
 
@@ -182,7 +141,6 @@ def _register(name, thickness, source, remark, **limits):
 
 
 @_register(
-    "paper",
     "central",
     "the paper, Eq. 3",
     "-7 to +13 %; 2.4 % above pan-hamrock: two digits are transposed in print",
@@ -201,7 +159,7 @@ def paper(load: Values, speed: Values, material: Values) -> Values:
     return 2.992 * material**0.470 * speed**0.692 * load**-0.166
 
 
-@_register("pan-hamrock", "central", _PAN_HAMROCK, "-9 to +15 %", moes_load=(1.3, 100.0))
+@_register("central", _PAN_HAMROCK, "-9 to +15 %", moes_load=(1.3, 100.0))
 def pan_hamrock(load: Values, speed: Values, material: Values) -> Values:
     r"""Central film of Pan and Hamrock, the source of the paper's Eq. 3.
 
@@ -220,7 +178,7 @@ def pan_hamrock(load: Values, speed: Values, material: Values) -> Values:
     return 2.922 * material**0.470 * speed**0.692 * load**-0.166
 
 
-@_register("pan-hamrock-minimum", "minimum", _PAN_HAMROCK, "-13 to +3 %", moes_load=(1.0, 100.0))
+@_register("minimum", _PAN_HAMROCK, "-13 to +3 %", moes_load=(1.0, 100.0))
 def pan_hamrock_minimum(load: Values, speed: Values, material: Values) -> Values:
     r"""Minimum film of Pan and Hamrock, at the outlet constriction; source as in `pan_hamrock`.
 
@@ -235,7 +193,6 @@ def pan_hamrock_minimum(load: Values, speed: Values, material: Values) -> Values
 
 
 @_register(
-    "dowson-toyoda",
     "central",
     "Dowson & Toyoda, Proc. 5th Leeds-Lyon Symp. Tribol. (1978)",
     "-9 to +14 %; up to 37 % above at higher M and L",
@@ -261,7 +218,6 @@ def dowson_toyoda(load: Values, speed: Values, material: Values) -> Values:
 
 
 @_register(
-    "dowson-higginson-minimum",
     "minimum",
     "Dowson & Higginson, Elasto-hydrodynamic Lubrication (1966); Dowson (1968)",
     "-12 to +12 %",
@@ -286,7 +242,6 @@ def dowson_higginson_minimum(load: Values, speed: Values, material: Values) -> V
 
 
 @_register(
-    "grubin",
     "mean",
     "Grubin, Central Sci. Res. Inst. Technol. Mech. Eng., Book 30 (1949)",
     "-14 to +14 %; up to 31 % above at higher M and L",
@@ -307,7 +262,6 @@ def grubin(load: Values, speed: Values, material: Values) -> Values:
 
 
 @_register(
-    "moes",
     "central",
     "Moes, Wear 159 (1992)",
     "+6 to +15 %; above the computed film everywhere, by 6 to 36 %: it gives the film of a "
@@ -343,36 +297,12 @@ def moes(load: Values, speed: Values, material: Values) -> Values:
     return film * np.sqrt(2.0 * speed)
 
 
-@_register(
+FORMULAS["computed"] = Formula(
     "computed",
     "central",
+    None,
     "Reynolds' equation, solved by `lube.ehl.line_contact`",
     "a mesh twice as fine changes the film by less than 0.1 %",
     moes_load=(0.003, 100.0),
     moes_material=(0.05, 15.0),
-    depends_on_oil=True,
 )
-def computed(
-    load: Values,
-    speed: Values,
-    material: Values,
-    viscosity: Values,
-    film_modulus: Values,
-    meniscus: float | None = None,
-) -> Values:
-    """Central film from Reynolds' equation, with Roelands' viscosity: `lube.ehl.line_contact`.
-
-    Rounded to six digits, so that the last bits of a processor do not matter. NaN, and a warning in
-    the log, where the solution did not converge.
-
-    Examples
-    --------
-    >>> f"{computed(1.39e-5, 2.52e-11, 3696.0, 0.28, 2.31e11):.3g}"
-    '4.03e-05'
-    """
-    profiles = profiles_of(load, speed, material, viscosity, film_modulus, meniscus)
-    return np.vectorize(_central_film, otypes=[float])(profiles)[()]
-
-
-def _central_film(profile):
-    return float(f"{profile.central_film:.6g}") if profile else np.nan

@@ -9,8 +9,8 @@ import numpy as np
 from threadpoolctl import ThreadpoolController
 
 from lube.ehl.deflection import deflection_matrix
-from lube.ehl.mesh import first_mesh, fitted_mesh, inlet_end
-from lube.ehl.reynolds import HERTZ_LOAD, DiscreteContact
+from lube.ehl.mesh import breadth, first_mesh, fitted_mesh, inlet_end
+from lube.ehl.reynolds import HERTZ_LOAD, DiscreteContact, Flow
 from lube.errors import LubeError, RangeError
 from lube.physics.dimensionless import moes_numbers
 from lube.physics.pressure_laws import PRESSURE_LAWS, ROELANDS_VISCOSITY, dowson_higginson_density
@@ -26,7 +26,7 @@ Ten times less thins the film by up to 0.2 %."""
 TOLERANCE = 1e-9
 """Largest defect of the mass flux, over that at the centre, and of the load, over the load."""
 _HERTZ_DEFLECTION = 0.25 + 0.5 * np.log(2.0)
-"""Of the dry contact at the line of centres, scaled."""
+"""Scaled deflection of the dry contact at the line of centres."""
 _FITTINGS = 2
 _MOST_STEPS = 400
 _MOST_NODES = 1000
@@ -116,8 +116,8 @@ class FilmProfile:
         Pressures over Hertz' maximum pressure, linear between the nodes.
     offset : float
         Gap less the undeformed parabola and the deflection, scaled.
-    flux, pressure_flow : numpy.ndarray, shape (n - 1,)
-        Scaled mass flux between the nodes, and its part that the pressure drives.
+    flow : Flow
+        Scaled mass flux between the nodes.
     steps : int
         Steps of Newton's method on all meshes.
     """
@@ -126,8 +126,7 @@ class FilmProfile:
     nodes: Array
     pressure: Array
     offset: float
-    flux: Array
-    pressure_flow: Array
+    flow: Flow
     steps: int
 
     def scaled_gap(self, position: Array) -> Array:
@@ -148,10 +147,10 @@ class FilmProfile:
         """Positions midway between the nodes, where the equation holds."""
         return 0.5 * (self.nodes[1:] + self.nodes[:-1])
 
-    @cached_property
+    @property
     def middle_gap(self) -> Array:
         """Scaled gap midway between the nodes."""
-        return self.scaled_gap(self.middle)
+        return self.flow.gap
 
     @cached_property
     def end(self) -> int:
@@ -168,22 +167,22 @@ class FilmProfile:
         from scipy.optimize import brentq  # slow to import
 
         def beyond(position):
-            return self.scaled_gap(np.array([position])).item() - self.flux[0]
+            return self.scaled_gap(np.array([position])).item() - self.flow.flux[0]
 
         thinnest = self.middle[np.argmin(self.middle_gap)]
         return float(brentq(beyond, thinnest, self.nodes[-1]))
 
     @cached_property
     def central_gap(self) -> float:
-        """Scaled gap at the line of centres, linear between the two nearest places."""
+        """Scaled gap at the line of centres, linear between the two nearest positions."""
         return float(np.interp(0.0, self.middle, self.middle_gap))
 
     @cached_property
     def central_film(self) -> float:
         """Film over R* at the line of centres.
 
-        By the cubic through the four nearest places midway between nodes, where the equation holds:
-        at a node the pressure's kink dents a thin film.
+        It is that of the cubic through the four nearest positions midway between nodes, where the
+        equation holds: at a node the pressure's kink dents a thin film.
         """
         first = int(np.searchsorted(self.middle, 0.0)) - 2
         near = self.middle[first : first + 4]
@@ -206,8 +205,8 @@ class FilmProfile:
     @cached_property
     def mass_flux_defect(self) -> float:
         """Largest difference of the mass flux from that at the centre, over it."""
-        central = np.interp(0.0, self.middle, self.flux)
-        return float(np.abs(self.flux[: self.end] / central - 1.0).max())
+        central = np.interp(0.0, self.middle, self.flow.flux)
+        return float(np.abs(self.flow.flux[: self.end] / central - 1.0).max())
 
     @cached_property
     def load_defect(self) -> float:
@@ -267,9 +266,33 @@ def solve(
     >>> f"{profile.central_film * 25e3:.2f} um, least {profile.minimum_film * 25e3:.2f} um"
     '1.02 um, least 0.85 um'
     """
-    _check(contact, meniscus)
-    with _quiet(), one_blas_thread():
-        return _solve(contact, meniscus, flooded, fineness)
+    if contact.law == "roelands" and not contact.viscosity > ROELANDS_VISCOSITY:
+        raise RangeError(
+            f"viscosity: got {contact.viscosity:.3g} Pa s, need more than "
+            f"{ROELANDS_VISCOSITY:.3g} Pa s for Roelands' law"
+        )
+    if meniscus is not None and not meniscus > 1.0:
+        raise RangeError(
+            f"meniscus: got one {meniscus:g} half-widths before the line of centres, inside the "
+            "contact, need more than 1"
+        )
+
+    def inlet(offset, film):
+        return inlet_end(offset, flooded * film) if meniscus is None else -meniscus
+
+    film = contact.film_guess
+    nodes = first_mesh(film, inlet(film - _HERTZ_DEFLECTION, film))
+    pressure = np.sqrt(np.maximum(1.0 - (nodes / breadth(film)) ** 2, 0.0))
+    profile = _settle(contact, nodes, pressure, film, 0)
+    for _ in range(_FITTINGS):
+        nodes = fitted_mesh(profile, inlet(profile.offset, profile.central_gap), fineness)
+        if nodes.size > _MOST_NODES * max(fineness, 1.0):
+            raise ConvergenceError(
+                f"{contact.name} needs {nodes.size} nodes, the most are {_MOST_NODES}: the spike "
+                "of pressure is too sharp"
+            )
+        profile = on_nodes(profile, nodes)
+    return profile
 
 
 def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
@@ -280,7 +303,7 @@ def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
     profile : FilmProfile
         The film.
     nodes : numpy.ndarray, shape (n,)
-        Positions over the half-width, rising, with the ends of the film's own.
+        Positions over the half-width, rising, with the same ends as the film's nodes.
 
     Returns
     -------
@@ -293,17 +316,11 @@ def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
         With the state of the iteration.
     """
     pressure = np.interp(nodes, profile.nodes, profile.pressure)
-    with _quiet(), one_blas_thread():
-        return _settle(profile.contact, nodes, pressure, profile.central_gap, profile.steps)
-
-
-def _quiet():
-    # A step that overflows is too large, and repeated.
-    return np.errstate(over="ignore", invalid="ignore", divide="ignore")
+    return _settle(profile.contact, nodes, pressure, profile.central_gap, profile.steps)
 
 
 def one_blas_thread() -> AbstractContextManager:
-    """Have linear algebra done in one thread: on these small matrices, more only slow it down."""
+    """Limit linear algebra to one thread: more threads slow it down on these small matrices."""
     return _libraries().limit(limits=1, user_api="blas")
 
 
@@ -312,34 +329,13 @@ def _libraries():
     return ThreadpoolController()
 
 
-def _solve(contact, meniscus, flooded, fineness):
-    film = contact.film_guess
-    end = inlet_end(film - _HERTZ_DEFLECTION, flooded * film) if meniscus is None else -meniscus
-    nodes = first_mesh(film, end)
-    breadth = np.sqrt(1.0 + 2.0 * film)
-    pressure = np.sqrt(np.maximum(1.0 - (nodes / breadth) ** 2, 0.0))
-    profile = _settle(contact, nodes, pressure, film, 0)
-    for _ in range(_FITTINGS):
-        nodes, film = _fit(profile, meniscus, flooded, fineness)
-        pressure = np.interp(nodes, profile.nodes, profile.pressure)
-        profile = _settle(contact, nodes, pressure, film, profile.steps)
-    return profile
-
-
-def profiles_of(
-    load: Array,
-    speed: Array,
-    material: Array,
-    viscosity: Array,
-    film_modulus: Array,
-    meniscus: float | None = None,
-) -> Array:
+def profiles_of(*groups: Values, meniscus: float | None = None) -> Array:
     """Solve for the films of many contacts.
 
     Parameters
     ----------
-    load, speed, material, viscosity, film_modulus : numpy.ndarray
-        As of `LineContact`; they broadcast.
+    *groups : float or numpy.ndarray
+        The arguments of `LineContact`; they broadcast.
     meniscus : float, optional
         Distance over R*, from the line of centres, at which the oil begins; by default far away.
 
@@ -349,80 +345,48 @@ def profiles_of(
         A `FilmProfile` each, None where a group is NaN, or the film did not converge; the log names
         the latter.
     """
-    solved = np.vectorize(_solved, otypes=[object])
-    return solved(load, speed, material, viscosity, film_modulus, meniscus)
 
+    def solved(*numbers):
+        if np.isnan(numbers).any():
+            return None
+        contact = LineContact(*map(float, numbers))
+        try:
+            return solve(contact, meniscus and meniscus / contact.half_width)
+        except ConvergenceError as error:
+            log.warning("%s", error)
+            return None
 
-def _solved(load, speed, material, viscosity, film_modulus, meniscus):
-    groups = load, speed, material, viscosity, film_modulus
-    if np.isnan(groups).any():
-        return None
-    contact = LineContact(*map(float, groups))
-    try:
-        return solve(contact, meniscus and meniscus / contact.half_width)
-    except ConvergenceError as error:
-        log.warning("%s", error)
-        return None
-
-
-def _check(contact, meniscus):
-    if contact.law == "roelands" and not contact.viscosity > ROELANDS_VISCOSITY:
-        raise RangeError(
-            f"viscosity: got {contact.viscosity:.3g} Pa s, need more than "
-            f"{ROELANDS_VISCOSITY:.3g} Pa s for Roelands' law"
-        )
-    if meniscus is not None and not meniscus > 1.0:
-        raise RangeError(
-            f"meniscus: got one {meniscus:g} half-widths before the line of centres, inside the "
-            "contact, need more than 1"
-        )
-
-
-def _fit(profile, meniscus, flooded, fineness):
-    """Nodes fitted to a solution, and its central film."""
-    contact = profile.contact
-    gap, film = profile.middle_gap, profile.central_gap
-    end = inlet_end(profile.offset, flooded * film) if meniscus is None else -meniscus
-    share = np.abs(profile.pressure_flow / profile.flux)
-    profiles = profile.pressure, contact.log_viscosity(profile.pressure)[0], gap, share
-    ends = end, profile.nodes[profile.end]
-    nodes = fitted_mesh(profile.nodes, profiles, film, ends, fineness)
-    if nodes.size > _MOST_NODES * max(fineness, 1.0):
-        raise ConvergenceError(
-            f"{contact.name} needs {nodes.size} nodes, the most are {_MOST_NODES}: the spike of "
-            "pressure is too sharp"
-        )
-    return nodes, film
+    return np.vectorize(solved, otypes=[object])(*groups)
 
 
 def _settle(contact, nodes, pressure, film, steps):
     """Let the film settle on a mesh, from a guess of the pressure and the central film."""
-    discrete = DiscreteContact(contact, nodes)
-    pressure = pressure * (HERTZ_LOAD / (discrete.weight @ pressure))
-    gap = discrete.gap(pressure, 0.0)
-    # Lifted where the guess would let the rollers touch.
-    offset = max(film - np.interp(0.0, discrete.middle, gap), 0.3 * film - gap.min())
-    time, last = (_FIRST_SETTLING_TIME if steps == 0 else np.inf), steps + _MOST_STEPS
-    flow = discrete.flow(pressure, offset)
-    profile = FilmProfile(contact, nodes, pressure, offset, flow.flux, flow.pressure_flow, steps)
-    while steps < last and time > _SHORTEST_SETTLING_TIME:
-        steps += 1
-        change, shift = discrete.newton_step(pressure, offset, flow, time)
-        widening = shift + discrete.deflection @ change
-        # Not the other way round: a change that is not a number is too large as well.
-        small = np.abs(change).max() <= _LARGEST_CHANGE
-        if not (small and np.all(flow.gap + widening >= 0.3 * flow.gap)):
-            time = min(time, _LONGEST_SETTLING_TIME) / 6.0
-            continue
-        pressure, offset = np.maximum(pressure + change, 0.0), offset + shift
+    # A step that overflows is too large, and repeated.
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"), one_blas_thread():
+        discrete = DiscreteContact(contact, nodes)
+        pressure = pressure * (HERTZ_LOAD / (discrete.weight @ pressure))
+        gap = discrete.gap(pressure, 0.0)
+        # Lifted where the guess would let the rollers touch.
+        offset = max(film - np.interp(0.0, discrete.middle, gap), 0.3 * film - gap.min())
+        time, last = (_FIRST_SETTLING_TIME if steps == 0 else np.inf), steps + _MOST_STEPS
         flow = discrete.flow(pressure, offset)
-        profile = FilmProfile(
-            contact, nodes, pressure, offset, flow.flux, flow.pressure_flow, steps
-        )
-        defect = max(profile.mass_flux_defect, profile.load_defect)
-        if defect < TOLERANCE:
-            return profile
-        time = np.inf if defect < 1e-4 else 4.0 * time
+        profile = FilmProfile(contact, nodes, pressure, offset, flow, steps)
+        while steps < last and time > _SHORTEST_SETTLING_TIME:
+            steps += 1
+            change, shift = discrete.newton_step(pressure, offset, flow, time)
+            widening = shift + discrete.deflection @ change
+            # Not the other way round: a change that is not a number is too large as well.
+            small = np.abs(change).max() <= _LARGEST_CHANGE
+            if not (small and np.all(flow.gap + widening >= 0.3 * flow.gap)):
+                time = min(time, _LONGEST_SETTLING_TIME) / 6.0
+                continue
+            pressure, offset = np.maximum(pressure + change, 0.0), offset + shift
+            flow = discrete.flow(pressure, offset)
+            profile = FilmProfile(contact, nodes, pressure, offset, flow, steps)
+            defect = max(profile.mass_flux_defect, profile.load_defect)
+            if defect < TOLERANCE:
+                return profile
+            time = np.inf if defect < 1e-4 else 4.0 * time
     raise ConvergenceError(
         f"{contact.name} did not converge: mass flux off by {profile.mass_flux_defect:.1g}, "
         f"load by {profile.load_defect:.1g} after {steps} steps"

@@ -6,19 +6,19 @@ from lube.types import Array
 
 _FIRST_SIZE, _FIRST_GROWTH = 0.05, 1.12
 _LARGEST = 0.1
-"""Largest cell, over the contact's width by `_breadth`, and over the distance from it."""
+"""Largest cell, over the contact's width by `breadth`, and over the distance from it."""
 _GROWTH = 0.1
 """Largest growth of the cell size per length."""
 _PRESSURE_STEP, _FILM_STEP, _VISCOSITY_STEP = 0.03, 0.08, 0.35
 """Largest steps of P, ln H and ln viscosity from node to node."""
 _MARGIN = 0.3
-"""Length of the mesh beyond the end of the film, over the contact's width by `_breadth`."""
+"""Length of the mesh beyond the end of the film, over the contact's width by `breadth`."""
 _SAMPLES = 8
 """Samples of the cell size per cell of the former mesh."""
 
 
-def _breadth(film):
-    """Half-width of the pressure: Hertz' 1 if the film is thin, by the film if it is thick."""
+def breadth(film: float) -> float:
+    """Half-width of the pressure: Hertz' 1 if the central film H is thin, more if it is thick."""
     return np.sqrt(1.0 + 2.0 * film)
 
 
@@ -71,33 +71,22 @@ def first_mesh(film: float, end: float) -> Array:
     >>> nodes.size, float(nodes[0])
     (99, -50.0)
     """
-    core = np.arange(-1.6, 1.3, _FIRST_SIZE) * _breadth(film)
+    core = np.arange(-1.6, 1.3, _FIRST_SIZE) * breadth(film)
     steps = (core[1] - core[0]) * _FIRST_GROWTH ** np.arange(1, 200)
     inlet = core[0] - np.cumsum(steps)
     inlet = inlet[inlet > end + 0.5 * steps]
     return np.concatenate([[end], inlet[::-1], core[core > end + 0.5 * _FIRST_SIZE]])
 
 
-def fitted_mesh(
-    nodes: Array,
-    profiles: tuple[Array, Array, Array, Array],
-    film: float,
-    ends: tuple[float, float],
-    fineness: float,
-) -> Array:
+def fitted_mesh(profile, end: float, fineness: float) -> Array:
     """Nodes on which pressure, film and viscosity change little from one to the next.
 
     Parameters
     ----------
-    nodes : numpy.ndarray, shape (n,)
-        Positions X of the nodes of the solution.
-    profiles : tuple of numpy.ndarray
-        The solution: P and ln viscosity at the nodes, shape (n,); H, and the share of the
-        pressure flow in the mass flux, between them, shape (n - 1,).
-    film : float
-        Central film H.
-    ends : tuple of float
-        Positions of the inlet's end and of the end of the film in the outlet.
+    profile : lube.ehl.line_contact.FilmProfile
+        A solution on other nodes.
+    end : float
+        Position X < 0 at which the oil begins.
     fineness : float
         The number of nodes grows in proportion.
 
@@ -106,23 +95,23 @@ def fitted_mesh(
     numpy.ndarray
         Positions X of the new nodes, rising.
     """
-    pressure, logarithm, gap, pressure_flow = profiles
-    pressure, logarithm = _smooth(pressure), _smooth(logarithm)
-    breadth, step = _breadth(film), np.diff(nodes)
-    middle = 0.5 * (nodes[1:] + nodes[:-1])
+    nodes, middle, step = profile.nodes, profile.middle, np.diff(profile.nodes)
+    width = breadth(profile.central_gap)
+    logarithm, _ = profile.contact.log_viscosity(profile.pressure)
+    driven = np.abs(profile.flow.pressure_flow / profile.flow.flux)
     density = np.max(
         [
-            np.abs(np.diff(pressure)) / step * breadth / _PRESSURE_STEP,
-            np.abs(np.gradient(np.log(gap), middle)) / _FILM_STEP,
+            np.abs(np.diff(_smooth(profile.pressure))) / step * width / _PRESSURE_STEP,
+            np.abs(np.gradient(np.log(profile.middle_gap), middle)) / _FILM_STEP,
             # Where no oil is driven by pressure, its viscosity does not matter.
-            (pressure_flow > 1e-3) * np.abs(np.diff(logarithm)) / step / _VISCOSITY_STEP,
-            1.0 / (_LARGEST * np.hypot(breadth, middle)),
+            (driven > 1e-3) * np.abs(np.diff(_smooth(logarithm))) / step / _VISCOSITY_STEP,
+            1.0 / (_LARGEST * np.hypot(width, middle)),
         ],
         axis=0,
     )
-    low, high = ends[0], ends[1] + _MARGIN * breadth
+    high = nodes[profile.end] + _MARGIN * width
     samples = np.interp(np.arange(0, nodes.size, 1 / _SAMPLES), np.arange(nodes.size), nodes)
-    samples = np.concatenate([[low], samples[(samples > low) & (samples < high)], [high]])
+    samples = np.concatenate([[end], samples[(samples > end) & (samples < high)], [high]])
     size = (1.0 / density + _GROWTH * np.abs(samples[:, None] - middle)).min(axis=1) / fineness
     cells = 2.0 * np.diff(samples) / (size[1:] + size[:-1])
     count = np.append(0.0, np.cumsum(cells))
@@ -132,8 +121,8 @@ def fitted_mesh(
 def _smooth(values):
     """Remove oscillations from node to node.
 
-    A pressure that does so deflects nothing midway between the nodes. Where the oil is almost solid
-    it drives nothing either, and is no reason for finer nodes.
+    A pressure that oscillates so does not deflect the rollers midway between the nodes. Where the
+    oil is almost solid it drives no oil either, and is no reason for finer nodes.
     """
     smooth = values.copy()
     smooth[1:-1] = 0.25 * (values[:-2] + 2.0 * values[1:-1] + values[2:])

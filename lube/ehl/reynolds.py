@@ -68,9 +68,8 @@ class DiscreteContact:
         self.step = np.diff(nodes)
         self.middle = 0.5 * (nodes[1:] + nodes[:-1])
         self.deflection = deflection_matrix(self.middle, nodes)
-        self.weight = np.zeros(nodes.size)  # of the trapezoidal rule
-        self.weight[:-1] += 0.5 * self.step
-        self.weight[1:] += 0.5 * self.step
+        # Weights of the trapezoidal rule.
+        self.weight = 0.5 * (np.append(self.step, 0.0) + np.append(0.0, self.step))
 
     def gap(self, pressure: Array, offset: float) -> Array:
         """Evaluate the scaled gap H midway between the nodes."""
@@ -78,7 +77,10 @@ class DiscreteContact:
 
     def flow(self, pressure: Array, offset: float) -> Flow:
         """Evaluate the mass flux between the nodes at some pressures P, shape (n,), and offset."""
-        gap = self.gap(pressure, offset)
+        return self.flow_through(self.gap(pressure, offset), pressure)
+
+    def flow_through(self, gap: Array, pressure: Array) -> Flow:
+        """Evaluate the mass flux through a gap H, shape (n - 1,), at some pressures P."""
         density, density_slope = self.contact.density(0.5 * (pressure[1:] + pressure[:-1]))
         logarithm, log_slope = self.contact.log_viscosity(pressure)
         factor, factor_slope = _exponential_fit(0.5 * np.diff(logarithm))
@@ -100,17 +102,16 @@ class DiscreteContact:
     def newton_step(self, pressure, offset, flow, settling_time):
         """Take one step of Newton's method towards the film after a settling time.
 
-        The equation at a node is that as much oil leaves as enters, less what widens the gap in
-        that time (the squeeze film); after a long time nothing does. A node is either in the film,
-        where this holds, or beyond it, where the pressure is zero: the complementarity condition
-        of cavitation, solved by Newton's method too.
+        The equation at a node is that as much oil leaves as enters, less the oil that fills the
+        widening gap in that time (the squeeze film); after a long time no oil does. A node is
+        either in the film, where this holds, or beyond it, where the pressure is zero: the
+        complementarity condition of cavitation, solved by Newton's method too.
 
         Returns
         -------
         tuple
             Changes of the pressures and of the offset; NaN if there is no such step.
         """
-        inner = np.arange(pressure.size - 2)
         jacobian = np.diff(self.flux_by_pressure(flow), axis=0)
         by_offset, residual = np.diff(flow.by_gap), np.diff(flow.flux)
         if np.isfinite(settling_time):
@@ -118,7 +119,7 @@ class DiscreteContact:
             drag = self.drag_by_pressure(flow)
             jacobian += squeeze[:, None] * (drag[1:] + drag[:-1])
             by_offset += squeeze * (flow.drag_by_gap[1:] + flow.drag_by_gap[:-1])
-        scale = np.abs(jacobian[inner, inner + 1])
+        scale = np.abs(np.diagonal(jacobian, 1))
         film = np.flatnonzero(pressure[1:-1] > residual / scale)
         change = -pressure
         change[film + 1] = 0.0

@@ -18,6 +18,7 @@ amplitude of the roughness may be any.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import lu_factor, lu_solve
 
 from lube.ehl.line_contact import ConvergenceError, FilmProfile, on_nodes, one_blas_thread
 from lube.ehl.response import resolved_part
@@ -37,6 +38,9 @@ _DAMPING = 1.0
 _ENOUGH, _LARGEST, _MOST = 1e-7, 0.5, 300
 """Change of the pressure at which a time step is solved, the largest in a step of Newton's method,
 and the most of these."""
+_SLOW, _PATIENCE = 0.2, 40
+"""Change of the pressure over that before, above which the derivatives are formed anew; and the
+steps of Newton's method after which smaller ones are taken."""
 
 
 def passage_nodes(profile: FilmProfile, step: float) -> Array:
@@ -98,16 +102,16 @@ class RoughPassage:
     def __init__(self, profile: FilmProfile, step: float) -> None:
         smooth = on_nodes(profile, passage_nodes(profile, step))
         self._discrete = DiscreteContact(smooth.contact, smooth.nodes)
-        self._offset, self._step = smooth.offset, step
-        self._late = 0.5 * (1.0 + min(step / _DAMPING, 1.0))
+        self._step, self._late = step, 0.5 * (1.0 + min(step / _DAMPING, 1.0))
+        self._squeeze = 0.5 * self._discrete.weight[1:-1] / step
         self._closed = CLOSED * profile.central_gap
         # Of the pressure in a cell, half acts at either node.
         by_node = self._discrete.deflection
         self._by_cell = 0.5 * (by_node[:, 1:] + by_node[:, :-1])
         self._smooth = self.pressure = smooth.pressure
-        self.contact_pressure = np.zeros(smooth.nodes.size - 1)
+        self._offset, self.contact_pressure = smooth.offset, np.zeros(smooth.nodes.size - 1)
         self._flow = self._discrete.flow(smooth.pressure, smooth.offset)
-        self.gap = self._flow.gap
+        self.gap, self._factors = self._flow.gap, None
 
     @property
     def position(self) -> Array:
@@ -138,25 +142,24 @@ class RoughPassage:
         ConvergenceError
             With the pressure's last change.
         """
-        had = self._balance(_drag(self._flow), self._flow.pressure_flow, 1.0 - self._late, -1.0)
-        state = self._first_guess()
-        touching = state[2] > 0.0
-        for _ in range(_MOST):
-            state, change = self._newton(had, heights, touching, state)
-            gap = self._gap(heights, *state)
-            # Complementary: a closed gap under pressure, or an open one without.
-            again = state[2] + self._closed - gap > 0.0
-            solved = change < _ENOUGH and np.array_equal(again, touching)
-            if solved or not np.isfinite(change):
+        had, state = self._left_over(), self._first_guess()
+        is_slow, change, largest = False, np.inf, _LARGEST
+        for number in range(_MOST):
+            gap, flow = self._flow_at(heights, *state)
+            before, (state, change) = change, self._newton(had, gap, flow, state, is_slow, largest)
+            if change < _ENOUGH or not np.isfinite(change):
                 break
-            touching = again
-        if not solved:
+            is_slow = change > _SLOW * before
+            largest = (
+                _LARGEST / (1 + number // _PATIENCE) ** 2
+            )  # so that sets of nodes do not cycle
+        if not change < _ENOUGH:
             raise ConvergenceError(
                 f"{self._discrete.contact.name}: roughness that passes did not converge in a time "
                 f"step: the pressure changes by {change:.1g}"
             )
         self.pressure, self._offset, self.contact_pressure = state
-        self._flow = self._flow_through(gap, heights, *state)
+        _, self._flow = self._flow_at(heights, *state)
         self.gap = self._flow.gap
 
     def _first_guess(self):
@@ -166,78 +169,139 @@ class RoughPassage:
         solid[1:] = self.contact_pressure[:-1]
         return np.maximum(pressure, 0.0), self._offset, solid
 
-    def _gap(self, heights, pressure, offset, solid):
-        """Gap midway between the nodes, which may be less than closed before it has converged."""
-        return self._discrete.gap(pressure, offset - heights) + self._by_cell @ solid
+    def _flow_at(self, heights, pressure, offset, solid):
+        """Gap midway between the nodes, and the flow through it, opened where it is closed."""
+        gap, cells = self._discrete.gap(pressure, offset - heights), np.flatnonzero(solid)
+        gap += self._by_cell[:, cells] @ solid[cells]
+        return gap, self._discrete.flow_through(np.maximum(gap, self._closed), pressure)
 
-    def _flow_through(self, gap, heights, pressure, offset, solid):
-        """Flow through a gap, closed where it is less than that."""
-        opened = np.maximum(gap, self._closed) - gap
-        return self._discrete.flow(pressure, offset - heights + self._by_cell @ solid + opened)
+    def _left_over(self):
+        """Balance of each inner node, as far as the beginning of a time step decides on it."""
+        drag, early = self._flow.flux + self._flow.pressure_flow, 1.0 - self._late
+        balance = np.diff(0.5 * drag) - early * np.diff(self._flow.pressure_flow)
+        return balance - self._squeeze * (drag[1:] + drag[:-1])
 
-    def _balance(self, drag, driven, part, stored=1.0):
-        """Oil that leaves a node less what enters, by a part of the driven flow, and is stored."""
-        squeeze = stored * 0.5 * self._discrete.weight[1:-1] / self._step
-        storing = (squeeze * (drag[1:] + drag[:-1]).T).T
-        return np.diff(0.5 * drag, axis=0) - np.diff(part * driven, axis=0) + storing
-
-    def _newton(self, had, heights, touching, state):
+    def _newton(self, had, gap, flow, state, is_slow, largest):
         """Step of Newton's method for pressure, offset and contact pressure; the largest change.
 
-        As in `lube.ehl.reynolds`, with a squeeze film of one time step. Nodes outside the film get
-        no pressure of the oil, cells without contact none of the solids.
+        Nodes outside the film get no pressure of the oil, and cells without contact none of the
+        solids. The derivatives are formed anew where film or contact have changed, or if the last
+        step came hardly nearer; otherwise those of an earlier step, or time step, are near enough.
         """
         discrete, (pressure, offset, solid) = self._discrete, state
-        gap = self._gap(heights, *state)
-        flow = self._flow_through(gap, heights, *state)
-        residual = had + self._balance(_drag(flow), flow.pressure_flow, self._late)
-        by_gap = flow.drag_by_gap, flow.drag_by_gap - flow.by_gap
-        dragged = discrete.drag_by_pressure(flow)
-        driven = dragged - discrete.flux_by_pressure(flow)
-        jacobian = self._balance(dragged, driven, self._late)
-        inner = np.arange(pressure.size - 2)
-        film = np.flatnonzero(pressure[1:-1] > residual / np.abs(jacobian[inner, inner + 1]))
-        cells = np.flatnonzero(touching)
-
-        def by_opening(opening):
-            """Change of the balance as the gap opens, per column."""
-            columns = ((each * opening.T).T for each in by_gap)
-            return self._balance(*columns, self._late)[film]
-
-        change, cell_change = -pressure, -solid
-        change[film + 1], cell_change[cells] = 0.0, 0.0
-        released = self._by_cell @ cell_change
-        load = discrete.weight @ (pressure + change) + discrete.step @ (solid + cell_change)
-        opened = discrete.deflection @ change + released
-        right = -np.concatenate(
-            [
-                (residual + jacobian @ change)[film] + by_opening(released),
-                [load - HERTZ_LOAD],
-                (gap + opened - self._closed)[cells],
-            ]
+        late, drag = self._late, flow.flux + flow.pressure_flow
+        # Parts of the dragged oil in the cells behind a node and before it.
+        behind, before = self._squeeze + 0.5 - late, self._squeeze - 0.5 + late
+        residual = had + behind * drag[1:] + before * drag[:-1] + late * np.diff(flow.flux)
+        by_gap = (
+            behind * flow.drag_by_gap[1:] + late * flow.by_gap[1:],
+            before * flow.drag_by_gap[:-1] - late * flow.by_gap[:-1],
         )
-        one, deflection = np.ones_like(gap), discrete.deflection[:, film + 1]
-        matrix = np.block(
-            [
-                [
-                    jacobian[np.ix_(film, film + 1)],
-                    by_opening(one)[:, None],
-                    by_opening(self._by_cell[:, cells]),
-                ],
-                [discrete.weight[film + 1], 0.0, discrete.step[cells]],
-                [deflection[cells], one[cells, None], self._by_cell[np.ix_(cells, cells)]],
-            ]
+        by_node = (
+            before * flow.drag_by_node[:-1] - late * flow.by_left[:-1],
+            behind * flow.drag_by_node[1:]
+            + before * flow.drag_by_node[:-1]
+            + late * (flow.by_left[1:] - flow.by_right[:-1]),
+            behind * flow.drag_by_node[1:] + late * flow.by_right[1:],
         )
-        try:
-            solution = np.linalg.solve(matrix, right)
-        except np.linalg.LinAlgError:
-            solution = np.full_like(right, np.nan)
-        change[film + 1], cell_change[cells] = np.split(np.delete(solution, film.size), [film.size])
-        largest = np.abs(np.append(change, cell_change)).max()
-        part = _LARGEST / max(largest, _LARGEST)
-        pressure = np.maximum(pressure + part * change, 0.0)
-        offset += part * solution[film.size]
-        return (pressure, offset, solid + part * cell_change), largest
+        derivatives = _Derivatives(discrete, by_gap, by_node)
+        in_film = pressure[1:-1] > residual / np.abs(derivatives.own)
+        # Complementary: a closed gap under pressure, or an open one without.
+        touching = solid + self._closed - gap > 0.0
+        cells = np.flatnonzero(touching | (solid != 0.0))
+        if is_slow or self._factors is None:
+            self._film, self._factors = in_film, derivatives.factors(in_film)
+        changed = np.flatnonzero(in_film != self._film)
+        wanted = np.where(in_film, -residual, -pressure[1:-1])
+        missing = HERTZ_LOAD - discrete.weight @ pressure - discrete.step @ solid
+        closing = np.where(touching, self._closed - gap, -solid)[cells]
+
+        # The factored equations, bordered by those of nodes that came or went, and of cells.
+        count = changed.size
+        columns = np.zeros((wanted.size + 1, count + cells.size))
+        columns[changed, np.arange(count)] = 1.0
+        columns[:-1, count:] = derivatives.opened(self._by_cell[:, cells])
+        columns[-1, count:] = discrete.step[cells]
+        rows, corner = np.zeros(columns.shape[::-1]), np.zeros((columns.shape[1],) * 2)
+        rows[np.arange(count), changed] = 1.0
+        joined = in_film[changed]
+        rows[:count][joined] = derivatives.rows(changed[joined])
+        corner[:count][joined] = columns[changed[joined]] * (np.arange(count + cells.size) >= count)
+        rows[count:, :-1] = discrete.deflection[cells, 1:-1]
+        rows[count:, -1] = 1.0
+        corner[count:, count:] = self._by_cell[np.ix_(cells, cells)]
+        open_again = count + np.flatnonzero(~touching[cells])
+        rows[open_again], corner[open_again], corner[open_again, open_again] = 0.0, 0.0, 1.0
+        right = np.column_stack([np.append(wanted, missing), columns])
+        solved = lu_solve(self._factors, right, trans=1, check_finite=False)
+        free, answers = solved[:, 0], solved[:, 1:]
+        border = np.append(wanted[changed], closing) - rows @ free
+        extra = np.linalg.solve(corner - rows @ answers, border)
+        *change, shift = free - answers @ extra
+        change, cell_change = np.array(change), extra[count:]
+        greatest = np.abs(np.append(change, cell_change)).max()
+        part = largest / max(greatest, largest)
+        pressure, solid = pressure.copy(), solid.copy()
+        pressure[1:-1] = np.maximum(pressure[1:-1] + part * change, 0.0)
+        solid[cells] += part * cell_change
+        return (pressure, offset + part * shift, solid), greatest
+
+
+@dataclass(frozen=True)
+class _Derivatives:
+    """Derivatives of the balances of the inner nodes.
+
+    Attributes
+    ----------
+    discrete : DiscreteContact
+        The equation on its mesh.
+    by_gap : tuple of numpy.ndarray
+        By the gap in the cells behind the nodes and before them.
+    by_node : tuple of numpy.ndarray
+        By the pressures at the nodes before, at the nodes themselves, and behind, the gap held.
+    """
+
+    discrete: DiscreteContact
+    by_gap: tuple[Array, Array]
+    by_node: tuple[Array, Array, Array]
+
+    @property
+    def own(self):
+        """By the pressure at the node itself."""
+        inner, deflection = np.arange(self.by_gap[0].size), self.discrete.deflection
+        by_gap = self.by_gap[0] * deflection[inner + 1, inner + 1]
+        return by_gap + self.by_gap[1] * deflection[inner, inner + 1] + self.by_node[1]
+
+    def opened(self, by):
+        """As the gap opens in the cells, per column."""
+        return self.by_gap[0][:, None] * by[1:] + self.by_gap[1][:, None] * by[:-1]
+
+    def rows(self, nodes):
+        """By all inner pressures and the offset, at some nodes."""
+        behind, before = (each[nodes] for each in self.by_gap)
+        rows = np.empty((nodes.size, self.by_gap[0].size + 1))
+        deflection = self.discrete.deflection[:, 1:-1]
+        np.multiply(behind[:, None], deflection[nodes + 1], out=rows[:, :-1])
+        rows[:, :-1] += before[:, None] * deflection[nodes]
+        rows[:, -1] = behind + before
+        number = np.arange(nodes.size)
+        for shift, values in zip((-1, 0, 1), self.by_node, strict=True):
+            there = (nodes + shift >= 0) & (nodes + shift < self.by_gap[0].size)
+            rows[number[there], nodes[there] + shift] += values[nodes[there]]
+        return rows
+
+    def factors(self, in_film):
+        """Factors of the transposed equations of a film and its load.
+
+        Nodes outside the film get no pressure.
+        """
+        count = in_film.size
+        matrix = np.zeros((count + 1, count + 1))
+        matrix[:-1] = self.rows(np.arange(count))
+        matrix[-1, :-1] = self.discrete.weight[1:-1]
+        outside = np.flatnonzero(~in_film)
+        matrix[outside], matrix[outside, outside] = 0.0, 1.0
+        return lu_factor(matrix.T, overwrite_a=True, check_finite=False)
 
 
 @dataclass(frozen=True)
@@ -315,8 +379,3 @@ def pass_wave(
     phase = np.exp(-1j * wavenumber * passage.position)
     transfer = -(cosine + 1j * sine) * phase / (amplitude * profile.central_gap)
     return PassedWave(passage.position, transfer, gaps, oil.min())
-
-
-def _drag(flow):
-    """Oil that the surfaces drag, or that is in the gap."""
-    return flow.flux + flow.pressure_flow

@@ -1,22 +1,20 @@
 """What the explorer's page holds: a study's values, as plain lists.
 
-Every number is one of a dataset, unrounded, and all are at the study's own levels. Only traces
-are thinned out: of several neighbouring steps the extreme values stay.
+Every number comes from a dataset, unrounded, at the study's levels. Only traces are thinned out:
+of several neighbouring steps the extreme value stays.
 """
 
 import numpy as np
 import xarray as xr
 
-from lube import schema
+from lube.contact.ensemble import PROBABILITIES
 from lube.ehl.film_formulas import FORMULAS
 from lube.grid.model_limits import merged, overloaded
-from lube.schema import COORDINATES, FILES
+from lube.schema import COORDINATES, FILES, LIMITS, MEAN_LIMITS
 from lube.units import with_unit
 
 CHOICES = tuple("lubricant film_formula force speed temperature slide_to_roll_ratio".split())
-"""What a reader chooses; together they make one operating point."""
-PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
-LIMITS = ("mean", "lower", "upper")
+"""Coordinates that a reader chooses; together they make one operating point."""
 SHOWN = {
     "lubricant": ("dynamic_viscosity", "pressure_viscosity_coefficient"),
     "film": (
@@ -24,19 +22,17 @@ SHOWN = {
         "moes_load moes_material contact_half_width hertz_pressure entrainment_speed "
         "inlet_shear_heating_factor"
     ).split(),
-    "contact": [f"{kind}_{limit}" for kind in PROBABILITIES for limit in LIMITS],
+    "contact": [f"{kind}{limit}" for kind in PROBABILITIES for limit in MEAN_LIMITS],
     "tail": [
-        f"{kind}{limit}"
-        for kind in (*PROBABILITIES, "breakthrough_rate")
-        for limit in schema.LIMITS
+        f"{kind}{limit}" for kind in (*PROBABILITIES, "breakthrough_rate") for limit in LIMITS
     ],
 }
-"""Variables that the page holds of each dataset, all of them over some of `CHOICES`."""
+"""Variables of each dataset that the page holds, all of them over some of `CHOICES`."""
 TRACES = {"contact_length": np.maximum, "contact_resistance": np.minimum}
-"""Variables of a trace, each with what stays of several neighbouring steps."""
+"""Variables of a trace, each with the function that thins out its neighbouring steps."""
 NO_RECORDS = {"origin": "", "rows": []}
 TRACE_PIECES = 1000
-"""Greatest number of pieces that a trace is drawn of: about one for each pixel."""
+"""Largest number of pieces in a drawn trace: about one for each pixel."""
 CLOSE_UP = 3.0
 """Time on either side of a trace's peak that its close-up shows, in crossings of the contact."""
 
@@ -67,7 +63,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         - ``conducts``: whether contact has a resistance;
         - ``traces``: the traces, each with its place in the levels.
     """
-    contact = datasets["contact"]
+    contact, trace = datasets["contact"], datasets["trace"]
+    kept = trace.sizes["operating_point"]
     levels = {name: contact[name].values.tolist() for name in CHOICES}
     marks = {"overloaded": overloaded(contact), "merged": merged(contact, datasets["film"])}
     load_share = contact["contact_load_share"].mean("realisation", keep_attrs=True)
@@ -89,18 +86,21 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         },
         "sampled": not datasets["tail"].attrs["remarks"],
         "regimes": datasets["film"]["regime"].attrs["flag_meanings"].split(),
-        "validity": {name: _validity(FORMULAS[name]) for name in levels["film_formula"]},
+        "validity": {
+            name: {moes: getattr(FORMULAS[name], moes) for moes in ("moes_load", "moes_material")}
+            for name in levels["film_formula"]
+        },
         "master": _master(datasets["master"]) if "master" in datasets else None,
         "records": _records(datasets["comparison"]) if "comparison" in datasets else NO_RECORDS,
-        "conducts": bool(datasets["trace"]["contact_resistance"].notnull().any()),
-        "traces": [_trace(point, levels) for point in _points(datasets["trace"])],
+        "conducts": bool(trace["contact_resistance"].notnull().any()),
+        "traces": [_trace(trace.isel(operating_point=row), levels) for row in range(kept)],
     }
 
 
 def page_name(kind: str, name: str) -> str:
-    """Name of a variable on the page: its own, but ``tail.`` before those of ``tail.nc``.
+    """Name of a variable on the page: variables of ``tail.nc`` begin with ``tail.``.
 
-    Some of ``contact.nc`` have the same names.
+    Some variables of ``contact.nc`` have the same names.
     """
     return f"tail.{name}" if kind == "tail" else name
 
@@ -131,7 +131,7 @@ def level_names(name: str, values: list) -> list[str]:
 
 
 def _variable(array, kind):
-    """One variable, its dimensions in the order of its values."""
+    """Describe one variable, with its dimensions in the order of its values."""
     return {
         "file": f"{kind}.nc",
         "dims": list(array.dims),
@@ -141,21 +141,16 @@ def _variable(array, kind):
     }
 
 
-def _validity(formula):
-    return {"moes_load": list(formula.moes_load), "moes_material": list(formula.moes_material)}
-
-
 def _master(master):
-    """List the master map, its probabilities as rows of one contact width."""
-    limits = {
-        limit: _plain(master[f"breakthrough_probability_{limit}"].transpose("contact_width", ...))
-        for limit in LIMITS
-    }
-    return {name: _plain(master[name]) for name in ("lambda_ratio", "contact_width")} | limits
+    """List the master map; each row of its probabilities belongs to one contact width."""
+    axes = {name: _plain(master[name]) for name in ("lambda_ratio", "contact_width")}
+    rows = master.transpose("contact_width", ...)
+    ends = ("mean", "lower", "upper")
+    return axes | {end: _plain(rows[f"breakthrough_probability_{end}"]) for end in ends}
 
 
 def _records(comparison):
-    """List the records with a contact share as dicts; their values by formula are lists."""
+    """List the records that have a contact share; values for each film formula are lists."""
     names = (
         "record lubricant slide_to_roll_ratio force speed temperature "
         "force_level speed_level temperature_level "
@@ -168,12 +163,8 @@ def _records(comparison):
     return {"origin": comparison["origin"].item(), "rows": rows}
 
 
-def _points(trace):
-    return [trace.isel(operating_point=row) for row in range(trace.sizes["operating_point"])]
-
-
 def _trace(point, levels):
-    """One trace: where it was kept, its whole revolution, and a close-up of its peak."""
+    """Describe one trace: its operating point, its whole revolution, a close-up of its peak."""
     time, length = point["time"].values, point["contact_length"].values
     crossing = 2.0 * point["contact_half_width"].item() / point["entrainment_speed"].item()
     reach = round(CLOSE_UP * crossing / (time[1] - time[0]))
@@ -189,7 +180,7 @@ def _trace(point, levels):
 
 
 def _thinned(point, part):
-    """Extreme values of neighbouring steps of a part of a trace, and how many steps they are."""
+    """Thin out a part of a trace to extreme values, each of the same number of steps."""
     part = point.isel(time=part)
     time = part["time"].values
     steps = -(-time.size // TRACE_PIECES)
@@ -202,7 +193,7 @@ def _thinned(point, part):
 
 
 def _plain(values):
-    """Nested lists of an array, with None for what JSON has no number for."""
+    """Turn an array into nested lists, with None for NaN and infinity."""
     values = np.asarray(values)
     if values.dtype.kind == "f":
         values = np.where(np.isfinite(values), values.astype(object), None)

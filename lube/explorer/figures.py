@@ -1,4 +1,4 @@
-"""The explorer's figures, by Bokeh: axes, ranges and looks; the page's JavaScript fills them."""
+"""The explorer's figures, by Bokeh: axes, ranges and styles; the page's JavaScript fills them."""
 
 import math
 
@@ -29,12 +29,12 @@ TINTS = ("#D6ECFA", "#FFF4D1", "#E0E0E0", "#F4D3C0")
 _SHARES = (1e-6, 1e-4, 1e-2, 1.0)  # labels of the master map's colours, from end to end
 _DIGITS = {0.5: (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), 1.2: (1, 1.5, 2, 3, 5, 7),
            2.5: (1, 2, 5), 3.5: (1, 3), math.inf: (1,)}  # fmt: skip
-"""Which digits get a label on a logarithmic axis of up to so many decades."""
+"""Digits that get a label on a logarithmic axis, by the largest number of its decades."""
 _MOST_DECADES = 8
-"""Decades of a logarithmic axis above which not all get a label."""
+"""Largest number of decades on a logarithmic axis that all get a label."""
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _RAREST = 1e-20
-"""Lowest probability of the axes: of very thick films it would be lower than any number."""
+"""Lowest probability of the axes: at very thick films it is lower than any number."""
 _FONT = "system-ui, sans-serif"
 THEME = Theme(
     json={
@@ -73,33 +73,35 @@ COLUMNS = {
     "whole": ("time", "length", "resistance"),
     "close": ("time", "length", "resistance"),
 }
-"""Columns of what the figures draw; ``limit`` is an upper limit where no contact was seen,
-``outside`` and ``falling`` are means where the model cannot hold or merged segments hold."""
+"""Columns of each source of the figures. ``limit`` is an upper limit where no contact was seen;
+``outside`` and ``falling`` are means where the model cannot hold or where merged segments hold."""
 
 
 def draw(
     content: dict, datasets: dict[str, xr.Dataset], sources: dict[str, ColumnDataSource]
 ) -> dict[str, figure]:
-    """Draw the page's figures, still without an operating point.
+    """Draw the page's figures, as yet without an operating point.
 
     Parameters
     ----------
     content : dict
         From `lube.explorer.content.page_content`.
     datasets : dict of str to xarray.Dataset
-        What it was made from.
+        The datasets that `content` was made from.
     sources : dict of str to bokeh.models.ColumnDataSource
         One for each of `COLUMNS`, by its name.
 
     Returns
     -------
     dict of str to bokeh.plotting.figure
-        By the names of their places on the page.
+        The figures by the names of their positions on the page.
     """
     ratios, shares = _ratio_range(datasets), _share_range(datasets)
+    films = _spread(1e6 * datasets["film"]["film_thickness"].values)
+    resistances = _spread(datasets["trace"]["contact_resistance"].values, 1.5)
     across = Range1d()
     figures = {
-        "film": _film_along(sources, across, _film_range(datasets)),
+        "film": _film_along(sources, across, films),
         "probability": _probability_along(sources, across, shares),
         "regimes": _regime_map(datasets["film"], content["validity"], sources),
         "curve": _master_curve(sources, ratios, shares),
@@ -107,20 +109,16 @@ def draw(
     if content["master"] and len(content["master"]["contact_width"]) > 1:
         figures["map"] = _master_map(content["master"], ratios, sources)
     for part in ("whole", "close"):
-        figures |= _trace(part, sources[part], _resistance_range(datasets["trace"]))
+        figures |= _trace(part, sources[part], resistances)
         if not content["conducts"]:
             del figures[f"{part}_resistance"]
     return figures
 
 
 def _spread(values, by=1.3):
-    """Range of positive values with some room on a logarithmic axis."""
+    """Range of positive values, with some room at both ends of a logarithmic axis."""
     values = values[np.isfinite(values) & (values > 0.0)]
     return (values.min() / by, values.max() * by) if values.size else (0.1, 10.0)
-
-
-def _film_range(datasets):
-    return _spread(1e6 * datasets["film"]["film_thickness"].values)
 
 
 def _ratio_range(datasets):
@@ -130,7 +128,7 @@ def _ratio_range(datasets):
 
 
 def _share_range(datasets):
-    """Probabilities of the study: down to the smallest, or limit where none was seen."""
+    """Range of the study's probabilities; where no contact was seen, its upper limit counts."""
     sampled = datasets["tail"]["breakthrough_probability"].values.ravel()
     kinds = [kind for kind in ("contact", "master") if kind in datasets]
     counted = np.concatenate([_estimate_or_limit(datasets[kind]) for kind in kinds])
@@ -143,10 +141,6 @@ def _estimate_or_limit(dataset):
         dataset[f"breakthrough_probability_{limit}"].values.ravel() for limit in ("mean", "upper")
     )
     return np.where(mean > 0.0, mean, upper)
-
-
-def _resistance_range(trace):
-    return _spread(trace["contact_resistance"].values, 1.5)
 
 
 def _plot(x_axis_label, y_axis_label, **options):
@@ -166,7 +160,7 @@ def _label(axis, ticks, text):
 
 
 def _round_numbers(low, high):
-    """Round numbers for a logarithmic axis, the fewer of each decade the more decades it has."""
+    """Round numbers for a logarithmic axis: with more decades, fewer of each."""
     decades = math.log10(high / low)
     digits = next(digits for most, digits in _DIGITS.items() if decades <= most)
     step = math.ceil(decades / _MOST_DECADES)
@@ -192,7 +186,7 @@ def _percent_axis(plot):
 
 
 def _points(plot, source, x, y, size=8, **look):
-    """Points that tell their name when hovered or touched, and are chosen by a click."""
+    """Draw points that look the same when another point is chosen."""
     look = {"fill_color": COLOURS["sky"], "line_color": COLOURS["blue"]} | look
     points = plot.scatter(x, y, source=source, size=size, **look)
     points.nonselection_glyph = points.glyph
@@ -200,7 +194,7 @@ def _points(plot, source, x, y, size=8, **look):
 
 
 def _all_points(plot, sources, x, y, around="grid"):
-    """Draw the operating points around the chosen one, and the chosen one."""
+    """Draw the operating points around the chosen one, which can be named and chosen, and it."""
     small = _points(plot, sources[around], x, y, size=6 if around == "grid" else 8)
     _points(
         plot, sources["chosen"], x, y, size=15, fill_color=COLOURS["vermilion"], line_color="black"
@@ -212,20 +206,17 @@ def _all_points(plot, sources, x, y, around="grid"):
 
 
 def _probabilities(plot, sources, x, around):
-    """Probabilities with their intervals; where no contact was seen, their upper limits."""
+    """Draw probabilities with intervals, and upper limits where no contact was seen."""
     _whiskers(plot, sources["chosen"], x, "black", 2)
     _all_points(plot, sources, x, "mean", around)
     _points(plot, sources[around], x, "outside", fill_color="white")
     _points(plot, sources[around], x, "falling", size=15, fill_color=None, line_color="black")
-    for name, size, colour in ((around, 8, COLOURS["blue"]), ("chosen", 15, COLOURS["vermilion"])):
-        limits = plot.scatter(
-            x, "limit", source=sources[name], size=size, marker="inverted_triangle",
-            fill_color="white", line_color=colour, line_width=1.0 if name == around else 2.5,
-        )  # fmt: skip
-        limits.nonselection_glyph = limits.glyph
-        if name == around:
-            for tool in (HoverTool, TapTool):
-                plot.select_one(tool).renderers.append(limits)
+    look = {"marker": "inverted_triangle", "fill_color": "white"}
+    limits = _points(plot, sources[around], x, "limit", **look)
+    for tool in (HoverTool, TapTool):
+        plot.select_one(tool).renderers.append(limits)
+    look |= {"line_color": COLOURS["vermilion"], "line_width": 2.5}
+    _points(plot, sources["chosen"], x, "limit", size=15, **look)
     records = plot.scatter(
         x, "share", source=sources["records"], marker="x", size=10,
         line_color=COLOURS["purple"], line_width=2.5,
@@ -261,7 +252,7 @@ def _probability_along(sources, across, shares):
 
 
 def _regime_map(film, validity, sources):
-    """Where the points lie among the four regimes, over the Moes numbers."""
+    """Draw the operating points on the map of the four regimes, over the Moes numbers."""
     frames = np.array([[*one["moes_load"], *one["moes_material"]] for one in validity.values()])
     loads = np.append(film["moes_load"].values, frames[:, :2])
     materials = np.append(film["moes_material"].values, frames[:, 2:])
@@ -286,7 +277,7 @@ def _regime_map(film, validity, sources):
 
 
 def _master_curve(sources, ratios, shares):
-    """Probability against the lambda ratio, and the master map's if there is one."""
+    """Draw the probability against the lambda ratio, and curves of the master map if it exists."""
     plot = _plot(
         "Lambda ratio", "Breakthrough probability",
         x_axis_type="log", y_axis_type="log", x_range=ratios, y_range=shares,
@@ -306,7 +297,7 @@ def _master_curve(sources, ratios, shares):
 
 
 def _master_map(master, span, sources):
-    """Draw the master map, each of its values as a coloured field."""
+    """Draw the master map: each value is a coloured field."""
     ratios = np.array(master["lambda_ratio"])
     widths = 1e6 * np.array(master["contact_width"])
     edges = np.exp(_edges(np.log(ratios)))
@@ -349,7 +340,7 @@ def _edges(values):
 
 
 def _trace(part, source, resistances):
-    """Contact length and resistance of a trace, or of its part around the peak."""
+    """Draw contact length and resistance of a trace, or of its part around the peak."""
     time = "Time (s)" if part == "whole" else "Time from the peak (ms)"
     common = {"height": 230, "x_range": Range1d(), "min_border_left": 75}
     length = _plot(time, "Contact length (µm)", y_range=Range1d(), **common)

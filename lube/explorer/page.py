@@ -4,7 +4,6 @@ The page holds everything, Bokeh's JavaScript included, so it needs neither serv
 What happens when a control moves is in ``templates/explorer.mjs``.
 """
 
-import functools
 import json
 from pathlib import Path
 
@@ -119,35 +118,26 @@ def _filled(content, datasets, controls, sources, figures):
     # As `bokeh.embed.components` does, but with names instead of random numbers.
     places = {model.id: place for place, model in places.items()}
     items = [{"docid": "explorer", "roots": places, "root_ids": list(places)}]
-    return (
-        _environment()
-        .get_template("explorer.html")
-        .render(
-            title=datasets["contact"].attrs["title"].rpartition(", ")[0],
-            content=content,
-            names=_NAMES,
-            tints=TINTS,
-            controls=controls,
-            figures=figures,
-            json={
-                "content": _script(content),
-                "models": _script({"explorer": document.to_json(deferred=False)}),
-                "items": _script(items),
-            },
-            bokeh=Resources(mode="inline", components=["bokeh", "bokeh-widgets"]).render(),
-            stamp=stamp(list(datasets.values())),
-        )
+    environment = Environment(
+        loader=PackageLoader("lube.explorer"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    return environment.get_template("explorer.html").render(
+        arguments,
+        title=datasets["contact"].attrs["title"].rpartition(", ")[0],
+        content=content,
+        names=_NAMES,
+        tints=TINTS,
+        json={
+            "content": _script(content),
+            "models": _script({"explorer": document.to_json(deferred=False)}),
+            "items": _script(items),
+        },
+        bokeh=Resources(mode="inline", components=["bokeh", "bokeh-widgets"]).render(),
+        stamp=stamp(list(datasets.values())),
     )
 
 
 def _script(value):
     """JSON that cannot end the script element it stands in."""
     return json.dumps(value, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-
-
-@functools.cache
-def _environment():
-    return Environment(
-        loader=PackageLoader("lube.explorer"), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip

@@ -1,7 +1,6 @@
 """From SI units to the kernels' whole numbers: height steps, grid points and time steps."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -33,28 +32,13 @@ class LineGrid:
     @classmethod
     def of(cls, lines: xr.Dataset) -> "LineGrid":
         """Grid of a ``roughness`` dataset."""
-        own = lines.attrs
-        return cls(own["spacing"], own["height_step"], float(np.max(own["q_max"])))
+        attrs = lines.attrs
+        return cls(attrs["spacing"], attrs["height_step"], float(np.max(attrs["q_max"])))
 
 
 UNKNOWN_FILM = 2**40
-"""Height steps of a film that is not known. No sum of lines reaches so high, and larger films could
+"""Height steps of a film that is not known. No sum of lines is so high, and larger films could
 overflow int64."""
-
-
-class Layer(Protocol):
-    """Boundary layer on the rollers.
-
-    Attributes
-    ----------
-    critical_thickness : float
-        h_c, m.
-    shear_strength : float
-        Limiting shear stress tau_0, Pa.
-    """
-
-    critical_thickness: float
-    shear_strength: float
 
 
 def speed_ratios(slide_to_roll_ratio: float) -> tuple[float, float]:
@@ -140,16 +124,13 @@ def line_pair(lines: xr.Dataset, realisation: int) -> tuple[np.ndarray, np.ndarr
     if realisation not in lines["realisation"].values:
         raise DataError(f"realisation {realisation} is not among the roughness lines")
     heights = lines["height"].sel(realisation=realisation).values
-    pair = []
-    for row, points in zip(heights, lines.attrs["points"], strict=True):
-        line = row[: int(points)]
-        if line.dtype.kind == "f":
-            line = np.rint(line / lines.attrs["height_step"]).astype(np.int32)
-        pair.append(np.ascontiguousarray(line))
-    return tuple(pair)
+    pair = [row[:points] for row, points in zip(heights, lines.attrs["points"], strict=True)]
+    if heights.dtype.kind == "f":
+        pair = [np.rint(line / lines.attrs["height_step"]).astype(np.int32) for line in pair]
+    return tuple(map(np.ascontiguousarray, pair))
 
 
-def layer_factor_of(grid: LineGrid, reduced_modulus: float, boundary_layer: Layer) -> float:
+def layer_factor_of(grid: LineGrid, reduced_modulus: float, boundary_layer) -> float:
     """Compute `lube.kernels.layer.layer_factor` on the grid of some lines.
 
     Parameters
@@ -158,8 +139,8 @@ def layer_factor_of(grid: LineGrid, reduced_modulus: float, boundary_layer: Laye
         Grid of the lines.
     reduced_modulus : float
         E*, Pa.
-    boundary_layer : Layer
-        The boundary layer.
+    boundary_layer : lube.study.rollers.BoundaryLayer
+        The boundary layer, or what has its attributes.
 
     Returns
     -------

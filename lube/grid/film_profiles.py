@@ -1,33 +1,24 @@
 """Computed films across the contact, on positions that all operating points share."""
 
 import numpy as np
+import xarray as xr
 
 from lube.types import Array
 
 _STEP, _EVEN, _GROWTH = 0.01, 1.5, 1.03
-"""Distance of positions in the contact, up to where they are even, and their growth beyond."""
+"""Distance of positions in the contact, end of these even positions, and their growth beyond."""
 _REACH = 12.0
 """Height of the undeformed gap at the last position, over the composite roughness: no roughness
 line is so high."""
 
 
-def film_positions(
-    half_width: float,
-    reduced_radius: float,
-    roughness: float,
-    step: float = _STEP,
-    growth: float = _GROWTH,
-) -> Array:
-    """Positions at which the computed films of a study are kept.
+def film_positions(contact: xr.Dataset, step: float = _STEP, growth: float = _GROWTH) -> Array:
+    """Positions at which the computed films of some contacts are kept.
 
     Parameters
     ----------
-    half_width : float
-        Least half-width of the contact, m.
-    reduced_radius : float
-        R*, m.
-    roughness : float
-        Composite rms roughness, m.
+    contact : xarray.Dataset
+        With ``contact_half_width``, ``reduced_radius`` and ``composite_rms_roughness``, m.
     step, growth : float, optional
         Distance of positions in the contact, and their growth beyond.
 
@@ -35,14 +26,17 @@ def film_positions(
     -------
     numpy.ndarray
         Positions over the half-width, rising, symmetric about 0: even in the contact, farther and
-        farther apart outside, up to where no roughness reaches across the gap.
+        farther apart outside, up to a gap that no roughness fills, at the narrowest contact.
 
     Examples
     --------
-    >>> positions = film_positions(50e-6, 0.025, 0.28e-6)
+    >>> lengths = {"contact_half_width": 50e-6, "reduced_radius": 0.025}
+    >>> positions = film_positions(xr.Dataset(lengths | {"composite_rms_roughness": 0.28e-6}))
     >>> positions.size, float(positions[-1])
     (425, 9.375603)
     """
+    names = "contact_half_width", "reduced_radius", "composite_rms_roughness"
+    half_width, reduced_radius, roughness = (contact[name].min().item() for name in names)
     farthest = 1.0 + np.sqrt(2.0 * reduced_radius * _REACH * roughness) / half_width
     even = np.arange(0.0, _EVEN + step / 2, step)
     count = max(1, int(np.ceil(np.log(farthest / _EVEN) / np.log(growth))))
@@ -71,23 +65,28 @@ def six_digits(values: Array) -> Array:
     return np.vectorize(lambda value: float(f"{value:.6g}"), otypes=[float])(values)
 
 
-def sampled(profiles: Array, sample, positions: Array) -> Array:
-    """Sample a quantity of every film at some positions.
+def over_positions(solved: xr.DataArray, sample, contact: xr.Dataset) -> xr.DataArray:
+    """Sample a quantity of every film at the positions of `film_positions`.
 
     Parameters
     ----------
-    profiles : numpy.ndarray of object
-        From `lube.ehl.line_contact.profiles_of`.
+    solved : xarray.DataArray
+        A `lube.ehl.line_contact.FilmProfile` each, or None.
     sample : callable
         Values of a `FilmProfile` at positions.
-    positions : numpy.ndarray
-        Positions over the half-width.
+    contact : xarray.Dataset
+        As in `film_positions`.
 
     Returns
     -------
-    numpy.ndarray
-        Six digits each, with one more dimension; NaN where there is no film.
+    xarray.DataArray
+        Values of six digits, over film_position too; NaN where there is no film.
     """
-    missing = np.full(positions.size, np.nan)
-    rows = [six_digits(sample(one, positions)) if one else missing for one in profiles.ravel()]
-    return np.stack(rows).reshape(*profiles.shape, positions.size)
+    positions = film_positions(contact)
+
+    def values(film):
+        return six_digits(sample(film, positions)) if film else np.full(positions.size, np.nan)
+
+    options = {"output_core_dims": [["film_position"]], "vectorize": True}
+    found = xr.apply_ufunc(values, solved, output_dtypes=[float], **options)
+    return found.assign_coords(film_position=positions)

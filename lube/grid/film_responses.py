@@ -1,7 +1,6 @@
 """Responses of the film to waves of the roughness, over any operating conditions."""
 
 import logging
-from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -11,17 +10,17 @@ from lube.ehl.response import WaveResponse, at_wavelengths
 from lube.grid.film_profiles import film_positions, six_digits
 from lube.grid.operating_points import surface_speeds
 from lube.threads import on_threads
-from lube.types import Array
 
 log = logging.getLogger(__name__)
 
 SHORTEST = 0.05
 """Shortest wave that is solved for, over the half-width of the contact."""
 UNCHANGED = 0.003
-"""Largest change by the oil of a wave that is taken for none, of shorter ones too."""
+"""Change of a wave by the oil below which it is neglected, and that of all shorter waves too."""
 ROLLING_RATIO, SLIDING_RATIO = 1.2, 1.15
-"""Largest ratio of neighbouring wavelengths. With slip the response changes faster with them: what
-the oil carries through the contact runs ahead of the wave, or falls behind."""
+"""Largest ratio of neighbouring wavelengths. With slip the response changes faster with the
+wavelength: the part that the oil carries through the contact runs ahead of the wave, or falls
+behind."""
 POSITIONS = 0.02, 1.06
 """Distance of positions in the contact, and their growth beyond."""
 VARIABLES = "response_real", "response_imaginary", "interpolation_error"
@@ -39,9 +38,9 @@ def wave_responses(
     contact : xarray.Dataset
         From `lube.grid.films.hertz_contact`.
     slide_to_roll_ratio : xarray.DataArray
-        Slide-to-roll ratio, over its own or over other dimensions.
+        Slide-to-roll ratio, over the dimension of this name or over those of the films.
     spec : lube.study.line_spec.LineSpec
-        The roughness lines, whose waves are asked for.
+        The roughness lines, which set the longest and the shortest wave.
     threads : int, optional
         Threads that share the work; they do not change the results.
 
@@ -54,100 +53,40 @@ def wave_responses(
 
     Notes
     -----
-    At each operating point waves are solved for from the longest to the shortest, until the oil
-    changes one by less than `UNCHANGED` anywhere. The response to shorter waves is 1. The error of
-    interpolation is the root mean square over the contact, the larger of two wavelengths between
-    those stored, on either side of the one at which the response is most curved.
+    The wavelengths fall, each by the same ratio, from the lines' longest wave to `SHORTEST` of the
+    narrowest contact's half-width, or to the lines' shortest wave. At each operating point waves
+    are solved for from the longest to the shortest, until the oil changes one by less than
+    `UNCHANGED` anywhere. The response to shorter waves is 1. The error of interpolation is a root
+    mean square over the contact. It is found at the two wavelengths midway between the stored one
+    at which the response is most curved and its neighbours, and the larger is taken.
     """
-    widths = contact["contact_half_width"]
-    narrowest = widths.min().item()
-    waves = wavelengths(spec, narrowest, SLIDING_RATIO if slide_to_roll_ratio.any() else None)
-    rough = contact["reduced_radius"].item(), contact["composite_rms_roughness"].item()
-    positions = film_positions(narrowest, *rough, *POSITIONS)
-    films, slips, widths = xr.broadcast(solved, slide_to_roll_ratio, widths)
-    at_film = {}  # the same film at several slips
-    for index, film in np.ndenumerate(films.values):
-        at_film.setdefault(id(film), []).append(index)
+    widths, longest = contact["contact_half_width"], spec.longest_wavelength
+    shortest = max(SHORTEST * widths.min().item(), 2.0 * np.pi / spec.q_max)
+    ratio = SLIDING_RATIO if slide_to_roll_ratio.any() else ROLLING_RATIO
+    count = int(np.ceil(np.log(longest / shortest) / np.log(ratio)))
+    waves = np.geomspace(longest, shortest, count + 1)
+    positions = film_positions(contact, *POSITIONS)
+    films, widths = xr.broadcast(solved, widths)
+    slips = slide_to_roll_ratio.broadcast_like(films).transpose(*films.dims, ...)
+    speeds = np.stack(surface_speeds(1.0, slips.values), axis=-1)
 
-    def of_film(places):
-        speeds = np.array([surface_speeds(1.0, slips.values[one]) for one in places])
-        return _of_film(
-            films.values[places[0]], waves / widths.values[places[0]], speeds, positions
-        )
+    def of_film(at):
+        return _of_film(films.values[at], waves / widths.values[at], speeds[at], positions)
 
-    response = np.full((*films.shape, 2, waves.size, positions.size), np.nan + 0j)
-    error = np.full((*films.shape, 2), np.nan)
     with one_blas_thread():
-        found = on_threads(of_film, at_film.values(), threads)
-    for places, each in zip(at_film.values(), found, strict=True):
-        for index, transfer, its_error in zip(places, *each, strict=True):
-            response[index], error[index] = transfer, its_error
-    dims = *films.dims, "roller", "wavelength", "response_position"
+        found = on_threads(of_film, np.ndindex(films.shape), threads)
+    response = np.reshape([each for each, _ in found], (*speeds.shape, waves.size, positions.size))
+    error = np.reshape([each for _, each in found], speeds.shape)
+    dims = *slips.dims, "roller", "wavelength", "response_position"
     values = (dims, response.real), (dims, response.imag), (dims[:-2], error)
     levels = {"roller": [1, 2], "wavelength": waves, "response_position": positions}
-    return xr.Dataset(dict(zip(VARIABLES, values, strict=True)), {**films.coords, **levels})
-
-
-def wavelengths(spec, half_width: float, ratio: float | None = None) -> Array:
-    """Wavelengths for which the response of the film is stored.
-
-    Parameters
-    ----------
-    spec : lube.study.line_spec.LineSpec
-        The roughness lines.
-    half_width : float
-        Half-width of the narrowest contact, m.
-    ratio : float, optional
-        Largest ratio of neighbouring wavelengths; by default that without slip.
-
-    Returns
-    -------
-    numpy.ndarray
-        From the lines' longest wave to `SHORTEST` of the half-width, or to the lines' shortest
-        wave; m, falling, each by the same ratio.
-    """
-    longest = spec.longest_wavelength
-    shortest = max(SHORTEST * half_width, 2.0 * np.pi / spec.q_max)
-    count = int(np.ceil(np.log(longest / shortest) / np.log(ratio or ROLLING_RATIO)))
-    return np.geomspace(longest, shortest, count + 1)
-
-
-def thinned(groups, cold: xr.DataArray, factor: xr.DataArray) -> xr.DataArray:
-    """Solve for films that heating thins.
-
-    The steady film is that of an oil which is thinner at the inlet: so much that the central film
-    is the thinned one. The film is nearly a power of the viscosity at the inlet. The power is found
-    from the film at two viscosities.
-
-    Parameters
-    ----------
-    groups : lube.grid.films.FilmGroups
-        What the films depend on without heating.
-    cold : xarray.DataArray
-        The films without heating.
-    factor : xarray.DataArray
-        Thinned film over that without heating.
-
-    Returns
-    -------
-    xarray.DataArray
-        A `lube.ehl.line_contact.FilmProfile` each; None where it did not converge.
-    """
-    thinner = factor
-    for _ in range(2):
-        solved = replace(groups, speed=groups.speed * thinner).profiles()
-        thinner = thinner ** (np.log(factor) / np.log(_central(solved) / _central(cold)))
-    return replace(groups, speed=groups.speed * thinner).profiles()
-
-
-def _central(solved):
-    of_each = np.vectorize(lambda one: one.central_film if one else np.nan, otypes=[float])
-    return xr.apply_ufunc(of_each, solved)
+    return xr.Dataset(dict(zip(VARIABLES, values, strict=True)), {**slips.coords, **levels})
 
 
 def _of_film(profile, wavelengths, speeds, positions):
-    """Response over (slip, roller, wavelength, position), and its interpolation error."""
-    unknown = np.full((*speeds.shape, 1, 1), np.nan + 0j), np.full(speeds.shape, np.nan)
+    """Response over the speeds, wavelength and position, and its interpolation error."""
+    shape = *speeds.shape, wavelengths.size, positions.size
+    unknown = np.full(shape, np.nan + 0j), np.full(speeds.shape, np.nan)
     if profile is None:
         return unknown
     distinct, inverse = np.unique(speeds, return_inverse=True)

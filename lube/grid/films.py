@@ -3,20 +3,24 @@
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 import xarray as xr
 
 from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile, profiles_of
-from lube.grid.film_profiles import film_positions, sampled
-from lube.grid.film_responses import thinned, wave_responses
+from lube.grid.film_profiles import over_positions, six_digits
+from lube.grid.film_responses import wave_responses
 from lube.physics import dimensionless, hertz
 from lube.physics.inlet_heating import heating_factor, thermal_loading
 from lube.physics.regimes import asymptotic_gap, regime
+from lube.physics.starvation import starvation_factor
 
 log = logging.getLogger(__name__)
+
+_THINNED = ["film_thickness", "lambda_ratio"]
+"""Variables that heating at the inlet reduces."""
 
 
 def film_at(
@@ -63,35 +67,54 @@ def film_at(
     RangeError
         If the meniscus lies inside a contact.
     """
-    chosen = [formula(name) for name in formulas]
+    is_heated = inlet_shear_heating != "none"
     # "exact": coordinates that differ in one value would otherwise be cut to their intersection.
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = hertz_contact(rollers, force, speed)
         groups = FilmGroups.at(lubricant, rollers, force, contact, inlet_meniscus)
-        table = contact.merge(_regime(groups), join="exact")
-        table = table.merge(_film(chosen, rollers, groups, table), join="exact")
+        table = _films([formula(name) for name in formulas], groups, contact)
         heat = inlet_shear_heating, lubricant, contact, groups, slide_to_roll_ratio
-        factor = _heating_factor(*heat)
-        if inlet_shear_heating != "none":
-            for name in ("film_thickness", "lambda_ratio"):
-                table[name] = table[name] * factor
-            _warn(factor)
-        table["inlet_shear_heating_factor"] = factor
-        is_answered = answered_lines is not None
-        solved = groups.profiles() if with_shape or is_answered else None
+        table["inlet_shear_heating_factor"] = factor = _heating_factor(*heat)
+        if is_heated:
+            table.update(table[_THINNED] * factor)
         if with_shape:
-            profile = over_positions(solved, FilmProfile.film_at, rollers, contact)
+            profile = over_positions(groups.profiles, FilmProfile.film_at, contact)
             table["film_profile"] = profile * rollers.reduced_radius
-        if is_answered:
-            if inlet_shear_heating != "none":
-                solved = thinned(groups, solved, factor)
+        if answered_lines is not None:
+            solved = groups.thinned(factor).profiles if is_heated else groups.profiles
             responses = contact, xr.DataArray(slide_to_roll_ratio), answered_lines, threads
             table = table.merge(wave_responses(solved, *responses), compat="override", join="exact")
-            # With slip the oil answers otherwise: each slip has a film of its own.
-            for name in ("film_thickness", "lambda_ratio"):
-                table[name] = table[name].broadcast_like(table["interpolation_error"])
-                table[name] = table[name].isel(roller=0, drop=True)
+            # The response depends on slip, so each slip has its film.
+            each = table["interpolation_error"].isel(roller=0, drop=True)
+            table.update(table[_THINNED].broadcast_like(each))
     return table
+
+
+def _films(rows, groups, contact):
+    """Contact, Moes' numbers, and the films by some formulas."""
+    moes_numbers = groups.moes_numbers
+    names = xr.DataArray([row.name for row in rows], dims="film_formula", name="film_formula")
+
+    def films(groups):
+        of_formulas = [groups.film(row) for row in rows]
+        return xr.concat(of_formulas, dim=names, join="exact") * contact["reduced_radius"]
+
+    film, starved = films(groups), {}
+    if groups.meniscus is not None:
+        starved["starvation_factor"] = film / films(replace(groups, meniscus=None))
+    flag = xr.apply_ufunc(regime, *moes_numbers, join="exact")
+    valid = [row.holds(*moes_numbers) for row in rows]
+    return contact.assign(
+        moes_load=moes_numbers[0],
+        moes_material=moes_numbers[1],
+        regime=flag.astype("int8"),  # the type of its flag_values, as CF requires
+        film_thickness=film,
+        lambda_ratio=film / contact["composite_rms_roughness"],
+        in_validity_range=xr.concat(valid, dim=names, join="exact"),
+        formula_place=("film_formula", [row.thickness for row in rows]),
+        formula_source=("film_formula", [row.source for row in rows]),
+        **starved,
+    )
 
 
 def _heating_factor(model, lubricant, contact, groups, slip):
@@ -104,18 +127,16 @@ def _heating_factor(model, lubricant, contact, groups, slip):
     pressure = contact["hertz_pressure"] / (2.0 * contact["reduced_modulus"])
     film = xr.apply_ufunc(asymptotic_gap, *groups.moes_numbers, join="exact")
     arguments = loading, slip, pressure, film
-    return xr.apply_ufunc(partial(heating_factor, model), *arguments, join="exact")
-
-
-def _warn(factor):
+    factor = xr.apply_ufunc(partial(heating_factor, model), *arguments, join="exact")
     unknown = int(factor.isnull().sum())
-    if unknown:
+    if unknown and model != "none":
         log.warning(
             "inlet_shear_heating: the film is not known at %d of %d conditions, where the heating "
             "is beyond the range of the formula",
             unknown,
             factor.size,
         )
+    return factor
 
 
 @dataclass(frozen=True)
@@ -180,18 +201,44 @@ class FilmGroups:
         """M and L."""
         return dimensionless.moes_numbers(self.load, self.speed, self.material)
 
-    def film(self, row: Formula) -> xr.DataArray:
-        """Film over R* by a film formula."""
-        return self._applied(row.film)
-
+    @cached_property
     def profiles(self) -> xr.DataArray:
-        """Solve for the profile of each film; None where it did not converge."""
-        return self._applied(profiles_of)
-
-    def _applied(self, function):
+        """The profile of each film, which is solved for; None where it did not converge."""
         groups = self.load, self.speed, self.material, self.viscosity, self.film_modulus
-        options = {"join": "exact", "kwargs": {"meniscus": self.meniscus}}
-        return xr.apply_ufunc(function, *groups, **options)
+        return xr.apply_ufunc(partial(profiles_of, meniscus=self.meniscus), *groups, join="exact")
+
+    @cached_property
+    def central_film(self) -> xr.DataArray:
+        """Film over R* at the line of centres of each profile; NaN where there is none."""
+        of_each = np.vectorize(lambda one: one.central_film if one else np.nan, otypes=[float])
+        return xr.apply_ufunc(of_each, self.profiles)
+
+    def film(self, row: Formula) -> xr.DataArray:
+        """Film over R* by a formula, reduced by starvation if the inlet has a meniscus.
+
+        The computed film is solved for with its meniscus, and rounded to six digits.
+        """
+        if row.depends_on_oil:
+            return xr.apply_ufunc(six_digits, self.central_film)
+        film = xr.apply_ufunc(row.evaluate, self.load, self.speed, self.material, join="exact")
+        if self.meniscus is None:
+            return film
+        half_width = np.sqrt(8.0 * self.load / np.pi)
+        scaled = film / half_width**2, self.meniscus / half_width
+        return film * xr.apply_ufunc(starvation_factor, *scaled, join="exact")
+
+    def thinned(self, factor: xr.DataArray) -> "FilmGroups":
+        """Find the groups of films that heating thins by a factor.
+
+        The film is that of an oil which is thinner at the inlet: so much that the central film is
+        the thinned one. The film is nearly a power of the viscosity at the inlet. The power is
+        found from the film at two viscosities.
+        """
+        thinner = factor
+        for _ in range(2):
+            film = replace(self, speed=self.speed * thinner).central_film
+            thinner = thinner ** (np.log(factor) / np.log(film / self.central_film))
+        return replace(self, speed=self.speed * thinner)
 
 
 def hertz_contact(rollers, force: xr.DataArray, speed: xr.DataArray) -> xr.Dataset:
@@ -207,42 +254,3 @@ def hertz_contact(rollers, force: xr.DataArray, speed: xr.DataArray) -> xr.Datas
             "entrainment_speed": 2.0 * np.pi * rollers.first.radius * speed / 60.0,
         }
     )
-
-
-def _regime(groups):
-    moes_load, moes_material = groups.moes_numbers
-    flag = xr.apply_ufunc(regime, moes_load, moes_material, join="exact")
-    flag = flag.astype("int8")  # the type of its flag_values, as CF requires
-    return xr.Dataset({"moes_load": moes_load, "moes_material": moes_material, "regime": flag})
-
-
-def _film(formulas, rollers, groups, table):
-    names = xr.DataArray([row.name for row in formulas], dims="film_formula", name="film_formula")
-
-    def films(groups):
-        of_formulas = [groups.film(row) for row in formulas]
-        return xr.concat(of_formulas, dim=names, join="exact") * rollers.reduced_radius
-
-    film, starved = films(groups), {}
-    if groups.meniscus is not None:
-        starved["starvation_factor"] = film / films(replace(groups, meniscus=None))
-    valid = [row.holds(table["moes_load"], table["moes_material"]) for row in formulas]
-    return xr.Dataset(
-        {
-            "film_thickness": film,
-            "lambda_ratio": film / rollers.composite_rms_roughness,
-            "in_validity_range": xr.concat(valid, dim=names, join="exact"),
-            "formula_place": ("film_formula", [row.thickness for row in formulas]),
-            "formula_source": ("film_formula", [row.source for row in formulas]),
-            **starved,
-        }
-    )
-
-
-def over_positions(solved: xr.DataArray, sample, rollers, contact: xr.Dataset) -> xr.DataArray:
-    """Sample a quantity of every profile, over their dimensions and film_position."""
-    half_width = float(contact["contact_half_width"].min())
-    positions = film_positions(half_width, rollers.reduced_radius, rollers.composite_rms_roughness)
-    values = sampled(solved.values, sample, positions)
-    coordinates = solved.coords.merge({"film_position": positions}).coords
-    return xr.DataArray(values, coordinates, (*solved.dims, "film_position"))

@@ -32,7 +32,7 @@ class Gap:
 
     @property
     def is_answered(self) -> bool:
-        """Whether the oil answers the lines, otherwise at each position in the contact."""
+        """Whether the oil answers the lines, differently at each position in the contact."""
         return self.roughness_deformation == "computed"
 
     @property
@@ -42,7 +42,7 @@ class Gap:
 
     @property
     def is_plain(self) -> bool:
-        """Whether film thickness and contact width alone decide on contact: a map has it all."""
+        """Whether film thickness and contact width alone decide on contact, as in a master map."""
         return self == PLAIN
 
 

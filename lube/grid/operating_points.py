@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 from itertools import product
 
-import numpy as np
 import xarray as xr
 
+from lube.grid.gap import Gap
 from lube.grid.levels import rolling
 from lube.schema import EXPERIMENT_DIMS
 
@@ -42,7 +42,7 @@ def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tupl
 def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Dataset:
     """Select one slide-to-roll ratio, if the film depends on it.
 
-    It does with inlet shear heating, or if it answers the roughness.
+    The film depends on it with inlet shear heating, or if it answers the roughness.
 
     Parameters
     ----------
@@ -72,13 +72,15 @@ def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Da
     return film.sel({name: slide_to_roll_ratio}, drop=True)
 
 
-def known_films(film: xr.Dataset) -> xr.DataArray:
-    """Where the film is known, with its shape if it has one.
+def known_films(film: xr.Dataset, gap: Gap) -> xr.DataArray:
+    """Find where the film is known, with its shape and response as far as contact needs them.
 
     Parameters
     ----------
     film : xarray.Dataset
         A ``film`` dataset, or rows of one.
+    gap : Gap
+        Says whether contact needs the film's shape, and its response to the roughness.
 
     Returns
     -------
@@ -86,16 +88,16 @@ def known_films(film: xr.Dataset) -> xr.DataArray:
         Over the dimensions of its ``film_thickness``.
     """
     known = film["film_thickness"].notnull()
-    if "film_profile" in film:
+    if gap.has_shape:
         known = known & film["film_profile"].notnull().all("film_position")
-    if "interpolation_error" in film:  # of the response to the roughness
+    if gap.is_answered:
         known = known & film["interpolation_error"].notnull().all("roller")
     return known
 
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """An operating point, with its film thickness and contact width.
+    """An operating point, with its row of the film table.
 
     Attributes
     ----------
@@ -105,12 +107,6 @@ class OperatingPoint:
         Name of the lubricant.
     temperature, speed, force : float
         Levels of the study, degC, rpm and N.
-    film_thickness, contact_half_width : float
-        h0 and a, m.
-    entrainment_speed : float
-        Entrainment speed v, m/s.
-    reduced_modulus : float
-        E*, Pa.
     row : xarray.Dataset
         The film table at the point, without coordinates of the operating variables.
     """
@@ -120,26 +116,12 @@ class OperatingPoint:
     temperature: float
     speed: float
     force: float
-    film_thickness: float
-    contact_half_width: float
-    entrainment_speed: float
-    reduced_modulus: float
     row: xr.Dataset = field(compare=False, repr=False)
 
     @property
     def levels(self) -> dict[str, float | str]:
         """Levels of the operating variables, by the names of `lube.schema.EXPERIMENT_DIMS`."""
         return {name: getattr(self, name) for name in EXPERIMENT_DIMS}
-
-    @property
-    def is_known(self) -> bool:
-        """Whether the film is known here, with its shape if it has one."""
-        return bool(known_films(self.row))
-
-    @property
-    def faster_speed(self) -> float:
-        """Speed of the faster surface, m/s."""
-        return max(surface_speeds(self.entrainment_speed, self.slide_to_roll_ratio))
 
 
 def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[OperatingPoint]:
@@ -161,30 +143,14 @@ def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[Oper
     --------
     >>> names = "lubricant", "temperature", "speed", "force"
     >>> levels = ["oil"], [40.0], [100.0], [200.0, 400.0]
-    >>> table = xr.Dataset(
-    ...     {
-    ...         "film_thickness": (names, [[[[1.0e-6, 0.9e-6]]]]),
-    ...         "contact_half_width": ("force", [5e-5, 7e-5]),
-    ...         "entrainment_speed": ("speed", [0.5]),
-    ...         "reduced_modulus": 1.15e11,
-    ...     },
-    ...     dict(zip(names, levels)),
-    ... )
+    >>> films = {"film_thickness": (names, [[[[1.0e-6, 0.9e-6]]]])}
+    >>> table = xr.Dataset(films, dict(zip(names, levels)))
     >>> [point.force for point in operating_points(table, 0.0)]
     [200.0, 400.0]
     """
-    names = EXPERIMENT_DIMS[1:]
-    table = at_slip(table, slide_to_roll_ratio).transpose(*names, ...)
-    every_level = product(*(table[name].values.tolist() for name in names))
-    return [
-        _point(table.isel(dict(zip(names, index, strict=True))), slide_to_roll_ratio, levels)
-        for index, levels in zip(
-            np.ndindex(table["film_thickness"].shape), every_level, strict=True
-        )
-    ]
-
-
-def _point(row, slide_to_roll_ratio, levels):
-    names = "film_thickness", "contact_half_width", "entrainment_speed", "reduced_modulus"
-    numbers = (row[name].item() for name in names)
-    return OperatingPoint(slide_to_roll_ratio, *levels, *numbers, row.reset_coords(drop=True))
+    names, points = EXPERIMENT_DIMS[1:], []
+    table = at_slip(table, slide_to_roll_ratio)
+    for levels in product(*(table[name].values.tolist() for name in names)):
+        row = table.sel(dict(zip(names, levels, strict=True))).reset_coords(drop=True)
+        points.append(OperatingPoint(slide_to_roll_ratio, *levels, row))
+    return points

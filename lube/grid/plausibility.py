@@ -1,4 +1,4 @@
-"""What an engineer looks at before a long computation, and what is unlikely to be meant."""
+"""Numbers to look at before a long computation, and remarks on values that are unlikely meant."""
 
 import math
 
@@ -34,12 +34,12 @@ def expected_load_share(film: xr.Dataset, rollers) -> xr.DataArray:
 
 
 def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
-    """Say what pressures, films and roughness rollers have at their operating points.
+    """Describe pressures, films and roughness of rollers at their operating points.
 
     Parameters
     ----------
     film : xarray.Dataset
-        A ``film`` dataset; of several film formulas the first counts.
+        A ``film`` dataset; only its first film formula is used.
     lines : LineSpec
         The roughness lines.
     rollers : RollerPair
@@ -48,7 +48,7 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
     Returns
     -------
     dict of str to str
-        A text for each.
+        Texts by the names of the quantities.
     """
     film = film.isel(film_formula=0)
     width, shortest = 2.0 * film["contact_half_width"], 2.0 * math.pi / lines.q_max
@@ -67,7 +67,7 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
 
 
 def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
-    """Say what is unlikely to be meant, and what is outside of what the model can hold.
+    """List values that are unlikely to be meant, and those beyond the limits of the model.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     Returns
     -------
     list of str
-        What came, and what is usual.
+        A line for each: the value, and what is usual.
 
     References
     ----------

@@ -1,23 +1,23 @@
 """The model at the conditions of each record.
 
 A record has a force, a speed and a temperature of its own. The film thickness there follows from
-the film formulas, and the probability from the study's own realisations, run at that film and
+the film formulas, and the probability from the study's realisations, run at that film and
 contact width: nothing is rounded to the nearest level of the operating grid.
 """
 
 import logging
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from lube.contact.rough_pair import drawn
-from lube.grid.film_responses import VARIABLES
+from lube.contact.windows import study_windows
 from lube.grid.films import film_at
 from lube.grid.operating_points import at_slip
-from lube.inference.record_scatter import record_scatter, study_windows
-from lube.schema import OPERATING_DIMS
-from lube.study.line_spec import LineSpec
+from lube.inference.record_scatter import record_scatter
+from lube.schema import FILES, OPERATING_DIMS, with_dims
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import RollerPair
 from lube.study.study import Study
@@ -25,8 +25,6 @@ from lube.study.study import Study
 Data = xr.Dataset
 
 log = logging.getLogger(__name__)
-
-PROBABILITY = "breakthrough_probability"
 
 
 def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) -> Data:
@@ -50,9 +48,9 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
         the same dimensions, most without realisation; and the attributes ``travel`` and
         ``longest_wavelength``, both m, of one realisation.
 
-        The probabilities are those of one revolution of pure rolling, at the film of the record's
-        own slip and with its answer to the roughness: apart from these slip does not change the
-        expected probability. It changes the scatter of a record.
+        The probabilities are those of one revolution of pure rolling, with the film and its
+        response to the roughness at the record's slip. Otherwise slip does not change the
+        expected probability, only the scatter of a record.
     """
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     rollers, formulas = study.rough_rollers, study.film_formulas
@@ -60,14 +58,12 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     windows, inverse = study_windows(study, at_records).distinct()
     stored = _stored(study, film, contact)
     probability = _probability(windows, stored, contact.sizes["realisation"], study)[:, inverse]
+    shape = at_records.sizes["film_formula"], at_records.sizes["record"]
     scatter = record_scatter(at_records, experiment, probability, study)
-    dims = ("film_formula", "record")
-    shape = tuple(at_records.sizes[name] for name in dims)
-    model = at_records.copy()
-    for name, values in {PROBABILITY: probability, **scatter}.items():
-        lead = ("realisation",) * (values.ndim - 1)
-        model[name] = (*lead, *dims), values.reshape(values.shape[:-1] + shape)
-    model = model.assign_coords(realisation=contact["realisation"].values)
+    values = {"breakthrough_probability": probability, **scatter}
+    values = {name: each.reshape(*each.shape[:-1], *shape) for name, each in values.items()}
+    values["realisation"] = contact["realisation"].values
+    model = at_records.assign(with_dims("comparison", values))
     attributes = {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
     return model.assign_attrs(attributes)
 
@@ -77,10 +73,7 @@ def film_at_records(
     lubricant: xr.Dataset,
     rollers: RollerPair,
     formulas: Sequence[str],
-    with_shape: bool = False,
-    inlet_shear_heating: str = "none",
-    inlet_meniscus: float | None = None,
-    answered_lines: LineSpec | None = None,
+    **film_model: Any,
 ) -> xr.Dataset:
     """Film thickness at the conditions of each record.
 
@@ -90,45 +83,44 @@ def film_at_records(
         An ``experiment`` dataset.
     lubricant : xarray.Dataset
         A ``lubricant`` dataset at all temperatures of the records.
-    rollers, formulas, with_shape, inlet_shear_heating, inlet_meniscus, answered_lines
-        As in `lube.grid.films.film_at`; the slip is that of each record.
+    rollers, formulas, **film_model
+        As in `lube.grid.films.film_at`, such as `Study.film_model`; the slip is that of each
+        record.
 
     Returns
     -------
     xarray.Dataset
         ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material``,
         ``contact_half_width`` and ``dynamic_viscosity`` over film_formula and record;
-        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. If they have a
+        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. If films have a
         shape, ``film_profile`` over record and film_position, and ``formula_place``. With inlet
-        shear heating its factor over record, and with a meniscus its distance.
+        shear heating the factor over record, and with a meniscus its distance.
     """
     force, speed, temperature, oil, slip = (
         xr.DataArray(experiment[name].values, dims="record")
         for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio")
     )
     properties = lubricant.sel(lubricant=oil, temperature=temperature).reset_coords(drop=True)
-    options = with_shape, slip, inlet_shear_heating, inlet_meniscus, answered_lines
-    table = film_at(properties, rollers, force, speed, formulas, *options)
-    table["dynamic_viscosity"] = properties["dynamic_viscosity"]
-    names = ["film_thickness", "lambda_ratio", "moes_load", "moes_material", "contact_half_width"]
-    names += ["reduced_radius", "reduced_modulus", "composite_rms_roughness", "dynamic_viscosity"]
-    names += ["film_profile", "formula_place"] if with_shape else []
-    names += VARIABLES if answered_lines else []
-    if inlet_shear_heating != "none":
-        names.append("inlet_shear_heating_factor")
-    if inlet_meniscus is not None:
-        names.append("inlet_meniscus")
-        table["inlet_meniscus"] = inlet_meniscus
-    return table[names].transpose("film_formula", "record", ...)
+    table = film_at(
+        properties, rollers, force, speed, formulas, slide_to_roll_ratio=slip, **film_model
+    )
+    unused = [name for name in table if name not in FILES["comparison"]]
+    unused += [] if "film_profile" in table else ["formula_place"]
+    if film_model.get("inlet_shear_heating", "none") == "none":
+        unused.append("inlet_shear_heating_factor")
+    table = table.drop_vars(unused).assign(dynamic_viscosity=properties["dynamic_viscosity"])
+    if film_model.get("inlet_meniscus") is not None:
+        table["inlet_meniscus"] = film_model["inlet_meniscus"]
+    return table.transpose("film_formula", "record", ...)
 
 
 def _stored(study, film, contact):
     """Probability of every realisation at the points of contact.nc in pure rolling, by point."""
-    rolling = contact["slide_to_roll_ratio"].values == 0.0
-    if not rolling.any() or contact["revolutions"].item() != 1:
+    rolling = 0.0 in contact["slide_to_roll_ratio"].values
+    if not rolling or contact["revolutions"].item() != 1:
         return {}
     film = at_slip(film, 0.0).transpose(*OPERATING_DIMS, ...)
-    stored = contact[PROBABILITY].isel(slide_to_roll_ratio=int(np.argmax(rolling))).values
+    stored = contact["breakthrough_probability"].sel(slide_to_roll_ratio=0.0).values
     columns = stored.reshape(len(stored), -1).T
     return dict(zip(study_windows(study, film).keys, columns, strict=True))
 

@@ -15,7 +15,7 @@ from lube.contact.ensemble import windows_in
 from lube.ehl.film_formulas import formula
 from lube.grid.films import FilmGroups
 from lube.inference.record_curves import RecordCurves
-from lube.schema import LIMITS, values_with_limits
+from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
 from lube.statistics.sample_size import effective_sample_size
@@ -26,8 +26,8 @@ Data = xr.Dataset
 ALPHA_FACTORS = np.geomspace(1.0 / 8.0, 8.0, 193)
 """Factors of the pressure-viscosity coefficient that are tried."""
 COMPUTED_FACTORS = np.array([0.125, 0.25, 0.5, 1.0, 2.0])
-"""Factors at which a computed film is solved for. Beyond, it grows as a power of the factor: so
-viscous an oil has a pressure spike too steep to be resolved."""
+"""Factors at which a computed film is solved for. Beyond them it is taken to grow as a power of the
+factor: the pressure spike of so viscous an oil is too steep to be resolved."""
 STRENGTH_LEVELS = 193
 """Number of layer strengths that are tried, between the curves' weakest and strongest."""
 
@@ -46,7 +46,7 @@ def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
     Parameters
     ----------
     curves : RecordCurves
-        Of the records of the comparison.
+        Curves of the records of the comparison.
     contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
@@ -88,7 +88,7 @@ def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) ->
     Parameters
     ----------
     curves : RecordCurves
-        Of the records of the comparison.
+        Curves of the records of the comparison.
     contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
@@ -112,7 +112,7 @@ def strength_logits(
     Parameters
     ----------
     curves : RecordCurves
-        Of the records of the comparison.
+        Curves of the records of the comparison.
     contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
@@ -124,7 +124,12 @@ def strength_logits(
         Over (factor, film_formula, record).
     """
     tried = np.geomspace(*curves.strengths[[0, -1]], STRENGTH_LEVELS)
-    logits = _coarse_strength_logits(curves, comparison, study_strength(contact))
+    # Curves of layers are coarse: they give the difference to the study's layer.
+    ratios = comparison["lambda_ratio"]
+    coarse = curves.layer_logits(ratios)
+    own = coarse.sel(layer_strength=study_strength(contact), method="nearest", drop=True)
+    logits = curves.logits(ratios) + coarse - own
+    logits = logits.transpose("layer_strength", "film_formula", "record")
     # A record is left out if the contact of any layer is too rare for the curves there.
     known = logits.notnull().all("layer_strength")
     spline = scipy.interpolate.PchipInterpolator(
@@ -152,8 +157,7 @@ def study_strength(contact: Data) -> float:
 def _lambda_ratios(comparison, factor):
     """Lambda ratios with the pressure-viscosity coefficient multiplied by a factor.
 
-    How much inlet
-    shear heating thins the film does not depend on the coefficient; starvation depends on the film.
+    Starvation depends on the film, but inlet shear heating does not depend on the coefficient.
     """
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         groups, names = FilmGroups.of(comparison), comparison["film_formula"]
@@ -195,18 +199,6 @@ def _between_nodes(films, factor):
     return np.exp(curve(np.minimum(np.log(factor), last)) + beyond * curve(last, 1))
 
 
-def _coarse_strength_logits(curves, comparison, study):
-    """Logits over (layer_strength, film_formula, record) at the strengths of the curves.
-
-    Those of layers are coarse. They give the difference to the study's layer.
-    """
-    ratios = comparison["lambda_ratio"]
-    coarse = curves.layer_logits(ratios)
-    own = coarse.sel(layer_strength=study, method="nearest", drop=True)
-    logits = curves.logits(ratios) + coarse - own
-    return logits.transpose("layer_strength", "film_formula", "record")
-
-
 def _fits(name, tried, truth, logits, contact, comparison):
     """Fit a factor, with its limits and coverage, for every lubricant and film formula."""
     oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
@@ -217,11 +209,8 @@ def _fits(name, tried, truth, logits, contact, comparison):
         fits[:-1, oil, number] = fit_records(np.log(tried), model, records)
         fits[-1, oil, number] = _coverage(np.log(tried), np.log(truth), model, records)
     variables = values_with_limits(name, fits[:-1]) | {f"{name}_coverage": fits[-1]}
-    dims = ("fitted_lubricant", "film_formula")
-    return xr.Dataset(
-        {each: (dims, values) for each, values in variables.items()},
-        coords={"fitted_lubricant": oils, "film_formula": formulas},
-    )
+    variables |= {"fitted_lubricant": oils, "film_formula": formulas}
+    return xr.Dataset(with_dims("gauge", variables))
 
 
 def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[float, float, float]:
@@ -257,7 +246,7 @@ def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[fl
 def _usable(logits, comparison):
     """Keep the records that have a share and a probability at every factor.
 
-    With the probabilities of the realisations there, and their effective sample size.
+    Also returned are the realisations' probabilities there, and their effective sample size.
     """
     used = np.isfinite(comparison["measured_share"].values) & np.isfinite(logits).all(axis=0)
     comparison = comparison.isel(record=used)

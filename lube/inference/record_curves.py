@@ -1,4 +1,4 @@
-"""Curves of the breakthrough probability against the film, one of each record.
+"""Curves of the breakthrough probability against the film, one for each record.
 
 Where contact depends on the film thickness and the contact width alone, they are read from the
 master map. Elsewhere, under a film with a shape or on lines that the oil flattens, every record has
@@ -7,7 +7,7 @@ on some of the study's realisations, or sampled where it is rare.
 """
 
 import dataclasses
-from functools import cache
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -17,8 +17,8 @@ from scipy.special import expit, logit
 from lube.contact.ensemble import windows_in
 from lube.contact.rough_pair import drawn
 from lube.contact.window_films import film_at_places
-from lube.contact.windows import ContactWindows
-from lube.statistics.curves import Curve, peaked_curve
+from lube.contact.windows import study_windows
+from lube.statistics.curves import Curve, film_interval, peaked_curve
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.study import Study
 from lube.threads import on_threads
@@ -29,7 +29,7 @@ PROBABILITY = "breakthrough_probability"
 FILMS = 13
 """Films of a record at which contact is counted or sampled."""
 FINER = 4
-"""Films of its curve for each of these, interpolated."""
+"""Films of the curve for each of these, by interpolation."""
 BEYOND = 0.3, 1.5
 """Thinnest film of the curves over the thinnest of all records, and thickest over the thickest."""
 PAIRS = 8
@@ -41,7 +41,7 @@ LAYER_FACTORS = np.array([1 / 8, 1 / 3, 1.0, 3.0, 8.0])
 LAYER_FILMS, LAYER_PAIRS = 5, 4
 """Films and pairs of lines for boundary layers of other strengths."""
 _LEAST = 1e-40
-"""Probabilities that are taken for none."""
+"""Probability up to which contact is taken as impossible."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -123,20 +123,23 @@ def map_curves(master: xr.Dataset, comparison: xr.Dataset) -> RecordCurves:
     Returns
     -------
     RecordCurves
-        The same curves for records of one width.
+        Records of one width have the same curve.
     """
     widths = 2.0 * comparison["contact_half_width"].values
     layers = master["layer_breakthrough_probability"].mean("realisation")
-    rows = [cache(lambda width: curve_at(master, width))]
-    for layer in layers.transpose("layer_strength", ...):
-        rows.append(cache(lambda width, layer=layer: layer_curve_at(layer, master, width)))
-    of_records, *of_layers = ([row(width) for width in widths] for row in rows)
+    layers = layers.transpose("layer_strength", ...)
+    distinct, inverse = np.unique(widths, return_inverse=True)
+    rows = ([curve_at(master, width, layer) for width in distinct] for layer in (None, *layers))
+    of_records, *of_layers = ([row[number] for number in inverse] for row in rows)
     offsets = np.zeros(comparison["film_thickness"].shape[:-1] + widths.shape)
     return RecordCurves(of_records, offsets, master["layer_strength"].values, of_layers)
 
 
-def curve_at(master: xr.Dataset, width: float) -> Curve:
+def curve_at(master: xr.Dataset, width: float, layer: xr.DataArray | None = None) -> Curve:
     """Curve of the mean breakthrough probability and of its effective sample size.
+
+    If contacts occur independently along the line, -ln(1 - p) is proportional to the width. It is
+    extrapolated so beyond the map's widths, and interpolated linearly between them.
 
     Parameters
     ----------
@@ -144,46 +147,22 @@ def curve_at(master: xr.Dataset, width: float) -> Curve:
         A ``master`` dataset.
     width : float
         Contact width, m.
+    layer : xarray.DataArray, optional
+        Mean probability with another boundary layer, over layer_lambda_ratio and
+        layer_contact_width; by default that of the study's layer.
 
     Returns
     -------
     Curve
-        Against the logarithm of the lambda ratio.
+        Against the logarithm of the lambda ratio. With another layer the sample size is unknown,
+        NaN.
     """
-    mean = master[f"{PROBABILITY}_mean"]
-    widths = master["contact_width"].values
-    sample_size = effective_sample_size(master[PROBABILITY].values, windows_in(master, widths))
-    here = np.array([np.interp(width, widths, row) for row in sample_size])
-    return _curve(mean, master, width, here)
-
-
-def layer_curve_at(probability: xr.DataArray, master: xr.Dataset, width: float) -> Curve:
-    """Curve of the mean breakthrough probability of another boundary layer.
-
-    Parameters
-    ----------
-    probability : xarray.DataArray
-        Mean over the realisations, over layer_lambda_ratio and layer_contact_width.
-    master : xarray.Dataset
-        The ``master`` dataset from which it is taken.
-    width : float
-        Contact width, m.
-
-    Returns
-    -------
-    Curve
-        Against the logarithm of the lambda ratio; its sample size is unknown, NaN.
-    """
-    return _curve(probability, master, width, np.full(probability.shape[0], np.nan))
-
-
-def _curve(probability, master, width, sample_size):
-    """Curve through the levels of a map.
-
-    If contacts occur independently along the line, -ln(1 - p) is proportional to the width. It is
-    extrapolated so beyond the map's widths, and interpolated linearly between them.
-    """
+    probability = master[f"{PROBABILITY}_mean"] if layer is None else layer
     ratios, widths = (probability[name].values for name in probability.dims)
+    sample_size = np.full(ratios.size, np.nan)
+    if layer is None:
+        rows = effective_sample_size(master[PROBABILITY].values, windows_in(master, widths))
+        sample_size = np.array([np.interp(width, widths, row) for row in rows])
     intensity = -np.log1p(-np.minimum(probability.values, 1.0 - 1e-12))
     nearest = np.clip(width, widths[0], widths[-1])
     here = np.array([np.interp(width, widths, row) for row in intensity]) * width / nearest
@@ -197,9 +176,9 @@ def _curve(probability, master, width, sample_size):
 def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None) -> RecordCurves:
     """Curves of the films at the records' own conditions, made thinner and thicker.
 
-    The shape of a film, and how much the oil flattens the lines, stay those of the record. As far
-    as the study's realisations know the probability at the record's own film better, the curve is
-    moved there.
+    The shape of a film, and how much the oil flattens the lines, stay those of the record. The
+    curve is shifted towards the mean over the study's realisations at the record's film, the more
+    the better they determine it.
 
     Parameters
     ----------
@@ -217,7 +196,7 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
     """
     first = comparison.isel(film_formula=0)
     ratios, layer = first["lambda_ratio"].values, study.boundary_layer
-    _, inverse = _windows(study, first).distinct()
+    _, inverse = study_windows(study, first).distinct()
     records = first.isel(record=np.unique(inverse, return_index=True)[1])
     ends = BEYOND[0] * np.nanmin(ratios), BEYOND[1] * np.nanmax(ratios)
     films = np.geomspace(*ends, FILMS)
@@ -238,12 +217,8 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
     return RecordCurves(of_records, offsets, np.array(strengths), of_layers)
 
 
-def _windows(study, film, weaker=1.0):
-    return ContactWindows(study.line_spec, film, study.boundary_layer, study.gap, weaker)
-
-
 def _offsets(comparison, has_shape):
-    """Logarithms of the films of a shape that the first formula gives, less those of each."""
+    """Logarithm of the film that the first formula gives less that of each, of one shape."""
     if not has_shape:
         return np.zeros(comparison["film_thickness"].shape)
     films = np.log(film_at_places(comparison).transpose("film_formula", "record").values)
@@ -255,7 +230,7 @@ def _on_pairs(study, records, films, weaker, pairs, threads):
     shape = len(weaker), films.size, records.sizes["record"]
     thickness = np.broadcast_to(films[:, None], shape) * records["composite_rms_roughness"].item()
     table = records.assign(film_thickness=(("layer", "film", "record"), thickness))
-    windows = _windows(study, table, np.repeat(weaker, thickness[0].size))
+    windows = study_windows(study, table, np.repeat(weaker, thickness[0].size))
     is_rare = np.zeros(windows.size, bool)
     if study.is_sampled:
         is_rare = windows.sample(study.line_spec, study.seed, 0)[0][1] < FREQUENT
@@ -273,12 +248,12 @@ def _on_pairs(study, records, films, weaker, pairs, threads):
 
 
 def _own_curve(films, pairs, record):
-    """Curve of one record, moved to the mean over the realisations as far as that knows more."""
+    """Curve of one record, shifted towards the mean over the realisations."""
     realised = record[PROBABILITY].values
     windows = windows_in(record, 2.0 * record["contact_half_width"].item())
     size = effective_sample_size(realised, windows).item()
     curve = _through(films, pairs.mean(axis=0), size)
-    if len(pairs) == 1:  # it is all that the realisations know
+    if len(pairs) == 1:  # the study has no other realisation
         return curve
     own = np.log(record["lambda_ratio"].item())
     here = curve.logit_at(own)
@@ -298,19 +273,44 @@ def _own_curve(films, pairs, record):
 def _through(films, mean, sample_size):
     """Curve through probabilities at some films, interpolated between them.
 
-    Over the square of the film, in which the logit of a rare probability is nearly linear.
+    The logit is interpolated over the square of the film, in which it is nearly linear where the
+    probability is small.
     """
     known = (mean > _LEAST) & (mean < 1.0)
     if np.count_nonzero(known) < 2:
         nothing = np.zeros(0)
         return Curve(nothing, nothing, nothing)
     films, mean = films[known], mean[known]
-    finer = np.exp(
-        np.interp(_steps(FINER * (films.size - 1)), _steps(films.size - 1), np.log(films))
-    )
+    places = np.linspace(0.0, 1.0, FINER * (films.size - 1) + 1)
+    finer = np.exp(np.interp(places, np.linspace(0.0, 1.0, films.size), np.log(films)))
     logits = PchipInterpolator(films**2, logit(mean))(finer**2)
     return peaked_curve(np.log(finer), expit(logits), np.full(finer.size, sample_size), _LEAST)
 
 
-def _steps(count):
-    return np.linspace(0.0, 1.0, count + 1)
+def gauged_ratios(curves: Sequence[Curve], comparison: xr.Dataset, noise: Array) -> Array:
+    """Lambda ratios that explain the contact shares of records.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        Curve of each record.
+    comparison : xarray.Dataset
+        A ``comparison`` dataset of these records.
+    noise : numpy.ndarray, shape (record,)
+        Standard errors of the shares from causes other than the roughness.
+
+    Returns
+    -------
+    numpy.ndarray, shape (3, record)
+        Value, lower and upper limit. Beyond its curve a share has no value, NaN, and a limit is 0
+        or infinity.
+    """
+    columns = comparison["measured_share"].values, comparison["scatter_ratio"].values[0], noise
+    realisations = comparison.sizes["realisation"]
+    films = [
+        film_interval(curve, share, ratio, realisations, error)
+        for curve, share, ratio, error in zip(curves, *columns, strict=True)
+    ]
+    ratios = np.exp(films).T
+    ratios[0] = np.where(np.isfinite(films)[:, 0], ratios[0], np.nan)
+    return ratios

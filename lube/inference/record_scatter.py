@@ -19,7 +19,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.rough_pair import drawn
-from lube.contact.windows import ContactWindows
+from lube.contact.windows import ContactWindows, study_windows
 from lube.grid.discretise import revolution, speed_ratios
 from lube.statistics.confidence import mean_over_first
 from lube.statistics.one_pair import persistent_share, scatter_ratio
@@ -43,11 +43,6 @@ ALIGNMENT_RATIOS = np.linspace(1.0, 3.75, 12)
 the interpolation between them makes the effects of lines alone at neighbouring films too alike."""
 
 
-def study_windows(study: Study, film: Data) -> ContactWindows:
-    """Contact windows of the films of a study, such as those at the records."""
-    return ContactWindows(study.line_spec, film, study.boundary_layer, study.gap)
-
-
 def record_scatter(
     model: Data, experiment: Data, probability: Array, study: Study
 ) -> dict[str, Array]:
@@ -60,8 +55,8 @@ def record_scatter(
     experiment : xarray.Dataset
         With the slide-to-roll ratio and the number of revolutions of each record.
     probability : numpy.ndarray
-        Of each realisation in one revolution of pure rolling, shape (R, P); the P operating
-        points are all records by the first film formula, by the second, and so on.
+        Probability of each realisation in one revolution of pure rolling, shape (R, P); the P
+        operating points are all records by the first film formula, by the second, and so on.
     study : Study
         Its rollers, roughness lines, boundary layer and drift.
 
@@ -113,7 +108,7 @@ def record_scatter(
 
 
 def _variance(shares):
-    """Variance between realisations, shape (P,); none with a single realisation."""
+    """Variance between realisations, shape (P,); 0 with a single realisation."""
     return shares.var(axis=0, ddof=1) if len(shares) > 1 else np.zeros(shares.shape[1])
 
 
@@ -201,9 +196,9 @@ def _line_effects(model, study, slips, turns, realisations):
     Returns
     -------
     share : numpy.ndarray
-        Its share of the variance in pure rolling, shape (P,).
+        This part over the variance in pure rolling, shape (P,).
     effects : numpy.ndarray or None
-        Of each realisation, up to `MOST_PAIRS`, shape (R, P); None if none were run.
+        Effect of each realisation's lines, up to `MOST_PAIRS`, shape (R, P); None if none were run.
     """
     ratio = model["lambda_ratio"].values.ravel()
     equal = study.line_spec.points[0] == study.line_spec.points[1]
@@ -243,9 +238,9 @@ def _pooled(study, windows, count, mean, persistent):
 def _crosswise(study, levels, count):
     """Share of each first line with each second line, two of shape (count, count, levels).
 
-    One in a whole turn of the first line, one in a whole turn of the second. In a turn of a line
-    of another size a part of a line passes more often than the rest: this adds to its effect, but
-    does not persist.
+    One is in a whole turn of the first line, the other in a whole turn of the second. In a turn of
+    a line of another size a part of a line passes more often than the rest: this adds to its
+    effect, but does not persist.
     """
     in_first, in_second = np.empty((2, count, count, levels.size))
     for begin in range(0, count, LINES_IN_MEMORY):
@@ -269,7 +264,7 @@ def _whole_turns(pair, levels):
         return begun, begun
     shorter, longer = sorted((first, second))
     rest = levels.count(pair, turns=max(turns) - min(turns), begin=shorter)[:, 1]
-    # Whole numbers of time steps again.
+    # Rounded to whole numbers of time steps again.
     whole = (np.rint(begun * shorter) + np.rint(rest * (longer - shorter))) / longer
     return (begun, whole) if first == shorter else (whole, begun)
 

@@ -1,4 +1,4 @@
-"""Contact shares of a study's records: selected, arranged over the grid, and described in words."""
+"""Contact shares of a study's records: arranged over the grid, and described in words."""
 
 from collections.abc import Mapping, Sequence
 from logging import Logger
@@ -6,41 +6,11 @@ from logging import Logger
 import pandas as pd
 import xarray as xr
 
-from lube.errors import DataError
-from lube.grid.levels import format_levels
-from lube.schema import COORDINATES, LIMITS
+from lube.schema import COORDINATES
 from lube.units import with_unit
 
 MOST_LINES = 10
 """Lines of a long list that are logged."""
-
-
-def at_comparison_threshold(experiment: xr.Dataset) -> xr.Dataset:
-    """Select the contact shares that are compared with the simulation.
-
-    Parameters
-    ----------
-    experiment : xarray.Dataset
-        An ``experiment`` dataset.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``contact_share`` and its limits over ``record``, at ``comparison_threshold``.
-
-    Raises
-    ------
-    DataError
-        If the records were not evaluated at that threshold.
-    """
-    wanted, levels = experiment["comparison_threshold"].item(), experiment["threshold"].values
-    if wanted not in levels:
-        raise DataError(
-            f"experiment: threshold {wanted:g} ohm is not among those evaluated, "
-            f"{format_levels(levels)}"
-        )
-    shares = experiment[[f"contact_share{limit}" for limit in LIMITS]]
-    return shares.sel(threshold=wanted, drop=True)
 
 
 def over_grid(dataset: xr.Dataset) -> xr.Dataset:
@@ -113,7 +83,7 @@ def levels_named(levels: Mapping[str, float]) -> str:
 
 
 def log_lines(log: Logger, lines: Sequence[str]) -> None:
-    """Log lines as warnings; of a long list the first `MOST_LINES`.
+    """Log lines as warnings, the first `MOST_LINES` of a long list.
 
     Parameters
     ----------

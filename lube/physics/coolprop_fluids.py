@@ -2,12 +2,13 @@
 
 CoolProp does not refuse states outside a fluid's range: it returns negative viscosities above the
 maximum pressure, and properties of the gas above the boiling point. Here the state is checked
-before the call, and the result after it. CoolProp is imported on first use, because that takes a
-second or two. Temperatures are in kelvin.
+before the call, and the result after it. CoolProp is imported on first use, because the import
+takes a second or two. Temperatures are in kelvin.
 """
 
 import functools
 import re
+from contextlib import suppress
 
 import numpy as np
 
@@ -40,10 +41,10 @@ def _unfit(fluid, need):
     return RecordError(f"coolprop_fluid: got {fluid!r}, need a {need}")
 
 
-def _coolprop():
+def _coolprop(*arguments):
     from CoolProp import CoolProp
 
-    return CoolProp
+    return CoolProp.PropsSI(*arguments)
 
 
 @functools.cache
@@ -72,21 +73,18 @@ def liquid_range(fluid: str) -> tuple[float, float]:
     >>> f"{lowest:.1f}", f"{highest:.1f}"
     ('263.7', '489.3')
     """
-    coolprop = _coolprop()
     try:
         if not _PURE_FLUID.fullmatch(fluid):
             raise ValueError("not the name of a pure fluid")
-        lowest = coolprop.PropsSI("Tmin", fluid) + _MARGIN
+        lowest = _coolprop("Tmin", fluid) + _MARGIN
     except ValueError:
         raise _unfit(fluid, "pure fluid by CoolProp's spelling, such as 'n-Dodecane'") from None
-    try:
-        boiling = coolprop.PropsSI("T", "P", ATMOSPHERIC_PRESSURE, "Q", 0, fluid)
-    except ValueError:
-        boiling = -np.inf
-    highest = min(coolprop.PropsSI("Tmax", fluid), boiling - _MARGIN)
-    if not lowest < highest:
-        raise _unfit(fluid, "fluid that is liquid at atmospheric pressure")
-    return lowest, highest
+    with suppress(ValueError):  # some fluids do not boil at this pressure
+        boiling = _coolprop("T", "P", ATMOSPHERIC_PRESSURE, "Q", 0, fluid)
+        highest = min(_coolprop("Tmax", fluid), boiling - _MARGIN)
+        if lowest < highest:
+            return lowest, highest
+    raise _unfit(fluid, "fluid that is liquid at atmospheric pressure")
 
 
 def _within_range(fluid, temperature, pressure):
@@ -100,7 +98,7 @@ def _within_range(fluid, temperature, pressure):
             f"range at atmospheric pressure is {lowest - ZERO_CELSIUS:.2f} to "
             f"{highest - ZERO_CELSIUS:.2f} degC"
         )
-    most = _coolprop().PropsSI("pmax", fluid)
+    most = _coolprop("pmax", fluid)
     if not ATMOSPHERIC_PRESSURE <= pressure <= most:
         raise RangeError(
             f"{fluid}: got a pressure of {pressure / 1e6:g} MPa, CoolProp's range is "
@@ -148,7 +146,7 @@ def liquid_property(
     temperature = _within_range(fluid, temperature, pressure)
     try:
         pressures = np.full(temperature.shape, pressure)
-        values = _coolprop().PropsSI(_PROPERTIES[name], "T", temperature, "P", pressures, fluid)
+        values = _coolprop(_PROPERTIES[name], "T", temperature, "P", pressures, fluid)
     except ValueError:
         raise _unfit(fluid, f"fluid whose {name} CoolProp knows") from None
     wrong = ~(np.isfinite(values) & (values > 0.0))

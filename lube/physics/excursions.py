@@ -111,7 +111,8 @@ def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float)
 def expected_contacts(level: Array, moments: Sequence[float], length: float, width: Array) -> Array:
     r"""Count the contacts to expect of an isotropic surface above a level, in a rectangle.
 
-    It is the Euler characteristic: contacts less the holes in them, which high levels do not have.
+    The formula is that of the Euler characteristic: contacts less the holes in them. At high levels
+    contacts have no holes.
     With :math:`u = h / \sqrt{m_0}` and the sides a and b,
 
     .. math::
@@ -199,13 +200,13 @@ def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature
 
 
 def _share(level, moments, least_curvature, weight):
-    """Share of summits above levels that have a curvature, if they have it with some weight."""
+    """Share of the summits above levels that are sharper than a curvature, given its weight."""
     m0, covariance, variance = moments
-    # Over the height by Gauss-Laguerre quadrature, with z = h + m0 t / h.
+    # Heights are integrated by Gauss-Laguerre quadrature, with z = h + m0 t / h.
     scale = np.asarray(level, float)[..., None]
     height = scale + m0 / scale * _HEIGHTS
     heights = _HEIGHT_WEIGHTS * np.exp(-0.5 * m0 * (_HEIGHTS / scale) ** 2)
-    # Over the curvature, which is normal at a given height, by Gauss-Legendre quadrature.
+    # Curvatures, which are normal at a given height, by Gauss-Legendre quadrature.
     mean = covariance / m0 * height
     deviation = math.sqrt(variance - covariance**2 / m0)
 

@@ -4,7 +4,7 @@ from lube.types import Values
 
 
 def amplitude_ratio(wavelength: Values, moes_load: Values, moes_material: Values) -> Values:
-    r"""Share of its height that a wave keeps in an elastohydrodynamic line contact.
+    r"""Fraction of its height that a wave keeps in an elastohydrodynamic line contact.
 
     .. math::
 
@@ -16,7 +16,7 @@ def amplitude_ratio(wavelength: Values, moes_load: Values, moes_material: Values
     wavelength : float or numpy.ndarray
         Wavelength :math:`\lambda` over the half-width a of the contact.
     moes_load, moes_material : float or numpy.ndarray
-        M and L.
+        Moes numbers M and L.
 
     Returns
     -------
@@ -25,10 +25,11 @@ def amplitude_ratio(wavelength: Values, moes_load: Values, moes_material: Values
 
     Notes
     -----
-    For transverse waves in pure rolling, under a full film. Read in transcription; its values
-    follow the table of the source, which begins at M = 100, L = 11. Below M = 5 it is an
-    extrapolation, and wrong: at the paper's points waves shorter than the half-width lose up to
-    22 % by it, and at most 5 % by Reynolds' equation (`lube.ehl.response`).
+    The formula is for transverse waves in pure rolling, under a full film. It was read in
+    transcription; its values follow the table of the source, which begins at M = 100, L = 11.
+    Below M = 5 it is an extrapolation, and wrong: at the paper's points waves shorter than the
+    half-width lose up to 22 % by the formula, and at most 5 % by Reynolds' equation
+    (`lube.ehl.response`).
 
     References
     ----------

@@ -1,8 +1,9 @@
 r"""Shear heating of the oil at the inlet, where the film forms.
 
 All factors depend on the thermal loading :math:`Q = \eta \beta v^2 / k` and the slide-to-roll ratio
-S. In pure rolling they agree, with slip they do not: at Q = 1 and S = 0.5 the published ones are
-0.68 and 0.42. The equation behind the latter, integrated, gives 0.54.
+S. In pure rolling they agree, with slip they do not: at Q = 1 and S = 0.5 the published factors are
+0.68 (Zhu and Cheng) and 0.42 (Wilson and Sheu). The inlet equation to which the second was fitted
+gives 0.54.
 """
 
 import numpy as np
@@ -12,10 +13,10 @@ from lube.physics.starvation import inlet_integral
 from lube.types import Array, Values
 
 INLET_HEATING = ("none", "zhu-cheng-1988", "wilson-sheu-1983", "computed")
-"""How a study may take the heating into account."""
+"""Models of the heating that a study may choose."""
 _REACH, _NEAREST, _STEPS = 1e3, 1e-7, 200
-"""The integration goes from the first of these distances before the contact to the second, both
-over the length of the inlet, in so many steps."""
+"""Distances before the contact, over the length of the inlet, at which the integration begins and
+ends, and number of its steps."""
 
 
 def thermal_loading(
@@ -61,11 +62,10 @@ def heating_factor(
     Parameters
     ----------
     model : str
-        One of `INLET_HEATING`; of ``"none"`` it is what ``"zhu-cheng-1988"`` would be.
-    loading, slip
-        Of `thermal_loading`, and the slide-to-roll ratio.
-    relative_pressure, film
-        As of `zhu_cheng` and `inlet_equation`.
+        One of `INLET_HEATING`. For ``"none"`` the factor is that of ``"zhu-cheng-1988"``, and is
+        not applied.
+    loading, slip, relative_pressure, film
+        As in `zhu_cheng` and `inlet_equation`.
 
     Returns
     -------
@@ -98,14 +98,14 @@ def zhu_cheng(loading: Values, slip: Values, relative_pressure: Values) -> Value
     Returns
     -------
     float or numpy.ndarray
-        Factor :math:`C` on the film thickness, above 0 and at most 1. NaN where the numerator is
-        not above 0: there the speed is beyond the formula's range.
+        Factor :math:`C` on the film thickness, above 0 and at most 1. It is NaN where the
+        numerator is not above 0, since the speed is beyond the formula's range.
 
     References
     ----------
     D. Zhu and H. S. Cheng, private communication (1988), printed by R. S. Zhou and M. R. Hoeprich,
     Torque of tapered roller bearings, J. Tribol. 113 (1991) 590-597, Eq. 21. Read in transcription.
-    P. K. Gupta and others, Tribol. Trans. 35 (1992) 269-274, have it too.
+    P. K. Gupta and others, Tribol. Trans. 35 (1992) 269-274, print the formula too.
 
     Examples
     --------
@@ -126,7 +126,7 @@ def wilson_sheu(loading: Values, slip: Values) -> Values:
     Parameters
     ----------
     loading, slip
-        As of `zhu_cheng`.
+        As in `zhu_cheng`.
 
     Returns
     -------
@@ -148,7 +148,7 @@ def wilson_sheu(loading: Values, slip: Values) -> Values:
 
 
 def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
-    r"""Factor from the inlet equation to which Wilson and Sheu fitted theirs.
+    r"""Factor from the inlet equation to which Wilson and Sheu fitted their formula.
 
     Where the film forms, heat makes the oil thinner by :math:`R`,
 
@@ -160,14 +160,14 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
         F = \frac{\eta \beta v^2}{k} \left( \frac{h - h_0}{h} \right)^2, \qquad
         D = \frac{\eta \beta (v_1 - v_2)^2}{k}
 
-    with the viscosity :math:`\eta = \eta_0 e^{\alpha p}` at the pressure there. As in the inlet
+    with the viscosity :math:`\eta = \eta_0 e^{\alpha p}` at the local pressure. As in the inlet
     analysis of Grubin, the gap is that of the dry contact lifted by the film, and the pressure has
-    to grow beyond all bounds at the edge of Hertz' contact.
+    to become infinite at the edge of Hertz' contact.
 
     Parameters
     ----------
     loading, slip
-        As of `zhu_cheng`.
+        As in `zhu_cheng`.
     film : float or numpy.ndarray
         Film without heating over a^2 / R*, with the half-width a of the contact. The factor hardly
         depends on it.
@@ -175,8 +175,8 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
     Returns
     -------
     float or numpy.ndarray
-        Factor on the film thickness, above 0 and at most 1; the arguments broadcast. NaN where an
-        argument is.
+        Factor on the film thickness, above 0 and at most 1; the arguments broadcast. It is NaN
+        where an argument is.
 
     Notes
     -----
@@ -192,7 +192,7 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
 
     References
     ----------
-    As of `wilson_sheu`; the equation too was read in transcription.
+    The paper of `wilson_sheu`; the equation too was read in transcription.
 
     Examples
     --------
@@ -209,7 +209,7 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
 
 
 def _pressure_missing(log_factor: Array, loading: Array, slip: Array, film: Array, scale: Array):
-    """Evaluate y at the edge of the contact, below 0 if the pressure is infinite before."""
+    """Evaluate y at the edge of the contact; below 0 if the pressure is infinite before it."""
     heated = film * np.exp(log_factor)
     rolling, sliding = 0.5 * loading**0.85, 0.2 * (loading * slip * slip) ** 0.9
 

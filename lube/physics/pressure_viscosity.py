@@ -1,4 +1,4 @@
-r"""Pressure-viscosity coefficient of an oil: estimated, fitted to measurements, converted.
+r"""Pressure-viscosity coefficient of an oil: estimates, fits to measurements, conversions.
 
 The coefficient :math:`\alpha` has three definitions. With the pressure :math:`p` above atmospheric
 and the viscosity :math:`\eta_0` at :math:`p = 0` they are
@@ -70,8 +70,8 @@ DEFINITIONS = {
 FORMULA_DEFINITION = "slope-at-atmospheric"
 """Definition that the film formulas take: the slope of an oil of Roelands.
 
-It is a convention of this study. The errors and ranges of validity in `lube.ehl.film_formulas`
-were determined with such oils, whose slope stood in the formulas.
+This is a convention of the study. The errors and ranges of validity in `lube.ehl.film_formulas`
+were determined with such oils and the slope.
 """
 
 _SLOPES = 1e-11, 1e-6  # 1/Pa: limits within which the slope of an oil is sought
@@ -101,7 +101,7 @@ def roelands_coefficient(
     definition : str
         A key of `DEFINITIONS`.
     span : float, optional
-        Of the secant: pressure :math:`P` above atmospheric, Pa.
+        Pressure :math:`P` above atmospheric to which the secant goes, Pa.
 
     Returns
     -------
@@ -153,7 +153,7 @@ def roelands_slope(
     coefficient : float
         Pressure-viscosity coefficient by its definition, 1/Pa.
     dynamic_viscosity, definition, span
-        As of `roelands_coefficient`, whose inverse this is.
+        As in `roelands_coefficient`, whose inverse this is.
 
     Returns
     -------
@@ -200,7 +200,7 @@ def mcewen_log_ratio(pressure: Values, slope: float, curvature: float) -> Values
     slope : float
         Slope :math:`\alpha_0` at atmospheric pressure, 1/Pa.
     curvature : float
-        :math:`s = 1/q` of McEwen's exponent q, 0 or more; with 0 the law is that of Barus.
+        :math:`s = 1/q` with McEwen's exponent q, 0 or more; with 0 the law is Barus' law.
 
     Returns
     -------
@@ -211,7 +211,7 @@ def mcewen_log_ratio(pressure: Values, slope: float, curvature: float) -> Values
     ----------
     E. McEwen, J. Inst. Petroleum 38 (1952) 646, as :math:`\eta_0 (1 + \alpha_0 p / q)^q`. S. Bair
     (High Temp. High Press. 44 (2015) 415) names it for viscosities that rise more slowly than
-    exponentially, those of most oils below some hundred MPa.
+    exponentially, as those of most oils do below some hundred MPa.
 
     Examples
     --------
@@ -233,9 +233,9 @@ def mcewen_coefficient(
     Parameters
     ----------
     slope, curvature
-        :math:`\alpha_0` and :math:`s`, as of `mcewen_log_ratio`.
+        :math:`\alpha_0` and :math:`s`, as in `mcewen_log_ratio`.
     definition, span
-        As of `roelands_coefficient`.
+        As in `roelands_coefficient`.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The four regimes of lubrication: the asymptotic film of each, and which one holds.
+"""The four regimes of lubrication: the asymptotic film of each, and the regime that holds.
 
 The rollers stay rigid or deform elastically, and the oil's viscosity rises with pressure or not.
 Which of the four combinations holds depends on the Moes numbers alone
@@ -55,7 +55,7 @@ def moes_asymptotes(moes_load: Values, moes_material: Values) -> tuple[Values, .
 
 
 def asymptotic_film(moes_load: Values, moes_material: Values) -> Values:
-    """Film of the asymptote that holds, over R* (2U)^0.5; arguments as of `moes_asymptotes`.
+    """Film of the asymptote that holds, over R* (2U)^0.5; arguments as in `moes_asymptotes`.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def asymptotic_film(moes_load: Values, moes_material: Values) -> Values:
 
 
 def asymptotic_gap(moes_load: Values, moes_material: Values) -> Values:
-    r"""Film of the asymptote that holds, over a^2 / R*; arguments as of `moes_asymptotes`.
+    r"""Film of the asymptote that holds, over a^2 / R*; arguments as in `moes_asymptotes`.
 
     .. math:: \frac{a^2}{R^{*2}} = \frac{8 W}{\pi}, \qquad M = \frac{W}{\sqrt{2U}}
 
@@ -97,9 +97,9 @@ def regime(moes_load: Values, moes_material: Values) -> np.ndarray:
 
     Notes
     -----
-    Elastic deformation *raises* the film of an oil whose viscosity does not rise with pressure,
-    but *limits* that of an oil whose viscosity does: the rigid film does not depend on the load,
-    the elastic one falls with it. Moes' own formula joins the asymptotes in the same way, by a
+    Elastic deformation *raises* the film of an oil whose viscosity does not rise with pressure. It
+    *limits* the film of an oil whose viscosity does: the rigid film does not depend on the load,
+    the elastic film falls with it. Moes' own formula joins the asymptotes in the same way, by a
     positive power of the isoviscous ones and a negative power of the piezoviscous ones.
 
     Examples

@@ -8,7 +8,7 @@ from lube.types import Array, Values
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _REACH = 12.0
-"""Of the integral to either side, in the logarithm of the distance over its scale."""
+"""Range of the integral on either side of its scales, in the logarithm of the distance."""
 _STEPS = 40
 
 
@@ -23,16 +23,15 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
         \int_1^{X_m} \frac{G}{(H + G)^3} \, dX = \int_1^\infty \frac{G}{(H_\infty + G)^3} \, dX,
         \qquad C = \frac{H}{H_\infty}
 
-    with the gap G(X) of `hertz_gap`, and the film H and that of a flooded contact H_inf scaled as
-    the gap is. Speed, viscosity and the pressure-viscosity coefficient act through the flooded film
-    alone.
+    with the gap G(X) of `hertz_gap`. The film H and the flooded film H_inf are scaled as the gap
+    is. Speed, viscosity and the pressure-viscosity coefficient act through the flooded film alone.
 
     Parameters
     ----------
     film : float or numpy.ndarray
         Flooded film over a^2 / R*, with the half-width a of the contact.
     meniscus : float or numpy.ndarray
-        Distance of the meniscus before the line of centres over a; they broadcast.
+        Distance from the line of centres to the meniscus, over a; broadcasts against the film.
 
     Returns
     -------
@@ -63,7 +62,7 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
         )
     wanted, _ = inlet_integral(np.log(film), film, np.inf)
     log_film = np.log(film)
-    # The integral's logarithm is concave in that of the film, so Newton's steps do not overshoot.
+    # The integral's logarithm is concave in the film's, so Newton's steps do not overshoot.
     for _ in range(_STEPS):
         found, slope = inlet_integral(log_film, film, meniscus)
         step = (wanted - found) / slope
@@ -74,8 +73,8 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
 
 
 def inlet_integral(log_film: Array, flooded: Array, meniscus: Values) -> tuple[Array, Array]:
-    """Logarithm of the inlet's integral, and its slope over that of the film."""
-    # Where the gap is as high as the film: it grows as d^1.5 near the contact, as d^2 far off.
+    """Logarithm of the inlet's integral, and its slope against the film's logarithm."""
+    # Distances at which gap and film are equal: the gap grows as d^1.5 near, as d^2 far off.
     scales = np.log(flooded) * np.array([[2.0 / 3.0], [0.5]]).reshape(2, *(1,) * flooded.ndim)
     last = np.minimum(np.log(meniscus - 1.0), scales.max(axis=0) + _REACH)
     first = np.minimum(scales.min(axis=0), last) - _REACH

@@ -117,7 +117,7 @@ def viscosity_at_100(viscosity_40: float, index: float) -> float:
     Returns
     -------
     float
-        Kinematic viscosity at 100 degC, mm2/s: of those that have this index, found by bisection.
+        Kinematic viscosity at 100 degC with this index, found by bisection, mm2/s.
 
     Raises
     ------

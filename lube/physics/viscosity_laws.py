@@ -18,7 +18,7 @@ from lube.physics import ZERO_CELSIUS
 from lube.types import Array, Values
 
 CAMERON_POLE = ZERO_CELSIUS - 95.0
-"""Cameron's convention for Vogel's law through two points only, nu = a exp(b/(theta + 95)), K."""
+"""Pole of Vogel's law through two points only, nu = a exp(b/(theta + 95)), by Cameron, K."""
 
 ASTM_D341_LEAST = 0.21
 """Viscosity above which ASTM D341 holds, mm2/s."""
@@ -32,17 +32,6 @@ def _straight_line(x, y):
     x_mean, y_mean = np.mean(x), np.mean(y)
     slope = np.sum((x - x_mean) * (y - y_mean)) / np.sum((x - x_mean) ** 2)
     return float(y_mean - slope * x_mean), float(slope)
-
-
-def _data(temperature, kinematic_viscosity, least=0.0):
-    """Return the data as float arrays; refuse data that no law can be fitted to."""
-    temperature = np.asarray(temperature, dtype=float)
-    viscosity = np.asarray(kinematic_viscosity, dtype=float)
-    if np.unique(temperature).size < 2:
-        raise RangeError("got one temperature, need viscosities at two or more for a fit")
-    if np.any(viscosity <= least):
-        raise RangeError(f"got {viscosity.min():g} mm2/s, the law needs more than {least:g} mm2/s")
-    return temperature, viscosity
 
 
 def _low_viscosity_term(kinematic_viscosity):
@@ -73,16 +62,20 @@ def fit_astm_d341(temperature: Array, kinematic_viscosity: Array) -> tuple[float
     Raises
     ------
     RangeError
-        If there are fewer than two temperatures, or a viscosity is 0.21 mm2/s or less.
+        If a viscosity is 0.21 mm2/s or less.
 
     Examples
     --------
-    >>> a, b = fit_astm_d341([313.15, 373.15], [335.0, 38.3])
+    >>> a, b = fit_astm_d341(np.array([313.15, 373.15]), np.array([335.0, 38.3]))
     >>> f"{a:.4f}", f"{b:.4f}"
     ('6.9831', '2.6367')
     """
-    temperature, viscosity = _data(temperature, kinematic_viscosity, least=ASTM_D341_LEAST)
-    z = viscosity + 0.7 + _low_viscosity_term(viscosity)
+    least = kinematic_viscosity.min()
+    if least <= ASTM_D341_LEAST:
+        raise RangeError(
+            f"got {least:g} mm2/s, ASTM D341 needs viscosities above {ASTM_D341_LEAST} mm2/s"
+        )
+    z = kinematic_viscosity + 0.7 + _low_viscosity_term(kinematic_viscosity)
     intercept, slope = _straight_line(np.log10(temperature), np.log10(np.log10(z)))
     return intercept, -slope
 
@@ -109,7 +102,7 @@ def evaluate_astm_d341(temperature: Values, a: float, b: float) -> Values:
 
     Examples
     --------
-    >>> a, b = fit_astm_d341([313.15, 373.15], [335.0, 38.3])
+    >>> a, b = fit_astm_d341(np.array([313.15, 373.15]), np.array([335.0, 38.3]))
     >>> f"{evaluate_astm_d341(333.15, a, b):.3f}"
     '139.100'
     """
@@ -143,16 +136,15 @@ def fit_vogel(temperature: Array, kinematic_viscosity: Array) -> tuple[float, fl
     Raises
     ------
     RangeError
-        If there are fewer than two temperatures, a viscosity is zero or less, or there are two
-        temperatures only and one is at or below Cameron's pole of -95 degC.
+        If there are two temperatures only, and one is at or below Cameron's pole of -95 degC.
 
     Notes
     -----
     With two temperatures the pole c is Cameron's: T - c = theta + 95, with theta in degC. With
     more, ln nu is fitted by a straight line in 1/(T - c), and the pole is the one that gives the
-    smallest sum of squared residuals. It is searched between 0 K, where the law becomes
-    Andrade's, and 1 K below the lowest temperature: first on a grid, then by bounded
-    minimisation, so that the result does not depend on a starting value.
+    smallest sum of squared residuals. It is sought between 0 K, where the law becomes Andrade's
+    law, and 1 K below the lowest temperature: first on a grid, then by bounded minimisation, so
+    that the result does not depend on a starting value.
 
     References
     ----------
@@ -161,12 +153,11 @@ def fit_vogel(temperature: Array, kinematic_viscosity: Array) -> tuple[float, fl
 
     Examples
     --------
-    >>> a, b, c = fit_vogel([313.15, 373.15], [335.0, 38.3])
+    >>> a, b, c = fit_vogel(np.array([313.15, 373.15]), np.array([335.0, 38.3]))
     >>> f"{a:.4f}", f"{b:.1f}", f"{c:.2f}"
     ('0.2911', '951.5', '178.15')
     """
-    temperature, viscosity = _data(temperature, kinematic_viscosity)
-    log_viscosity = np.log(viscosity)
+    log_viscosity = np.log(kinematic_viscosity)
     if np.unique(temperature).size > 2:
         pole = _best_pole(temperature, log_viscosity)
     elif temperature.min() > CAMERON_POLE:
@@ -195,8 +186,8 @@ def _best_pole(temperature, log_viscosity):
     return minimize_scalar(squared_residuals, bounds=bounds, options={"xatol": 1e-9}).x
 
 
-def evaluate_vogel(temperature: Values, a: float, b: float, c: float) -> Values:
-    r"""Kinematic viscosity by Vogel's law.
+def evaluate_vogel(temperature: Values, a: float, b: float, c: float = 0.0) -> Values:
+    r"""Kinematic viscosity by Vogel's law, or by Andrade's, in which c is zero.
 
     .. math:: \nu = a\, e^{b / (T - c)}
 
@@ -205,7 +196,7 @@ def evaluate_vogel(temperature: Values, a: float, b: float, c: float) -> Values:
     temperature : float or numpy.ndarray
         Absolute temperature, K.
     a, b, c : float
-        From `fit_vogel`.
+        From `fit_vogel`; without c from `fit_andrade`.
 
     Returns
     -------
@@ -239,45 +230,14 @@ def fit_andrade(temperature: Array, kinematic_viscosity: Array) -> tuple[float, 
     tuple of float
         a in mm2/s and b in K: exact for two points, by least squares in ln nu for more.
 
-    Raises
-    ------
-    RangeError
-        If there are fewer than two temperatures, or a viscosity is zero or less.
-
     Examples
     --------
-    >>> a, b = fit_andrade([313.15, 373.15], [335.0, 38.3])
+    >>> a, b = fit_andrade(np.array([313.15, 373.15]), np.array([335.0, 38.3]))
     >>> f"{a:.3g}", f"{b:.0f}"
     ('0.000465', '4224')
     """
-    temperature, viscosity = _data(temperature, kinematic_viscosity)
-    intercept, slope = _straight_line(1.0 / temperature, np.log(viscosity))
+    intercept, slope = _straight_line(1.0 / temperature, np.log(kinematic_viscosity))
     return float(np.exp(intercept)), slope
-
-
-def evaluate_andrade(temperature: Values, a: float, b: float) -> Values:
-    r"""Kinematic viscosity by Andrade's law.
-
-    .. math:: \nu = a\, e^{b / T}
-
-    Parameters
-    ----------
-    temperature : float or numpy.ndarray
-        Absolute temperature, K.
-    a, b : float
-        As of `fit_andrade`.
-
-    Returns
-    -------
-    float or numpy.ndarray
-        Kinematic viscosity, mm2/s.
-
-    Examples
-    --------
-    >>> f"{evaluate_andrade(333.15, 4.6e-4, 4225.0):.1f}"
-    '148.1'
-    """
-    return a * np.exp(b / np.asarray(temperature, dtype=float))
 
 
 @dataclass(frozen=True)
@@ -316,7 +276,7 @@ VISCOSITY_LAWS = {
         "nu = a exp(b/(T - c)) (Vogel 1921; c by Cameron's -95 degC for two temperatures)",
     ),
     "andrade": ViscosityLaw(
-        fit_andrade, evaluate_andrade, ("a", "b"), "nu = a exp(b/T) (Andrade 1930)"
+        fit_andrade, evaluate_vogel, ("a", "b"), "nu = a exp(b/T) (Andrade 1930)"
     ),
 }
 """Viscosity-temperature laws by name."""

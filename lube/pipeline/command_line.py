@@ -131,9 +131,8 @@ def study_of_command(files: Sequence[File], config: dict) -> tuple[Study, dict[s
         If the study cannot be loaded, or ``--config`` changes it without a new name.
     """
     _check_number([str(file) for file in files])
-    path = os.path.relpath(files[0]) if files else from_here(PAPER)
-    changes = {key: _typed(value) for key, value in config.items()}
-    return _checked(path, changes), {"path": path, "changes": changes}
+    path = files[0] if files else from_here(PAPER)
+    return _checked(path, {key: _typed(value) for key, value in config.items()})
 
 
 def same_study(path: str, changes: dict) -> list[str]:
@@ -185,19 +184,19 @@ def study_of_module(config: dict) -> tuple[Study, dict[str, Any]]:
             f"config of the module: study: got {shown(config.get('study'))}, need the path of a "
             "study's file"
         )
-    path = os.path.relpath(config["study"])
-    return _checked(path, changes), {"path": path, "changes": changes}
+    return _checked(config["study"], changes)
 
 
 def _checked(path, changes):
     """Load a study; check also what takes longer and is left out at the start of each job."""
+    path = os.path.relpath(path)
     study = load_study(path, changes)
     for record in study.lubricants:
         try:
             check_fluid(record, study.operating_grid.temperature)
         except LubeError as error:
             raise type(error)(f"{path}: lubricants: {error}") from None
-    return study
+    return study, {"path": path, "changes": changes}
 
 
 def _typed(value):

@@ -1,8 +1,8 @@
 """A figure of a study: how it is drawn, and the file that states its origin.
 
-Beside the pictures of a figure stands its origin, such as ``figures/fig02_film.json``: the SHA-256
-sums of the datasets that it was drawn from and of the files that were made. It shows whether the
-files are still as the workflow made them.
+A file beside the pictures of a figure states its origin, such as ``figures/fig02_film.json``: the
+SHA-256 sums of the datasets that it was drawn from and of the files that were made. It shows
+whether the files are still as the workflow made them.
 """
 
 import json

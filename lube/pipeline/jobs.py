@@ -6,9 +6,11 @@ import os
 import signal
 import sys
 import time
+from typing import Any
 
 from lube.errors import DataError, LubeError
 from lube.storage.files import why_not
+from lube.study.study import Study, load_study
 from lube.types import File
 
 TERMINAL_PAUSE = 5.0
@@ -63,6 +65,23 @@ def begin_job(log_file: File) -> None:
         raise DataError(f"{log_file}: cannot be written: {why_not(error, log_file)}") from error
     log.handleError = lambda record: None  # on a full disk the job's own error is enough
     logging.getLogger().addHandler(log)
+
+
+def study_of_job(snakemake: Any) -> Study:
+    """Set up the process of a job as `begin_job` does, and load the study.
+
+    Parameters
+    ----------
+    snakemake : snakemake.script.Snakemake
+        What Snakemake tells the job's script.
+
+    Returns
+    -------
+    Study
+        The study.
+    """
+    begin_job(snakemake.log[0])
+    return load_study(**snakemake.config["study"])
 
 
 def _report(kind, error, traceback):

@@ -16,7 +16,7 @@ from snakemake_interface_logger_plugins.registry import LoggerPluginRegistry
 
 from lube.pipeline.jobs import SILENT
 
-_SAID = (None, LogEvent.JOB_INFO)  # before the bar, or without one, as with `--quiet progress`
+_SAID = (None, LogEvent.JOB_INFO)  # shown until the bar begins; `--quiet progress` has no bar
 _BESIDE = 66  # characters of a line that the bar, the counts and the times take
 
 
@@ -88,7 +88,7 @@ class LogHandler(LogHandlerBase):
         elif event == LogEvent.PROGRESS:
             self._bar.update(self._task, completed=record.done)
         elif record.levelno >= WARNING or (event in _SAID and self._bar is None):
-            self._print(self.format(record), "red" if record.levelno > WARNING else "")
+            self._print(self.format(record), "red" if record.levelno > WARNING else None)
 
     def close(self) -> None:
         """Leave the bar as it is."""
@@ -97,25 +97,16 @@ class LogHandler(LogHandlerBase):
             self._bar.stop()
         super().close()
 
-    def _print(self, text, style):
-        from rich.text import Text
-
-        self._console.print(Text(text, style), soft_wrap=True)
+    def _print(self, text, style=None):
+        self._console.print(text, style=style, markup=False, emoji=False, soft_wrap=True)
 
     def _begin(self, jobs):
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            Progress,
-            TextColumn,
-            TimeElapsedColumn,
-            TimeRemainingColumn,
-        )
+        from rich import progress
 
-        times = TextColumn("jobs,"), TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("left")
-        message = TextColumn("[dim]{task.description}")
-        columns = BarColumn(20), MofNCompleteColumn(), *times, message
-        self._bar = Progress(*columns, console=self._console, refresh_per_second=2)
+        bar, done = progress.BarColumn(20), progress.MofNCompleteColumn()
+        elapsed, remaining = progress.TimeElapsedColumn(), progress.TimeRemainingColumn()
+        columns = (bar, done, "jobs,", elapsed, remaining, "left", "[dim]{task.description}")
+        self._bar = progress.Progress(*columns, console=self._console, refresh_per_second=2)
         self._task = self._bar.add_task("", total=jobs)
         self._bar.start()
 

@@ -90,10 +90,10 @@ def sources(code: str, root: Path = ROOT) -> list[str]:
     Returns
     -------
     list of str
-        Paths relative to `root`, sorted: the modules, and the CSV tables in their folders, such
-        as ``lube/schema/variables.csv``. Two modules are left out, with what only they import:
-        the study, whose values are parameters of the rules, and the package's ``__init__``,
-        which computes nothing.
+        Paths relative to `root`, sorted: the modules, and the CSV tables and templates in their
+        folders, such as ``lube/schema/variables.csv``. Two modules are left out, with what only
+        they import: the study, whose values are parameters of the rules, and the package's
+        ``__init__``, which computes nothing.
 
     Examples
     --------
@@ -106,13 +106,14 @@ def sources(code: str, root: Path = ROOT) -> list[str]:
         if file is not None and file not in found:
             found.add(file)
             waiting += _imports_of(file)
-    found |= {table for file in found for table in file.parent.glob("*.csv")}
+    data = ("*.csv", "templates/*")
+    found |= {path for file in found for pattern in data for path in file.parent.glob(pattern)}
     return sorted(file.relative_to(root).as_posix() for file in found)
 
 
 @functools.cache
 def _file_of(module, root):
-    """File of a module of the package, if it is one and counts."""
+    """File of a module of the package; None for other modules and for those in `_BY_VALUE`."""
     if not module.startswith("lube.") or module in _BY_VALUE:
         return None
     path = root / Path(*module.split("."))

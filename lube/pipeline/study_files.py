@@ -2,7 +2,6 @@
 
 import contextlib
 import hashlib
-import itertools
 import json
 import os
 import sys
@@ -30,6 +29,7 @@ def digest(content: object) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
+@one_line_errors()
 def input_paths(files: Files) -> list[str]:
     """List files relative to the working folder, so that the repository can be moved.
 
@@ -45,7 +45,7 @@ def input_paths(files: Files) -> list[str]:
 
     Raises
     ------
-    LubeError
+    SystemExit
         If a name has braces, which Snakemake takes for a wildcard.
     """
     paths = sorted({os.path.relpath(file) for file in files})
@@ -114,7 +114,6 @@ class StudyFiles:
         """The study as a file: as written or, with changes by ``--config``, as resolved."""
         return self.result("study.yaml") if self.changes else str(self.path)
 
-    @one_line_errors()
     def study_files(self) -> list[str]:
         """List the file of the study and those it is based on."""
         return input_paths(study_files(self.path))
@@ -163,7 +162,6 @@ class StudyFiles:
         batch = self.study.batch(int(wildcards.first))
         return batch[0], batch[-1]
 
-    @one_line_errors()
     def record_files(self) -> list[str]:
         """List the files of the study's lubricant records."""
         return input_paths(file for record in self.study.lubricants for file in record.files)
@@ -179,15 +177,15 @@ class StudyFiles:
         entries = read_manifest(manifest).entries
         return input_paths([manifest, *(entry.file for entry in entries if entry.file)])
 
-    @one_line_errors()
     def topography_files(self) -> list[str]:
         """List the files of the measured topographies."""
         return input_paths(one.file for one in self.study.topographies.values())
 
     def products(self, figures: Iterable[str]) -> list[str]:
         """List the files that the jobs of some figures make: pictures, origin, notebook."""
-        names = [(*products(figure), origin(figure)) for figure in figures]
-        return [self.result(name) for name in itertools.chain.from_iterable(names)]
+        return [
+            self.result(name) for figure in figures for name in (*products(figure), origin(figure))
+        ]
 
     def benchmarks(self, figures: Iterable[str]) -> dict[str, list[str]]:
         """List the benchmark files of all jobs, by the steps of the study.

@@ -18,16 +18,13 @@ from lube.errors import DataError, shown
 from lube.recordings.signals import Channel, Signal, find_signals, header_cell
 from lube.study.small_csv import delimiter_of, split_cells
 
-_NUMBER = re.compile(r"[+-]?([.,]?\d|nan\b|inf\b)", re.IGNORECASE)  # as it begins
-
-HEAD_BYTES = 2**20
-"""Bytes read first, to find the decimal separator and the sampling interval."""
+_NUMBER = re.compile(r"[+-]?([.,]?\d|nan\b|inf\b)", re.IGNORECASE)  # how a number begins
 
 MOST_LINES = 200
 """Lines among which the line of column names is looked for."""
 
-PIECE_BYTES = 2**22
-"""Bytes parsed at a time on each core."""
+PIECE_BYTES = 2**20
+"""Bytes parsed at a time on each core; a decimal comma is looked for in the first of them."""
 
 
 @dataclass(frozen=True)
@@ -48,10 +45,8 @@ class TextSignal:
         Decimal separator, ``.`` or ``,``.
     width : int
         Number of columns.
-    time : Signal or None
-        The time, if the file has it.
-    measured : Signal
-        The voltage or resistance.
+    signals : list of Signal
+        The time, if the file has it, and the voltage or resistance.
     """
 
     path: Path
@@ -60,30 +55,33 @@ class TextSignal:
     delimiter: str
     decimal_point: str
     width: int
-    time: Signal | None
-    measured: Signal
+    signals: list[Signal]
 
     # A CSV file can state its sampling interval by a column of times only.
     sampling_interval = None
 
-    def head(self) -> tuple[np.ndarray, np.ndarray | None] | None:
-        """Read the first samples and times, as from `parts`; None if there are none."""
-        return next(self._converted(map(self._parsed, self._pieces())), None)
-
-    def parts(self) -> Iterator[tuple[np.ndarray, np.ndarray | None]]:
+    def parts(self) -> Iterator[list[np.ndarray]]:
         """Read the recording, on all cores.
 
         Yields
         ------
-        values, times : numpy.ndarray
-            The next samples, V or ohm, and their times, s, None if the file has none.
+        list of numpy.ndarray
+            Values of each of the signals, s, V or ohm, at the next samples.
 
         Raises
         ------
         DataError
             At the first line that is not a row of numbers.
         """
-        return self._converted(_on_all_cores(self._parsed, self._pieces()))
+        rows = 0
+        try:
+            for table in _on_all_cores(self._parsed, self._pieces()):
+                rows += table.num_rows
+                if table.num_rows:
+                    columns = zip(self.signals, table.columns, strict=True)
+                    yield [signal.converted(column.to_numpy()) for signal, column in columns]
+        except pyarrow.ArrowInvalid as error:
+            raise DataError(f"{self.path}: {self._refusal(str(error), rows)}") from None
 
     def where(self, sample: int) -> str:
         """Line of a sample, counted from 0, in the file."""
@@ -93,27 +91,25 @@ class TextSignal:
     def may_begin_with(self, row: str) -> bool:
         """Whether a line has as many cells as there are columns, with numbers in those read."""
         cells = split_cells(row, self.delimiter)
-        read = [signal.index for signal in (self.time, self.measured) if signal is not None]
-        return len(cells) == self.width and all(_NUMBER.match(cells[index]) for index in read)
+        numbers = (_NUMBER.match(cells[signal.index]) for signal in self.signals)
+        return len(cells) == self.width and all(numbers)
 
     def _pieces(self):
-        """Text of the rows, in pieces of whole lines; the first is small, for `head`."""
-        size = min(HEAD_BYTES, PIECE_BYTES)
+        """Text of the rows, in pieces of whole lines."""
         with open(self.path, "rb") as file:
             file.seek(self.begin)
-            while text := file.read(size):
-                size = PIECE_BYTES
+            while text := file.read(PIECE_BYTES):
                 whole_lines = text.rfind(b"\n") + 1 or len(text)
                 file.seek(whole_lines - len(text), os.SEEK_CUR)
-                yield memoryview(text)[:whole_lines]
+                yield pyarrow.py_buffer(text).slice(0, whole_lines)
 
     def _parsed(self, text):
         names = [str(index) for index in range(self.width)]
-        used = [str(signal.index) for signal in (self.time, self.measured) if signal is not None]
+        used = [str(signal.index) for signal in self.signals]
         return pyarrow.csv.read_csv(
-            pyarrow.py_buffer(text),
+            text,
             # Only on a single core does PyArrow say which row is wrong.
-            pyarrow.csv.ReadOptions(use_threads=False, block_size=len(text), column_names=names),
+            pyarrow.csv.ReadOptions(use_threads=False, block_size=text.size, column_names=names),
             pyarrow.csv.ParseOptions(delimiter=self.delimiter),
             pyarrow.csv.ConvertOptions(
                 include_columns=used,
@@ -123,29 +119,17 @@ class TextSignal:
             ),
         )
 
-    def _converted(self, tables):
-        """Yield values and times of the parsed tables."""
-        rows = 0
-        try:
-            for table in tables:
-                rows += table.num_rows
-                if table.num_rows:
-                    times = None if self.time is None else _column(table, self.time)
-                    yield _column(table, self.measured), times
-        except pyarrow.ArrowInvalid as error:
-            raise DataError(f"{self.path}: {self._refusal(str(error), rows)}") from None
-
     def _refusal(self, reason, rows_before):
         """Say which line is not a row of numbers, given PyArrow's reason."""
         wrong = re.search(r"Row #(\d+)", reason)
         if wrong is None:
             return f"not a table of numbers, truncated or damaged ({reason})"
         number, line = self._row(rows_before + int(wrong[1]) - 1)
-        quantities = [signal.quantity for signal in (self.time, self.measured) if signal]
+        quantities = " and ".join(signal.quantity for signal in self.signals)
         commas = " with decimal commas" if self.decimal_point == "," else ""
         return (
             f"line {number}: got {shown(line)}, need {self.width} values, "
-            f"numbers{commas} for {' and '.join(quantities)}"
+            f"numbers{commas} for {quantities}"
         )
 
     def _row(self, row):
@@ -167,30 +151,26 @@ def _on_all_cores(function, items):
             ahead.extend(pool.submit(function, item) for item in islice(items, 1))
 
 
-def _column(table, signal):
-    return signal.converted(table[str(signal.index)].to_numpy())
-
-
 def open_text(
     path: Path, channel: str | None = None, unit: str | None = None, skip: int | None = None
 ) -> TextSignal:
     """Find the recording in a CSV file.
 
-    Empty lines and lines that begin with ``#`` may precede the line of column names. Other lines
-    may too: it is then the first one that names a voltage or resistance with its unit and stands
+    Empty lines and lines that begin with ``#`` may precede the line of column names. If other lines
+    precede it, it is the first line that names a voltage or resistance with its unit and stands
     right above a row of as many values. Columns are separated by tabs, semicolons or commas; with
     tabs or semicolons, numbers may have decimal commas.
 
     Parameters
     ----------
     path : Path
-        The file, text in UTF-8 or, where it is not that, in Windows-1252 (or Latin-1).
+        The file; lines that are not UTF-8 text are read as Windows-1252 (or Latin-1).
     channel : str, optional
         Name of the column to read, or its whole header.
     unit : str, optional
         Its unit; overrides the one in the file.
     skip : int, optional
-        Number of lines before the line of column names, which is not looked for then.
+        Number of lines before the line of column names; without it that line is looked for.
 
     Returns
     -------
@@ -234,8 +214,8 @@ def _table(path, number, header, begin, channel, unit):
     delimiter = delimiter_of(header) if "," in header else delimiter_of(header + ";")
     cells = split_cells(header, delimiter)
     columns = [Channel(*header_cell(cell), full_name=cell) for cell in cells]
-    time, measured = find_signals(columns, f"{path}: line {number}", channel, unit)
+    signals = find_signals(columns, f"{path}: line {number}", channel, unit)
     with open(path, "rb") as file:
         file.seek(begin)
-        point = "," if delimiter != "," and b"," in file.read(HEAD_BYTES) else "."
-    return TextSignal(path, number, begin, delimiter, point, len(cells), time, measured)
+        point = "," if delimiter != "," and b"," in file.read(PIECE_BYTES) else "."
+    return TextSignal(path, number, begin, delimiter, point, len(cells), signals)

@@ -13,15 +13,15 @@ from typing import Annotated, Literal
 
 from pydantic import NonNegativeInt, model_validator
 
-from lube.errors import DataError, LubeError, nearest, shown
+from lube.errors import DataError, located, right_one, shown
 from lube.recordings.signals import header_cell
 from lube.schema import ORIGINS
-from lube.study.field_types import StrictModel, Text, checked_text, pure_number, quantity, validate
+from lube.study.field_types import StrictModel, Text, checked_text, quantity, validate
 from lube.study.small_csv import read_cells
 from lube.study.text_files import read_yaml
 from lube.units import convert, electrical_quantity, parse_electrical
 
-Share = Annotated[float, pure_number(least=0.0, most=1.0)]
+Share = Annotated[float, quantity(None, least=0.0, most=1.0)]
 
 _UNITS = (
     dict.fromkeys(("force", "force_tolerance"), "N")
@@ -32,8 +32,8 @@ _UNITS = (
 """Columns whose header needs a unit, with an example; an offset may also be in ohm."""
 
 _TEXTS = ("file", "channel", "unit", "lubricant", "pair", "origin")
-_OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval", "skip")
-_OF_SHARES = ("lower", "upper")
+OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval", "skip")
+"""Columns that say how to read a recording; arguments of `open_recording`."""
 
 
 class Row(StrictModel):
@@ -51,7 +51,7 @@ class Row(StrictModel):
     """unit of that channel; overrides the one in the file, and decides between voltage and
     resistance where the channel's name does not
     """
-    gain: Annotated[float, pure_number(other_than=0.0)] = 1.0
+    gain: Annotated[float, quantity(None, other_than=0.0)] = 1.0
     """factor of an amplifier between rig and recorder, below 0 if it inverts: recorded = gain ×
     true + offset
     """
@@ -76,16 +76,16 @@ class Row(StrictModel):
     speed: Annotated[float, quantity("rpm", above=0.0)]
     """rotation speed, as in the study; `1/min` and `Hz` count turns"""
     temperature: Annotated[float, quantity("degC", above=-273.15)]
-    """of rollers and oil"""
+    """temperature of rollers and oil"""
     force_tolerance: Annotated[float, quantity("N", above=0.0)] | None = None
-    """how far the true force may be from the one stated"""
+    """largest difference between the true force and the one stated"""
     speed_tolerance: Annotated[float, quantity("rpm", above=0.0)] | None = None
-    """how far the true speed may be from the one stated"""
+    """largest difference between the true speed and the one stated"""
     temperature_tolerance: Annotated[float, quantity("K", above=0.0)] | None = None
-    """how far the true temperature may be from the one stated; 1 degC is 1 K here"""
+    """largest difference between the true temperature and the one stated; 1 degC is 1 K here"""
     lubricant: Text | None = None
     """a lubricant of the study; by default its first"""
-    slide_to_roll_ratio: Annotated[float, pure_number(least=-2.0, most=2.0)] | None = None
+    slide_to_roll_ratio: Annotated[float, quantity(None, least=-2.0, most=2.0)] | None = None
     """a ratio of the study; by default 0, or the study's first if 0 is not among them"""
     pair: Text | None = None
     """label of the pair of rollers measured; all rows without a label are of one pair"""
@@ -96,7 +96,7 @@ class Row(StrictModel):
     def _check_file_or_probability(self):
         if (self.file is None) == (self.probability is None):
             raise ValueError("need either file or probability")
-        kind, excluded = ("file", _OF_SHARES) if self.file else ("probability", _OF_FILES)
+        kind, excluded = ("file", ("lower", "upper")) if self.file else ("probability", OF_FILES)
         for key in excluded:
             if key in self.model_fields_set:
                 raise ValueError(f"{key}: not allowed with {kind}")
@@ -137,7 +137,7 @@ class Manifest:
     entries : tuple of Entry
         The usable rows, in order.
     refused : tuple of str
-        One line for each row that cannot be used: its position, what came, what is needed.
+        One line for each row that cannot be used, with its position and the reason.
     """
 
     origin: str
@@ -161,7 +161,7 @@ def read_manifest(path: str | Path) -> Manifest:
     Returns
     -------
     Manifest
-        Its usable rows, and why others are refused.
+        The usable rows, and the reasons why others are refused.
 
     Raises
     ------
@@ -178,12 +178,9 @@ def read_manifest(path: str | Path) -> Manifest:
     entries, refused = [], []
     for where, content in rows:
         try:
-            entry = _entry(content, where, path.parent)
-            _check_origin(entry, entries)
+            entries.append(_entry(content, where, path.parent, entries))
         except DataError as error:
             refused.append(str(error))
-        else:
-            entries.append(entry)
     origin = entries[0].origin if entries else ORIGINS[0]
     return Manifest(origin, tuple(entries), tuple(refused))
 
@@ -213,11 +210,8 @@ def _columns(cells, where):
     for cell in cells:
         name, units = header_cell(cell)
         if name not in Row.model_fields:
-            near = nearest(name, Row.model_fields)
-            hint = f"did you mean {near!r}? need" if near else "need"
             raise DataError(
-                f"{where}: unknown column {shown(cell)}, {hint} some of "
-                f"{', '.join(Row.model_fields)}, with units such as 'force [N]'"
+                f"{where}: unknown column {shown(cell)}, {right_one(name, Row.model_fields)}"
             )
         if name in columns:
             raise DataError(f"{where}: column {name!r} is repeated")
@@ -235,17 +229,15 @@ def _check_units(name, units, where):
         needed = f"'{name} [{target}]'" if target else f"{name!r} without a unit"
         came = f"the unit {shown(units)}" if units else "no unit"
         raise DataError(f"{where}: {name}: got {came}, need {needed}")
-    try:
+    with located(f"{where}: {name}", DataError):
         if name == "offset":
             electrical_quantity(units)
         elif target is not None:
             convert(1.0, units, target)
-    except LubeError as error:
-        raise DataError(f"{where}: {name}: {error}") from None
 
 
-def _entry(content, where, folder):
-    """Entry of a row's content."""
+def _entry(content, where, folder, earlier):
+    """Entry of a row's content, after the earlier entries."""
     if isinstance(content, DataError):
         raise content
     if not isinstance(content, dict):
@@ -259,17 +251,14 @@ def _entry(content, where, folder):
     file = None if row.file is None else folder / row.file
     if file is not None and not os.path.isfile(file):
         raise DataError(f"{where}: file: got {shown(row.file)}, no such file")
+    if earlier and row.origin != earlier[0].origin:
+        raise DataError(
+            f"{where}: origin: got {row.origin!r} after {earlier[0].origin!r}, need the same in "
+            "all rows"
+        )
     return Entry.model_construct(**dict(row) | {"where": where, "file": file})
 
 
 def _with_point(value):
     """Turn a decimal comma into a point."""
     return re.sub(r"^(\s*[+-]?\d*),(?=\d)", r"\1.", value) if isinstance(value, str) else value
-
-
-def _check_origin(entry, entries):
-    if entries and entry.origin != entries[0].origin:
-        raise DataError(
-            f"{entry.where}: origin: got {entry.origin!r} after {entries[0].origin!r}, need the "
-            "same in all rows"
-        )

@@ -5,15 +5,14 @@ contact is a share of time. A gap, a repeated time or a missing value ends the r
 error that names its position in the file; nothing is repaired silently.
 """
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from lube.errors import DataError, LubeError, shown
-from lube.recordings.binary_signals import BinarySignal, open_netcdf, open_tdms
+from lube.errors import DataError, LubeError, located, shown
+from lube.recordings.binary_signals import BinarySignal, open_binary
 from lube.recordings.csv_signals import TextSignal, open_text
 from lube.study.field_types import bounded
 from lube.units import parse_electrical, parse_number
@@ -24,7 +23,6 @@ _KIND_OF_SUFFIX = (
     | {".tdms": "TDMS"}
 )
 _KIND_OF_MARK = {b"\x89HDF": "NetCDF", b"CDF": "NetCDF", b"TDSm": "TDMS"}
-_OPENERS = {"text": open_text, "NetCDF": open_netcdf, "TDMS": open_tdms}
 
 _FIRST_STEPS = 1000  # time steps whose median is the sampling interval
 _AGREEMENT = 0.01  # relative; the interval given and that of the file may differ by rounding
@@ -64,12 +62,12 @@ class Recording:
             interval after the one before; or if the file is damaged. It names the line or sample.
         """
         samples, before = 0, None
-        for values, times in self._signal.parts():
+        for *times, values in self._signal.parts():
             faults = [_value_fault(values, self.quantity)]
-            if times is not None:
-                before = times[0] - self.sampling_interval if before is None else before
-                faults.append(_time_fault(times, before, self.sampling_interval))
-                before = times[-1]
+            for time in times:
+                before = time[0] - self.sampling_interval if before is None else before
+                faults.append(_time_fault(time, before, self.sampling_interval))
+                before = time[-1]
             for index, reason in sorted(filter(None, faults)):
                 raise DataError(f"{self.path}: {self._signal.where(samples + index)}: {reason}")
             samples += values.size
@@ -80,19 +78,18 @@ def _value_fault(values, quantity):
     """Index of the first value that is not allowed, and the reason; None if there is none."""
     # An infinite resistance is an open circuit. Comparisons with NaN are false.
     most = np.inf if quantity == "resistance" else np.finfo(float).max
-    if values.min() > -np.inf and values.max() <= most:
-        return None
-    index = int(np.argmin((values > -np.inf) & (values <= most)))
-    return index, f"got {values[index]} as {quantity}, need a number"
+    allowed = (values > -np.inf) & (values <= most)
+    index = int(np.argmin(allowed))
+    return None if allowed[index] else (index, f"got {values[index]} as {quantity}, need a number")
 
 
 def _time_fault(times, before, interval):
     """Index of the first time that does not follow the one before, and the reason; or None."""
     steps = np.diff(times, prepend=before)
-    least, most = 0.5 * interval, 1.5 * interval
-    if steps.min() > least and steps.max() < most:
+    uniform = (steps > 0.5 * interval) & (steps < 1.5 * interval)
+    index = int(np.argmin(uniform))
+    if uniform[index]:
         return None
-    index = int(np.argmin((steps > least) & (steps < most)))
     before, now = times[index - 1] if index else before, times[index]
     return index, (
         f"time goes from {before:.9g} s to {now:.9g} s, need uniform steps of about "
@@ -148,24 +145,24 @@ def open_recording(
     """
     path = Path(path)
     kind = _kind(path)
-    if skip is not None and kind != "text":
+    if kind == "text":
+        signal = open_text(path, channel, unit, skip)
+    elif skip is None:
+        signal = open_binary(path, kind, channel, unit)
+    else:
         raise DataError(f"{path}: skip: got {skip} lines of a {kind} file, need none but of text")
-    lines = () if skip is None else (skip,)
-    signal = _OPENERS[kind](path, channel, unit, *lines)
-    signal = replace(signal, measured=_before_amplifier(path, signal.measured, gain, offset))
-    head = signal.head()
+    *times, measured = signal.signals
+    signal = replace(signal, signals=[*times, _before_amplifier(path, measured, gain, offset)])
+    head = next(signal.parts(), None)
     if head is None:
         raise DataError(f"{path}: empty recording, need samples")
-    _, times = head
-    stated = signal.sampling_interval if times is None else _interval_of(path, signal, times)
+    stated = _interval_of(path, signal, head[0]) if times else signal.sampling_interval
     interval = _agreed_interval(path, stated, sampling_interval)
-    return Recording(path, signal.measured.quantity, interval, signal)
+    return Recording(path, measured.quantity, interval, signal)
 
 
 def _kind(path):
     """Kind of a file by its suffix, if its first bytes agree."""
-    if not os.path.isfile(path):
-        raise DataError(f"{path}: no such file, need a measured recording")
     claimed = _KIND_OF_SUFFIX.get(path.suffix.lower())
     if claimed is None:
         raise DataError(
@@ -187,14 +184,11 @@ def _kind(path):
 
 def _before_amplifier(path, measured, gain, offset):
     """Undo the gain and offset of an amplifier."""
-    key = "gain"
-    try:
+    with located(f"{path}: gain", DataError):
         gain = bounded(parse_number(gain), None, other_than=0.0)
-        key = "offset"
+    with located(f"{path}: offset", DataError):
         offset = _offset(offset, measured.quantity)
-    except LubeError as error:
-        raise DataError(f"{path}: {key}: {error}") from None
-    return measured.before_amplifier(gain, offset)
+    return replace(measured, factor=measured.factor / gain, shift=(0.0 - offset) / gain)
 
 
 def _offset(offset, quantity):

@@ -8,11 +8,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from lube.errors import DataError, LubeError, shown
+from lube.errors import DataError, located, shown
 from lube.units import ELECTRICAL, convert, converts, electrical_quantity, usual_spelling
 
 UNITS = {"time": "s"} | ELECTRICAL
@@ -44,6 +44,10 @@ class Channel:
         Name shared by channels logged together: a TDMS group or a NetCDF dimension.
     size : int
         Number of samples; 0 for the columns of a table, which are equally long.
+    values : array_like
+        Its values, read when sliced; None for the columns of a table.
+    interval : object
+        Sampling interval with its unit, as the file states it; None if it does not.
     """
 
     name: str
@@ -51,6 +55,8 @@ class Channel:
     full_name: str
     group: str = ""
     size: int = 0
+    values: Any = None
+    interval: Any = None
 
 
 @dataclass(frozen=True)
@@ -60,13 +66,13 @@ class Signal:
     Attributes
     ----------
     index : int
-        Position of the channel among those of the file.
+        Position of the channel among the channels of the file.
     quantity : str
         ``time``, ``voltage`` or ``resistance``.
     factor : float
         Factor by which the file's values are multiplied.
     shift : float
-        Then added, s, V or ohm.
+        Number added to the product, s, V or ohm.
     """
 
     index: int
@@ -74,13 +80,8 @@ class Signal:
     factor: float
     shift: float = 0.0
 
-    def before_amplifier(self, gain: float, offset: float) -> "Signal":
-        """Signal at the amplifier's input, where recorded = gain * true + offset."""
-        return replace(self, factor=self.factor / gain, shift=(self.shift - offset) / gain)
-
-    def converted(self, values: npt.ArrayLike) -> np.ndarray:
-        """Values of the file in s, V or ohm, float64."""
-        values = np.asarray(values, float)
+    def converted(self, values: np.ndarray) -> np.ndarray:
+        """Values of the file in s, V or ohm."""
         if self.factor != 1.0:
             values = values * self.factor
         return values + self.shift if self.shift else values
@@ -118,7 +119,7 @@ def find_signals(
     where: str | Path,
     selected: str | None = None,
     unit: str | None = None,
-) -> tuple[Signal | None, Signal]:
+) -> list[Signal]:
     """Find the time and the measured quantity among the channels of a file.
 
     A channel's quantity follows from its name; if no name gives one, from the units. The first
@@ -138,10 +139,8 @@ def find_signals(
 
     Returns
     -------
-    time : Signal or None
-        The time, if the file has one.
-    measured : Signal
-        The voltage or resistance.
+    list of Signal
+        The time, if the file has one, and the voltage or resistance.
 
     Raises
     ------
@@ -174,8 +173,8 @@ def find_signals(
     for candidates in (own_group, others):
         time = _first_of(["time"], channels, candidates)
         if time is not None:
-            return _signal(time, channels[time], "time", where), measured
-    return None, measured
+            return [_signal(time, channels[time], "time", where), measured]
+    return [measured]
 
 
 def _first_of(quantities, channels, indices):
@@ -194,13 +193,11 @@ def _selected(channels, name, where):
     ]
     if len(found) == 1:
         return found[0]
+    reason = f"no channel {shown(name)}, need one of"
     if found:
-        listed = _listed([channels[index] for index in found])
-        raise DataError(
-            f"{where}: channel {shown(name)} is ambiguous, need the full name of one: {listed}"
-        )
-    listed = _listed(channels) or "the file has no numeric channel"
-    raise DataError(f"{where}: no channel {shown(name)}, need one of: {listed}")
+        reason = f"channel {shown(name)} is ambiguous, need the full name of one"
+    listed = _listed([channels[index] for index in found] or channels)
+    raise DataError(f"{where}: {reason}: {listed or 'the file has no numeric channel'}")
 
 
 def _listed(channels):
@@ -231,9 +228,7 @@ def _signal(index, channel, quantity, where):
         raise DataError(
             f"{where}: {shown(channel.name)} has no unit, need one such as {example}{other}"
         )
-    try:
+    with located(f"{where}: {shown(channel.name)}", DataError):
         quantity = quantity or electrical_quantity(channel.units)
         factor = convert(1.0, usual_spelling(channel.units), UNITS[quantity])
-    except LubeError as error:
-        raise DataError(f"{where}: {shown(channel.name)}: {error}") from None
     return Signal(index, quantity, factor)

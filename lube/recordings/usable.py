@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from lube.errors import DataError, LubeError
-from lube.recordings.manifest import Entry
+from lube.errors import DataError, located
+from lube.recordings.manifest import OF_FILES, Entry
 from lube.recordings.reader import Recording, open_recording
 from lube.study.lubricant_record import check_temperatures
 from lube.study.study import Study
@@ -42,19 +42,16 @@ def lubricant_of(entry: Entry, study: Study) -> str:
             f"{entry.where}: lubricant: got {name}, need one of the study's: "
             f"{', '.join(lubricants)}"
         )
-    try:
+    with located(entry.where, DataError):
         check_temperatures(lubricants[name], [entry.temperature])
         study.check_window(entry.force)
         study.check_slip(entry.slide_to_roll_ratio or 0.0)
-    except LubeError as error:
-        raise DataError(f"{entry.where}: {error}") from None
     return name
 
 
 def open_entry(entry: Entry) -> Recording:
     """Open the recording of a row of the manifest; errors are those of `open_recording`."""
-    names = "sampling_interval", "channel", "unit", "gain", "offset", "skip"
-    return open_recording(entry.file, **{name: getattr(entry, name) for name in names})
+    return open_recording(entry.file, **{name: getattr(entry, name) for name in OF_FILES})
 
 
 def unsaturated_pieces(recording: Recording, study: Study) -> Iterator[np.ndarray]:

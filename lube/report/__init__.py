@@ -1,4 +1,4 @@
 """The report of a study and the tables of the documentation."""
 
 SUMMARISED = ("lubricant", "film", "contact", "experiment", "comparison", "gauge")
-"""Datasets of which the summary of a study speaks, as far as it has them."""
+"""Datasets that the summary of a study uses, as far as the study has them."""

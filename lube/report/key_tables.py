@@ -58,7 +58,7 @@ def record_keys() -> list[tuple[str, str, str]]:
     Returns
     -------
     list of tuple of str
-        As of `study_keys`.
+        As from `study_keys`.
     """
     return keys(LubricantRecord.model_json_schema())
 
@@ -76,12 +76,13 @@ def keys(
     schema : dict
         JSON schema of a model, or of a section of it.
     path, definitions, section
-        Of a section: the keys that lead to it, the model's definitions, and whether it is optional.
+        For a section: the keys that lead to it, the model's definitions, and a remark if it is
+        optional.
 
     Returns
     -------
     list of tuple of str
-        As of `study_keys`.
+        As from `study_keys`.
     """
     definitions = definitions or schema.get("$defs", {})
     rows = []
@@ -95,7 +96,7 @@ def keys(
         else:
             value = _value(field, inner) + (section if required else _default(field))
             meaning = field.get("description", inner.get("description", ""))
-            rows.append((f"`{path}{name}`", value, meaning))
+            rows.append((f"`{path}{name}`", value, " ".join(meaning.split())))
     return rows
 
 

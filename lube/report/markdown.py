@@ -8,7 +8,7 @@ import re
 from html import escape, unescape
 
 _HEADING = re.compile(r"#{1,6}\s+(.*?)\s*#*")
-_WEB = ("https://", "http://", "mailto:")
+_LOCAL_LINK = re.compile(r'<a href="(?!https://|http://|mailto:)[^>]*>(.*?)</a>', re.DOTALL)
 
 
 def to_html(text: str) -> str:
@@ -30,7 +30,7 @@ def to_html(text: str) -> str:
     >>> to_html("of **all** points")
     '<p>of <strong>all</strong> points</p>'
     """
-    return _parser().render(text).strip()
+    return _LOCAL_LINK.sub(r"\1", _parser().render(text)).strip()
 
 
 def inline(text: str) -> str:
@@ -46,7 +46,7 @@ def inline(text: str) -> str:
     str
         HTML without a surrounding paragraph.
     """
-    return _parser().renderInline(text)
+    return _LOCAL_LINK.sub(r"\1", _parser().renderInline(text))
 
 
 def plain(text: str) -> str:
@@ -119,9 +119,7 @@ def _parser():
     from mdit_py_plugins.dollarmath import dollarmath_plugin
 
     parser = MarkdownIt("commonmark", {"html": False}).enable("table")
-    parser.use(dollarmath_plugin, allow_space=False, allow_digits=False, renderer=_mathml)
-    parser.core.ruler.push("local_links", _remove_local_links)
-    return parser
+    return parser.use(dollarmath_plugin, allow_space=False, allow_digits=False, renderer=_mathml)
 
 
 def _mathml(tex, options):
@@ -133,15 +131,3 @@ def _mathml(tex, options):
     except Exception:  # docutils raises many kinds
         return f"<code>{escape(tex, quote=False)}</code>"
     return re.sub(r">\s+<", "><", mathml)
-
-
-def _remove_local_links(state):
-    for block in state.tokens:
-        local, kept = False, []
-        for token in block.children or ():
-            if token.type == "link_open":
-                local = not token.attrGet("href").startswith(_WEB)
-            if not (local and token.type in ("link_open", "link_close")):
-                kept.append(token)
-        if block.children:
-            block.children = kept

@@ -3,11 +3,12 @@
 Clock times are in this page only, so that all other results are the same bytes in every run.
 """
 
-import csv
 import os
 import platform
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+
+import pandas as pd
 
 from lube.report.pages import render
 
@@ -40,8 +41,6 @@ def run_times(jobs: Mapping[str, Iterable[str]]) -> str:
 
 
 def _measured(file):
-    with file.open(encoding="utf-8", newline="") as lines:
-        values = next(csv.DictReader(lines, delimiter="\t"))
-    # In MB; Snakemake writes NA if the job was too short.
-    memory = 0.0 if values["max_rss"] == "NA" else float(values["max_rss"])
-    return {"name": file.stem, "seconds": float(values["s"]), "memory": memory}
+    # Snakemake writes NA for the memory, in MB, of a job that was too short.
+    values = pd.read_csv(file, sep="\t").fillna(0.0).iloc[0]
+    return {"name": file.stem, "seconds": values["s"], "memory": values["max_rss"]}

@@ -58,8 +58,6 @@ def facts(study: Study, lubricant: xr.Dataset) -> str:
         study=study,
         oils=oils,
         points=math.prod(len(levels) for levels in study.operating_grid.model_dump().values()),
-        rms=study.line_spec.rms_height,
-        lines=study.line_spec.lines,
         two_pi=2.0 * math.pi,
     )
 
@@ -107,7 +105,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     return render(
         "findings.md",
         study=study,
-        film=_film(film, first) | _width(film, 2.0 * math.pi / study.line_spec.q_max),
+        film=_film(film, first, 2.0 * math.pi / study.line_spec.q_max),
         contact=_contact(contact.sel(first)),
         trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
         spread=_spread(film, contact, first),
@@ -122,9 +120,11 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     )
 
 
-def _film(film, first):
-    """Range of the film, and how many points lie in each regime and outside each formula."""
+def _film(film, first, shortest):
+    """Ranges of film and contact width, also in shortest waves; points by regime and validity."""
     thickness, ratio = (film[name].sel(first) for name in ("film_thickness", "lambda_ratio"))
+    half = film["contact_half_width"]
+    width = [2.0 * half.min().item(), 2.0 * half.max().item()]
     regimes = film["regime"].attrs["flag_meanings"].split()
     outside = {
         name: int((~film["in_validity_range"].sel(film_formula=name).astype(bool)).sum())
@@ -135,6 +135,8 @@ def _film(film, first):
     return {
         "thickness": [thickness.min().item(), thickness.max().item()],
         "lambda_ratio": [ratio.min().item(), ratio.max().item()],
+        "width": width,
+        "waves": [one / shortest for one in width],
         "regimes": {
             name.replace("_", " and "): points
             for flag, name in enumerate(regimes)
@@ -146,13 +148,6 @@ def _film(film, first):
         "heated": "slide_to_roll_ratio" in thickness.dims,
         "starving": 1.0 - starved.min().item() if starved is not None else None,
     }
-
-
-def _width(film, shortest):
-    """Range of the contact width, also over the shortest wavelength of the roughness."""
-    half = film["contact_half_width"]
-    width = [2.0 * half.min().item(), 2.0 * half.max().item()]
-    return {"width": width, "waves": [one / shortest for one in width]}
 
 
 def _contact(contact):
@@ -247,7 +242,7 @@ def _gauged(gauge):
     """How many records give both limits of their film, and how many one only."""
     lower, upper = (gauge[f"gauged_film_thickness_{end}"].values for end in ("lower", "upper"))
     return {
-        "records": int(np.isfinite(upper + lower).size),
+        "records": upper.size,
         "closed": int((np.isfinite(upper) & (lower > 0.0)).sum()),
         "thicker": int(np.isposinf(upper).sum()),
         "thinner": int((lower == 0.0).sum()),
@@ -283,7 +278,6 @@ def _measured_near(comparison, point):
 
 
 def _lines(results, attribute):
-    """Lines about records, of the experiment and of what is made from it."""
-    kinds = [kind for kind in ("experiment", "comparison") if kind in results]
-    texts = [results[kind].attrs.get(attribute, "") for kind in kinds]
-    return [line for text in texts for line in text.splitlines()]
+    """Lines about records, from the experiment and the comparison."""
+    made = [results[kind] for kind in ("experiment", "comparison") if kind in results]
+    return [line for one in made for line in one.attrs.get(attribute, "").splitlines()]

@@ -14,13 +14,14 @@ from lube.errors import RangeError
 from lube.kernels.threshold import count_below, follow_contact
 from lube.physics.electrical import divider_voltage
 from lube.statistics.confidence import probability_limits
+from lube.statistics.folding import phases_of_blocks
 from lube.study.rig_settings import Experiment, Rig
 
 BLOCKS = 2**18
-"""Largest number of blocks; when all are full, each two are added to one."""
+"""Largest number of blocks; when all are full, each two neighbours are added up to one block."""
 
 MOST_STRETCHES = 4096
-"""Largest number of stretches: shorter ones see the same contact as their neighbours."""
+"""Largest number of stretches; shorter stretches see the same contact as their neighbours."""
 
 STRETCHES = 64
 """Largest number of stretches of the circumference that a folded record is divided into."""
@@ -46,7 +47,7 @@ class ContactShare:
         Shape (K,), not below the limits; by default the limits, which is no hysteresis.
     hold : int, optional
         Number of samples that a change of state must last to count; it then counts from its
-        first sample on. 0 is off.
+        first sample on. With 0 every change counts.
 
     Raises
     ------
@@ -66,14 +67,15 @@ class ContactShare:
         self, limits: npt.ArrayLike, releases: npt.ArrayLike | None = None, hold: int = 0
     ) -> None:
         self._limits = np.array(limits, float)
-        self._releases = self._limits if releases is None else np.array(releases, float)
-        self._hold = hold
         if self._limits.size == 0 or not np.all(np.diff(self._limits) > 0.0):
             raise RangeError(f"limits: got {limits}, need one or more, rising")
-        if self._releases.size != self._limits.size or np.any(self._releases < self._limits):
+        releases_of = self._limits if releases is None else np.array(releases, float)
+        if releases_of.size != self._limits.size or np.any(releases_of < self._limits):
             raise RangeError(f"releases: got {releases}, need one for each limit, not below it")
-        self._remembers = releases is not None or hold > 0
-        self._states = np.zeros((self._limits.size, 3), np.int64)
+        self._count, self._triggers = count_below, ()
+        if releases is not None or hold > 0:
+            states = np.zeros((self._limits.size, 3), np.int64)
+            self._count, self._triggers = follow_contact, (releases_of, hold, states)
         self._counts = np.zeros((self._limits.size, BLOCKS), np.int64)
         self._doublings = self._samples = 0
 
@@ -88,31 +90,14 @@ class ContactShare:
         values = np.ascontiguousarray(values)
         while values.size:
             room = (BLOCKS << self._doublings) - self._samples
-            self._count(values[:room])
+            seen = self._samples, self._doublings
+            self._count(values[:room], *seen, self._limits, *self._triggers, self._counts)
             self._samples += min(room, values.size)
             values = values[room:]
             if self._samples == BLOCKS << self._doublings:
-                self._merge()
-
-    def _count(self, values):
-        if self._remembers:
-            follow_contact(
-                values,
-                self._samples,
-                self._doublings,
-                self._limits,
-                self._releases,
-                self._hold,
-                self._states,
-                self._counts,
-            )
-        else:
-            count_below(values, self._samples, self._doublings, self._limits, self._counts)
-
-    def _merge(self):
-        self._counts[:, : BLOCKS // 2] = _pairs(self._counts)
-        self._counts[:, BLOCKS // 2 :] = 0
-        self._doublings += 1
+                self._counts[:, : BLOCKS // 2] = _pairs(self._counts)
+                self._counts[:, BLOCKS // 2 :] = 0
+                self._doublings += 1
 
     @property
     def samples(self) -> int:
@@ -184,7 +169,7 @@ def folded_counts(below: np.ndarray, sizes: np.ndarray, interval: float, period:
     Returns
     -------
     below, sizes : numpy.ndarray
-        The same in at most `STRETCHES` phases, those that were seen, shapes (K, F) and (F,).
+        The counts in at most `STRETCHES` phases that the record has, shapes (K, F) and (F,).
 
     Examples
     --------
@@ -193,9 +178,7 @@ def folded_counts(below: np.ndarray, sizes: np.ndarray, interval: float, period:
     >>> folded_counts(np.array([[1, 0, 2, 3, 0, 0]]), np.full(6, 10), 1.0, 3.0)
     (array([[4., 0., 2.]]), array([20., 20., 20.]))
     """
-    phases = min(STRETCHES, max(int(period / interval), 1))
-    turns = (np.arange(sizes.size) + 0.5) * interval / period
-    phase = np.minimum((turns % 1.0 * phases).astype(np.int64), phases - 1)
+    phase, _, phases = phases_of_blocks(sizes.size, interval, period, STRETCHES)
     counts = np.array([np.bincount(phase, row, phases) for row in (*below, sizes)])
     counts = counts[:, counts[-1] > 0]
     return counts[:-1], counts[-1]
@@ -206,9 +189,9 @@ def share_interval(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     r"""Contact share of one record and its 95 % interval, from the scatter within the record.
 
-    It is the interval of the mean over pairs of rollers, as far as the record of one pair shows
-    it. Neighbouring samples see the same roughness and are correlated; long stretches nearly are
-    not. The variance of the mean estimated from stretches grows with their length, until they are
+    The interval is that of the mean over pairs of rollers, as far as one pair's record shows it.
+    Neighbouring samples see the same roughness and are correlated; long stretches nearly are not.
+    The variance of the mean estimated from stretches grows with their length, until they are
     longer than the correlation of the record. It is estimated from blocks, from pairs of blocks,
     pairs of pairs and so on, and the largest estimate is used [1]_. Where rollers repeat
     themselves, stretches one revolution apart are correlated too; then the counts are folded by
@@ -256,33 +239,29 @@ def share_interval(
     if not windows >= 1.0:
         raise RangeError(f"windows: got {windows:g}, need at least 1")
     share = below.sum(axis=-1) / sizes.sum()
-    variance, degrees = _largest_variance(below, sizes)
-    for counts in folded:
-        by_phase, freedom = _largest_variance(*counts)
-        degrees = np.where(by_phase > variance, freedom, degrees)
-        variance = np.maximum(by_phase, variance)
+    found = [(np.zeros(share.size), 1)]
+    for counts in ((below, sizes), *folded):
+        found += _variances(*counts)
+    variances, degrees = (np.array(each) for each in zip(*found, strict=True))
+    variance, degrees = variances.max(axis=0), degrees[variances.argmax(axis=0)]
     with np.errstate(divide="ignore", invalid="ignore"):
         samples = np.where(variance > 0.0, share * (1.0 - share) / variance, np.nan)
     return share, *probability_limits(share, samples, degrees, windows)
 
 
-def _largest_variance(below, sizes):
-    """Largest variance of the share over all lengths of stretches, with its degrees of freedom."""
-    variance, degrees = np.zeros(below.shape[0]), np.ones(below.shape[0])
+def _variances(below, sizes):
+    """Yield the variance of the share by stretches of each length, and its degrees of freedom."""
     while sizes.size > MOST_STRETCHES:
         below, sizes = _pairs(below), _pairs(sizes)
     while sizes.size >= LEAST_BLOCKS:
-        here = _variance(below, sizes)
-        degrees = np.where(here > variance, sizes.size - 1, degrees)
-        variance = np.maximum(here, variance)
+        yield _variance(below, sizes), sizes.size - 1
         below, sizes = _pairs(below), _pairs(sizes)
-    return variance, degrees
 
 
 def _variance(below, sizes):
-    """Variance of the share in all blocks, which need not be equally long."""
+    """Variance of the share over all blocks, which need not be equally long."""
     shares, weights = below / sizes, sizes / sizes.sum()
     excess = weights * (shares - (weights * shares).sum(axis=-1, keepdims=True))
     variance = sizes.size / (sizes.size - 1) * (excess**2).sum(axis=-1)
-    # Decided by the shares: the variance of equal ones need not round to zero.
+    # The shares themselves decide: the variance of equal shares need not round to zero.
     return np.where(np.ptp(shares, axis=-1) > 0.0, variance, 0.0)

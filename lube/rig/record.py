@@ -14,7 +14,7 @@ from lube.grid.levels import level_near
 from lube.grid.operating_points import surface_speeds
 from lube.physics.electrical import resistance_from_voltage
 from lube.rig.contact_share import folded_counts, record_counter, share_interval
-from lube.rig.simulator import Revolution
+from lube.rig.simulator import Revolution, repeats
 from lube.schema import values_with_limits
 from lube.statistics.folding import CLEAR, SPAN, fold
 from lube.statistics.one_pair import distinct_alignments
@@ -24,7 +24,7 @@ LEVELS = ("force", "speed", "temperature")
 """Operating variables that are measured, and of which a study has levels."""
 
 TRACE_SAMPLES = 4096
-"""Samples kept of the first revolution of a record; of a longer one, extremes of its parts."""
+"""Samples kept of the first revolution of a record; if it has more, extremes of its parts."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,7 @@ class Conditions:
 
     def labelled(self, study: Study) -> dict[str, Any]:
         """Conditions by name, and the study's level near each of `LEVELS`, NaN if none is."""
-        names = (*LEVELS, "lubricant", "slide_to_roll_ratio", "pair")
-        row = {name: getattr(self, name) for name in names}
+        row = {name: value for name, value in vars(self).items() if name != "tolerances"}
         for name in LEVELS:
             levels = getattr(study.operating_grid, name)
             found = level_near(levels, row[name], self.tolerances[name])
@@ -101,11 +100,6 @@ class Record:
         faster_speed = max(surface_speeds(conditions.speed, conditions.slide_to_roll_ratio))
         self._period = 60.0 / faster_speed * (self._revolutions[0] / points[0])
 
-    @property
-    def samples(self) -> int:
-        """Samples so far."""
-        return self._counter.samples
-
     def add(self, values: np.ndarray) -> None:
         """Count the next samples.
 
@@ -133,8 +127,8 @@ class Record:
         Parameters
         ----------
         correct_speed : bool, optional
-            If the record repeats itself at a speed beyond the tolerance of the stated one, use
-            the former.
+            Whether to use the speed at which the record repeats itself, if it differs from the
+            stated speed by more than the tolerance.
 
         Returns
         -------
@@ -145,14 +139,15 @@ class Record:
         block = float(sizes[0]) * self._interval
         at = self._study.experiment.thresholds.index(self._study.experiment.threshold)
         folded = fold(below[at] / sizes, block, self._period)
-        speed_ratio = self._period / folded.period if folded.repeatability >= CLEAR else np.nan
-        duration = self.samples * self._interval
-        # Of the roller with the faster surface.
+        period = folded.revolution_period
+        speed_ratio = self._period / period if folded.repeatability >= CLEAR else np.nan
+        duration = self._counter.samples * self._interval
+        # Revolutions are counted of the roller with the faster surface.
         steps_around = self._study.line_spec.points[self._faster]
-        revolutions = duration / folded.period * (self._revolutions[0] / steps_around)
-        periods = {folded.period * each / self._revolutions[0] for each in self._revolutions}
-        periods = sorted(periods) if duration > folded.period else ()
-        folds = [folded_counts(below, sizes, block, period) for period in periods]
+        revolutions = duration / period * (self._revolutions[0] / steps_around)
+        periods = {period * each / self._revolutions[0] for each in self._revolutions}
+        periods = sorted(periods) if duration > period else ()
+        folds = [folded_counts(below, sizes, block, each) for each in periods]
         shares = share_interval(below, sizes, self._windows(revolutions), folds)
         conditions = self._corrected(speed_ratio) if correct_speed else self.conditions
         steps = self._steps
@@ -162,13 +157,10 @@ class Record:
             "duration": duration,
             "sampling_interval": self._interval,
             "turns": revolutions,
-            "revolution_period": folded.period,
-            "repeatability": folded.repeatability,
             "speed_ratio": speed_ratio,
-            "share_error": folded.share_error if self._repeats() else 0.0,
-            "folded_share": folded.profile,
-            "folded_deviation": folded.deviation,
-            **self._trace(folded.period),
+            **vars(folded),
+            "share_error": folded.share_error if repeats(self._study, self._ratios) else 0.0,
+            **self._trace(period),
             "true_contact_share": self._steps_in_contact / steps if steps else np.nan,
         }
 
@@ -178,22 +170,13 @@ class Record:
         beyond = abs(speed - self.conditions.speed) > self.conditions.tolerances["speed"]
         return replace(self.conditions, speed=speed) if beyond else self.conditions
 
-    def _repeats(self):
-        """Whether each revolution is the same as the one before, except for electrical noise."""
-        equal_rollers = len(set(self._study.line_spec.points)) == 1
-        rolling = self.conditions.slide_to_roll_ratio == 0.0
-        return equal_rollers and rolling and self._study.rig.drift == 0.0
-
     def _windows(self, revolutions):
         """Count the windows in the record that share no roughness."""
         spec, ratios = self._study.line_spec, self._ratios
         reach = 2.0 * self._study.rollers.contact_half_width(self.conditions.force)
         reach = (reach + spec.longest_wavelength) / spec.spacing
-        faster, slower = self._faster, 1 - self._faster
-        shift = round(spec.points[faster] * ratios[slower])
-        alignments = distinct_alignments(revolutions, shift, spec.points[slower], reach)
-        different = min(revolutions, alignments)
-        return max(different * spec.points[faster] * min(ratios) / reach, 1.0)
+        different = distinct_alignments(revolutions, ratios, spec.points, reach)
+        return max(different * spec.points[self._faster] * min(ratios) / reach, 1.0)
 
     def _trace(self, period):
         """Resistance over the first revolution."""

@@ -24,21 +24,23 @@ import xarray as xr
 
 from lube.contact.windows import ContactWindows
 from lube.grid.discretise import LineGrid, line_pair, revolution, speed_ratios
-from lube.grid.operating_points import OperatingPoint
+from lube.grid.operating_points import OperatingPoint, surface_speeds
 from lube.kernels.circuit import sampled_voltage
 from lube.physics.electrical import contact_resistance, film_capacitance
 from lube.study.rig_settings import Rig
 from lube.study.study import Study
-from lube.types import Array
+from lube.types import Array, Pair, Ratios
 
 log = logging.getLogger(__name__)
 
 TOGETHER = 16
-"""Operating points whose contact at all time steps is in memory at once."""
+"""Number of operating points whose contact at all time steps is in memory at once."""
 
 
-class SimulatedRig:
-    """A twin-disc rig that runs its own rollers at given operating points.
+def simulated_revolutions(
+    lines: xr.Dataset, study: Study, points: list[OperatingPoint]
+) -> Iterator[tuple[int, int, "Revolution"]]:
+    """Run all pairs of the rig's rollers, each at all operating points.
 
     Parameters
     ----------
@@ -48,81 +50,102 @@ class SimulatedRig:
         Its rig, boundary layer, rollers, resistivity and seed.
     points : list of OperatingPoint
         From `lube.grid.operating_points.operating_points`; all of one slide-to-roll ratio.
+
+    Yields
+    ------
+    pair : int
+        Index of the pair of rollers.
+    number : int
+        Index of the operating point.
+    revolution : Revolution
+        The next revolution of this pair at this point.
     """
+    for pair, drawn in enumerate(np.split(lines["realisation"].values, study.rig.pairs)):
+        for begin in range(0, len(points), TOGETHER):
+            some = points[begin : begin + TOGETHER]
+            for turn, contacts in enumerate(_turns(lines, study, some, drawn)):
+                for number, contact in enumerate(contacts, begin):
+                    seed = (study.seed, int(drawn[0]), number + 1, turn)
+                    spacing = lines.attrs["spacing"]
+                    yield pair, number, _revolution(contact, points[number], spacing, study, seed)
+            log.info("simulated rig: pair %d, %d operating points", pair + 1, begin + len(some))
 
-    def __init__(self, lines: xr.Dataset, study: Study, points: list[OperatingPoint]) -> None:
-        self._lines, self._study, self._points = lines, study, points
-        self._slip = points[0].slide_to_roll_ratio
-        self._ratios = speed_ratios(self._slip)
 
-    def revolutions(self) -> Iterator[tuple[int, int, "Revolution"]]:
-        """Run all pairs of rollers, each at all operating points.
+def _turns(lines, study, points, drawn):
+    """Grid points in contact at all time steps of each turn, at some operating points."""
+    slip, windows = points[0].slide_to_roll_ratio, _windows(lines, study, points)
+    ratios = speed_ratios(slip)
+    for turn, pair in enumerate(drifting_rollers(lines, study, drawn)):
+        steps = revolution(pair, ratios)
+        if not turn or not repeats(study, ratios):
+            contacts = windows.trace(pair, slip, turn * steps)
+        part = min(study.rig.revolutions - turn, 1.0)
+        yield contacts[:, : max(round(part * steps), 1)]
 
-        Yields
-        ------
-        pair : int
-            Index of the pair of rollers.
-        number : int
-            Index of the operating point.
-        revolution : Revolution
-            The next revolution of this pair at this point.
-        """
-        rig, realisations = self._study.rig, self._lines["realisation"].values
-        for pair, drawn in enumerate(np.split(realisations, rig.pairs)):
-            for begin in range(0, len(self._points), TOGETHER):
-                numbers = range(begin, min(begin + TOGETHER, len(self._points)))
-                for turn, contacts in enumerate(self._turns(drawn, numbers)):
-                    for number, contact in zip(numbers, contacts, strict=True):
-                        seed = (self._study.seed, int(drawn[0]), number + 1, turn)
-                        yield pair, number, self._revolution(contact, number, seed)
-                log.info("simulated rig: pair %d, %d operating points", pair + 1, numbers.stop)
 
-    def _turns(self, drawn, numbers):
-        """Grid points in contact at all time steps of each turn, at some operating points."""
-        rig, contacts, windows = self._study.rig, None, self._windows(numbers)
-        for turn, pair in enumerate(self._rollers(drawn)):
-            steps = revolution(pair, self._ratios)
-            if contacts is None or not self._repeats(pair):
-                contacts = windows.trace(pair, self._slip, turn * steps)
-            part = min(rig.revolutions - turn, 1.0)
-            yield contacts[:, : max(round(part * steps), 1)]
+def _windows(lines, study, points):
+    """Contact windows of some operating points."""
+    rows = [point.row for point in points]
+    film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
+    alike = ["reduced_modulus", "reduced_radius", "composite_rms_roughness"]
+    film = film.assign(rows[0][alike])
+    return ContactWindows(LineGrid.of(lines), film, study.boundary_layer, study.gap)
 
-    def _repeats(self, pair):
-        """Whether each revolution is the same as the one before."""
-        equal = pair[0].size == pair[1].size and self._ratios[0] == self._ratios[1]
-        return equal and self._study.rig.drift == 0.0
 
-    def _rollers(self, drawn):
-        """Lines of a pair of rollers in each of its revolutions."""
-        drift = self._study.rig.drift
-        pair = line_pair(self._lines, drawn[0])
-        for turn in range(math.ceil(self._study.rig.revolutions)):
-            if turn and drift > 0.0:
-                pair = tuple(
-                    _renewed(old, new, drift)
-                    for old, new in zip(pair, line_pair(self._lines, drawn[turn]), strict=True)
-                )
-            yield pair
+def drifting_rollers(lines: xr.Dataset, study: Study, drawn: Array) -> Iterator[Pair]:
+    """Draw a pair of rollers, whose roughness may drift, for each of its revolutions.
 
-    def _windows(self, numbers):
-        """Contact windows of some operating points."""
-        rows = [self._points[number].row for number in numbers]
-        film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
-        alike = ["reduced_modulus", "reduced_radius", "composite_rms_roughness"]
-        film = film.assign(rows[0][alike])
-        layer, gap = self._study.boundary_layer, self._study.gap
-        return ContactWindows(LineGrid.of(self._lines), film, layer, gap)
+    Parameters
+    ----------
+    lines, study
+        As in `simulated_revolutions`.
+    drawn : numpy.ndarray
+        Realisations of this pair, one for each revolution if the roughness drifts.
 
-    def _revolution(self, contact, number, seed):
-        point, spacing = self._points[number], self._lines.attrs["spacing"]
-        return Revolution(
-            contact,
-            point,
-            time_step=spacing / point.faster_speed,
-            spot_resistance=self._study.resistivity / spacing,
-            length=self._study.rollers.length,
-            seed=seed,
-        )
+    Yields
+    ------
+    tuple of numpy.ndarray
+        The two lines, int32 height steps.
+    """
+    drift, pair = study.rig.drift, line_pair(lines, drawn[0])
+    for turn in range(math.ceil(study.rig.revolutions)):
+        if turn and drift > 0.0:
+            pair = tuple(
+                _renewed(old, new, drift)
+                for old, new in zip(pair, line_pair(lines, drawn[turn]), strict=True)
+            )
+        yield pair
+
+
+def _revolution(contact, point, spacing, study, seed):
+    capacitance = film_capacitance(
+        point.row["film_thickness"].item(),
+        point.row["contact_half_width"].item(),
+        study.rollers.length,
+        study.rig.oil_permittivity,
+    )
+    speeds = surface_speeds(point.row["entrainment_speed"].item(), point.slide_to_roll_ratio)
+    time_step, resistance = spacing / max(speeds), study.resistivity / spacing
+    return Revolution(contact, point, time_step, resistance, capacitance, seed)
+
+
+def repeats(study: Study, ratios: Ratios) -> bool:
+    """Whether each revolution is the same as the one before, except for electrical noise.
+
+    Parameters
+    ----------
+    study : Study
+        Its lines and the drift of their roughness.
+    ratios : tuple of float
+        From `lube.grid.discretise.speed_ratios`.
+
+    Returns
+    -------
+    bool
+        True for equal rollers that roll without slip and do not drift.
+    """
+    first, second = study.line_spec.points
+    return first == second and ratios[0] == ratios[1] and study.rig.drift == 0.0
 
 
 def _renewed(line, other, drift):
@@ -145,8 +168,8 @@ class Revolution:
         Time between two steps, s.
     spot_resistance : float
         Contact resistance of one grid point, rho / dx, ohm (paper, Eq. 1).
-    length : float
-        Length L' of the line contact, m.
+    capacitance : float
+        Capacitance C of the film, F.
     seed : tuple of int
         Seed of the noise.
     """
@@ -155,11 +178,19 @@ class Revolution:
     point: OperatingPoint
     time_step: float
     spot_resistance: float
-    length: float
+    capacitance: float
     seed: tuple[int, ...]
 
     def voltage(self, rig: Rig) -> Array:
-        """Log the revolution with a rig's circuit; the noise differs between rigs by a factor.
+        r"""Log the revolution with a rig's circuit; the noise differs between rigs by a factor.
+
+        With :math:`w` points in contact, conductance :math:`G = 1 / R_c + 1 / R_{leak}` and
+        :math:`R = R_s + R_l`, the voltage over the gap approaches
+
+        .. math:: u_\infty = \frac{U}{1 + R G}
+
+        and in a time step the distance to it decreases by the factor
+        :math:`\exp(-\Delta t (G + 1 / R) / C)`.
 
         Parameters
         ----------
@@ -169,76 +200,28 @@ class Revolution:
         Returns
         -------
         numpy.ndarray
-            Shape (samples,), V.
+            Shape (samples,), float64, V, whole steps of the converter.
         """
-        capacitance = film_capacitance(
-            self.point.film_thickness,
-            self.point.contact_half_width,
-            self.length,
-            rig.oil_permittivity,
+        points = np.arange(self.contact.max() + 1)
+        feed = rig.series_resistance + rig.lead_resistance
+        conductance = 1.0 / contact_resistance(points, self.spot_resistance)
+        conductance += 1.0 / rig.leak_resistance
+        targets = rig.bias_voltage / (1.0 + feed * conductance)
+        decays = np.exp(-self.time_step * (conductance + 1.0 / feed) / self.capacitance)
+        gain = rig.series_resistance / feed
+        voltage = sampled_voltage(
+            self.contact,
+            targets,
+            decays,
+            gain,
+            rig.bias_voltage * (1.0 - gain),
+            rig.amplifier_range,
+            np.exp(-2.0 * np.pi * rig.bandwidth * self.time_step),
+            1.0 / (rig.sampling_rate * self.time_step),
+            int(self.contact.size * self.time_step * rig.sampling_rate) or 1,
         )
-        generator = np.random.default_rng(np.random.SeedSequence(self.seed))
-        return logged_voltage(
-            self.contact, self.time_step, self.spot_resistance, capacitance, rig, generator
-        )
-
-
-def logged_voltage(
-    contact: Array,
-    time_step: float,
-    spot_resistance: float,
-    capacitance: float,
-    rig: Rig,
-    generator: np.random.Generator,
-) -> Array:
-    r"""Simulate the voltage that the rig logs, given the contact at every time step.
-
-    With :math:`w` points in contact, conductance :math:`G = 1 / R_c + 1 / R_{leak}` and
-    :math:`R = R_s + R_l`, the voltage over the gap approaches
-
-    .. math:: u_\infty = \frac{U}{1 + R G}
-
-    and in a time step the distance to it decreases by the factor
-    :math:`\exp(-\Delta t (G + 1 / R) / C)`.
-
-    Parameters
-    ----------
-    contact : numpy.ndarray
-        Shape (T,), grid points in metal contact at each time step.
-    time_step : float
-        Time between two steps, s.
-    spot_resistance : float
-        Contact resistance of one grid point, rho / dx, ohm (paper, Eq. 1).
-    capacitance : float
-        Capacitance C of the film, F.
-    rig : Rig
-        Circuit, amplifier and sampling.
-    generator : numpy.random.Generator
-        Source of the noise.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (samples,), float64, V, whole steps of the converter.
-    """
-    points = np.arange(contact.max() + 1)
-    feed = rig.series_resistance + rig.lead_resistance
-    conductance = 1.0 / contact_resistance(points, spot_resistance) + 1.0 / rig.leak_resistance
-    targets = rig.bias_voltage / (1.0 + feed * conductance)
-    decays = np.exp(-time_step * (conductance + 1.0 / feed) / capacitance)
-    gain = rig.series_resistance / feed
-    voltage = sampled_voltage(
-        contact,
-        targets,
-        decays,
-        gain,
-        rig.bias_voltage * (1.0 - gain),
-        rig.amplifier_range,
-        np.exp(-2.0 * np.pi * rig.bandwidth * time_step),
-        1.0 / (rig.sampling_rate * time_step),
-        int(contact.size * time_step * rig.sampling_rate) or 1,
-    )
-    voltage += rig.noise * generator.standard_normal(voltage.size, np.float32)
-    steps = np.rint(voltage / rig.resolved_voltage)
-    most = 2 ** (rig.resolution - 1)
-    return np.clip(steps, -most, most - 1) * rig.resolved_voltage
+        generator = np.random.default_rng(self.seed)
+        voltage += rig.noise * generator.standard_normal(voltage.size, np.float32)
+        steps = np.rint(voltage / rig.resolved_voltage)
+        most = 2 ** (rig.resolution - 1)
+        return np.clip(steps, -most, most - 1) * rig.resolved_voltage

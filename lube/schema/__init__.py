@@ -28,4 +28,5 @@ from lube.schema.tables import (
     SUMMARIES,
     Variable,
     values_with_limits,
+    with_dims,
 )

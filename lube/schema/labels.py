@@ -39,13 +39,9 @@ def label(dataset: xr.Dataset, kind: str) -> xr.Dataset:
     labelled = dataset.copy()
     for name in labelled.variables:
         expected = _expected(kind, name)
-        if expected is None:
-            continue  # refused by `check`
-        attributes = {"long_name": expected.long_name, **expected.attributes}
-        if expected.units is not None:
-            attributes["units"] = expected.units
-        attributes["coverage_content_type"] = _content(expected.content, labelled)
-        labelled[name].attrs = attributes
+        if expected is not None:  # else refused by `check`
+            content = _content(expected.content, labelled)
+            labelled[name].attrs = {**expected.attributes, "coverage_content_type": content}
     return check(labelled, kind)
 
 
@@ -83,26 +79,19 @@ def check(dataset: xr.Dataset, kind: str, where: File = "dataset") -> xr.Dataset
     for name in dataset.variables:
         if _expected(kind, name) is None:
             raise DataError(f"{refusal}: variable {name!r} does not belong there")
-    for name, expected in FILES[kind].items():
+    coordinates = {name: COORDINATES[name] for name in dataset.dims if name in COORDINATES}
+    for name, expected in (FILES[kind] | coordinates).items():
         if name in dataset.variables:
             _check_variable(dataset[name], name, expected, where)
         elif not expected.optional:
             raise DataError(f"{refusal}: variable {name!r} is missing")
-    for name in dataset.dims:
-        if name in COORDINATES:
-            _check_coordinate(dataset, name, where)
+    for name in coordinates:
+        if not dataset.indexes[name].is_unique:
+            raise DataError(f"{where}: coordinate {name!r} repeats a value")
     for name in ATTRIBUTES.get(kind, ()):
         if name not in dataset.attrs:
             raise DataError(f"{refusal}: attribute {name!r} is missing")
     return dataset
-
-
-def _check_coordinate(dataset, name, where):
-    if name not in dataset.coords:
-        raise DataError(f"{where}: coordinate {name!r} is missing")
-    _check_variable(dataset[name], name, COORDINATES[name], where)
-    if not dataset.indexes[name].is_unique:
-        raise DataError(f"{where}: coordinate {name!r} repeats a value")
 
 
 def _check_variable(array, name, expected, where):

@@ -37,7 +37,7 @@ class Stage:
         Attribute of `lube.pipeline.study_files.StudyFiles` that lists the files which people wrote
         and the stage reads; none by default.
     parameters : tuple of str
-        Attributes of the study that change the file beside the `values`, but not what is in it.
+        Further attributes of the study that the file depends on; its ``config`` leaves them out.
     priority : int
         Jobs of a higher one are started first.
     parallel : bool
@@ -65,6 +65,11 @@ class Stage:
         return f"{self.name.replace('_', ' ').capitalize()}: {self.says}"
 
 
+def _named(attributes):
+    """Values by the last names of their dotted attributes."""
+    return {attribute.rpartition(".")[2]: attribute for attribute in attributes.split()}
+
+
 def _cylinder(roller):
     """Values of a roller without its roughness."""
     names = ("radius", "young_modulus", "poisson_ratio")
@@ -73,11 +78,8 @@ def _cylinder(roller):
 
 _SURFACE = ("line_spec.is_gaussian", "line_spec.is_isotropic")
 _LINES = {"seed": "seed", "lines": "line_spec"}
-_LAYER = {"reduced_modulus": "rollers.reduced_modulus", "boundary_layer": "boundary_layer"}
-_CONTACT = _LAYER | {
-    "slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio",
-    "roughness_deformation": "roughness_deformation",
-}
+_LAYER = _named("rollers.reduced_modulus boundary_layer")
+_CONTACT = _LAYER | _named("operating_grid.slide_to_roll_ratio roughness_deformation")
 
 _ROWS = (
     Stage(
@@ -96,17 +98,12 @@ _ROWS = (
                 "first": _cylinder("first"),
                 "second": _cylinder("second"),
             },
-            "reduced_radius": "rollers.reduced_radius",
-            "reduced_modulus": "rollers.reduced_modulus",
-            "composite_rms_roughness": "rough_rollers.composite_rms_roughness",
-            "film_formulas": "film_formulas",
-            "film_shape": "film_shape",
-            "force": "operating_grid.force",
-            "speed": "operating_grid.speed",
-            "slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio",
-            "inlet_shear_heating": "inlet_shear_heating",
-            "inlet_meniscus": "inlet_meniscus",
-            "answered_lines": "answered_lines",
+            **_named(
+                "rollers.reduced_radius rollers.reduced_modulus "
+                "rough_rollers.composite_rms_roughness film_formulas film_shape "
+                "operating_grid.force operating_grid.speed operating_grid.slide_to_roll_ratio "
+                "inlet_shear_heating inlet_meniscus answered_lines"
+            ),
         },
         priority=1,
     ),
@@ -131,7 +128,7 @@ _ROWS = (
         "contact",
         "probabilities of all realisations and their intervals",
         inputs=("film",),
-        values=_LINES | _CONTACT | {"revolutions": "revolutions"},
+        values=_LINES | _CONTACT | _named("revolutions"),
         same_values=("roughness",),  # each batch draws its lines itself
         in_batches=True,
     ),
@@ -146,8 +143,8 @@ _ROWS = (
         "height_distribution",
         "probabilities by skewness and kurtosis",
         inputs=("film",),
-        values=_LINES | _LAYER | {"roughness_deformation": "roughness_deformation"},
-        same_values=("roughness",),  # whose lines have other distributions here
+        values=_LINES | _LAYER | _named("roughness_deformation"),
+        same_values=("roughness",),  # its lines have other height distributions here
         only_with=("line_spec.is_drawn",),
         priority=2,
     ),
@@ -164,7 +161,7 @@ _ROWS = (
         "trace",
         "contact length and resistance over one revolution",
         inputs=("film", "roughness"),
-        values=_LINES | _CONTACT | {"traces": "traces", "resistivity": "resistivity"},
+        values=_LINES | _CONTACT | _named("traces resistivity"),
     ),
     Stage(
         "experiment",
@@ -173,15 +170,9 @@ _ROWS = (
         values={
             **_LINES,
             **_CONTACT,
-            "resistivity": "resistivity",
-            "length": "rollers.length",
-            "rig": "rig",
+            **_named("resistivity rollers.length rig"),
             "experiment": "evaluation",
-            "grid": {
-                "force": "operating_grid.force",
-                "speed": "operating_grid.speed",
-                "temperature": "operating_grid.temperature",
-            },
+            "grid": _named("operating_grid.force operating_grid.speed operating_grid.temperature"),
         },
         same_values=("roughness",),  # it draws the lines of the simulated rig's rollers
         only_with=("conducts",),
@@ -192,7 +183,7 @@ _ROWS = (
         "rig",
         "voltage and resistance at the trace points, and contact shares by bandwidth",
         inputs=("film",),
-        values={"traces": "traces"},
+        values=_named("traces"),
         same_values=("experiment",),
         only_with=("conducts",),
     ),
@@ -212,7 +203,7 @@ _ROWS = (
         "areal",
         "contact of the surfaces that the lines stand for, several minutes",
         inputs=("film",),
-        values=_LINES | _CONTACT | {"length": "rollers.length"},
+        values=_LINES | _CONTACT | _named("rollers.length"),
         target="areal_contact",
         only_with=(*_SURFACE, "gap.is_plain"),
         parallel=True,
@@ -227,7 +218,7 @@ _ROWS = (
     Stage(
         "patch",
         "surfaces pressed against a flat, several minutes",
-        values=_LINES | {"reduced_modulus": "rollers.reduced_modulus"},
+        values=_LINES | _named("rollers.reduced_modulus"),
         target="patch_contact",
         only_with=_SURFACE,
     ),
@@ -242,7 +233,7 @@ _ROWS = (
         "film_response",
         "what the oil does to waves of the roughness, a minute or two",
         inputs=("lubricant", "film"),
-        values={"lines": "line_spec", "slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"},
+        values={"lines": "line_spec"} | _named("operating_grid.slide_to_roll_ratio"),
         target="computed",
         parallel=True,
     ),
@@ -250,10 +241,16 @@ _ROWS = (
         "variants",
         "contact if one choice of the model is made otherwise, some minutes",
         inputs=("lubricant", "film", "film_profile", "film_response"),
-        values=_LINES
-        | _LAYER
-        | {"realisations": "realisations", "roughness_deformation": "roughness_deformation"},
+        values=_LINES | _LAYER | _named("realisations roughness_deformation"),
         target="computed",
+        parallel=True,
+    ),
+    Stage(
+        "passage",
+        "rough lines pass through the contact by Reynolds' equation with time, about an hour",
+        inputs=("lubricant", "film_profile"),
+        values=_LINES | _LAYER | {"slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"},
+        target="rough_passage",
         parallel=True,
     ),
     Stage(
@@ -266,13 +263,13 @@ _ROWS = (
         "film_plane",
         "computed film over Moes' numbers, some seconds a lubricant",
         inputs=("lubricant",),
-        values={"reduced_modulus": "rollers.reduced_modulus"},
+        values=_named("rollers.reduced_modulus"),
         target="computed",
     ),
     Stage(
         "coverage",
         "how often intervals contain the true value for new rollers, about 30 minutes",
-        values={"realisations": "realisations"},
+        values=_named("realisations"),
         same_values=("contact", "master", "experiment"),
         target="benchmark",
         only_with=("conducts",),
@@ -297,7 +294,7 @@ STAGES = {row.name: row for row in _ROWS}
 """The registry: from name to `Stage`, each after those it depends on."""
 
 DATASETS = tuple(row.name for row in _ROWS if row.target == "all")
-"""The results of a study, one file each, some of them `only_with` what the study may lack."""
+"""The results of a study, one file each; a study may lack some of them (`only_with`)."""
 
 ON_REQUEST = {row.name: row.target for row in _ROWS if row.target != "all"}
 """Files that are made on request only, each with the target of Snakemake that makes it."""

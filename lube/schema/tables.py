@@ -52,7 +52,7 @@ class Variable:
     content : str
         As in the column ``content``.
     attributes : dict
-        Further CF attributes.
+        Its CF attributes, units and long name among them.
     optional : bool
         Whether a file may lack it.
     all_dims : tuple of str
@@ -88,10 +88,10 @@ def read_table(name: str) -> list[dict[str, str]]:
 
 
 def _variable(row):
-    attributes = {}
+    attributes = {"long_name": row["long_name"]}
     if meanings := row["flag_meanings"]:
         attributes["flag_values"] = np.arange(len(meanings.split()), dtype="int8")
-    for name in ("flag_meanings", "cell_methods", "comment"):
+    for name in ("flag_meanings", "cell_methods", "comment", "units"):
         if row[name]:
             attributes[name] = row[name]
     dims = row["dims"].split()
@@ -107,16 +107,11 @@ def _variable(row):
     )
 
 
-def _variables_by_file(rows):
-    found = {}
-    for row in rows:
-        for file in row["files"].split():
-            found.setdefault(file, {})[row["name"]] = _variable(row)
-    return found
-
-
 _FILES = read_table("files.csv")
-_VARIABLES = _variables_by_file(read_table("variables.csv"))
+_VARIABLES = {file: {} for file in ("any", *(row["file"] for row in _FILES))}
+for _row in read_table("variables.csv"):
+    for _file in _row["files"].split():
+        _VARIABLES[_file][_row["name"]] = _variable(_row)
 
 COORDINATES = _VARIABLES["any"]
 """Coordinates that mean the same in every file that has them, by name."""
@@ -196,3 +191,27 @@ def values_with_limits(
     """
     given = values if dims is None else ((dims, value) for value in values)
     return {f"{name}{end}": value for end, value in zip(names, given, strict=True)}
+
+
+def with_dims(kind: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Give plain arrays the dimensions that they have in a file.
+
+    Parameters
+    ----------
+    kind : str
+        A key of `FILES`.
+    values : mapping of str to array_like
+        Values of its variables and coordinates by their names.
+
+    Returns
+    -------
+    dict of str to tuple
+        Dimensions and values by name, as `xarray.Dataset` takes them.
+
+    Examples
+    --------
+    >>> with_dims("tail", {"force": [800.0]})
+    {'force': (('force',), [800.0])}
+    """
+    rows = COORDINATES | FILES[kind]
+    return {name: (rows[name].dims, value) for name, value in values.items()}

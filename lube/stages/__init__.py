@@ -4,10 +4,11 @@ A stage is a row of `lube.schema.stages` and a module of its name with a functio
 ``make(study, inputs, threads)``. It takes the study, the datasets of the kinds that its row lists,
 and the number of threads that it may use, which does not change the result; it returns the dataset.
 Stages that run in batches of realisations find these datasets in ``inputs["batches"]``; their
-modules have ``make_batch(study, film, lines)`` besides, for some realisations of the lines.
+modules also have ``make_batch(study, film, lines)``, for the lines of some realisations.
 
-The functions behind them, and what they take, are names of this package, in ``__init__.pyi``. They
-are in SI units but for the operating variables: force in N, speed in r/min, temperature in degC.
+Functions that stages call, and the types of their arguments, are names of this package, listed in
+``__init__.pyi``. They use SI units except for the operating variables: force in N, speed in r/min,
+temperature in degC.
 """
 
 import importlib
@@ -28,7 +29,7 @@ def maker(stage: str, name: str = "make") -> Callable[..., xr.Dataset]:
     stage : str
         Its name in `lube.schema.STAGES`.
     name : str, optional
-        ``make``, or ``make_batch`` for that of a batch.
+        ``make``, or ``make_batch`` for a batch of realisations.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The steps of a study as functions, in SI units, and what they take."""
+"""The steps of a study as functions, in SI units, and the types of their arguments."""
 
 from collections.abc import Callable
 

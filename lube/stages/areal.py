@@ -1,8 +1,7 @@
-"""The areal stage: contact of the isotropic surface that the lines stand for, over its length."""
+"""The areal stage: contact over the rollers' length of the surface that the lines stand for."""
 
-import functools
 import math
-from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import scipy.special
@@ -17,13 +16,10 @@ from lube.physics.excursions import (
 )
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, values_with_limits
 from lube.statistics.confidence import jackknife_interval, mean_interval
-from lube.study.line_spec import LineSpec
-from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic
-from lube.surfaces.spectra import spectrum_moments
-from lube.surfaces.synthetic import ROLLER_NUMBERS
+from lube.surfaces.spectra import pair_moments
 from lube.threads import on_threads
 from lube.types import Datasets
 
@@ -40,45 +36,12 @@ AROUND = 100
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``areal.nc``; see `lube.stages`."""
-    return strip_contacts(
-        study.line_spec,
-        inputs["film"],
-        study.boundary_layer,
-        study.rollers.length,
-        study.seed,
-        study.operating_grid.slide_to_roll_ratio,
-        threads,
-    )
-
-
-def strip_contacts(
-    spec: LineSpec,
-    film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-    length: float,
-    seed: int,
-    slide_to_roll_ratio: Sequence[float] = (0.0,),
-    threads: int = 1,
-) -> xr.Dataset:
-    r"""Compute the contact of rough surfaces over the whole length of the rollers.
+    r"""Make ``areal.nc``: contact of rough surfaces over the whole length of the rollers.
 
     Parameters
     ----------
-    spec : LineSpec
-        Parameters of the lines; `Study.line_spec` of a study.
-    film : xarray.Dataset
-        A ``film`` dataset; its first film formula is used.
-    boundary_layer : BoundaryLayer
-        The boundary layer.
-    length : float
-        Length L' of the rollers, m.
-    seed : int
-        Seed of the study.
-    slide_to_roll_ratio : sequence of float, optional
-        Levels of the slide-to-roll ratio, on which the film alone may depend here.
-    threads : int, optional
-        Threads that share the work; they do not change the results.
+    study, inputs, threads
+        As in `lube.stages`; of the ``film`` dataset the first film formula is used.
 
     Returns
     -------
@@ -90,8 +53,8 @@ def strip_contacts(
     StudyError
         If the heights of a line are not Gaussian.
     DataError
-        If the rollers are shorter than the contact is wide, a film thickness is not above zero, or
-        the band of wavelengths is too wide for a surface.
+        If the rollers are shorter than the contact is wide, or the band of wavelengths is too wide
+        for a surface.
 
     Notes
     -----
@@ -100,32 +63,28 @@ def strip_contacts(
 
     .. math:: P = \sum_{j=0}^{n-1} g_j
 
-    Importance sampling finds :math:`g_0` from rows that touch, and the others from contacts: a
-    contact begins in row j, and no row of the strip before it touches. Rows further apart than a
-    longest wavelength are independent, so from there on a row is the first with the same
+    Importance sampling finds :math:`g_0` from rows that touch, and the other :math:`g_j` from
+    contacts that begin in row j while no row of the strip before it touches. Rows further apart
+    than a longest wavelength are independent, so from there on a row is the first with the same
     probability if none before it has touched.
 
     A contact breaks its boundary layer if the mean curvature of its highest point exceeds
     :math:`\pi \tau_0/(2 E^* h_c)`. The line's criterion is twice that, because the mapping doubles
     the curvature of a summit.
     """
+    spec, length = study.line_spec, study.rollers.length
     check_isotropic(spec)
-    film = film.isel(film_formula=[0]).transpose(*CONTACT_DIMS, ..., missing_dims="ignore")
+    film = inputs["film"].isel(film_formula=[0])
+    film = film.transpose(*CONTACT_DIMS, ..., missing_dims="ignore")
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    widest, lowest = 2.0 * half_width.max().item(), thickness.min().item()
-    if not lowest > 0.0:
-        raise DataError(f"film thickness: got {lowest:g} m, need above 0")
+    widest = 2.0 * half_width.max().item()
     if length < widest:
         raise DataError(
             f"rollers.length: got {length:g} m, need the contact width of {widest:g} m or more"
         )
-    modulus = film["reduced_modulus"].item()
-    sharp = 0.5 * breaking_curvature(
-        modulus, boundary_layer.critical_thickness, boundary_layer.shear_strength
-    )
-    lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLER_NUMBERS))]
-    names = ("rms_height", "rms_slope", "rms_curvature")
-    moments = [sum(line[name] ** 2 for line in lines) for name in names]
+    layer, modulus = study.boundary_layer, film["reduced_modulus"].item()
+    sharp = 0.5 * breaking_curvature(modulus, layer.critical_thickness, layer.shear_strength)
+    moments = pair_moments(spec)
     films, widths = thickness.values.ravel(), 2.0 * half_width.values.ravel()
     contacts = expected_contacts(films, moments, length, widths)
     broken = contacts * sharp_surface_summit_share(films, moments, sharp)
@@ -136,8 +95,8 @@ def strip_contacts(
     surface = isotropic_surface(spec, widths.max(), smallest)
     columns = np.maximum(np.floor(widths / surface.spacing).astype(np.int64), 1)
     points = list(zip(films / spec.height_step, columns, strips, strict=True))
-    found |= _sampled(spec, surface, points, sharp, length, seed, threads)
-    slips = np.asarray(slide_to_roll_ratio, float)
+    found |= _sampled(spec, surface, points, sharp, length, study.seed, threads)
+    slips = np.asarray(study.slips, float)
     shape = (slips.size, *thickness.shape[-len(OPERATING_DIMS) :])
     variables = {
         name: (CONTACT_DIMS, np.broadcast_to(values.reshape(thickness.shape), shape).copy())
@@ -155,38 +114,39 @@ def _sampled(spec, surface, points, sharp, length, seed, threads=1):
     longest = math.ceil(spec.longest_wavelength / surface.spacing)
     reach = longest, min(AROUND, longest)
     covariances = tuple(surface.covariances(sum(reach) + 1, max(point[1] for point in points)))
-    # The first two children draw the lines of the realisation of this number, the next three are
-    # those of `lube.surfaces.rare_contact`.
-    seeds = [np.random.SeedSequence((seed, number)).spawn(7)[5:] for number in range(SURFACES)]
-    one = functools.partial(
-        _on_one_surface,
-        surface=surface,
-        covariances=covariances,
-        points=points,
-        sharp=sharp / spec.height_step,
-        reach=reach,
-    )
-    first, numbers = map(np.stack, zip(*on_threads(one, seeds, threads), strict=True))
+
+    def on_one_surface(number):
+        # The first two children draw the lines of the realisation of this number, the next three
+        # are those of `lube.surfaces.rare_contact`.
+        seeds = np.random.SeedSequence((seed, number)).spawn(7)[5:]
+        known = surface, covariances, points, sharp / spec.height_step, reach
+        return _on_one_surface(seeds, *known)
+
+    found = on_threads(on_one_surface, range(SURFACES), threads)
+    first, numbers = map(np.stack, zip(*found, strict=True))
     rows = max(int(length / surface.spacing), 1)
     results = {}
     for which, (name, counts) in enumerate(_NAMES.items()):
-        limits = jackknife_interval(
-            first[:, :, which], functools.partial(strip_probability, rows=rows), most=1.0
-        )
+        limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)
         results |= values_with_limits(name, limits)
         results |= values_with_limits(counts, mean_interval(rows * numbers[:, :, which]))
     return results
 
 
 def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
-    """First rows that touch, shape (points, 2, R + 1), and contacts in a row, shape (points, 2)."""
+    """Probability of first rows, shape (points, 2, R + 1), and contacts in a row, (points, 2)."""
     drawing, choosing = map(np.random.default_rng, seeds)
     fields, chosen = surface.draw(drawing), choosing.random((4, STRIPS))
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points, BLOCK), axis=1)
     longest, around = reach
     first, numbers = [], []
     for film, width, count in points:
-        touching, share = _touching(surface.rms, chosen[2:, :count], film, width)
+        # Known points of strips, and the share of touching rows that each strip stands for, as in
+        # `lube.surfaces.rare_contact`.
+        log_tail = scipy.special.log_ndtr(-film / surface.rms)
+        heights = -surface.rms * scipy.special.ndtri_exp(np.log(chosen[2, :count]) + log_tail)
+        touching = (chosen[3, :count] * width).astype(np.int64), heights.astype(np.float32)
+        share = width * np.exp(log_tail) / count
         room = surface.points - longest - 2 * around, surface.points - width + 1
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
         places = longest + around + row, column
@@ -196,17 +156,6 @@ def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
         first.append(share * np.stack(each))
         numbers.append(share * contacts)
     return np.stack(first), np.stack(numbers)
-
-
-def _touching(rms, chosen, film, width):
-    """Known points of strips, and the share of touching rows that each strip stands for.
-
-    As in `lube.surfaces.rare_contact`.
-    """
-    log_tail = scipy.special.log_ndtr(-film / rms)
-    heights = -rms * scipy.special.ndtri_exp(np.log(chosen[0]) + log_tail)
-    known = (chosen[1] * width).astype(np.int64), heights.astype(np.float32)
-    return known, width * np.exp(log_tail) / chosen.shape[1]
 
 
 def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:

@@ -12,8 +12,9 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.grid.operating_points import at_slip
-from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
-from lube.statistics.curves import falling_curve, film_interval
+from lube.inference.record_curves import gauged_ratios
+from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
+from lube.statistics.curves import falling_curve
 from lube.study.study import Study
 from lube.types import Datasets
 
@@ -22,14 +23,7 @@ RESOLUTION = 1e-6
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``areal_gauge.nc``; see `lube.stages`."""
-    return gauge_by_surface(inputs["film"], inputs["areal"], inputs["comparison"], inputs["gauge"])
-
-
-def gauge_by_surface(
-    film: xr.Dataset, areal: xr.Dataset, comparison: xr.Dataset, gauge: xr.Dataset
-) -> xr.Dataset:
-    """Infer the lambda ratio of each record from the surface, and compare it with the line's.
+    """Make ``areal_gauge.nc``: the lambda ratio of each record by the surface, and by the line.
 
     The probability of the strip at the operating points of one force is a curve over the lambda
     ratio. A record's curve is that of the nearest contact width, for which -ln(1 - p) is taken as
@@ -37,8 +31,8 @@ def gauge_by_surface(
 
     Parameters
     ----------
-    film, areal, comparison, gauge : xarray.Dataset
-        Datasets of these kinds, of one study.
+    study, inputs, threads
+        As in `lube.stages`.
 
     Returns
     -------
@@ -48,30 +42,26 @@ def gauge_by_surface(
         error of the curve, and the scatter of one pair of rollers, for which strips that share no
         roughness count as independent trials.
     """
+    film, areal, comparison = (inputs[kind] for kind in ("film", "areal", "comparison"))
     curve = cache(lambda width: _curve(film, areal, comparison, width))
-    first, realisations = comparison.isel(film_formula=0), comparison.sizes["realisation"]
-    names = ("contact_half_width", "measured_share", "share_error", "scatter_ratio")
-    found = []
-    for half_width, share, noise, ratio in zip(
-        *(first[name].values for name in names), strict=True
-    ):
-        read, shares, errors = curve(2.0 * half_width)
-        noise = np.hypot(noise, np.interp(share, shares, errors))
-        found.append(np.exp(film_interval(read, share, ratio, realisations, noise)))
-    ratios = np.array(found).T
-    ratios[0] = np.where((ratios[0] > 0.0) & np.isfinite(ratios[0]), ratios[0], np.nan)
-    line = [gauge[f"gauged_lambda_ratio{limit}"].values for limit in LIMITS]
-    values = values_with_limits("line_lambda_ratio", line)
-    values |= values_with_limits("surface_lambda_ratio", ratios)
-    values["surface_over_line"] = ratios[0] / line[0]
+    widths, shares = (comparison[name].values for name in ("contact_half_width", "measured_share"))
+    curves, levels, errors = zip(*(curve(2.0 * width) for width in widths), strict=True)
+    of_curves = [np.interp(*one) for one in zip(shares, levels, errors, strict=True)]
+    noise = np.hypot(comparison["share_error"].values, of_curves)
+    ratios = gauged_ratios(curves, comparison, noise)
+    line = [inputs["gauge"][f"gauged_lambda_ratio{limit}"].values for limit in LIMITS]
+    values = {
+        **values_with_limits("line_lambda_ratio", line),
+        **values_with_limits("surface_lambda_ratio", ratios),
+        "surface_over_line": ratios[0] / line[0],
+        "lambda_ratio": comparison["lambda_ratio"].values[0],
+    }
     kept = comparison[[*AT_RECORDS, "origin", "pairs", "drift", "measured_share"]].drop_attrs()
-    kept["lambda_ratio"] = "record", first["lambda_ratio"].values
-    kept = kept.assign({name: ("record", each) for name, each in values.items()})
-    return label(kept, "areal_gauge")
+    return label(kept.assign(with_dims("areal_gauge", values)), "areal_gauge")
 
 
 def _curve(film, areal, comparison, width):
-    """Curve of the strip's probability at a contact width; probabilities, rising, and errors."""
+    """Curve of the strip's probability at a contact width, its rising levels, and their errors."""
     widths = 2.0 * film["contact_half_width"].values
     nearest = np.argmin(np.abs(np.log(widths / width)))
     at_force = {"film_formula": 0, "force": nearest}

@@ -19,8 +19,8 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.inference.at_records import model_at_records
-from lube.inference.study_shares import at_comparison_threshold, levels_named, log_lines
-from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits
+from lube.inference.study_shares import levels_named, log_lines
+from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size
@@ -30,7 +30,6 @@ from lube.types import Array, Datasets
 log = logging.getLogger(__name__)
 
 GROUPS = ("force", "speed", "temperature")
-PROBABILITY = "breakthrough_probability"
 FIGURES = ("bias", "rms_difference", "logit_rms_difference", "overlap_share")
 """Figures of agreement whose range for a correct model is estimated."""
 
@@ -59,19 +58,13 @@ def compare(model: xr.Dataset, experiment: xr.Dataset, levels: xr.Dataset) -> xr
         The ``comparison`` file of `lube.schema`: for each record the simulated probability with
         its 95 % interval, the prediction interval of the contact share of one pair, and whether
         the measured share lies in it; figures of agreement for every film formula and
-        threshold, with their range for a correct model; and the means of both sides over the
-        records at every force, speed and temperature. The attribute ``missing`` lists operating
+        threshold, with their range for a correct model; and the simulated and measured means over
+        the records at every force, speed and temperature. The attribute ``missing`` lists operating
         points without a record, ``remarks`` records of one point that contradict each other.
-
-    Raises
-    ------
-    DataError
-        If the experiment was not evaluated at its comparison threshold.
     """
     table = _side_by_side(model, experiment)
-    for part in (_agreement(table, experiment), _expected(table), _level_means(table)):
-        table = table.merge(part, join="exact")
-    table = table.set_coords([*AT_RECORDS, "origin"])
+    found = _agreement(table, experiment) | _expected(table) | _level_means(table)
+    table = table.assign(with_dims("comparison", found)).set_coords([*AT_RECORDS, "origin"])
     notes = {"missing": _missing(table, levels), "remarks": _contradictions(table)}
     for lines in notes.values():
         log_lines(log, lines)
@@ -80,12 +73,12 @@ def compare(model: xr.Dataset, experiment: xr.Dataset, levels: xr.Dataset) -> xr
 
 
 def _side_by_side(model, experiment):
-    """Both sides at the comparison threshold, and the prediction interval."""
+    """Values of both sides at the comparison threshold, and the prediction interval."""
     names = [*AT_RECORDS, "origin", "pairs", "drift", "comparison_threshold", "share_error"]
     table = experiment[names].drop_attrs()
     model = model.assign_coords(record=experiment["record"])
     table = table.merge(model, join="exact", compat="no_conflicts").assign_attrs(model.attrs)
-    probabilities = model[PROBABILITY].values
+    probabilities = model["breakthrough_probability"].values
     windows = windows_in(model, 2.0 * model["contact_half_width"].values)
     mean, *limits = probability_interval(probabilities, windows)
     size, noise = effective_sample_size(probabilities, windows), table["share_error"].values
@@ -93,39 +86,28 @@ def _side_by_side(model, experiment):
         model[name].values for name in ("pooled_probability", "scatter_ratio", "pooled_error")
     )
     lower, upper = prediction_limits(pooled, size, ratio, len(probabilities), noise, error)
-    shares = at_comparison_threshold(experiment)
-    shares = [shares[f"contact_share{limit}"].values for limit in LIMITS]
-    by_formula = {
+    measured = experiment.sel(threshold=experiment["comparison_threshold"].item())
+    measured = [measured[f"contact_share{limit}"].values for limit in LIMITS]
+    values = {
+        **values_with_limits("measured_share", measured),
         **values_with_limits("simulated_probability", (mean, *limits)),
         "predicted_share_lower": lower,
         "predicted_share_upper": upper,
-        "within_prediction": (shares[0] >= lower) & (shares[0] <= upper),
+        "within_prediction": (measured[0] >= lower) & (measured[0] <= upper),
     }
-    table = table.assign(values_with_limits("measured_share", shares, "record"))
-    dims = ("film_formula", "record")
-    return table.assign({name: (dims, values) for name, values in by_formula.items()})
+    return table.assign(with_dims("comparison", values))
 
 
 def _agreement(table, experiment):
-    """Figures of agreement over (film_formula, threshold)."""
-    shares = experiment["contact_share"].transpose("threshold", "record").values
-    formulas = table["film_formula"].values
-    rows = [
-        [_figures(table.sel(film_formula=formula), at_threshold) for at_threshold in shares]
-        for formula in formulas
-    ]
-    dims = ("film_formula", "threshold")
-    return xr.Dataset(
-        {name: (dims, [[cell[name] for cell in row] for row in rows]) for name in rows[0][0]},
-        coords={"film_formula": formulas, "threshold": experiment["threshold"].values},
-    )
-
-
-def _figures(table, shares):
-    """Figures of agreement of one film formula with the shares at one threshold."""
-    known = np.isfinite(shares) & np.isfinite(table["simulated_probability"].values)
-    sides = ("simulated_probability", "predicted_share_lower", "predicted_share_upper")
-    return agreement(*(table[name].values[known] for name in sides), shares[known])
+    """Figures of agreement for each film formula and threshold."""
+    rows, names = [], ("simulated_probability", "predicted_share_lower", "predicted_share_upper")
+    for sides in zip(*(table[name].values for name in names), strict=True):
+        for shares in experiment["contact_share"].transpose("threshold", "record").values:
+            known = np.isfinite(shares) & np.isfinite(sides[0])
+            rows.append(agreement(*(each[known] for each in (*sides, shares))))
+    shape = table.sizes["film_formula"], -1
+    found = {name: np.reshape([row[name] for row in rows], shape) for name in rows[0]}
+    return found | {"threshold": experiment["threshold"].values}
 
 
 def agreement(
@@ -201,18 +183,16 @@ def _expected(table):
     """
     measured = np.isfinite(table["measured_share"].values)
     windows = windows_in(table, 2.0 * table["contact_half_width"].values)
-    members = table[PROBABILITY].transpose("film_formula", "realisation", "record").values
-    known = [measured & np.isfinite(of_formula).all(axis=0) for of_formula in members]
-    ranges = np.array(
-        [_ranges(row[:, here], windows[here]) for row, here in zip(members, known, strict=True)]
-    )
-    return xr.Dataset(
-        {
-            f"{name}_expected_{side}": ("film_formula", ranges[:, figure, end])
-            for figure, name in enumerate(FIGURES)
-            for end, side in enumerate(("lower", "upper"))
-        }
-    )
+    members = table["breakthrough_probability"].values.swapaxes(0, 1)
+    ranges = []
+    for row in members:
+        known = measured & np.isfinite(row).all(axis=0)
+        ranges.append(_ranges(row[:, known], windows[known]))
+    return {
+        f"{name}_expected_{side}": np.array(ranges)[:, figure, end]
+        for figure, name in enumerate(FIGURES)
+        for end, side in enumerate(("lower", "upper"))
+    }
 
 
 def _ranges(members, windows):
@@ -232,7 +212,7 @@ def _ranges(members, windows):
 
 
 def _level_means(table):
-    """Mean of both sides over the records at every level of force, speed and temperature."""
+    """Means of simulated and measured values at every level of force, speed and temperature."""
     simulated, measured = table["simulated_probability"].values, table["measured_share"].values
     means = {}
     for name in GROUPS:
@@ -242,10 +222,10 @@ def _level_means(table):
         rows = np.array([[_mean(row[here & np.isfinite(row)]) for here in at] for row in simulated])
         means |= {
             f"{name}_group": levels,
-            f"simulated_mean_by_{name}": (("film_formula", f"{name}_group"), rows),
-            f"measured_mean_by_{name}": (f"{name}_group", [_mean(measured[here]) for here in at]),
+            f"simulated_mean_by_{name}": rows,
+            f"measured_mean_by_{name}": [_mean(measured[here]) for here in at],
         }
-    return xr.Dataset(means)
+    return means
 
 
 def _missing(table, levels):

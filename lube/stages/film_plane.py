@@ -7,31 +7,23 @@ from lube.ehl.film_formulas import FORMULAS
 from lube.ehl.line_contact import profiles_of
 from lube.grid.film_profiles import six_digits
 from lube.physics.dimensionless import dimensionless_material
-from lube.schema import label
+from lube.schema import label, with_dims
 from lube.study.study import Study
 from lube.types import Datasets
 
 MOES_LOADS = np.geomspace(0.1, 100.0, 25)
 MOES_MATERIALS = np.arange(2.0, 16.0)
 PLACES = ("central", "minimum", "mean")
-_DIMS = ("lubricant", "moes_material", "moes_load")
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``film_plane.nc``; see `lube.stages`."""
-    return film_plane(inputs["lubricant"], study.rollers.reduced_modulus)
-
-
-def film_plane(lubricant: xr.Dataset, reduced_modulus: float) -> xr.Dataset:
-    r"""Compute the film over the Moes numbers M and L, and the error of each film formula.
+    r"""Make ``film_plane.nc``: the film over the Moes numbers M and L, and the formulas' errors.
 
     Parameters
     ----------
-    lubricant : xarray.Dataset
-        A ``lubricant`` dataset. The film is computed with each of its oils at the middle of its
-        temperatures, as Roelands' law needs the viscosity and its coefficient besides M and L.
-    reduced_modulus : float
-        Reduced modulus E*, Pa.
+    study, inputs, threads
+        As in `lube.stages`. The film is computed with each oil at the middle of its temperatures,
+        as Roelands' law needs the viscosity and its coefficient besides M and L.
 
     Returns
     -------
@@ -45,13 +37,14 @@ def film_plane(lubricant: xr.Dataset, reduced_modulus: float) -> xr.Dataset:
 
     .. math:: U = \frac{1}{2} \left( \frac{L}{G} \right)^4, \qquad W = M \sqrt{2U}
 
-    Each formula is compared with the computed film of its place: at the line of centres, the least,
-    or the mean of the Hertzian zone.
+    Each formula is compared with the computed film that it refers to: at the line of centres, the
+    least, or the mean over the Hertzian zone.
     """
+    lubricant = inputs["lubricant"]
     levels = np.sort(lubricant["temperature"].values)
     oils = lubricant.sel(temperature=levels[levels.size // 2])
     properties = ["dynamic_viscosity", "pressure_viscosity_coefficient"]
-    film_modulus = 2.0 * reduced_modulus
+    film_modulus = 2.0 * study.rollers.reduced_modulus
     planes = [
         _plane(*oil, film_modulus)
         for oil in zip(*(oils[name].values.tolist() for name in properties), strict=True)
@@ -61,26 +54,19 @@ def film_plane(lubricant: xr.Dataset, reduced_modulus: float) -> xr.Dataset:
     load, speed, material = np.moveaxis(groups, -1, 0)
     rows = [row for row in FORMULAS.values() if not row.depends_on_oil]
     errors = [row.evaluate(load, speed, material) / found[row.thickness] - 1.0 for row in rows]
-    table = xr.Dataset(
-        {
-            **{
-                f"{name}_film_parameter": (_DIMS, film / np.sqrt(2.0 * speed))
-                for name, film in found.items()
-            },
-            "film_error": ((_DIMS[0], "film_formula", *_DIMS[1:]), np.stack(errors, axis=1)),
-            "hertz_pressure": (_DIMS, film_modulus * np.sqrt(load / (2.0 * np.pi))),
-            "formula_place": ("film_formula", [row.thickness for row in rows]),
-            "formula_source": ("film_formula", [row.source for row in rows]),
-            **{name: oils[name] for name in properties},
-        },
-        {
-            "film_formula": [row.name for row in rows],
-            "moes_material": MOES_MATERIALS,
-            "moes_load": MOES_LOADS,
-        },
-        {"not_converged": int(np.isnan(films[..., 0]).sum())},
-    )
-    return label(table, "film_plane")
+    values = {
+        **{f"{name}_film_parameter": film / np.sqrt(2.0 * speed) for name, film in found.items()},
+        "film_error": np.stack(errors, axis=1),
+        "hertz_pressure": film_modulus * np.sqrt(load / (2.0 * np.pi)),
+        "formula_place": [row.thickness for row in rows],
+        "formula_source": [row.source for row in rows],
+        "film_formula": [row.name for row in rows],
+        "moes_material": MOES_MATERIALS,
+        "moes_load": MOES_LOADS,
+    }
+    table = oils[properties].assign(with_dims("film_plane", values)).drop_attrs()
+    not_converged = int(np.isnan(films[..., 0]).sum())
+    return label(table.assign_attrs(not_converged=not_converged), "film_plane")
 
 
 def _plane(viscosity, alpha, film_modulus):

@@ -5,19 +5,15 @@ import numpy.typing as npt
 import xarray as xr
 
 from lube.ehl.line_contact import FilmProfile
-from lube.grid.films import FilmGroups, hertz_contact, over_positions
+from lube.grid.film_profiles import over_positions
+from lube.grid.films import FilmGroups, hertz_contact
 from lube.schema import POINT_DIMS, label
 from lube.study.rollers import RollerPair
 from lube.study.study import Study
 from lube.types import Datasets
 
-_NUMBERS = {
-    "central_film": lambda one: one.central_film,
-    "minimum_film": lambda one: one.minimum_film,
-    "film_end": lambda one: one.film_end,
-    "mass_flux_defect": lambda one: float(f"{one.mass_flux_defect:.0e}"),
-}
-"""Numbers of a film profile by the names of their variables."""
+_DIGITS = {"central_film": 6, "minimum_film": 6, "film_end": 6, "mass_flux_defect": 1}
+"""Numbers of a film profile by the names of their variables, and how many digits are kept."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -51,16 +47,18 @@ def film_profile_table(
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = hertz_contact(rollers, axes["force"], axes["speed"])
         groups = FilmGroups.at(lubricant, rollers, axes["force"], contact, inlet_meniscus)
-        solved = groups.profiles().transpose(*POINT_DIMS)
+        solved = groups.profiles.transpose(*POINT_DIMS)
     table = contact[["contact_half_width", "hertz_pressure"]]
-    table["film"] = (
-        over_positions(solved, FilmProfile.film_at, rollers, contact) * rollers.reduced_radius
-    )
-    table["pressure"] = over_positions(solved, FilmProfile.pressure_at, rollers, contact)
-    table["pressure"] = table["pressure"] * table["hertz_pressure"]
-    for name, value in _NUMBERS.items():
-        found = [float(f"{value(one):.6g}") if one else np.nan for one in solved.values.ravel()]
-        table[name] = solved.copy(data=np.array(found).reshape(solved.shape))
+    film = over_positions(solved, FilmProfile.film_at, contact)
+    pressure = over_positions(solved, FilmProfile.pressure_at, contact)
+    table["film"] = film * rollers.reduced_radius
+    table["pressure"] = pressure * table["hertz_pressure"]
+    for name, digits in _DIGITS.items():
+        found = [
+            float(f"{getattr(one, name):.{digits}g}") if one else np.nan
+            for one in solved.values.flat
+        ]
+        table[name] = solved.copy(data=np.reshape(found, solved.shape))
     for name in ("central_film", "minimum_film"):
         table[name] = table[name] * rollers.reduced_radius
     return label(table.transpose(*POINT_DIMS, "film_position"), "film_profile")

@@ -14,9 +14,8 @@ import scipy.special
 import xarray as xr
 
 from lube.inference.fits import fit_alpha, fit_layer_strength, study_strength
-from lube.inference.record_curves import RecordCurves, map_curves, own_curves
-from lube.schema import AT_RECORDS, label, values_with_limits
-from lube.statistics.curves import film_interval
+from lube.inference.record_curves import RecordCurves, gauged_ratios, map_curves, own_curves
+from lube.schema import AT_RECORDS, label, values_with_limits, with_dims
 from lube.statistics.one_pair import quantile, standard_error
 from lube.study.study import Study
 from lube.types import Datasets
@@ -40,7 +39,7 @@ def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Data
     Parameters
     ----------
     curves : RecordCurves
-        Of the records of the comparison.
+        Curves of the records of the comparison.
     contact, comparison : xarray.Dataset
         Datasets of these kinds, of one study.
 
@@ -50,15 +49,14 @@ def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Data
         The ``gauge`` file of `lube.schema`, from `gauge_film`, `gauge_coverage`, `fit_alpha` and
         `fit_layer_strength`.
     """
-    gauged = comparison[[*_KEPT, *AT_RECORDS, "origin", "pairs", "drift"]]
     parts = (
+        comparison[[*_KEPT, *AT_RECORDS, "origin", "pairs", "drift"]],
         gauge_film(curves, comparison),
         gauge_coverage(curves, comparison),
         fit_alpha(curves, contact, comparison),
         fit_layer_strength(curves, contact, comparison),
     )
-    for part in parts:
-        gauged = gauged.merge(part, join="exact", combine_attrs="drop")
+    gauged = xr.merge(parts, join="exact", combine_attrs="drop")
     known = np.isfinite(comparison["measured_share"].values)
     oils = comparison["lubricant"].values[known]
     counts = [np.count_nonzero(oils == oil) for oil in gauged["fitted_lubricant"].values]
@@ -87,22 +85,16 @@ def gauge_film(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         are the thicker one, and ``gauged_thinner_film_thickness`` (m) is the other, NaN where
         there is none.
     """
-    realisations, shares = comparison.sizes["realisation"], comparison["measured_share"].values
-    columns = shares, comparison["scatter_ratio"].values[0], comparison["share_error"].values
-    films = [
-        film_interval(curve, share, ratio, realisations, noise)
-        for curve, share, ratio, noise in zip(curves.of_records, *columns, strict=True)
-    ]
-    ratios = np.exp(films)
-    ratios[:, 0] = np.where(np.isfinite(films)[:, 0], ratios[:, 0], np.nan)
     sigma = comparison["composite_rms_roughness"].item()
-    thickness = ratios * sigma
-    found = values_with_limits("gauged_lambda_ratio", ratios.T)
-    found |= values_with_limits("gauged_film_thickness", thickness.T)
-    pairs = zip(curves.of_records, shares, strict=True)
-    thinner = [curve.thinner_film_at(share) for curve, share in pairs]
-    found["gauged_thinner_film_thickness"] = sigma * np.exp(thinner)
-    return xr.Dataset({name: ("record", values) for name, values in found.items()})
+    ratios = gauged_ratios(curves.of_records, comparison, comparison["share_error"].values)
+    shared = zip(curves.of_records, comparison["measured_share"].values, strict=True)
+    thinner = [curve.thinner_film_at(share) for curve, share in shared]
+    found = {
+        **values_with_limits("gauged_lambda_ratio", ratios),
+        **values_with_limits("gauged_film_thickness", ratios * sigma),
+        "gauged_thinner_film_thickness": sigma * np.exp(thinner),
+    }
+    return xr.Dataset(with_dims("gauge", found))
 
 
 def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
@@ -131,10 +123,11 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         films = np.log(comparison["lambda_ratio"].values[0])
         for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
             held, closed = _leave_one_out(curve, film, members[:, record])
-            by_side = _mean(held[closed]), _mean(held[~closed])
-            coverage[:, record] = np.mean(held), *by_side, np.mean(closed)
+            coverage[:, record] = [
+                _mean(each) for each in (held, held[closed], held[~closed], closed)
+            ]
     names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")
-    return xr.Dataset({name: ("record", row) for name, row in zip(names, coverage, strict=True)})
+    return xr.Dataset(with_dims("gauge", dict(zip(names, coverage, strict=True))))
 
 
 def _mean(held):

@@ -5,7 +5,7 @@ import xarray as xr
 
 from lube.physics.inlet_heating import INLET_HEATING, heating_factor, thermal_loading
 from lube.physics.regimes import asymptotic_gap
-from lube.schema import FILES, label
+from lube.schema import label, with_dims
 from lube.study.study import Study
 from lube.types import Datasets
 
@@ -16,24 +16,20 @@ SLIPS = np.linspace(0.0, 2.0, 41)
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``heating_plane.nc``; see `lube.stages`."""
-    return heating_plane(inputs["lubricant"], inputs["film"])
-
-
-def heating_plane(lubricant: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
-    """Tabulate the factors of heating at the inlet over thermal loading and slip.
+    """Make ``heating_plane.nc``: factors of heating at the inlet over thermal loading and slip.
 
     Parameters
     ----------
-    lubricant, film : xarray.Dataset
-        Datasets of these kinds. The pressure and the film on which a factor depends a little are
-        those of the middle force, speed and temperature and the first lubricant.
+    study, inputs, threads
+        As in `lube.stages`. A factor depends a little on the pressure and the film: these are those
+        of the middle force, speed and temperature and the first lubricant.
 
     Returns
     -------
     xarray.Dataset
         The ``heating_plane`` file of `lube.schema`.
     """
+    lubricant, film = inputs["lubricant"], inputs["film"]
     middle = {name: film.sizes[name] // 2 for name in ("temperature", "speed", "force")}
     point = film.isel(middle | {"lubricant": 0})
     pressure = (0.5 * point["hertz_pressure"] / point["reduced_modulus"]).item()
@@ -43,16 +39,14 @@ def heating_plane(lubricant: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
     factors = [heating_factor(model, *plane) for model in models]
     oil = [lubricant[name] for name in ("dynamic_viscosity", "temperature_viscosity_coefficient")]
     loading = thermal_loading(*oil, film["entrainment_speed"], lubricant["thermal_conductivity"])
-    kind = FILES["heating_plane"]
-    table = {
-        "inlet_shear_heating_factor": (kind["inlet_shear_heating_factor"].dims, factors),
+    values = {
+        "inlet_shear_heating_factor": factors,
         "relative_hertz_pressure": pressure,
         "relative_film": thickness,
-        "operating_loading": loading.transpose(*kind["operating_loading"].dims),
-    }
-    levels = {
         "heating_model": list(models),
         "thermal_loading": LOADINGS,
         "slide_to_roll_ratio": SLIPS,
     }
-    return label(xr.Dataset(table, levels), "heating_plane")
+    table = xr.Dataset(with_dims("heating_plane", values))
+    table["operating_loading"] = loading.transpose("lubricant", "temperature", "speed")
+    return label(table, "heating_plane")

@@ -1,16 +1,15 @@
 """The height distribution stage: contact of lines of other skewness and kurtosis."""
 
+from itertools import product
+
 import numpy as np
 import xarray as xr
 
 from lube.contact.ensemble import PROBABILITIES, with_limits
 from lube.contact.windows import ContactWindows
-from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import at_slip
 from lube.kernels.synthesis import mean_powers
 from lube.schema import label
-from lube.study.line_spec import LineSpec
-from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
@@ -23,63 +22,47 @@ KURTOSIS = (3.0, 4.0, 6.0)
 LAMBDA_RATIOS = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0])
 """Levels of the lambda ratio."""
 PAIRS = 8
-"""Realisations, the first of the study: all distributions have the same random phases."""
+"""The study's first realisations: lines of all distributions have the same random phases."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``height_distribution.nc``; see `lube.stages`."""
-    film, layer = inputs["film"], study.boundary_layer
-    options = study.seed, threads, study.gap
-    return height_distributions(study.line_spec, film, layer, *options)
+    """Make ``height_distribution.nc``: probabilities by skewness and kurtosis, in pure rolling.
 
-
-def height_distributions(
-    spec: LineSpec,
-    film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-    seed: int,
-    threads: int = 1,
-    gap: Gap = PLAIN,
-) -> xr.Dataset:
-    """Compute probabilities by skewness and kurtosis of the heights, in pure rolling.
-
-    The contact is that of the largest force. If the film has a shape, or the oil flattens the
-    lines, both are those of this force at the middle speed and temperature and the first lubricant,
-    at all films.
+    The contact is that of the largest force. A shape of the film, and what the oil does to the
+    lines, are those of this force, the middle speed and temperature, and the first lubricant.
 
     Parameters
     ----------
-    spec : LineSpec
-        Parameters of the lines; their own skewness and kurtosis are replaced.
-    film : xarray.Dataset
-        A ``film`` dataset.
-    boundary_layer : BoundaryLayer
-        The boundary layer.
-    seed : int
-        Seed of the study.
-    threads : int, optional
-        Threads that share the work; they do not change the results.
-    gap : Gap, optional
-        How film and roughness make up the gap; by default flat films, and lines as drawn.
+    study, inputs, threads
+        As in `lube.stages`. The skewness and the kurtosis of the study's lines are replaced.
 
     Returns
     -------
     xarray.Dataset
         The ``height_distribution`` file of `lube.schema`.
     """
+    film, spec = inputs["film"], study.line_spec
     at = {name: film.sizes[name] // 2 for name in ("speed", "temperature")}
     at |= {"film_formula": 0, "lubricant": 0, "force": np.argmax(film["contact_half_width"].values)}
     point = at_slip(film).isel(at)
     half_width = point["contact_half_width"].item()
     films = LAMBDA_RATIOS * film["composite_rms_roughness"].item()
     points = point.drop_vars("lambda_ratio").assign(film_thickness=("lambda_ratio", films))
-    windows = ContactWindows(spec, points, boundary_layer, gap)
+    windows = ContactWindows(spec, points, study.boundary_layer, study.gap)
 
     def on_lines(level):
-        return _on_lines(_with_heights(spec, *level), seed, windows)
+        heights = dict(zip(("skewness", "kurtosis"), level, strict=True))
+        lines = tuple(line.model_copy(update=heights) for line in spec.lines)
+        other = spec.model_copy(update={"lines": lines})
+        shares, moments = [], []
+        for number in range(PAIRS):
+            pair = draw_realisation(other, study.seed, number)
+            shares.append(windows.count(pair)[:, 1::-1])
+            moments += map(_moments, pair)
+        return shares, moments
 
-    levels = [(skewness, kurtosis) for skewness in SKEWNESS for kurtosis in KURTOSIS]
-    shares, moments = map(np.array, zip(*on_threads(on_lines, levels, threads), strict=True))
+    found = on_threads(on_lines, product(SKEWNESS, KURTOSIS), threads)
+    shares, moments = map(np.array, zip(*found, strict=True))
     shape, dims = (len(SKEWNESS), len(KURTOSIS)), ("height_skewness", "height_kurtosis")
     shares = shares.reshape(*shape, *shares.shape[1:])
     table = {
@@ -97,23 +80,6 @@ def height_distributions(
     attributes = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
     found = found.assign_coords(revolutions=1).assign_attrs(attributes)
     return label(found, "height_distribution")
-
-
-def _with_heights(spec, skewness, kurtosis):
-    heights = {"skewness": skewness, "kurtosis": kurtosis}
-    return spec.model_copy(
-        update={"lines": tuple(line.model_copy(update=heights) for line in spec.lines)}
-    )
-
-
-def _on_lines(spec, seed, windows):
-    """`PROBABILITIES` on each pair, shape (pairs, films, 2), and moments, (lines, 2)."""
-    shares, moments = [], []
-    for number in range(PAIRS):
-        pair = draw_realisation(spec, seed, number)
-        shares.append(windows.count(pair)[:, 1::-1])
-        moments += map(_moments, pair)
-    return shares, moments
 
 
 def _moments(line):

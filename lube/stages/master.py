@@ -38,7 +38,7 @@ def contact_map(
     """Map the probabilities in pure rolling over lambda ratio and contact width.
 
     The probabilities of a realisation depend on the operating conditions only through the film
-    thickness and the contact width, so one map serves all of a study. A few films thinner than
+    thickness and the contact width, so one map serves a whole study. A few films thinner than
     the study's are added, for records with more contact than the study predicts; there the
     probabilities change little with the film. A coarser map covers boundary layers weaker and
     stronger than the study's by `LAYER_FACTORS`.
@@ -48,8 +48,8 @@ def contact_map(
     lines, film, boundary_layer
         As in `lube.stages.contact.contact_statistics`.
     lambda_levels, width_levels : int, optional
-        Numbers of levels over the range of the film table, of the lambda ratio at equal
-        ratios, of the contact width at equal steps.
+        Numbers of levels over the range of the film table: of the lambda ratio at equal
+        ratios, and of the contact width at equal steps.
 
     Returns
     -------

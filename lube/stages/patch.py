@@ -1,4 +1,4 @@
-"""The patch stage: contact mechanics of the isotropic surface, beside those of its line.
+"""The patch stage: contact mechanics of the isotropic surface and of its line.
 
 A square as wide as the longest wavelength of the roughness, which is the largest contact width
 unless the study says otherwise, is pressed against a rigid flat, without oil. The line that stands
@@ -10,7 +10,7 @@ import logging
 import numpy as np
 import xarray as xr
 
-from lube.schema import label
+from lube.schema import label, with_dims
 from lube.study.line_spec import LineSpec
 from lube.study.study import Study
 from lube.surfaces.elastic_contact import find_tamaas, press_line, press_surface
@@ -28,8 +28,8 @@ PRESSURES = (0.001, 0.003, 0.01, 0.03, 0.1)
 """Pressures on the nominal area, over E* times the rms gradient."""
 LEAST_POINTS = 256
 """Points along a side, at least."""
-DIMS = ("realisation", "relative_pressure")
-_NAMES = ("pressure", "contact_area_share", "contacts")
+_OF_SURFACE = ("gap", "contact_area_share", "contacts")
+_OF_LINE = ("line_pressure", "line_contact_area_share", "line_contacts")
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -67,28 +67,26 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
     check_isotropic(spec)
     smallest = 4.0 * spec.longest_wavelength / LEAST_POINTS
     surface = isotropic_surface(spec, contact=smallest, waves=1)
-    gradient = np.sqrt(sum(_moments(spec, "rms_slope") ** 2))
+    lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLER_NUMBERS))]
+    rms_height, gradient = (
+        np.sqrt(sum(np.square(line[name]) for line in lines))
+        for name in ("rms_height", "rms_slope")
+    )
     values = {
+        "relative_pressure": np.array(PRESSURES),
         "pressure": reduced_modulus * gradient * np.array(PRESSURES),
+        "realisation": np.arange(REALISATIONS),
         "side": surface.points * surface.spacing,
-        "rms_height": np.sqrt(sum(_moments(spec, "rms_height") ** 2)),
+        "rms_height": rms_height,
         "rms_gradient": gradient,
         "reduced_modulus": reduced_modulus,
     }
     pressed = [_pressed(spec, surface, values, seed, number) for number in range(REALISATIONS)]
-    # To (which, quantity, realisation, pressure).
+    # Reorder to surface or line, quantity, realisation, pressure.
     of_surface, of_line = np.moveaxis(np.array(pressed), (1, 3), (0, 1))
-    gap, _, *counted = of_surface
-    found = dict(zip(("gap", *_NAMES[1:]), (gap, *counted), strict=True))
-    found |= {f"line_{name}": one for name, one in zip(_NAMES, of_line[1:], strict=True)}
-    variables = {name: (DIMS, one) for name, one in found.items()}
-    levels = dict(zip(DIMS, (range(REALISATIONS), np.array(PRESSURES)), strict=True))
-    values["pressure"] = DIMS[1], values["pressure"]
-    return label(xr.Dataset(variables | values, levels), "patch")
-
-
-def _moments(spec, name):
-    return np.array([spectrum_moments(spec, roller)[name] for roller in range(len(ROLLER_NUMBERS))])
+    values |= zip(_OF_SURFACE, of_surface[[0, 2, 3]], strict=True)
+    values |= zip(_OF_LINE, of_line[1:], strict=True)
+    return label(xr.Dataset(with_dims("patch", values)), "patch")
 
 
 def _pressed(spec, surface, values, seed, number):

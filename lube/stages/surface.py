@@ -13,7 +13,6 @@ from lube.study.rollers import ROLLERS
 from lube.study.study import Study
 from lube.study.topography_lines import preparation, prepared
 from lube.surfaces.measured_spectrum import line_spectrum
-from lube.surfaces.spectrum_table import LineSpectrum
 from lube.surfaces.surface_statistics import (
     height_distribution,
     hurst_exponent,
@@ -53,79 +52,72 @@ def measured_surfaces(
     -------
     xarray.Dataset
         The ``surface`` file of `lube.schema`. Its attribute ``remarks`` names waves that show the
-        instrument, and fits that are those of no self-affine surface.
+        instrument, and surfaces that are not self-affine.
 
     Raises
     ------
     DataError
         If a file cannot be read.
     """
-    parts, remarks, described = [], [], {}
+    parts, remarks, known = [], [], {}
     for name, topography in topographies.items():
         line = spec.lines[ROLLERS.index(name)]
-        key = topography.key, line.q_min, line.q_max  # both rollers may have the same one
-        if key not in described:
-            described[key] = _described(topography, line)
-        parts.append(_surface(topography, described[key], line, hurst))
-        remarks += [f"{name} roller: {text}" for text in _remarks(described[key][-1], line)]
+        # Both rollers may have the same topography.
+        key = topography.key, line.q_min, line.q_max, line.rms_height
+        if key not in known:
+            known[key] = _surface(topography, line, hurst)
+        parts.append(known[key])
+        remarks += [f"{name} roller: {text}" for text in _remarks(known[key], line)]
     rollers = [ROLLER_NUMBERS[ROLLERS.index(name)] for name in topographies]
     # Spectra have different numbers of waves; NaN stands for the missing ones.
     table = xr.concat(parts, xr.Variable("roller", rollers), join="outer")
     return label(table.assign_attrs(remarks="\n".join(remarks)), "surface")
 
 
-def _described(topography, line):
-    """Spectrum of a topography, density of its heights, and its numbers with their limits.
-
-    The fits are of the waves in the band of the roller's line.
-    """
+def _surface(topography, line, hurst):
+    """Describe the surface of a roller; the fits are of the waves in the band of its line."""
     surface = prepared(topography)
     spectrum = line_spectrum(surface, preparation(topography))
     waves = waves_of_surface(spectrum, line.longest_wavelength, line.shortest_wavelength)
     bend = roll_off(spectrum, waves)
-    numbers = values_with_limits("roll_off_wavelength", bend or _UNKNOWN)
-    numbers["resolved_wavelength"] = waves.resolution
-    waves = waves if bend is None else waves._replace(longest=bend.value)
-    numbers |= values_with_limits("hurst_exponent", hurst_exponent(spectrum, waves) or _UNKNOWN)
+    shorter = waves if bend is None else waves._replace(longest=bend.value)
+    table = {
+        "wave_vector": ("wave", spectrum.wave_vector),
+        "filter_transfer": ("wave", spectrum.transfer),
+        "self_affine_density": ("wave", _self_affine(spectrum.wave_vector, line, hurst)),
+        "height_density": ("standard_height", _histogram(surface.heights)),
+        "line_rms_height": line.rms_height,
+        "resolved_wavelength": waves.resolution,
+        "texture": topography.texture,
+        "use": topography.use,
+        **values_with_limits("density", _density(spectrum), "wave"),
+        **values_with_limits("roll_off_wavelength", bend or _UNKNOWN),
+        **values_with_limits("hurst_exponent", hurst_exponent(spectrum, shorter) or _UNKNOWN),
+    }
     for name, estimate in height_distribution(surface.heights).items():
-        numbers |= values_with_limits(name, estimate)
-    return spectrum, _histogram(surface.heights), numbers
+        table |= values_with_limits(name, estimate)
+    levels = {"wave": np.arange(spectrum.wave_vector.size), "standard_height": STANDARD_HEIGHTS}
+    return xr.Dataset(table, levels)
 
 
-def _remarks(numbers, line):
+def _remarks(surface, line):
     """Yield what a reader must know of the fits."""
-    resolved, shortest = numbers["resolved_wavelength"], line.shortest_wavelength
+    resolved, shortest = surface["resolved_wavelength"].item(), line.shortest_wavelength
     if resolved > shortest:
         yield (
             f"waves shorter than {resolved:.2g} m show the instrument and not the surface, and the "
             f"line has waves down to {shortest:.2g} m: give such a shortest_wavelength"
         )
-    hurst = numbers["hurst_exponent"]
+    hurst = surface["hurst_exponent"].item()
     if hurst <= 0.0 or hurst >= 1.0:
         yield f"its Hurst exponent, {hurst:.2g}, is not between 0 and 1: it is not self-affine"
 
 
-def _surface(topography, described, line, hurst):
-    spectrum, height_density, numbers = described
-    table = {
-        "wave_vector": ("wave", spectrum.wave_vector),
-        "filter_transfer": ("wave", spectrum.transfer),
-        "self_affine_density": ("wave", _self_affine(spectrum.wave_vector, line, hurst)),
-        "height_density": ("standard_height", height_density),
-        "line_rms_height": line.rms_height,
-        **values_with_limits("density", _density(spectrum)),
-    }
-    words = {"texture": topography.texture, "use": topography.use}
-    levels = {"wave": np.arange(spectrum.wave_vector.size), "standard_height": STANDARD_HEIGHTS}
-    return xr.Dataset(table | numbers | words, levels)
-
-
-def _density(spectrum: LineSpectrum):
+def _density(spectrum):
     """Density with its limits: a mean of exponentially distributed powers has a gamma one."""
     count = spectrum.estimates
-    for share in (None, 0.975, 0.025):
-        factor = 1.0 if share is None else count / scipy.special.gammaincinv(count, share)
-        yield "wave", spectrum.density * factor
+    limits = (count / scipy.special.gammaincinv(count, share) for share in (0.975, 0.025))
+    return (spectrum.density * factor for factor in (1.0, *limits))
 
 
 def _self_affine(wave_vector, line, hurst):

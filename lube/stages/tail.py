@@ -1,14 +1,12 @@
-"""The tail stage: probability and rate of contact at any rarity, labelled over the grid."""
-
-from collections.abc import Sequence
+"""The tail stage: probability and rate of contact at any rarity, at all operating points."""
 
 import numpy as np
 import scipy.special
 import xarray as xr
 
 from lube.contact.window_films import shaped_films
-from lube.contact.windows import ContactWindows
-from lube.errors import DataError, StudyError
+from lube.contact.windows import ContactWindows, study_windows
+from lube.errors import StudyError
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
@@ -27,8 +25,7 @@ from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.surfaces.rare_contact import check_gaussian
-from lube.surfaces.spectra import spectrum_moments
-from lube.surfaces.synthetic import ROLLER_NUMBERS
+from lube.surfaces.spectra import pair_moments
 from lube.threads import on_threads
 from lube.types import Datasets
 
@@ -43,65 +40,25 @@ _FLATTENED = (
     "for lines that a formula flattens"
 )
 _ASYMPTOTES = "geometric_contact_asymptote", "breakthrough_asymptote"
-_OF_PAIRS = "breakthrough_probability", "geometric_contact_probability", "breakthrough_rate"
-_PARTS = slice(0, 1), slice(1, None)
-"""The first film formula, and the others."""
+_PROBABILITIES = "breakthrough_probability", "geometric_contact_probability"
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``tail.nc``; see `lube.stages`."""
-    return tail_probabilities(
-        study.line_spec,
-        inputs["film"],
-        study.boundary_layer,
-        study.seed,
-        study.operating_grid.slide_to_roll_ratio,
-        threads,
-        study.gap,
-    )
-
-
-def tail_probabilities(
-    spec: LineSpec,
-    film: xr.Dataset,
-    boundary_layer: BoundaryLayer,
-    seed: int,
-    slide_to_roll_ratio: Sequence[float] = (0.0,),
-    threads: int = 1,
-    gap: Gap = PLAIN,
-) -> xr.Dataset:
-    r"""Compute probability and rate of contact at all operating points, at any rarity.
+    r"""Make ``tail.nc``: probability and rate of contact at any rarity.
 
     Parameters
     ----------
-    spec : LineSpec
-        Parameters of the lines; `Study.line_spec` of a study.
-    film : xarray.Dataset
-        A ``film`` dataset.
-    boundary_layer : BoundaryLayer
-        The boundary layer.
-    seed : int
-        Seed of the study.
-    slide_to_roll_ratio : sequence of float, optional
-        Levels of the slide-to-roll ratio S; the default is pure rolling.
-    threads : int, optional
-        Threads that share the work; they do not change the results.
-    gap : Gap, optional
-        How film and roughness make up the gap; by default flat films, and lines as drawn.
+    study, inputs, threads
+        As in `lube.stages`.
 
     Returns
     -------
     xarray.Dataset
-        The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty, but where the lines
-        are flattened by a formula or not Gaussian: then it says so, and all values are NaN. In
+        The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty unless the lines
+        are flattened by a formula or not Gaussian; then it says so, and all values are NaN. In
         uneven windows the share of pairs and the first time are NaN: they depend on the pauses
         between breakthroughs, which are sampled in uniform windows only. The theory for high
-        films is for lines as drawn.
-
-    Raises
-    ------
-    DataError
-        If a film thickness is not above zero.
+        films holds for lines as drawn.
 
     Notes
     -----
@@ -123,23 +80,20 @@ def tail_probabilities(
     apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the
     share of pairs with any is :math:`1 - e^{-\mu}`.
     """
-    film = film.transpose("film_formula", *POINT_DIMS, ...)
-    lowest = film["film_thickness"].min().item()
-    if not lowest > 0.0:
-        raise DataError(f"film thickness: got {lowest:g} m, need above 0")
-    levels = np.asarray(slide_to_roll_ratio, float)
+    film = inputs["film"].transpose("film_formula", *POINT_DIMS, ...)
+    spec, gap, levels = study.line_spec, study.gap, np.asarray(study.slips, float)
     if remark := _why_not(spec, gap):
         return _unknown(film, levels, remark)
     if _SLIP in film["film_thickness"].dims:
         film = film.sel({_SLIP: levels})
-    else:
-        film = film.drop_dims(_SLIP, errors="ignore")
-    tables = []
-    outcomes = _sampled(spec, film, boundary_layer, seed, gap, threads)
-    for part, found in zip(_PARTS, outcomes, strict=True):
-        if film["film_formula"][part].size:
-            some = film.isel(film_formula=part)
-            tables.append(_table(spec, some, boundary_layer, found, levels, gap))
+    windows, tables = study_windows(study, film), []
+    of_one = windows.size // film.sizes["film_formula"]
+    first, others = (slice(1), slice(of_one)), (slice(1, None), slice(of_one, None))
+    for (formulas, points), pairs in (first, PAIRS), (others, FEWER_PAIRS):
+        some = film.isel(film_formula=formulas)
+        if some["film_formula"].size:
+            found = _sampled(spec, some, windows[points], study.seed, pairs, threads)
+            tables.append(_table(spec, some, study.boundary_layer, found, levels, gap))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
     table = table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
@@ -158,34 +112,38 @@ def pair_probabilities(
 
     Parameters
     ----------
-    spec, boundary_layer, seed
-        As in `tail_probabilities`.
+    spec : LineSpec
+        Parameters of the lines; `Study.line_spec` of a study.
     film : xarray.Dataset
         ``film_thickness``, ``contact_half_width`` (m) and ``entrainment_speed`` (m/s) over any
         dimensions, and ``reduced_modulus`` (Pa).
+    boundary_layer : BoundaryLayer
+        The boundary layer.
+    seed : int
+        Seed of the study.
     slide_to_roll_ratio : xarray.DataArray or float
         Over the same dimensions.
     gap : Gap, optional
-        As in `tail_probabilities`.
+        How film and roughness make up the gap; by default flat films, and lines as drawn.
 
     Returns
     -------
     xarray.Dataset
         ``breakthrough_probability``, ``geometric_contact_probability`` and ``breakthrough_rate``
         (1/s) over pair and those dimensions. All operating points share the pairs, so a quantity
-        of several points is first computed on each pair. With the attribute ``remarks``, as
-        `tail_probabilities`.
+        of several points is first computed on each pair. With the attribute ``remarks`` of
+        ``tail.nc``.
     """
     if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
-        return xr.Dataset(dict.fromkeys(_OF_PAIRS, unknown), attrs={"remarks": remark})
-    # All in the first part, which has most pairs.
-    windows, runs = next(_sampled(spec, film.expand_dims("part"), boundary_layer, seed, gap))
-    contact, breakthrough = windows.transpose("outcome", ...)
-    rate = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
-    values = dict(zip(_OF_PAIRS, (breakthrough, contact, rate), strict=True))
-    table = xr.Dataset(values, attrs={"remarks": ""}).isel(part=0)
-    return table.transpose("pair", *film["film_thickness"].dims)
+        return xr.Dataset(
+            dict.fromkeys((*_PROBABILITIES, "breakthrough_rate"), unknown),
+            attrs={"remarks": remark},
+        )
+    windows = ContactWindows(spec, film, boundary_layer, gap)
+    table, runs = _sampled(spec, film, windows, seed, PAIRS)
+    table["breakthrough_rate"] = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
+    return table.assign_attrs(remarks="").transpose("pair", *film["film_thickness"].dims)
 
 
 def pair_limits(values: xr.Dataset) -> xr.Dataset:
@@ -223,26 +181,24 @@ def _why_not(spec, gap):
 
 def _unknown(film, slide_to_roll_ratio, remark):
     """Table without any value."""
-    coordinates = {name: film[name] for name in OPERATING_DIMS}
-    coordinates["slide_to_roll_ratio"] = slide_to_roll_ratio
-    sizes = {name: len(values) for name, values in coordinates.items()}
-    empty = {}
-    for name, row in FILES["tail"].items():
-        empty[name] = row.dims, np.full([sizes[dim] for dim in row.dims], np.nan)
-    return label(xr.Dataset(empty, coordinates, {"remarks": remark}), "tail")
+    levels = {name: film[name] for name in OPERATING_DIMS} | {_SLIP: slide_to_roll_ratio}
+    empty = {
+        name: xr.DataArray(np.nan, {dim: levels[dim] for dim in row.dims}, row.dims)
+        for name, row in FILES["tail"].items()
+    }
+    return label(xr.Dataset(empty, attrs={"remarks": remark}), "tail")
 
 
 def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
     """Variables of some film formulas, unlabelled."""
-    slip = xr.DataArray(slide_to_roll_ratio, dims=_SLIP).assign_coords({_SLIP: slide_to_roll_ratio})
-    in_windows, runs = outcomes
-    contact, breakthrough = in_windows.transpose("outcome", ...)
-    everywhere, speed = xr.ones_like(slip), film["entrainment_speed"]
+    slip = xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
+    of_pairs, runs = outcomes
+    breakthrough = of_pairs["breakthrough_probability"]
     in_window, rate = _in_time(spec, film, runs, slip, gap)
-    turn = spec.points[0] * spec.spacing / surface_speeds(speed, slip)[0]
-    values = (breakthrough * everywhere, contact * everywhere, rate)
+    of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)
+    turn = spec.points[0] * spec.spacing / surface_speeds(film["entrainment_speed"], slip)[0]
     table = {
-        **pair_limits(xr.Dataset(dict(zip(_OF_PAIRS, values, strict=True)))),
+        **pair_limits(of_pairs),
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
         "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
         **_in_a_revolution(spec, film, *map(_in_pure_rolling, (runs, breakthrough)), gap),
@@ -265,10 +221,10 @@ def _in_time(spec, film, runs, slip, gap):
 
 
 def _in_uneven_windows(spec, film, runs, slip):
-    """As `_in_time`, in uneven windows: in time steps as contact is counted in.
+    """As `_in_time`, in uneven windows: by the time steps in which contact is counted.
 
-    In each the faster surface moves by a point. The other does so in a part of them, and rests in
-    the others.
+    In each step the faster surface moves by a point. The other surface moves in a part of the
+    steps only.
     """
     in_window, with_both, with_first, with_second = runs.transpose("outcome", ...)
     alone = xr.where(slip >= 0.0, with_first, with_second)
@@ -303,29 +259,21 @@ def _window_points(spec, film):
     return 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
 
 
-def _sampled(spec, film, boundary_layer, seed, gap, threads=None):
-    """Probabilities of windows and numbers of runs, for each of `_PARTS` of the film formulas.
-
-    Over (pair, outcome, film formula, other operating dimensions).
-    """
+def _sampled(spec, film, windows, seed, pairs, threads=None):
+    """Probabilities over pair and the film's dimensions, and numbers of runs, over outcome too."""
     thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    points = ContactWindows(spec, film, boundary_layer, gap)
-    # The other film formulas have the first 8 of the 40 pairs.
-    first = points[: points.size // thickness.shape[0]]
+    dims = ("pair", "outcome", *thickness.dims)
 
     def on_one_pair(number):
-        some = points if number < FEWER_PAIRS else first
-        found = some.sample(spec, seed, number)
-        return [values.reshape(len(values), -1, *thickness.shape[1:]) for values in found]
+        return windows.sample(spec, seed, number)
 
-    found = list(zip(*on_threads(on_one_pair, range(PAIRS), threads), strict=True))
-    dims = ("pair", "outcome", *thickness.dims)
-    for part, pairs in zip(_PARTS, (PAIRS, FEWER_PAIRS), strict=True):
-        coordinates = thickness[part].coords
-        yield [
-            xr.DataArray(np.stack([one[:, part] for one in each[:pairs]]), coordinates, dims)
-            for each in found
-        ]
+    found = on_threads(on_one_pair, range(pairs), threads)
+    windows, runs = (
+        xr.DataArray(np.reshape(each, (pairs, -1, *thickness.shape)), thickness.coords, dims)
+        for each in zip(*found, strict=True)
+    )
+    contact, breakthrough = windows.transpose("outcome", ...)
+    return xr.Dataset(dict(zip(_PROBABILITIES, (breakthrough, contact), strict=True))), runs
 
 
 def _touching_pairs(groups, breakthrough, windows):
@@ -378,31 +326,22 @@ def _asymptotes(spec, film, boundary_layer, gap):
 
     The boundary layer breaks if the summit behind is sharp enough.
     """
-    lines, layer = [spectrum_moments(spec, n) for n in range(len(ROLLER_NUMBERS))], boundary_layer
-    names = ("rms_height", "rms_slope", "rms_curvature")
-    moments = [sum(line[name] ** 2 for line in lines) for name in names]
-    strength = layer.critical_thickness, layer.shear_strength
-    curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
     if gap.is_answered:  # the moments change along the window
         unknown = xr.full_like(film["film_thickness"], np.nan)
         return dict.fromkeys(_ASYMPTOTES, unknown)
-    if gap.has_shape:
-        return _shaped_asymptotes(film, moments, curvature)
-    thickness = film["film_thickness"]
-    first = scipy.special.ndtr(-thickness / moments[0] ** 0.5)
-    contact = first + 2.0 * film["contact_half_width"] * crossing_rate(thickness, moments)
-    share = sharp_summit_share(thickness.values, moments, curvature)
-    breakthrough = contact * thickness.copy(data=share)
-    return dict(zip(_ASYMPTOTES, (contact, breakthrough), strict=True))
-
-
-def _shaped_asymptotes(film, moments, curvature):
-    """Crossings of a film that changes along the contact, the slope of the film neglected."""
-    films = shaped_films(film)
-    crossings = crossing_rate(films, moments) * film["contact_half_width"]
-    rows = films.values.reshape(-1, films.sizes["film_position"])
+    strength = boundary_layer.critical_thickness, boundary_layer.shear_strength
+    curvature = breaking_curvature(film["reduced_modulus"].item(), *strength)
+    moments = pair_moments(spec)
+    films = shaped_films(film) if gap.has_shape else film["film_thickness"]
+    rows = films.values.reshape(-1, films.shape[-1])
     # One after the other: the integral over the curvature takes a thousand times their memory.
     shares = [sharp_summit_share(row, moments, curvature) for row in rows]
-    share = films.copy(data=np.reshape(shares, films.shape))
-    values = [each.integrate("film_position") for each in (crossings, crossings * share)]
+    share, rate = films.copy(data=np.reshape(shares, films.shape)), crossing_rate(films, moments)
+    if gap.has_shape:  # the slope of the film is neglected
+        crossings = rate * film["contact_half_width"]
+        values = [each.integrate("film_position") for each in (crossings, crossings * share)]
+    else:
+        first = scipy.special.ndtr(-films / moments[0] ** 0.5)
+        contact = first + 2.0 * film["contact_half_width"] * rate
+        values = contact, contact * share
     return dict(zip(_ASYMPTOTES, values, strict=True))

@@ -17,7 +17,7 @@ from lube.grid.operating_points import at_slip, known_films, surface_speeds
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.physics.electrical import contact_resistance
-from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label
+from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, with_dims
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.types import Datasets
@@ -80,13 +80,17 @@ def contact_trace(
     DataError
         If the film is known at none of the points.
     """
-    table = _known_rows(film, points)
+    table = _known_rows(film, points, gap)
     windows = ContactWindows(LineGrid.of(lines), table, boundary_layer, gap)
     ratio, spacing = points[0]["slide_to_roll_ratio"], lines.attrs["spacing"]
     length = windows.trace(line_pair(lines, REALISATION), ratio) * spacing
     faster_surface = max(surface_speeds(table["entrainment_speed"].values[0], ratio))
     dims = ("operating_point", "time")
-    trace = table[["film_thickness", "contact_half_width", "entrainment_speed"]].assign(
+    names = ["film_thickness", "contact_half_width", "entrainment_speed"]
+    names += _MOES if gap.is_flattened else []
+    names += _RESPONSE if gap.is_answered else []
+    trace = table[names].transpose("operating_point", ...)
+    trace = trace.assign(
         contact_length=(dims, length),
         contact_resistance=(dims, contact_resistance(length, resistivity)),
         reduced_modulus=film["reduced_modulus"],
@@ -94,27 +98,20 @@ def contact_trace(
         shear_strength=boundary_layer.shear_strength,
         resistivity=resistivity,
     )
-    trace = trace.assign_attrs(asdict(gap))
     if gap.has_shape:
         trace["film_profile"] = shaped_films(table)
-    if gap.is_flattened:
-        trace = trace.assign({name: table[name] for name in _MOES})
-    if gap.is_answered:
-        trace = trace.assign(table[_RESPONSE].transpose("operating_point", ...))
     time = spacing / faster_surface * np.arange(length.shape[1])
-    return label(trace.assign_coords(time=time), "trace")
+    return label(trace.assign_coords(time=time).assign_attrs(asdict(gap)), "trace")
 
 
-def _known_rows(film, points):
+def _known_rows(film, points, gap):
     """Rows of the film table at the operating points, along ``operating_point``."""
-    columns = {
-        name: ("operating_point", [point[name] for point in points]) for name in CONTACT_DIMS
-    }
-    levels = xr.Dataset(columns)
+    columns = {name: [point[name] for point in points] for name in CONTACT_DIMS}
+    levels = xr.Dataset(with_dims("trace", columns))
     film = at_slip(film, points[0]["slide_to_roll_ratio"])
     rows = film.sel({name: levels[name] for name in OPERATING_DIMS})
     rows = rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
-    known = known_films(rows).values
+    known = known_films(rows, gap).values
     for number in np.flatnonzero(~known):
         log.warning("traces.%d: left out, the film is not known there", number)
     if not known.any():
@@ -171,7 +168,8 @@ def contact_window(
     film, half_window = whole_numbers(point["film_thickness"], reach or widest, grid)
     window = np.arange(-half_window, half_window + 1)
     if gap.has_shape:
-        film = film_on_points(point["film_profile"], half_width, window, grid)
+        profile = point["film_position"].values, point["film_profile"].values
+        film = film_on_points(*profile, half_width, window, grid)
     ratios = speed_ratios(point["slide_to_roll_ratio"].item())
     pair = line_pair(lines, REALISATION)
     if gap.is_flattened:

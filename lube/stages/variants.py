@@ -208,6 +208,8 @@ def _roughness_ratio(variant, spec, film):
     ]
 
     def ratio(half_width, *contact):
+        if any(np.isnan(each).any() for each in contact):  # the film is not known
+            return np.nan
         scaled = [each / half_width for each in wavelengths]
         if variant.gap.is_answered:
             centre, solved = np.zeros(1), film["wavelength"].values / half_width

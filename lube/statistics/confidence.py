@@ -1,7 +1,7 @@
 """Confidence intervals of a probability, from its effective sample size.
 
 The realisations of an ensemble and the blocks of a record both scatter about a share of time.
-Either scatter is equivalent to a number of independent trials, the effective sample size, and from
+Either scatter is equivalent to a number of independent trials, the effective sample size. From
 there on both are treated alike, so that the intervals of simulation and experiment mean the same.
 Without scatter, the number of independent windows takes its place.
 """
@@ -89,7 +89,7 @@ def score_interval(mean: Values, sample_size: Values, quantile: Values) -> Pair:
 def probability_limits(mean: Array, sample_size: Values, degrees: Values, windows: Values) -> Pair:
     r"""Limits of the 95 % confidence interval of a probability, which is never a point.
 
-    It is Wilson's interval with Student's quantile. Where the scatter is unknown, `windows` takes
+    The limits are Wilson's, with Student's quantile. Where the scatter is unknown, `windows` takes
     the place of the effective sample size. If contact was never seen, the upper limit is the
     exact one-sided binomial one for :math:`n_w` windows without contact,
 
@@ -139,7 +139,8 @@ def probability_limits(mean: Array, sample_size: Values, degrees: Values, window
 def ratio_interval(values: Array, reference: Array) -> tuple[Array, Array, Array]:
     """Ratio of two means over the same lines, and its 95 % confidence interval.
 
-    Lines with much of the one have much of the other, so the ratio is better known than either.
+    Lines on which one value is large have a large other value too, so the ratio is better known
+    than either mean.
 
     Parameters
     ----------
@@ -149,7 +150,7 @@ def ratio_interval(values: Array, reference: Array) -> tuple[Array, Array, Array
     Returns
     -------
     ratio, lower, upper : numpy.ndarray
-        Shape (...) each; NaN where a mean is zero, but for a ratio of zero.
+        Shape (...) each; NaN where a mean is zero, except that the ratio may be zero.
 
     Examples
     --------
@@ -202,7 +203,7 @@ def probability_interval(probabilities: Array, windows: Values) -> tuple[Array, 
     # Summed column by column, unlike in `effective_sample_size`: see `mean_over_first`.
     with np.errstate(divide="ignore", invalid="ignore"):
         sample_size = mean * (1.0 - mean) * (realisations - 1) / mean_over_first(offsets * offsets)
-    # By the values themselves: the variance of equal values need not round to zero.
+    # The values themselves decide: the variance of equal values need not round to zero.
     sample_size = np.where(np.ptp(probabilities, axis=0) > 0.0, sample_size, np.nan)
     degrees = max(realisations - 1, 1)
     return mean, *probability_limits(mean, sample_size, degrees, windows * realisations)
@@ -218,9 +219,9 @@ def mean_interval(values: Array, most: float = np.inf) -> tuple[Array, Array, Ar
     Parameters
     ----------
     values : numpy.ndarray
-        Shape (R, ...), the estimates, R of two or more.
+        Shape (R, ...), the estimates, with R of two or more.
     most : float, optional
-        Largest possible mean, such as 1 of a probability.
+        Largest possible mean, such as 1 for a probability.
 
     Returns
     -------
@@ -253,9 +254,9 @@ def jackknife_interval(
     Parameters
     ----------
     values : numpy.ndarray
-        Shape (R, ...), of R two or more.
+        Shape (R, ...), with R of two or more.
     function : callable
-        Of the mean over R.
+        Function of the mean over R.
     most : float, optional
         Largest possible result.
 
@@ -281,7 +282,7 @@ def jackknife_interval(
 
 
 def _student_interval(result, error, count, most):
-    """Limits of a result of some values, from its standard error and their count."""
+    """Limits of a result, from its standard error and the count of the values behind it."""
     half = scipy.special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0) * error
     limits = result, np.maximum(result - half, 0.0), result + half
     return tuple(np.minimum(limit, most) for limit in limits)

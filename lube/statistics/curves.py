@@ -34,10 +34,7 @@ class Curve:
     sample_size : numpy.ndarray
         Effective sample size of one realisation there, shape (n,).
     peak : int
-        Index of the largest probability; by default 0: nowhere does it rise.
-    thickest : float
-        Largest film of which the probability is known; levels with one probability are joined, so
-        it may lie beyond the last of `films`.
+        Index of the largest probability; by default 0, for a curve that rises nowhere.
 
     Examples
     --------
@@ -50,7 +47,6 @@ class Curve:
     logits: Array
     sample_size: Array
     peak: int = 0
-    thickest: float = np.inf
 
     def logit_at(self, films: npt.ArrayLike) -> Array:
         """Logit of the probability at given films, extrapolated linearly beyond the ends.
@@ -146,11 +142,10 @@ def falling_curve(
     falling = scipy.optimize.isotonic_regression(probabilities, increasing=False).x
     inside = (falling >= resolution) & (falling <= 1.0 - resolution)
     sinking, level = np.unique(-scipy.special.logit(falling[inside]), return_inverse=True)
-    thickest = films[inside].max(initial=-np.inf)
     films, sample_size = (
         np.bincount(level, each[inside]) / np.bincount(level) for each in (films, sample_size)
     )
-    return Curve(films, -sinking, sample_size, thickest=thickest)
+    return Curve(films, -sinking, sample_size)
 
 
 def peaked_curve(
@@ -188,7 +183,7 @@ def peaked_curve(
     thin = -rising.films, rising.logits, rising.sample_size
     thick = falling.films, falling.logits, falling.sample_size
     joined = (np.concatenate([a[:0:-1], b]) for a, b in zip(thin, thick, strict=True))
-    return Curve(*joined, peak=rising.films.size - 1, thickest=falling.thickest)
+    return Curve(*joined, peak=rising.films.size - 1)
 
 
 def film_interval(
@@ -215,7 +210,7 @@ def film_interval(
     Returns
     -------
     film, lower, upper : float
-        Logarithms of the lambda ratio. The film is that beyond the peak of the curve, and the
+        Logarithms of the lambda ratio. The film lies beyond the peak of the curve, and the
         interval holds all films around it. The film is -inf or +inf if the share lies beyond the
         range of the curve. A limit is -inf or +inf if even the last film of the curve on that
         side agrees with the record. If no film of the curve agrees with it, the finite limit is
@@ -242,9 +237,9 @@ def film_interval(
 
 
 def _distances(curve, ends, record):
-    """Distance of a share from a curve's, over its standard error, made non-decreasing.
+    """Distance of a share from the curve, in standard errors and made non-decreasing.
 
-    From one level of the curve to another.
+    It is given at films from one end, a level of the curve, to the other.
     """
     share, ratio, realisations, noise = record
     first, last = ends
@@ -263,13 +258,13 @@ def realisation_correlation(probabilities: Array) -> Array:
     Parameters
     ----------
     probabilities : numpy.ndarray
-        Shape (R, P), of each realisation at each operating point.
+        Shape (R, P), probability of each realisation at each operating point.
 
     Returns
     -------
     numpy.ndarray
-        Shape (P, P). A point at which the realisations do not scatter is taken as independent of
-        the others; with a single realisation all points are taken as fully correlated.
+        Shape (P, P). A point at which the realisations do not scatter counts as independent of the
+        others; with a single realisation all points count as fully correlated.
 
     Examples
     --------
@@ -316,14 +311,14 @@ def fit_factor(
     log_factors : numpy.ndarray
         Logarithms of the factor, shape (F,), rising.
     logits : numpy.ndarray
-        Logits of the model's probability, shape (F, P). They fall with the factor, but where
+        Logits of the model's probability, shape (F, P). They fall with the factor, except where
         contact is so frequent that segments merge.
     shares : numpy.ndarray
         Measured shares, shape (P,).
     sample_size : numpy.ndarray
         Effective sample size of one realisation, shape (P,).
     covariance : numpy.ndarray
-        Of the errors m - p, each over (p (1 - p) / n)^(1/2), shape (P, P).
+        Covariance of the errors m - p, each over (p (1 - p) / n)^(1/2), shape (P, P).
     realisations : int
         Number R of realisations from which the covariance is estimated.
     noise : numpy.ndarray
@@ -334,7 +329,7 @@ def fit_factor(
     factor, lower, upper : float
         The factor is NaN if it lies beyond the levels; a limit there is 0 or +inf. If no level is
         compatible with the records, the finite limit is the nearest level. If several factors
-        solve the equation, it is that of the largest quasi-likelihood, the integral of S.
+        solve the equation, the one with the largest quasi-likelihood, the integral of S, is taken.
 
     References
     ----------
@@ -366,8 +361,9 @@ def fit_factor(
     score = np.sum(weights * (shares - model), axis=1)
     misfit, limit = score / np.sqrt(variance), quantile(realisations)
     likeliest = np.argmax(scipy.integrate.cumulative_trapezoid(score, log_factors, initial=0.0))
-    # The score falls to its zero there from where it begins to be positive. Before, at films so
-    # thin that segments merge, it may have another zero, and be clearly negative beyond.
+    # From the factor where the score becomes positive, it falls to its zero at the likeliest one.
+    # Before, at films so thin that segments merge, it may have another zero, and be clearly
+    # negative beyond.
     dip = np.max(np.flatnonzero(misfit[:likeliest] < -limit), initial=0)
     first = dip + np.argmax(score[dip : likeliest + 1] >= 0.0)
     log_factors, falling = log_factors[first:], np.minimum.accumulate(misfit[first:])

@@ -1,4 +1,4 @@
-"""A record folded by the revolution: what repeats in each turn and what does not.
+"""A record folded by the revolution, to see what repeats in each turn.
 
 A roller shows the same roughness again after each turn. If both rollers repeat together (equal
 circumferences, no slip), so does the whole record, except for electrical noise. The repeatability
@@ -15,29 +15,29 @@ PHASES = 512
 SPAN = 0.05
 """Relative distance from the nominal period within which the period is searched."""
 LEAST_BLOCKS = 8
-"""Fewer blocks in a revolution than this do not show whether it repeats."""
+"""Blocks in a revolution that are needed to see whether it repeats."""
 ALIKE = 0.98
-"""Of all peaks of the autocorrelation this close to the highest, the nearest to the nominal period
-is taken."""
+"""Height of a peak of the autocorrelation, over the highest, from which it counts as equally high;
+among these the peak nearest to the nominal period is taken."""
 CLEAR = 0.5
-"""From this repeatability on, the period found in the record replaces the nominal one."""
+"""Repeatability from which the period found in the record replaces the nominal one."""
 
 
 @dataclass(frozen=True)
 class Fold:
-    """A record folded by the revolution.
+    """A record folded by the revolution, by the names of the ``experiment`` file.
 
     Attributes
     ----------
-    period : float
+    revolution_period : float
         Period of a revolution, s: found in the record if it repeats clearly, else the nominal one.
     repeatability : float
         Mean correlation between two revolutions: 1 if they are the same, 0 if they are
         independent; NaN if the record holds at most one revolution, does not vary, or has too few
         blocks in a revolution.
-    profile : numpy.ndarray
+    folded_share : numpy.ndarray
         Shape (PHASES,), contact share at each phase of a revolution.
-    deviation : numpy.ndarray
+    folded_deviation : numpy.ndarray
         Shape (PHASES,), standard deviation between revolutions; NaN where a phase occurs only
         once.
     share_error : float
@@ -45,10 +45,10 @@ class Fold:
         revolutions; 0 if there are fewer than two.
     """
 
-    period: float
+    revolution_period: float
     repeatability: float
-    profile: np.ndarray
-    deviation: np.ndarray
+    folded_share: np.ndarray
+    folded_deviation: np.ndarray
     share_error: float
 
 
@@ -75,7 +75,7 @@ def fold(shares: np.ndarray, interval: float, nominal_period: float) -> Fold:
 
     >>> turn = np.random.default_rng(1).random(64)
     >>> folded = fold(np.tile(turn, 10), interval=0.01, nominal_period=0.64)
-    >>> f"{folded.period:.3f} s", f"{folded.repeatability:.3f}"
+    >>> f"{folded.revolution_period:.3f} s", f"{folded.repeatability:.3f}"
     ('0.640 s', '1.000')
     """
     period = refined_period(shares, interval, nominal_period)
@@ -102,7 +102,7 @@ def refined_period(shares: np.ndarray, interval: float, nominal_period: float) -
     Returns
     -------
     float
-        The period, s; the nominal one if the record is shorter than that, does not vary, or has
+        The period, s; the nominal one if the record is shorter than it, does not vary, or has
         too few blocks in a revolution.
 
     Examples
@@ -151,54 +151,75 @@ def _peak(correlation, middle, reach):
     return top + (0.5 * (before - after) / bend if bend < 0.0 else 0.0)
 
 
-def _phases(count, interval, period):
-    """Phase, as a whole number, and revolution of each block."""
+def phases_of_blocks(
+    count: int, interval: float, period: float, most: int = PHASES
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Divide the blocks of a record by revolution and phase.
+
+    Parameters
+    ----------
+    count : int
+        Number of blocks.
+    interval, period : float
+        Duration of a block and of a revolution, s.
+    most : int, optional
+        Largest number of phases.
+
+    Returns
+    -------
+    phase, turn : numpy.ndarray
+        Shape (count,), int64, phase and revolution in which the middle of each block is.
+    phases : int
+        Number of phases.
+
+    Examples
+    --------
+    >>> phases_of_blocks(5, 1.0, 2.0)
+    (array([0, 1, 0, 1, 0]), array([0, 0, 1, 1, 2]), 2)
+    """
     turns = (np.arange(count) + 0.5) * interval / period
-    phases = min(PHASES, max(int(period / interval), 1))
+    phases = min(most, max(int(period / interval), 1))
     return (turns % 1.0 * phases).astype(np.int64), turns.astype(np.int64), phases
 
 
 def _cells(shares, interval, period):
-    """Mean share in each phase of each revolution in the record, and that phase."""
-    phase, turn, phases = _phases(shares.size, interval, period)
+    """Mean share in each phase of each revolution, that phase, and how often each phase occurs."""
+    phase, turn, phases = phases_of_blocks(shares.size, interval, period)
     cell = turn * phases + phase
     counts = np.bincount(cell)
     means = np.bincount(cell, shares) / np.maximum(counts, 1)
-    return means[counts > 0], np.flatnonzero(counts) % phases, phases
+    phase = np.flatnonzero(counts) % phases
+    return means[counts > 0], phase, np.bincount(phase, minlength=phases)
 
 
 def _repeatability(shares, interval, period):
     """Mean correlation between two revolutions."""
-    # By the shares themselves: deviations of equal shares need not round to zero.
+    # The shares themselves decide: deviations of equal shares need not round to zero.
     if np.ptp(shares) == 0.0:
         return np.nan
-    values, phase, phases = _cells(shares - shares.mean(), interval, period)
-    times = np.bincount(phase, minlength=phases)
+    values, phase, times = _cells(shares - shares.mean(), interval, period)
     again = times > 1
-    if not again.any() or phases < LEAST_BLOCKS:
-        return np.nan
-    sums, squares = (np.bincount(phase, each, phases)[again] for each in (values, values**2))
-    times = times[again]
-    alike = np.sum((sums**2 - squares) / (times * (times - 1)))
-    total = np.sum(squares / times)
-    return alike / total if total > 0.0 else np.nan
+    sums, squares = (np.bincount(phase, each, times.size)[again] for each in (values, values**2))
+    known = times[again]
+    alike = np.sum((sums**2 - squares) / (known * (known - 1)))
+    total = np.sum(squares / known)
+    return alike / total if total > 0.0 and times.size >= LEAST_BLOCKS else np.nan
 
 
 def _profile(shares, interval, period):
     """Mean over the revolutions at each of `PHASES` phases, and standard deviation."""
-    values, phase, phases = _cells(shares, interval, period)
-    times = np.bincount(phase, minlength=phases)
+    values, phase, times = _cells(shares, interval, period)
     with np.errstate(divide="ignore", invalid="ignore"):
-        mean = np.bincount(phase, values, phases) / times
-        excess = np.bincount(phase, (values - mean[phase]) ** 2, phases) / (times - 1)
+        mean = np.bincount(phase, values, times.size) / times
+        excess = np.bincount(phase, (values - mean[phase]) ** 2, times.size) / (times - 1)
     deviation = np.where(times > 1, np.sqrt(excess), np.nan)
-    wanted = np.arange(PHASES) * phases // PHASES
+    wanted = np.arange(PHASES) * times.size // PHASES
     return mean[wanted], deviation[wanted]
 
 
 def _share_error(shares, interval, period):
     """Calculate the standard error of the share from the scatter between whole revolutions."""
-    _, turn, _ = _phases(shares.size, interval, period)
+    _, turn, _ = phases_of_blocks(shares.size, interval, period)
     whole = int(shares.size * interval / period)
     if whole < 2:
         return 0.0

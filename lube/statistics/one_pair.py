@@ -16,9 +16,6 @@ import scipy.special
 from lube.statistics.confidence import CONFIDENCE
 from lube.types import Array, Pair, Points, Ratios, Values
 
-MOST_TURNS = 100_000
-"""Turns over which alignments and drift are evaluated; longer records are taken as this long."""
-
 
 def quantile(realisations: int, among: int = 1) -> float:
     """Two-sided 95 % quantile for a scatter estimated from realisations.
@@ -26,16 +23,16 @@ def quantile(realisations: int, among: int = 1) -> float:
     Parameters
     ----------
     realisations : int
-        Number R of realisations. With one there is no scatter, and the quantile is that of the
-        normal distribution.
+        Number R of realisations. With one there is no scatter, and the quantile of the normal
+        distribution is returned.
     among : int, optional
-        Number of values, none of which exceeds the quantile in 95 of 100 cases (Bonferroni's
+        Number of values; in 95 of 100 cases none of them exceeds the quantile (Bonferroni's
         bound).
 
     Returns
     -------
     float
-        Student's t of R - 1 degrees of freedom.
+        Student's t with R - 1 degrees of freedom.
 
     Examples
     --------
@@ -56,7 +53,7 @@ def repeat_factor(turns: npt.ArrayLike) -> npt.ArrayLike:
 
     .. math:: \frac{(k + 1)^2 f + k^2 (1 - f)}{T^2}
 
-    This is 1/T below one turn, one for whole turns and nearly one for all longer records.
+    The factor is 1/T below one turn, 1 for whole turns and nearly 1 for all longer records.
 
     Parameters
     ----------
@@ -78,35 +75,32 @@ def repeat_factor(turns: npt.ArrayLike) -> npt.ArrayLike:
     return ((whole + 1.0) ** 2 * part + whole**2 * (1.0 - part)) / turns**2
 
 
-def distinct_alignments(turns: float, shift: int, perimeter: int, reach: float) -> int:
+def distinct_alignments(turns: float, ratios: Ratios, points: Points, reach: float) -> float:
     """Count the alignments of two lines that share no roughness.
 
     Parameters
     ----------
-    turns : float
-        Turns of the roller with the faster surface.
-    shift : int
-        Points by which the other surface advances in each of these turns.
-    perimeter : int
-        Points around the other roller.
-    reach : float
-        Distance of two alignments that share no roughness, points.
+    turns, ratios, points, reach
+        As in `scatter_ratio`.
 
     Returns
     -------
-    int
-        At least one; equal rollers without slip keep one alignment.
+    float
+        From 1, as for equal rollers without slip, to the number of turns, which may be below 1.
 
     Examples
     --------
     Rollers of 1000 and 800 points meet again after four turns of the first:
 
-    >>> distinct_alignments(100, 1000, 800, 40.0)
+    >>> distinct_alignments(100, (1.0, 1.0), (1000, 800), 40.0)
     4
     """
-    offsets = np.arange(math.ceil(min(turns, MOST_TURNS))) * (shift % perimeter) % perimeter
+    faster = 0 if ratios[0] == 1.0 else 1
+    # The other surface advances by so many points in each of these turns.
+    shift, perimeter = round(points[faster] * ratios[1 - faster]), points[1 - faster]
+    offsets = np.arange(math.ceil(turns)) * (shift % perimeter) % perimeter
     # Bins centred on the multiples of the reach, so that a return to the start is in the first.
-    return np.unique((offsets + reach / 2.0) % perimeter // reach).size
+    return min(np.unique((offsets + reach / 2.0) % perimeter // reach).size, turns)
 
 
 def drift_factor(turns: float, drift: float) -> float:
@@ -144,7 +138,7 @@ def drift_factor(turns: float, drift: float) -> float:
     >>> [f"{drift_factor(4, drift):.3f}" for drift in (0.0, 0.1, 1.0)]
     ['1.000', '0.937', '0.250']
     """
-    turns = min(max(turns, 1.0), MOST_TURNS)  # the variance does not grow with more turns
+    turns = max(turns, 1.0)
     lags = np.arange(1, math.ceil(turns))
     correlation = np.sqrt(1.0 - drift) ** lags
     return min((1.0 + 2.0 * np.sum((1.0 - lags / turns) * correlation)) / turns, 1.0)
@@ -176,8 +170,8 @@ def scatter_ratio(
     reach : float
         Distance of two alignments that share no roughness, points.
     persistent : float
-        :math:`s_\infty^2 / s_1^2`, the part that new alignments do not average out. It does not
-        matter for equal rollers in pure rolling, which keep one alignment.
+        :math:`s_\infty^2 / s_1^2`, the part that new alignments do not average out. It has no
+        effect for equal rollers in pure rolling, which keep one alignment.
     drift : float
         As in `drift_factor`.
 
@@ -204,8 +198,7 @@ def scatter_ratio(
         turns_of_each = np.maximum(turns * travel, reach) / points
         return np.sum(weights * repeat_factor(turns_of_each))
 
-    shift = round(travel[1 - faster])
-    alignments = min(distinct_alignments(turns, shift, points[1 - faster], reach), turns)
+    alignments = distinct_alignments(turns, ratios, points, reach)
     visits, renewed = turns / alignments, 1.0 - (1.0 - drift) ** alignments
     together = repeat_factor(visits) / alignments * drift_factor(visits, renewed)
     by_either = min(persistent * alone(1.0), 1.0)
@@ -278,16 +271,16 @@ def standard_error(
 
     .. math:: \sigma^2 = p (1 - p) \left( \frac{v}{n} + \frac{m}{n R} \right) + \epsilon^2
 
-    The first term is the scatter of the record, the second that of the mean over the realisations.
+    The first term is the scatter of the record, the second the error of the mean over realisations.
 
     Parameters
     ----------
     mean, sample_size, ratio, realisations
         :math:`p`, :math:`n`, :math:`v` and :math:`R`, as in `prediction_limits`.
     noise : float or numpy.ndarray, optional
-        :math:`\epsilon`, as there.
+        :math:`\epsilon`, as in `prediction_limits`.
     mean_error : float or numpy.ndarray, optional
-        :math:`m`, as there.
+        :math:`m`, as in `prediction_limits`.
 
     Returns
     -------
@@ -307,16 +300,16 @@ def standard_error(
 def persistent_share(in_first: Array, in_second: Array) -> Array:
     """Part of one alignment's scatter that new alignments do not average out.
 
-    It is the effect of either line alone, whatever it is paired with. Each first line is paired
-    with each second line, and the effects follow from the analysis of variance of two crossed
-    factors: that of a line from whole turns of it.
+    This part is the effect of either line alone, whatever line it is paired with. Each first line
+    is paired with each second line, and the effects follow from the analysis of variance of two
+    crossed factors. The effect of a line is taken from its whole turns.
 
     Parameters
     ----------
     in_first, in_second : numpy.ndarray
-        Shape (R, K, P): of each of R first lines with each of K second lines, at each of P
-        points, in whole turns of the first and of the second line. For equally long lines both
-        are the same.
+        Shape (R, K, P): contact shares of each of R first lines with each of K second lines, at
+        each of P points, in whole turns of the first and of the second line. For equally long
+        lines both arrays are the same.
 
     Returns
     -------
@@ -340,7 +333,7 @@ def persistent_share(in_first: Array, in_second: Array) -> Array:
 
 
 def _together(shares):
-    """Variance of what two crossed factors do together, shape (P,)."""
+    """Variance due to the interaction of two crossed factors, shape (P,)."""
     firsts, seconds = shares.shape[:2]
     first, second = (shares.mean(axis=axis, keepdims=True) for axis in (1, 0))
     rest = shares - first - second + shares.mean(axis=(0, 1))

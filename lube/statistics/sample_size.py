@@ -68,6 +68,6 @@ def effective_sample_size(probabilities: Array, windows: npt.ArrayLike) -> Array
     if probabilities.shape[0] == 1:
         return windows
     mean, variance = probabilities.mean(axis=0), probabilities.var(axis=0, ddof=1)
-    # By the values themselves: the variance of equal values need not round to zero.
+    # The values themselves decide: the variance of equal values need not round to zero.
     scattered = np.ptp(probabilities, axis=0) > 0.0
     return np.where(scattered, mean * (1.0 - mean) / np.where(scattered, variance, 1.0), windows)

@@ -161,7 +161,7 @@ def merged_config(datasets: Iterable[xr.Dataset]) -> str:
     Returns
     -------
     str
-        As from `config_text`; of a single file, its attribute ``config``.
+        As from `config_text`; for a single file, its attribute ``config``.
 
     Raises
     ------
@@ -279,29 +279,3 @@ def fingerprints(paths: Files) -> dict[str, str]:
     found = sorted({(Path(path).name, fingerprint(path)) for path in paths})
     count = Counter(name for name, _ in found)
     return {name if count[name] == 1 else f"{name}#{sha[:SHORT]}": sha for name, sha in found}
-
-
-def input_sums(dataset: xr.Dataset, where: File) -> dict[str, set[str]]:
-    """Read which files a file was made from.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The loaded file.
-    where : str or Path
-        The file's path, for the message.
-
-    Returns
-    -------
-    dict
-        From file name to the SHA-256 sums of all files of that name.
-
-    Raises
-    ------
-    DataError
-        If the file does not state it.
-    """
-    sums = {}
-    for name, sha in json_attribute(dataset, "inputs_sha256", where).items():
-        sums.setdefault(name.removesuffix(f"#{sha[:SHORT]}"), set()).add(sha)
-    return sums

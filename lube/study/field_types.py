@@ -4,82 +4,27 @@ All three kinds of file become frozen pydantic models. Here are their strict bas
 of fields that are written with a unit and kept in SI, and the one-line message on a refused value.
 """
 
-import ast
-import inspect
 import operator
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import BaseModel, StringConstraints, ValidationError
-from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
+from pydantic import BaseModel, BeforeValidator, StringConstraints, ValidationError, WithJsonSchema
 
-from lube.errors import LubeError, right_one, shown
+from lube.errors import LubeError, located, right_one, shown
 from lube.types import File
-from lube.units import convert, parse_number, parse_quantity
+from lube.units import parse_number, parse_quantity
 
 
-def _with_descriptions(schema, model):
-    """Add the text under each field of a model to its JSON schema.
-
-    Pydantic's own `use_attribute_docstrings` reads the source at every import, which is slow.
-    """
-    for base in model.__mro__[: model.__mro__.index(StrictModel)]:
-        for field, below in pairwise(ast.parse(inspect.getsource(base)).body[0].body):
-            match field, below:
-                case ast.AnnAssign(), ast.Expr(ast.Constant(str(text))):
-                    name = base.model_fields[field.target.id].alias or field.target.id
-                    schema["properties"][name]["description"] = " ".join(text.split())
-
-
-class StrictModel(BaseModel, extra="forbid", frozen=True, json_schema_extra=_with_descriptions):
+class StrictModel(BaseModel, extra="forbid", frozen=True, use_attribute_docstrings=True):
     """Frozen model that refuses unknown keys; the text under a field describes it."""
 
 
-@dataclass(frozen=True, eq=False)  # hashed by identity, as an annotation must be
-class Written:
-    """Annotation of a field that is not kept as it is written, for its JSON schema.
-
-    A field keeps ``0.05`` where people write ``50 mm``.
-
-    Attributes
-    ----------
-    schema : dict
-        How it is written. ``format`` says in words what is needed; from ``form`` and the keys
-        beside it, ``docs/tools/written_forms.py`` makes the schema for editors.
-    """
-
-    schema: dict[str, Any]
-
-    def __get_pydantic_json_schema__(self, core_schema: object, handler: object) -> dict[str, Any]:
-        """Answer pydantic."""
-        return dict(self.schema)
-
-
-@contextmanager
-def collected(key: str = "", hint: str = "") -> Iterator[None]:
-    """Turn a LubeError into an error that pydantic collects; also a decorator of validators.
-
-    Parameters
-    ----------
-    key : str, optional
-        The key of the model that the error is about.
-    hint : str, optional
-        Added to the message.
-
-    Raises
-    ------
-    ValueError
-        In place of the LubeError.
-    """
-    try:
-        yield
-    except LubeError as error:
-        raise ValueError(f"{key}: {error}{hint}".removeprefix(": ")) from None
+def given_keys(model: BaseModel, keys: Iterable[str]) -> list[str]:
+    """Return those of some keys of a model that have a value."""
+    return [key for key in keys if getattr(model, key) is not None]
 
 
 _LIMITS = {
@@ -136,80 +81,67 @@ def bounded(number: float, units: str | None, came: object = None, **limits: flo
     raise LubeError(f"got {came}, need a {needed} {units or ''}".rstrip())
 
 
-@dataclass(frozen=True, eq=False)
-class Read(Written):
-    """Tell pydantic how a field is read, too.
+def read_by(
+    parse: Callable[[Any], object], schema: dict[str, Any], hint: str = ""
+) -> BeforeValidator:
+    """Say how to read a field that is not kept as it is written, such as 0.05 for ``50 mm``.
 
-    Attributes
+    Parameters
     ----------
     parse : callable
         From what people write to what is kept; raises LubeError.
-    hint : str
-        Added to its message.
+    schema : dict
+        How it is written, for the JSON schema. ``format`` says in words what is needed; from
+        ``form`` and the keys beside it, ``docs/tools/written_forms.py`` makes the schema for
+        editors.
+    hint : str, optional
+        Put after the message of an error.
+
+    Returns
+    -------
+    pydantic.BeforeValidator
+        Metadata of an annotated type.
     """
-
-    parse: Callable[[Any], object]
-    hint: str = ""
-
-    def __get_pydantic_core_schema__(self, source: object, handler: Callable) -> CoreSchema:
-        """Answer pydantic."""
-        parse = collected(hint=self.hint)(self.parse)
-        return no_info_before_validator_function(parse, handler(source))
+    written = Annotated[Any, WithJsonSchema(schema)]
+    return BeforeValidator(
+        located(kind=ValueError, hint=hint)(parse), json_schema_input_type=written
+    )
 
 
-def _needed(kind, limits):
-    """``quantity in m, above 0``."""
-    return f"{kind}, {_in_words(limits)}" if limits else kind
+def _number(value, units, limits):
+    """Read a number with its unit, or one without dimension if the unit is None."""
+    number = parse_number(value) if units is None else parse_quantity(value, units)
+    return bounded(number, units, value, **limits)
 
 
-def _form(form, needed, units, limits):
+def _schema(form, kind, units, limits):
+    """Describe a field that is written in such a form, with ``quantity in m, above 0``."""
+    needed = f"{kind}, {_in_words(limits)}" if limits else kind
     return {"form": form, "format": needed, "units": units, "limits": limits}
 
 
-def quantity(units: str, **limits: float) -> Read:
+def quantity(units: str | None, **limits: float) -> BeforeValidator:
     """Say how to read a number written with its unit and kept in `units`.
 
     Parameters
     ----------
-    units : str
-        Unit of the kept number.
+    units : str or None
+        Unit of the kept number; None for a number without dimension, which may also be a fraction
+        such as ``600/7``.
     **limits : float
         As in `bounded`, in `units`.
 
     Returns
     -------
-    Read
+    pydantic.BeforeValidator
         Metadata of an annotated float.
     """
-
-    def parse(value):
-        return bounded(parse_quantity(value, units), units, value, **limits)
-
-    needed = _needed(f"quantity in {units}", limits)
-    return Read(_form("quantity", needed, units, limits), parse)
+    form, kind = ("quantity", f"quantity in {units}") if units else ("number", "number")
+    schema = _schema(form, kind, units, limits)
+    return read_by(lambda value: _number(value, units, limits), schema)
 
 
-def pure_number(**limits: float) -> Read:
-    """Say how to read a number without dimension; also a fraction such as ``600/7``.
-
-    Parameters
-    ----------
-    **limits : float
-        As in `bounded`.
-
-    Returns
-    -------
-    Read
-        Metadata of an annotated float.
-    """
-
-    def parse(value):
-        return bounded(parse_number(value), None, value, **limits)
-
-    return Read(_form("number", _needed("number", limits), None, limits), parse)
-
-
-def checked_text(check: Callable[[str], object], kind: str) -> Read:
+def checked_text(check: Callable[[str], object], kind: str) -> BeforeValidator:
     """Say how to read a text that a function accepts; it is kept as written.
 
     Parameters
@@ -221,7 +153,7 @@ def checked_text(check: Callable[[str], object], kind: str) -> Read:
 
     Returns
     -------
-    Read
+    pydantic.BeforeValidator
         Metadata of an annotated str.
     """
 
@@ -229,39 +161,37 @@ def checked_text(check: Callable[[str], object], kind: str) -> Read:
         check(value)
         return value
 
-    return Read({"type": "string", "format": kind}, parse)
+    return read_by(parse, {"type": "string", "format": kind})
 
 
-def quantity_or_words(units: str, accepts: Callable[..., bool], words: str, pattern: str) -> Read:
+def quantity_or_words(units: str, words: str, pattern: str) -> BeforeValidator:
     """Say how to read a quantity or, in its place, certain words, which are kept as written.
 
     Parameters
     ----------
     units : str
         Unit of the kept number, which is above 0.
-    accepts : callable
-        Takes the value and says whether it is such words; may raise LubeError.
     words : str
         What the words are, for messages and for the JSON schema.
     pattern : str
-        Regular expression of the words, for the JSON schema.
+        Regular expression of the words.
 
     Returns
     -------
-    Read
+    pydantic.BeforeValidator
         Metadata of an annotated float or str.
     """
+    limits = {"above": 0.0}
 
     def parse(value):
-        number = None if accepts(value) else parse_quantity(value, units)
-        return value if number is None else bounded(number, units, value, above=0.0)
+        is_words = isinstance(value, str) and re.search(pattern, value)
+        return value if is_words else _number(value, units, limits)
 
-    needed = f"quantity in {units}, or {words}"
-    written = _form("words", needed, units, {"above": 0.0}) | {"pattern": pattern}
-    return Read(written, parse, hint=f", or {words}")
+    schema = _schema("words", f"quantity in {units}, or {words}", units, {})
+    return read_by(parse, schema | {"limits": limits, "pattern": pattern}, f", or {words}")
 
 
-def levels(units: str | None, **limits: float) -> Read:
+def levels(units: str | None, **limits: float) -> BeforeValidator:
     """Say how to read the levels of an operating variable.
 
     With a unit they are written ``{values: [40, 50], units: degC}``, without as a list.
@@ -275,33 +205,28 @@ def levels(units: str | None, **limits: float) -> Read:
 
     Returns
     -------
-    Read
+    pydantic.BeforeValidator
         Metadata of an annotated tuple of floats: not empty, rising, each level once.
     """
+    pair = f"values and their unit, such as {{values: [1, 2], units: {units}}}"
+    needed = pair if units else "a list such as [0, 0.1]"
 
     def parse(value):
-        numbers, typed = _level_list(value, units)
-        for number, came in zip(numbers, typed, strict=True):
-            bounded(number, units, came, **limits)
+        match value:
+            case [_, *_] if units is None:
+                typed = value
+            case {"values": [_, *_] as values, "units": str(given), **rest} if units and not rest:
+                typed = [f"{one} {given}" for one in values]
+            case _:
+                raise LubeError(f"got {shown(value)}, need {needed}")
+        numbers = tuple(_number(one, units, limits) for one in typed)
         for (lower, before), (upper, came) in pairwise(zip(numbers, typed, strict=True)):
             if upper <= lower:
                 raise LubeError(f"got {came} after {before}, need rising levels, each once")
         return numbers
 
-    needed = _needed("list of numbers" if units is None else f"values and units in {units}", limits)
-    return Read(_form("levels", needed, units, limits), parse)
-
-
-def _level_list(value, target):
-    """Levels in the target unit, and as they are written."""
-    match value:
-        case [_, *_] if target is None:
-            return tuple(map(parse_number, value)), value
-        case {"values": [_, *_] as values, "units": str(units), **rest} if target and not rest:
-            numbers = tuple(float(convert(parse_number(one), units, target)) for one in values)
-            return numbers, [f"{one} {units}" for one in values]
-    needed = f"values and their unit, such as {{values: [1, 2], units: {target}}}"
-    raise LubeError(f"got {shown(value)}, need {needed if target else 'a list such as [0, 0.1]'}")
+    kind = f"values and units in {units}" if units else "list of numbers"
+    return read_by(parse, _schema("levels", kind, units, limits))
 
 
 def each_once(values: tuple) -> tuple:
@@ -374,7 +299,7 @@ def validate(
     try:
         return model.model_validate(content, context=context)
     except ValidationError as error:
-        # A misspelt key comes first: that the right one is missing only follows from it.
+        # A misspelt key comes first: the missing key only follows from it.
         mistakes = sorted(error.errors(), key=lambda mistake: mistake["type"] not in _UNKNOWN)
         more = f" (and {len(mistakes) - 1} more)" if len(mistakes) > 1 else ""
         line = _as_written(_in_one_line(mistakes[0], model), content)
@@ -382,7 +307,7 @@ def validate(
 
 
 def _as_written(line, content):
-    """Quote in an error message the value as it is written, not as it is understood, in SI."""
+    """Quote in an error message the value as written in the file, not as converted to SI."""
     message = re.match(
         r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)?(?: (?!beside)[^\s,]+)?)(?![^\s,])", line
     )

@@ -1,23 +1,27 @@
-"""What determines the roughness lines of a pair of rollers, checked against the grid."""
+"""Parameters of the roughness lines of a pair of rollers, checked against the grid."""
 
+import functools
+import hashlib
 import math
-from functools import partial
 from typing import Annotated
 
 from pydantic import Field, PlainSerializer
 
-from lube.errors import LubeError, StudyError
+from lube.errors import StudyError, located
 from lube.statistics.sample_size import independent_windows
 from lube.study.field_types import StrictModel
-from lube.study.roller_topography import MeasuredHeights
 from lube.study.rollers import AUTOMATIC_WAVELENGTH, ROLLERS, RollerPair, Roughness
 from lube.types import Values
 from lube.units import with_unit
 
-_Heights = Annotated[MeasuredHeights, PlainSerializer(lambda heights: heights.sha256)]
+
+@functools.lru_cache(maxsize=2)
+def _digest(heights):
+    """SHA-256 sum of a measured line, which stands for it among plain data."""
+    return hashlib.sha256(heights).hexdigest()
 
 
-class RoughLine(StrictModel, arbitrary_types_allowed=True):
+class RoughLine(StrictModel):
     """Everything that determines the roughness line of one roller, except seed and realisation.
 
     Attributes
@@ -33,11 +37,11 @@ class RoughLine(StrictModel, arbitrary_types_allowed=True):
     q_roll_off : float
         Wave number below which C1D ~ q, rad/m; by default `q_min`: nowhere.
     skewness, kurtosis : float
-        Of the heights; by default 0 and 3: Gaussian.
+        Skewness and kurtosis of the heights; by default 0 and 3, those of Gaussian heights.
     spectrum : tuple of tuple of float, optional
         Measured spectrum: wave vectors, rad/m, and densities, m^3, between which it is a power law.
-    heights : MeasuredHeights, optional
-        Measured heights of the line itself.
+    heights : bytes, optional
+        Measured heights of the line itself: `points` numbers int32, in height steps.
     isotropic : bool
         Whether the line stands for an isotropic surface; by default it does.
     """
@@ -51,17 +55,17 @@ class RoughLine(StrictModel, arbitrary_types_allowed=True):
     skewness: float = 0.0
     kurtosis: float = 3.0
     spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None = None
-    heights: _Heights | None = None
+    heights: Annotated[bytes, PlainSerializer(_digest)] | None = Field(None, repr=False)
     isotropic: bool = True
 
     @property
     def longest_wavelength(self) -> float:
-        """Of its waves, m."""
+        """Longest wavelength of the line, m."""
         return 2.0 * math.pi / self.q_min
 
     @property
     def shortest_wavelength(self) -> float:
-        """Of its waves, m."""
+        """Shortest wavelength of the line, m."""
         return 2.0 * math.pi / self.q_max
 
     @property
@@ -76,7 +80,7 @@ class LineSpec(StrictModel):
     Attributes
     ----------
     lines : tuple of RoughLine
-        Line of either roller.
+        Line of each roller.
     spacing : float
         Distance dx of neighbouring points, m.
     height_step : float
@@ -89,12 +93,12 @@ class LineSpec(StrictModel):
 
     @property
     def points(self) -> tuple[int, int]:
-        """Points around either roller."""
+        """Points around each roller."""
         return tuple(line.points for line in self.lines)
 
     @property
     def rms_height(self) -> tuple[float, float]:
-        """Rms height of either line, m."""
+        """Rms height of each line, m."""
         return tuple(line.rms_height for line in self.lines)
 
     @property
@@ -129,7 +133,7 @@ class LineSpec(StrictModel):
 
     @property
     def longest_wavelength(self) -> float:
-        """Of the waves of both lines, m."""
+        """Longest wavelength of both lines, m."""
         return 2.0 * math.pi / self.q_min
 
     @property
@@ -153,7 +157,7 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     rollers : RollerPair
         The rollers.
     roughness : Roughness
-        Statistics and grid of their lines, where a roller has none of its own.
+        Statistics and grid of the lines; the values of a roller come before these.
     largest_force : float
         Largest force of the study, N; its contact width may set the longest wavelength.
 
@@ -212,8 +216,9 @@ def _rough_line(rollers, roughness, name, rms, lengths):
     """Line of one roller, at a grid spacing and the largest contact width."""
     spacing, width = lengths
     roller = getattr(rollers, name)
-    own, key = roughness.of(roller.roughness), partial(_key, name, roller.roughness)
-    longest, shortest = own.wavelengths(width, spacing)
+    own, key = roughness.of(roller.roughness), functools.partial(_key, name, roller.roughness)
+    with located(key("shortest_wavelength")):
+        longest, shortest = own.wavelengths(width, spacing)
     points = round(roughness.points * roller.radius / rollers.first.radius)
     if roller.topography and roller.topography.is_line:
         longest = roller.topography.long_cutoff or points * spacing
@@ -225,12 +230,10 @@ def _rough_line(rollers, roughness, name, rms, lengths):
     _check_perimeter(points * spacing, longest, shortest, name)
     _check_distribution(own, key)
     if roller.topography:
-        try:
+        with located(f"rollers.{name}.topography", StudyError):
             grid = points, spacing, (longest, shortest)
             shape = roller.topography.line(grid, width, roughness.height_step)
             shape["isotropic"] = roller.topography.texture == "isotropic"
-        except LubeError as error:
-            raise StudyError(f"rollers.{name}.topography: {error}") from None
     elif own.hurst_exponent is None:
         raise StudyError(f"{key('hurst_exponent')}: missing, need it for the {name} roller")
     else:
@@ -258,7 +261,7 @@ def check_width(spec: LineSpec, width: float, what: str) -> None:
     width : float
         Width of the contact, m.
     what : str
-        What is so wide, for the message.
+        Name of the contact, for the message.
 
     Raises
     ------
@@ -280,9 +283,10 @@ def _key(roller, own, name):
 
 
 def _beyond_cutoffs(own, longest, shortest, key):
-    r"""Rms height of all waves of a line over that of the waves within the cutoffs.
+    r"""Ratio of the rms height of all waves of a line to that of the waves within the cutoffs.
 
-    The integrals of :math:`C \propto q^{-2H-1}`, below the roll-off :math:`C \propto q`.
+    Both follow from the integral of :math:`C \propto q^{-2H-1}`, below the roll-off
+    :math:`C \propto q`.
     """
     if own.long_cutoff is None and own.short_cutoff is None:
         return 1.0
@@ -343,18 +347,17 @@ def _check_height_step(rms, step, name, roller):
             f"roughness.height_step: got {step:.3g} m, need {rms / 1e7:.3g} "
             f"to {rms / 1e3:.3g} m for a roughness of {rms:.3g} m"
         )
-    own = [key for key in ("ra_roughness", "rms_roughness", "topography") if getattr(roller, key)]
-    key = f"rollers.{name}.{own[0]}" if own else "rollers.composite_rms_roughness"
-    raise StudyError(f"{key}: got {rms:.3g} m, need an rms height of 1e-09 to 1e-05 m")
+    key = f"{name}.{roller.kinds[0]}" if roller.kinds else "composite_rms_roughness"
+    raise StudyError(f"rollers.{key}: got {rms:.3g} m, need an rms height of 1e-09 to 1e-05 m")
 
 
 def _check_distribution(own, key):
-    """Close to the least kurtosis the heights are two levels, whose spectrum cannot be chosen."""
+    """Close to the least kurtosis the heights have two levels, and no spectrum can be chosen."""
     square = own.skewness**2
     least = 1.5 + 1.25 * square
     if own.kurtosis < least:
         raise StudyError(
             f"{key('kurtosis')}: got {own.kurtosis:g} with a skewness of {own.skewness:g}, need at "
-            f"least {least:g}: none is below {square + 1.0:g}, the skewness squared plus one, and "
-            "close to it the spectrum cannot be kept"
+            f"least {least:g}: no kurtosis is below {square + 1.0:g}, the skewness squared plus "
+            "one, and close to that the spectrum cannot be kept"
         )

@@ -16,18 +16,18 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
-from lube.errors import LubeError, RangeError, RecordError, right_one, shown
+from lube.errors import RangeError, RecordError, located, right_one, shown
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_property, liquid_range
 from lube.physics.density import linear_density
 from lube.physics.pressure_viscosity import DEFINITIONS, FORMULA_DEFINITION, GOLD_BASES
 from lube.physics.viscosity_index import viscosity_at_100
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
-from lube.study.field_types import Slug, StrictModel, Text, pure_number, quantity, validate
+from lube.study.field_types import Slug, StrictModel, Text, given_keys, quantity, validate
 from lube.study.text_files import read_yaml
 from lube.study.viscosity_checks import ROUNDING, check_points
 from lube.study.viscosity_points import OilTemperature, ViscosityPoint, read_viscosity_csv
-from lube.types import File
+from lube.types import File, Values
 
 SHIPPED_FOLDER = Path(__file__).parent / "lubricants"
 
@@ -35,7 +35,7 @@ ISO_GRADES = (10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500)
 """Grades of ISO 3448 by their kinematic viscosity at 40 degC, mm2/s."""
 
 GEAR_OIL_GRADES = tuple(grade for grade in ISO_GRADES if 32 <= grade <= 680)
-"""Grades in which each shipped record with a grade in its name can be had."""
+"""Grades of the shipped gear oils, whose file has one of them in its name."""
 
 _GRADED = re.compile(r"(.+-iso-vg-)\d+")
 
@@ -56,7 +56,7 @@ class Viscosity(Sourced):
     """CSV file in the record's folder"""
     iso_vg: Literal[ISO_GRADES] | None = None
     """ISO viscosity grade, with `viscosity_index`"""
-    viscosity_index: Annotated[float, pure_number(least=0.0, most=400.0)] | None = None
+    viscosity_index: Annotated[float, quantity(None, least=0.0, most=400.0)] | None = None
     """viscosity index (ASTM D2270) of an oil of that grade"""
     coolprop_fluid: Text | None = None
     """CoolProp's name of a pure fluid"""
@@ -64,7 +64,7 @@ class Viscosity(Sourced):
     @model_validator(mode="after")
     def _check_one_way(self):
         ways = ("points", "csv", "iso_vg", "coolprop_fluid")
-        given = [way for way in ways if getattr(self, way) is not None]
+        given = given_keys(self, ways)
         if len(given) != 1:
             raise ValueError(f"got {' and '.join(given) or 'none'}, need one of {', '.join(ways)}")
         if (self.iso_vg is None) != (self.viscosity_index is None):
@@ -81,7 +81,7 @@ class Density(Sourced):
     """relative fall of the density per kelvin"""
 
 
-# Of all liquids that lubricate.
+# The range holds all liquids that lubricate.
 _COEFFICIENT = Annotated[float, quantity("1/GPa", least=1.0, most=100.0)]
 
 
@@ -118,7 +118,7 @@ class PressureViscosity(Sourced):
     points: Annotated[tuple[CoefficientPoint, ...], Field(min_length=1)] | None = None
     """measured coefficients; between them its logarithm is linear in temperature"""
     definition: Literal[tuple(DEFINITIONS)] | None = None
-    """definition of the measured coefficient, or of that from viscosities under pressure"""
+    """definition of the measured coefficient, or of the one from viscosities under pressure"""
     pressure: Annotated[float, quantity("Pa", above=ATMOSPHERIC_PRESSURE)] | None = None
     """pressure to which the secant runs"""
 
@@ -138,8 +138,8 @@ class PressureViscosity(Sourced):
 
     @property
     def given(self) -> list[str]:
-        """Which of its keys give the coefficient; none where viscosities under pressure do."""
-        return [way for way in ("gold_base", "value", "points") if getattr(self, way) is not None]
+        """Keys that give the coefficient; none if it follows from viscosities under pressure."""
+        return given_keys(self, ("gold_base", "value", "points"))
 
     @property
     def span(self) -> float | None:
@@ -207,8 +207,7 @@ class LubricantRecord(StrictModel):
                 raise ValueError("density: missing, need it unless CoolProp gives it")
             return self
         given = [f"pressure_viscosity.{key}" for key in alpha.given]
-        optional = ("density", "thermal_conductivity", "viscosity_law")
-        for key in given + [key for key in optional if getattr(self, key) is not None]:
+        for key in given + given_keys(self, ("density", "thermal_conductivity", "viscosity_law")):
             raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
         if alpha.definition == "reciprocal-asymptotic":
             raise ValueError(
@@ -231,9 +230,8 @@ class LubricantRecord(StrictModel):
     def valid_temperatures(self) -> tuple[float, float]:
         """Lowest and highest temperature at which the lubricant record is valid, degC.
 
-        From `temperature_range` if it is given, else those at which the data give both viscosity
-        and pressure-viscosity coefficient, else the liquid range of CoolProp, which is imported
-        for it.
+        They are those of `temperature_range` if it is given, else those at which the data give
+        both viscosity and pressure-viscosity coefficient, else CoolProp's liquid range.
         """
         if self.temperature_range is not None:
             return self.temperature_range.lowest, self.temperature_range.highest
@@ -254,16 +252,16 @@ class LubricantRecord(StrictModel):
         points = self.pressure_viscosity.points
         return [point.temperature for point in points] if points else list(self.isotherms)
 
-    def density_at(self, temperature: float) -> float:
-        """Density, kg/m3, at a temperature in degC."""
-        density, kelvin = self.density, temperature + ZERO_CELSIUS
+    def density_at(self, kelvin: Values) -> Values:
+        """Density, kg/m3, at a temperature in K."""
+        density = self.density
         return linear_density(kelvin, density.at_15_degC, density.thermal_coefficient)
 
     def kinematic_viscosity(self, point: ViscosityPoint) -> float:
         """Kinematic viscosity of a point, m2/s: as given, or dynamic viscosity over density."""
         if point.kinematic_viscosity is not None:
             return point.kinematic_viscosity
-        return point.dynamic_viscosity / self.density_at(point.temperature)
+        return point.dynamic_viscosity / self.density_at(point.temperature + ZERO_CELSIUS)
 
     @property
     def data(self) -> list[tuple[float, float]]:
@@ -291,7 +289,7 @@ class LubricantRecord(StrictModel):
                 f"viscosity: got pressures at {temperature:g} degC without atmospheric pressure, "
                 "need a value there as well"
             )
-        ambient = sum(same) / len(same) * self.density_at(temperature)
+        ambient = sum(same) / len(same) * self.density_at(temperature + ZERO_CELSIUS)
         pairs = [(p.pressure - ATMOSPHERIC_PRESSURE, p.dynamic_viscosity / ambient) for p in points]
         return sorted(pairs)
 
@@ -312,7 +310,7 @@ def shipped_records() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        The names, sorted; of the gear oils one for each ISO grade from 32 to 680.
+        The names, sorted; a gear oil has one for each ISO grade from 32 to 680.
 
     Examples
     --------
@@ -360,20 +358,18 @@ def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
         content = _regraded(content, name_or_path, grade)
     record = validate(LubricantRecord, content, path, RecordError)
     viscosity, files = record.viscosity, (path,)
+    points = viscosity.points
     if viscosity.csv is not None:
         files += (_beside(path, viscosity.csv),)
-        record = _with_points(record, read_viscosity_csv(files[1]))
-    if viscosity.iso_vg is not None:
-        record = _with_points(record, _points_of_grade(viscosity))
-    if record.viscosity.points is not None:
+        points = read_viscosity_csv(files[1])
+    elif viscosity.iso_vg is not None:
+        points = _points_of_grade(viscosity)
+    if points is not None:
+        viscosity = viscosity.model_copy(update={"points": points})
+        record = record.model_copy(update={"viscosity": viscosity})
         check_points(record, files[-1])
     record._files = files
     return record
-
-
-def _with_points(record, points):
-    viscosity = record.viscosity.model_copy(update={"points": points})
-    return record.model_copy(update={"viscosity": viscosity})
 
 
 def _points_of_grade(viscosity):
@@ -423,7 +419,8 @@ def _beside(record_path, name):
 def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -> None:
     """Refuse temperatures at which a lubricant record is not valid.
 
-    Cheap, unless the record names a CoolProp fluid and no range: CoolProp is imported to give one.
+    CoolProp, which takes seconds to import, is asked for the range of a fluid if the record has
+    none.
 
     Parameters
     ----------
@@ -449,8 +446,7 @@ def check_temperatures(record: LubricantRecord, temperatures: Sequence[float]) -
 def check_fluid(record: LubricantRecord, temperatures: Sequence[float]) -> None:
     """Refuse a CoolProp fluid without viscosity or density at the temperatures of a study.
 
-    CoolProp, which takes seconds to import, is imported for a fluid of one's own; the shipped
-    ones are known to be fit.
+    The shipped fluids are known to be fit and are not checked: CoolProp takes seconds to import.
 
     Parameters
     ----------
@@ -469,10 +465,8 @@ def check_fluid(record: LubricantRecord, temperatures: Sequence[float]) -> None:
     if fluid is None or (record.files and record.files[0].parent == SHIPPED_FOLDER):
         return
     kelvin = np.array(temperatures, dtype=float) + ZERO_CELSIUS
-    try:
+    with located(record.name):
         for name in ("viscosity", "density"):
             liquid_property(fluid, name, kelvin)
         if record.pressure_viscosity.pressure is not None:
             liquid_property(fluid, "viscosity", kelvin, record.pressure_viscosity.pressure)
-    except LubeError as error:
-        raise type(error)(f"{record.name}: {error}") from None

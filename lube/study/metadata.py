@@ -4,10 +4,10 @@ import datetime
 import re
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints, field_validator
+from pydantic import AfterValidator, Field, StringConstraints, field_validator
 
 from lube.errors import shown
-from lube.study.field_types import StrictModel, Written, each_once
+from lube.study.field_types import StrictModel, each_once, read_by
 
 PAPER = "Mixed and boundary lubrication in rolling contact: experiment and simulation"
 """Title of the paper whose model every study uses."""
@@ -58,11 +58,7 @@ _Name = _text(
     "'Family, Given', or a name without a comma",
 )
 _Orcid = _text(_is_orcid, "an ORCID iD such as 0000-0002-1825-0097, whose last digit is a check")
-_Day = Annotated[
-    datetime.date,
-    BeforeValidator(_day),
-    Written({"type": ["string", "integer"], "format": "date"}),
-]
+_Day = Annotated[datetime.date, read_by(_day, {"type": ["string", "integer"], "format": "date"})]
 # The characters that CITATION.cff allows.
 _Doi = _text(
     re.compile(r"10\.\d{4,9}(\.\d+)?/[\w:/;.()\[\]\\-]{1,200}", re.ASCII).fullmatch,

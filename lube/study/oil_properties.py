@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from lube.errors import RangeError, RecordError
+from lube.errors import RangeError, RecordError, located
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import (
     initial_pressure_viscosity,
@@ -19,7 +19,6 @@ from lube.physics.coolprop_fluids import (
     liquid_range,
     secant_pressure_viscosity,
 )
-from lube.physics.density import linear_density
 from lube.physics.pressure_viscosity import (
     fit_mcewen,
     gold_pressure_viscosity,
@@ -50,7 +49,7 @@ class _MeasuredOil:
     """Properties of a lubricant record with measured viscosities, interpolated by a law."""
 
     def __init__(self, record):
-        self._record = record
+        self._record, self.density = record, record.density_at
         temperature, viscosity = (np.array(column) for column in zip(*record.data, strict=True))
         self.data_temperature = temperature + ZERO_CELSIUS
         self.data_viscosity = viscosity
@@ -59,10 +58,6 @@ class _MeasuredOil:
         # The law also holds a little outside the range of the data.
         self.temperature_limits = -np.inf, np.inf
         self._coefficients, self.pressure_fit_residual = _measured_coefficients(record)
-
-    def density(self, temperature):
-        density = self._record.density
-        return linear_density(temperature, density.at_15_degC, density.thermal_coefficient)
 
     def kinematic_viscosity(self, temperature):
         return self._law.evaluate(temperature, *self._parameters) * MM2_PER_S
@@ -95,9 +90,9 @@ def _measured_coefficients(record):
 
 
 def _interpolated(temperature, coefficients):
-    """Coefficient whose logarithm is linear between the temperatures, and goes on so beyond them.
+    """Interpolate coefficients: their logarithm is linear in temperature, also beyond the data.
 
-    With one temperature it is the same everywhere.
+    A single coefficient is the same at all temperatures.
     """
     known = np.array(sorted(coefficients))
     logarithms = np.log([coefficients[each] for each in known])
@@ -155,13 +150,13 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
         lubricant record names. For comparison all viscosity laws are fitted to the data as
         well: parameters, relative residuals, and curves at whole degrees within the record's
         temperature range. The data of a CoolProp fluid are samples of it, and its properties
-        come from CoolProp itself. Pressure-viscosity coefficients by another definition than the
-        film formulas take are converted to theirs by Roelands' law; from viscosities under
-        pressure they follow by McEwen's law, fitted at each temperature. Values that do not exist
-        are NaN: parameters that a law does
-        not have, data points beyond a lubricant's own, fits that a law does not allow, the
-        viscosity index of a thin liquid, the residual of a fit under pressure where there is
-        none, and a thermal conductivity that is not given.
+        come from CoolProp itself. Pressure-viscosity coefficients by a definition other than that
+        of the film formulas are converted by Roelands' law. If there are viscosities under
+        pressure, the coefficients follow by McEwen's law, fitted at each temperature. Values that
+        do not exist are NaN: parameters that a law does not have, data points that a lubricant
+        does not have, fits that a law does not allow, the viscosity index of a thin liquid, the
+        residual of a fit under pressure where there is none, and a thermal conductivity that is
+        not given.
 
     Raises
     ------
@@ -199,12 +194,10 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
 def _row(record, temperature, fit_temperature):
     """Variables of one lubricant."""
     check_temperatures(record, temperature)
-    try:
+    with located(record.name):
         substance = (_CoolPropFluid if record.law_used == "coolprop" else _MeasuredOil)(record)
         properties = _properties(record, substance, temperature + ZERO_CELSIUS)
         index = _viscosity_index(record, substance)
-    except (RangeError, RecordError) as error:
-        raise type(error)(f"{record.name}: {error}") from None
     row = xr.Dataset({name: ("temperature", values) for name, values in properties.items()})
     return row.merge(_fits(record, substance, fit_temperature)).assign(
         viscosity_index=index,
@@ -237,7 +230,7 @@ def _properties(record, substance, temperature):
 
 
 def _for_formulas(section, stated, dynamic_viscosity):
-    """Coefficients by the definition that film formulas take; those of Gold's form as they are."""
+    """Convert coefficients to the definition of the film formulas; Gold's form needs no change."""
     if section.definition is None:
         return stated
     pairs = zip(stated, dynamic_viscosity, strict=True)

@@ -1,11 +1,8 @@
-"""The operating points of a study, and those of them that are traced."""
+"""The operating points of a study, and the traced ones among them."""
 
 from typing import Annotated
 
-from lube.study.field_types import StrictModel, levels, pure_number, quantity
-
-TRACED = ("slide_to_roll_ratio", "lubricant", "film_formula", "temperature", "speed", "force")
-"""Variables that a trace names a level of."""
+from lube.study.field_types import StrictModel, levels, quantity
 
 
 class OperatingGrid(StrictModel):
@@ -34,5 +31,5 @@ class TracePoint(StrictModel):
     """a lubricant of the study; by default its first"""
     film_formula: str | None = None
     """a formula of the study; by default its first"""
-    slide_to_roll_ratio: Annotated[float, pure_number()] | None = None
+    slide_to_roll_ratio: Annotated[float, quantity(None)] | None = None
     """a ratio of the grid; by default its first"""

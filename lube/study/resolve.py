@@ -11,16 +11,23 @@ import io
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from ruamel.yaml import YAML
 
 from lube.errors import StudyError, shown
 from lube.study.lubricant_record import is_record_path
+from lube.study.rollers import ROLLERS, ROUGHNESS_KEYS
 from lube.study.text_files import read_yaml
 from lube.types import File
 
-_PARTS, _WHOLE = ("rms_roughness", "ra_roughness", "topography"), "composite_rms_roughness"
-"""Keys of a roller's roughness, of which it has one, and of that of both rollers together."""
+_OF_BOTH = "composite_rms_roughness"
+"""Key of the roughness of both rollers together."""
+
+_PATHS = {("rollers", name, "topography", "file") for name in ROLLERS} | {
+    ("experiment", "manifest")
+}
+"""Keys of these paths, apart from those in the list of lubricants."""
 
 _OF_ONE_STUDY = {"title", "summary", "date", "doi"}
 """Keys of ``about`` that a study does not take over from its base."""
@@ -144,20 +151,18 @@ def _on_top(base, changes, where):
 
 def _without_replaced(below, above):
     """Leave out roughness of rollers in whose place the changes give one of another kind."""
-    rollers = [name for name in ("first", "second") if isinstance(below.get(name), dict)]
-    whole = bool(above.get(_WHOLE))
-    parts = {name: _is_given(above.get(name), _PARTS) for name in rollers}
+    given = {}
+    for name in ROLLERS:
+        roller = above.get(name)
+        given[name] = isinstance(roller, dict) and any(map(roller.get, ROUGHNESS_KEYS))
     kept = dict(below)
-    if any(parts.values()):
-        kept.pop(_WHOLE, None)
-    for name in rollers:
-        if whole or parts[name]:
-            kept[name] = {key: value for key, value in below[name].items() if key not in _PARTS}
+    if any(given.values()):
+        kept.pop(_OF_BOTH, None)
+    for name in ROLLERS:
+        if (given[name] or above.get(_OF_BOTH)) and isinstance(below.get(name), dict):
+            others = below[name].items()
+            kept[name] = {key: value for key, value in others if key not in ROUGHNESS_KEYS}
     return kept
-
-
-def _is_given(roller, keys):
-    return isinstance(roller, dict) and any(roller.get(key) for key in keys)
 
 
 def _merged(base, changes):
@@ -174,38 +179,32 @@ def _with_paths_from(content, here, there):
     def moved(name):
         return name if Path(name).is_absolute() else os.path.relpath(here / name, there)
 
-    match content:
-        case {"lubricants": list(names)}:
-            moved_names = [moved(name) if is_record_path(name) else name for name in names]
-            content = content | {"lubricants": moved_names}
-    content = _with_path(content, ("experiment", "manifest"), moved)
-    return with_topographies(content, moved)
+    return with_paths(content, moved)
 
 
-def with_topographies(content: dict, moved: Callable[[str], str]) -> dict:
-    """Rewrite the paths of the rollers' measured topographies.
+def with_paths(content: Any, moved: Callable[[str], str], keys: tuple = ()) -> Any:
+    """Rewrite all paths that a study names, except `based_on`.
 
     Parameters
     ----------
     content : dict
-        Of a study, not yet checked.
+        Content of a study, not yet checked.
     moved : callable
         From path to path.
+    keys : tuple of str, optional
+        Keys that lead to this part of the study.
 
     Returns
     -------
     dict
         The same content with other paths.
     """
-    for name in ("first", "second"):
-        content = _with_path(content, ("rollers", name, "topography", "file"), moved)
+    match content:
+        case dict():
+            parts = content.items()
+            return {key: with_paths(part, moved, (*keys, key)) for key, part in parts}
+        case list() if keys == ("lubricants",):
+            return [moved(name) if is_record_path(name) else name for name in content]
+        case str() if keys in _PATHS:
+            return moved(content)
     return content
-
-
-def _with_path(content, keys, moved):
-    """Rewrite the path under a chain of keys, if there is one."""
-    if not keys:
-        return moved(content) if isinstance(content, str) else content
-    if not isinstance(content, dict) or keys[0] not in content:
-        return content
-    return content | {keys[0]: _with_path(content[keys[0]], keys[1:], moved)}

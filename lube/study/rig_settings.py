@@ -8,10 +8,10 @@ from typing import Annotated
 
 from pydantic import Field, StrictInt
 
-from lube.study.field_types import StrictModel, levels, pure_number, quantity
+from lube.study.field_types import StrictModel, levels, quantity
 
 RIG_REALISATIONS = 1_000_000
-"""First realisation of the simulated rig's own rollers; those of a study are below it."""
+"""First realisation of the simulated rig's rollers; a study's realisations are below it."""
 
 _Resistance = Annotated[float, quantity("ohm", above=0.0)]
 
@@ -27,7 +27,7 @@ class Rig(StrictModel, validate_default=True):
     """leads and slip rings, known and subtracted"""
     leak_resistance: _Resistance = "1 Mohm"
     """insulation in parallel with the contact"""
-    oil_permittivity: Annotated[float, pure_number(least=1.0)] = 2.2
+    oil_permittivity: Annotated[float, quantity(None, least=1.0)] = 2.2
     """relative permittivity, for the film's capacitance; typical of PAO"""
     amplifier_range: Annotated[float, quantity("V", above=0.0)] = "100 mV"
     """largest voltage of either sign before saturation"""
@@ -39,15 +39,15 @@ class Rig(StrictModel, validate_default=True):
     """bits of the converter, over the range of both signs"""
     noise: Annotated[float, quantity("V", least=0.0)] = "20 uV"
     """rms noise at the amplifier's input"""
-    revolutions: Annotated[float, pure_number(least=0.01, most=1000.0)] = 12
-    """of the roller with the faster surface in each simulated record"""
+    revolutions: Annotated[float, quantity(None, least=0.01, most=1000.0)] = 12
+    """revolutions of the roller with the faster surface in each simulated record"""
     pairs: Annotated[StrictInt, Field(ge=1, le=1000)] = 1
     """pairs of rollers that the simulated rig runs, one after the other; each makes a record at
     every operating point
     """
-    drift: Annotated[float, pure_number(least=0.0, most=1.0)] = 0
-    """share of the variance of the roughness that each revolution renews, of the simulated
-    rollers and, as an assumption, of measured ones; at 0 the roughness stays the same
+    drift: Annotated[float, quantity(None, least=0.0, most=1.0)] = 0
+    """part of the roughness variance that each revolution renews, on the simulated rollers and, as
+    an assumption, on measured ones; at 0 the roughness stays the same
     """
 
     @property
@@ -67,15 +67,15 @@ class Experiment(StrictModel, validate_default=True):
     """resistances below which a record shows contact"""
     threshold: _Resistance = "100 ohm"
     """the one of `thresholds` that is compared with the simulation (the paper's)"""
-    force_tolerance: Annotated[float, pure_number(above=0.0, most=1.0)] = 0.01
+    force_tolerance: Annotated[float, quantity(None, above=0.0, most=1.0)] = 0.01
     """relative deviation of a record's force from a level of the grid, at most"""
-    speed_tolerance: Annotated[float, pure_number(above=0.0, most=1.0)] = 0.01
+    speed_tolerance: Annotated[float, quantity(None, above=0.0, most=1.0)] = 0.01
     """the same for its rotation speed; also the largest relative deviation of that speed from the
     one at which the record repeats itself
     """
     temperature_tolerance: Annotated[float, quantity("K", above=0.0)] = "1 K"
     """deviation of a record's temperature from a level of the grid, at most"""
-    release_ratio: Annotated[float, pure_number(least=1.0)] = 1
+    release_ratio: Annotated[float, quantity(None, least=1.0)] = 1
     """contact ends at this multiple of the threshold; 1 is no hysteresis"""
     debounce: Annotated[float, quantity("s", least=0.0)] = "0 s"
     """shortest time that a change must last to count"""

@@ -1,43 +1,20 @@
 """The measured topography of a roller, in place of an rms height and a Hurst exponent.
 
-It is read, without form and holes and filtered, when the study is checked. It then stands for the
-roller in one of three ways: new lines are drawn from its spectrum, or the profile itself is the
-line, which it closes around the roller or repeats along it.
+Its file is read when the study is checked; form and holes are removed, and heights are filtered.
+The roller gets its lines in one of three ways: new lines are drawn from the spectrum, or the
+profile is the line, as one turn around the roller or repeated along it.
 
-What reads and computes is imported on first use: most studies have no topography.
+The modules that read and compute are imported on first use: most studies have no topography.
 """
 
 import hashlib
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
 from pydantic import PrivateAttr, ValidationInfo, model_validator
 
-from lube.errors import DataError
-from lube.study.field_types import Length, StrictModel, Text, collected
-from lube.types import Array
-
-
-class MeasuredHeights:
-    """Heights of a measured line. Two are equal if their SHA-256 sums are.
-
-    Parameters
-    ----------
-    steps : numpy.ndarray
-        Shape (N,), int32: heights in height steps.
-    """
-
-    def __init__(self, steps: Array):
-        self.steps = steps
-        self.steps.flags.writeable = False
-        self.sha256 = hashlib.sha256(steps.tobytes()).hexdigest()
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, MeasuredHeights) and other.sha256 == self.sha256
-
-    def __hash__(self) -> int:
-        return hash(self.sha256)
+from lube.errors import DataError, located
+from lube.study.field_types import Length, StrictModel, Text
 
 
 class RollerTopography(StrictModel):
@@ -71,7 +48,7 @@ class RollerTopography(StrictModel):
             )
         from lube.study import topography_lines
 
-        with collected():
+        with located(kind=ValueError):
             known = (info.context or {}).get(self.key)
             self._measured = topography_lines.measured(self, known)
         return self
@@ -88,10 +65,10 @@ class RollerTopography(StrictModel):
 
     @property
     def reading(self) -> dict[str, Any]:
-        """What was read, as plain data, so that jobs need not read it again; empty for a line."""
+        """The measured spectrum as plain data, so that jobs need not read the file again."""
         from lube.study import topography_lines
 
-        return {} if self.is_line else {self.key: topography_lines.plain(self._measured)}
+        return topography_lines.plain(self._measured)
 
     @property
     def content(self) -> dict[str, Any]:
@@ -136,9 +113,6 @@ class RollerTopography(StrictModel):
                 f"{self.file}: got a profile of {length:.3g} m, need one longer than the contact "
                 f"is wide, {width:.3g} m"
             )
-        line = points, spacing, band[1]
-        steps = topography_lines.steps(self, self._measured, line, height_step)
-        return {
-            "rms_height": float(np.std(steps)) * height_step,
-            "heights": MeasuredHeights(steps),
-        }
+        line = points, spacing, band[1], height_step
+        rms, heights = topography_lines.measured_line(self.use, self._measured, *line)
+        return {"rms_height": rms, "heights": heights}

@@ -16,7 +16,8 @@ from lube.study.field_types import (
     Pressure,
     StrictModel,
     bounded,
-    pure_number,
+    given_keys,
+    quantity,
     quantity_or_words,
 )
 from lube.study.roller_topography import RollerTopography
@@ -25,17 +26,21 @@ from lube.units import parse_number
 
 ROLLERS = ("first", "second")
 """Keys of the two rollers."""
+ROUGHNESS_KEYS = ("rms_roughness", "ra_roughness", "topography")
+"""Keys of a roller's roughness, of which it has one."""
+_OF_SPECTRUM = ("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff")
+"""Keys of its section `roughness` that a measured spectrum replaces."""
 INSULATOR = "insulator"
-"""In place of the resistivity of rollers of which one does not conduct."""
+"""Resistivity of rollers if either does not conduct."""
 
 AUTOMATIC_WAVELENGTH = "contact width at the largest force"
 
 LONGEST_WAVELENGTH = "0.8 mm"
-"""Longest wave of the roughness where nothing else is said: the default cutoff of ISO 4288 and
-ISO 21920-3 for an Ra from 0.1 to 2 um, so that a customary Ra or Rq is that of the lines."""
+"""Default longest wavelength: the cutoff of ISO 4288 and ISO 21920-3 for an Ra from 0.1 to 2 um,
+so that the lines have an Ra or Rq as it is customarily measured."""
 
 SHORTEST_WAVELENGTH = "3.1416 um"
-"""Shortest wave where nothing else is said: the paper's."""
+"""Default shortest wavelength: the paper's."""
 
 _POINTS_PER_WAVE = 10  # of the shortest waves, as in the paper
 
@@ -64,10 +69,6 @@ def grid_points(radius: float, shortest: float) -> int:
     return scipy.fft.next_fast_len(points, real=True)
 
 
-def _is_points(value):
-    return isinstance(value, str) and value.endswith(" points") and bool(_points_of(value))
-
-
 def _points_of(wavelength):
     """``"10 points"`` -> 10.0; a wave has at least two."""
     number = parse_number(wavelength.removesuffix(" points"))
@@ -76,23 +77,30 @@ def _points_of(wavelength):
 
 _LongestWavelength = Annotated[
     float | str,
-    quantity_or_words(
-        "m",
-        lambda text: text == AUTOMATIC_WAVELENGTH,
-        f"the words `{AUTOMATIC_WAVELENGTH}`",
-        f"^{AUTOMATIC_WAVELENGTH}$",
-    ),
+    quantity_or_words("m", f"the words `{AUTOMATIC_WAVELENGTH}`", f"^{AUTOMATIC_WAVELENGTH}$"),
 ]
 _ShortestWavelength = Annotated[
     float | str,
-    quantity_or_words("m", _is_points, "a number of grid points such as `10 points`", " points$"),
+    quantity_or_words("m", "a number of grid points such as `10 points`", " points$"),
 ]
-_Hurst = Annotated[float, pure_number(above=0.0, below=1.0)]
-_Skewness = Annotated[float, pure_number(least=-3.0, most=3.0)]
-_Kurtosis = Annotated[float, pure_number(above=1.0, most=20.0)]
+_Hurst = Annotated[float, quantity(None, above=0.0, below=1.0)]
+_Skewness = Annotated[float, quantity(None, least=-3.0, most=3.0)]
+_Kurtosis = Annotated[float, quantity(None, above=1.0, most=20.0)]
 
 
-class _Cutoffs(StrictModel):
+class OwnRoughness(StrictModel):
+    """What one roller has in place of the values of the study's section `roughness`."""
+
+    hurst_exponent: _Hurst | None = None
+    """Hurst exponent H; a measured surface needs none"""
+    longest_wavelength: _LongestWavelength | None = None
+    """2 pi / q_min"""
+    shortest_wavelength: _ShortestWavelength | None = None
+    """2 pi / q_max"""
+    roll_off_wavelength: Length | None = None
+    """2 pi / q_r: longer waves have the spectral density of the isotropic surface at q_r; without
+    any there is no roll-off
+    """
     long_cutoff: Length | None = None
     """lambda_c that the stated height was measured with: it is the rms height of the waves up to
     this one, and longer ones add to it; by default the longest wavelength
@@ -101,19 +109,6 @@ class _Cutoffs(StrictModel):
     """lambda_s that the stated height was measured with: it is the rms height of the waves down to
     this one, and shorter ones add to it; by default the shortest wavelength
     """
-
-
-class OwnRoughness(_Cutoffs):
-    """What one roller has in place of the values of the study's section `roughness`."""
-
-    hurst_exponent: _Hurst | None = None
-    """Hurst exponent H"""
-    longest_wavelength: _LongestWavelength | None = None
-    """2 pi / q_min"""
-    shortest_wavelength: _ShortestWavelength | None = None
-    """2 pi / q_max"""
-    roll_off_wavelength: Length | None = None
-    """2 pi / q_r"""
     skewness: _Skewness | None = None
     """skewness of the heights"""
     kurtosis: _Kurtosis | None = None
@@ -131,7 +126,7 @@ class Roller(StrictModel):
     """radius of the cylinder"""
     young_modulus: Pressure
     """Young's modulus"""
-    poisson_ratio: Annotated[float, pure_number(least=0.0, most=0.5)]
+    poisson_ratio: Annotated[float, quantity(None, least=0.0, most=0.5)]
     """Poisson's ratio"""
     rms_roughness: Length | None = None
     """rms height Rq of the roughness"""
@@ -139,6 +134,11 @@ class Roller(StrictModel):
     """mean absolute height Ra, in place of the rms height, which is taken as Ra (pi / 2)^0.5"""
     roughness: OwnRoughness | None = None
     topography: RollerTopography | None = None
+
+    @property
+    def kinds(self) -> list[str]:
+        """Keys of its roughness that are given: one, or none if only that of both is known."""
+        return given_keys(self, ROUGHNESS_KEYS)
 
     @property
     def rms_height(self) -> float | None:
@@ -150,18 +150,11 @@ class Roller(StrictModel):
 
     @model_validator(mode="after")
     def _check_roughness(self):
-        if self.rms_roughness and self.ra_roughness:
-            raise ValueError(
-                f"ra_roughness: got {self.ra_roughness:g} m beside an rms_roughness of "
-                f"{self.rms_roughness:g} m, need one of the two"
-            )
-        if self.topography and self.rms_height:
-            raise ValueError(
-                f"topography: got {self.topography.file} beside a roughness of "
-                f"{self.rms_height:.3g} m rms, need one of the two"
-            )
-        for name in ("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff"):
-            if self.topography and self.roughness and getattr(self.roughness, name):
+        if len(self.kinds) > 1:
+            one, other, *_ = self.kinds
+            raise ValueError(f"{other}: got one beside {one}, need one of the two")
+        if self.topography and self.roughness:
+            for name in given_keys(self.roughness, _OF_SPECTRUM):
                 raise ValueError(
                     f"roughness.{name}: got {getattr(self.roughness, name):g} beside a topography, "
                     "whose spectrum has its own, need one of the two"
@@ -177,8 +170,8 @@ class RollerPair(StrictModel):
     first: Roller
     second: Roller
     composite: Length | None = Field(None, alias="composite_rms_roughness")
-    """rms height of both rough surfaces together, in place of one of each roller, which is taken
-    as this / 2^0.5
+    """rms height of both rough surfaces together, in place of one for each roller; each roller
+    then has this / 2^0.5
     """
 
     @property
@@ -196,7 +189,7 @@ class RollerPair(StrictModel):
 
     @property
     def rms_heights(self) -> tuple[float, float]:
-        """Rms height of the roughness of either roller, m."""
+        """Rms height of the roughness of each roller, m."""
         if self.composite is None:
             return self.first.rms_height, self.second.rms_height
         return self.composite / math.sqrt(2.0), self.composite / math.sqrt(2.0)
@@ -223,29 +216,23 @@ class RollerPair(StrictModel):
     @model_validator(mode="after")
     def _check_roughness(self):
         for name in ROLLERS:
-            roller = getattr(self, name)
-            rms = roller.rms_height
-            if rms is None and self.composite is None and not roller.topography:
+            kinds = getattr(self, name).kinds
+            if not kinds and self.composite is None:
                 raise ValueError(
                     f"{name}.rms_roughness: missing, need it, or ra_roughness, or a topography, or "
                     "composite_rms_roughness of both rollers"
                 )
-            if self.composite is not None and (roller.topography or rms):
-                kind, height = ("roughness", f", {rms:.3g} m rms") if rms else ("topography", "")
+            if kinds and self.composite is not None:
                 raise ValueError(
-                    f"composite_rms_roughness: got {self.composite:g} m beside a {kind} of the "
-                    f"{name} roller{height}, need one of the two"
+                    f"composite_rms_roughness: got one beside {name}.{kinds[0]}, need one of the "
+                    "two"
                 )
         return self
 
 
-class Roughness(_Cutoffs):
+class Roughness(OwnRoughness):
     """Statistics and grid of the random roughness lines of both rollers."""
 
-    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
-    """points N around the first roller"""
-    hurst_exponent: _Hurst | None = None
-    """Hurst exponent H; not needed where both rollers have a measured surface"""
     longest_wavelength: _LongestWavelength
     """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
     the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
@@ -253,16 +240,14 @@ class Roughness(_Cutoffs):
     """
     shortest_wavelength: _ShortestWavelength
     """2 pi / q_max; the break-up of the boundary layer depends on it"""
-    roll_off_wavelength: Length | None = None
-    """2 pi / q_r: longer waves have the spectral density of the isotropic surface at q_r; by
-    default there is no roll-off
-    """
     skewness: _Skewness = 0.0
     """skewness of the heights, 0 for Gaussian heights; negative where peaks are worn"""
     kurtosis: _Kurtosis = 3.0
     """kurtosis of the heights, 3 for Gaussian heights; at least 1.5 plus 1.25 times the skewness
     squared
     """
+    points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
+    """points N around the first roller"""
     height_step: Length
     """heights and films are whole multiples of this length, so sums are exact"""
 

@@ -18,7 +18,7 @@ MOST_BATCHES = 10_000
 """Largest number of batches of realisations: Snakemake plans a job for each."""
 
 FOLDED_NUMBERS = 10_000
-"""Approximate numbers kept of each record: its folded revolution and its trace."""
+"""Approximate count of numbers kept for each record: its folded revolution and its trace."""
 
 
 def check_sizes(study: "Study") -> None:
@@ -56,7 +56,6 @@ def _sizes(study):
         ("kept_realisations", pair * len(study.kept_realisations), "heights", MOST_NUMBERS),
         ("batch_size", pair * batch, "heights in a batch", MOST_NUMBERS),
         (rig_key, pair * len(study.rig_realisations), "heights of the rig", MOST_NUMBERS),
-        ("traces", max(points) * len(study.traces), "time steps", MOST_NUMBERS),
         ("rig.sampling_rate", samples, "samples of the traces", MOST_NUMBERS),
         ("operating_grid", combinations, "combinations in all realisations", MOST_NUMBERS),
         ("rig.pairs", tables * rig.pairs * FOLDED_NUMBERS, "folded samples", MOST_NUMBERS),

@@ -83,8 +83,5 @@ def split_cells(line: str, delimiter: str) -> list[str]:
     >>> split_cells('40, "n-dodecane"', ",")
     ['40', 'n-dodecane']
     """
-    try:
-        cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
-    except csv.Error:  # a cell of more than 100 000 characters: no table
-        cells = [line]
+    cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
     return [cell.strip() for cell in cells]

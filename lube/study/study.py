@@ -11,23 +11,22 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, StrictInt, field_validator, model_validator
+from pydantic import Field, StrictInt, WithJsonSchema, field_validator, model_validator
 from pydantic_core import to_jsonable_python
 
 from lube.ehl.film_formulas import FORMULAS, formula
-from lube.errors import LubeError, StudyError, shown
+from lube.errors import StudyError, located, shown
 from lube.grid.gap import Gap
-from lube.grid.levels import SAME, level_index, rolling
+from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import (
     Slug,
     StrictModel,
-    Written,
-    collected,
     each_once,
     quantity_or_words,
+    read_by,
     validate,
 )
 from lube.study.line_spec import LineSpec, band_in_words, check_width, line_spec
@@ -37,8 +36,8 @@ from lube.study.lubricant_record import (
     load_record,
 )
 from lube.study.metadata import About
-from lube.study.operating_grid import TRACED, OperatingGrid, TracePoint
-from lube.study.resolve import resolved_content, with_topographies
+from lube.study.operating_grid import OperatingGrid, TracePoint
+from lube.study.resolve import resolved_content, with_paths
 from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import INSULATOR, ROLLERS, BoundaryLayer, RollerPair, Roughness
@@ -46,26 +45,15 @@ from lube.study.size_limits import check_sizes
 from lube.types import File
 from lube.units import with_unit
 
-
-@collected()
-def _known_formula(name):
-    return formula(name).name
-
-
 _Formula = Annotated[
     str,
-    AfterValidator(_known_formula),
-    Written({"type": "string", "format": "text", "enum": list(FORMULAS)}),
+    read_by(
+        lambda name: formula(f"{name}").name,
+        {"type": "string", "format": "text", "enum": list(FORMULAS)},
+    ),
 ]
-
-
-_Meniscus = Annotated[
-    float | str, quantity_or_words("m", lambda value: value == "none", "none", "^none$")
-]
-_Resistivity = Annotated[
-    float | str,
-    quantity_or_words("ohm*m", lambda value: value == INSULATOR, INSULATOR, f"^{INSULATOR}$"),
-]
+_Meniscus = Annotated[float | str, quantity_or_words("m", "none", "^none$")]
+_Resistivity = Annotated[float | str, quantity_or_words("ohm*m", INSULATOR, f"^{INSULATOR}$")]
 
 
 class Study(StrictModel):
@@ -80,8 +68,8 @@ class Study(StrictModel):
     realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
     """number of pairs of roughness lines"""
     revolutions: Annotated[StrictInt, Field(ge=1, le=1000)]
-    """of the roller with the faster surface; equal rollers without slip repeat themselves after
-    one
+    """revolutions of the roller with the faster surface; equal rollers without slip repeat
+    themselves after one
     """
     batch_size: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
     """realisations per job; changes no result"""
@@ -91,7 +79,7 @@ class Study(StrictModel):
     lubricants: Annotated[
         tuple[LubricantRecord, ...],
         Field(min_length=1),
-        Written({"form": "records", "format": "list of names or paths"}),
+        WithJsonSchema({"form": "records", "format": "list of names or paths"}),
     ]
     """names of shipped records, or paths of your own YAML records"""
     film_formulas: tuple[_Formula, ...] = Field(min_length=1)
@@ -126,7 +114,7 @@ class Study(StrictModel):
     rig: Rig = Field(default_factory=Rig)
     """the simulated rig, and the drift assumed for measured records"""
     experiment: Experiment = Field(default_factory=Experiment)
-    """its records and their evaluation"""
+    """records of the rig and their evaluation"""
 
     _each_once = field_validator("kept_realisations", "film_formulas")(each_once)
 
@@ -147,7 +135,7 @@ class Study(StrictModel):
 
     @property
     def rough_rollers(self) -> RollerPair:
-        """The rollers with the rms heights of their lines."""
+        """The rollers, with the rms heights that their lines have."""
         return self.rollers.with_rms_heights(self.line_spec.rms_height)
 
     @property
@@ -179,8 +167,7 @@ class Study(StrictModel):
     @property
     def lubricant_values(self) -> list[dict]:
         """The lubricant records as plain data, without their titles: they change no result."""
-        options = {"mode": "json", "by_alias": True, "exclude": {"title"}}
-        return [record.model_dump(**options) for record in self.lubricants]
+        return [record.model_dump(exclude={"title"}) for record in self.lubricants]
 
     @property
     def gap(self) -> Gap:
@@ -200,10 +187,8 @@ class Study(StrictModel):
     @property
     def readings(self) -> dict[str, dict]:
         """Argument of `load_study` that saves it from reading large topographies again."""
-        read = {}
-        for topography in self.topographies.values():
-            read |= topography.reading
-        return {"readings": read} if read else {}
+        drawn = [one for one in self.topographies.values() if not one.is_line]
+        return {"readings": {one.key: one.reading for one in drawn}}
 
     @property
     def datasets(self) -> tuple[str, ...]:
@@ -237,11 +222,6 @@ class Study(StrictModel):
     def slips(self) -> tuple[float, ...]:
         """Levels of the slide-to-roll ratio."""
         return self.operating_grid.slide_to_roll_ratio
-
-    @property
-    def rig_slip(self) -> float:
-        """Slide-to-roll ratio of the simulated rig: pure rolling if the study has it."""
-        return rolling(self.slips)
 
     @property
     def rig_realisations(self) -> range:
@@ -303,8 +283,8 @@ class Study(StrictModel):
 
         Measured files are identified by their contents, not by their paths.
         """
-        values = self.experiment.model_dump(mode="json")
-        return values | {"manifest": self.experiment.manifest is not None}
+        manifest = self.experiment.manifest
+        return self.experiment.model_dump() | {"manifest": manifest is not None}
 
     def stage_inputs(self, stage: str) -> dict:
         """Return the values of the study that a stage depends on, as plain data.
@@ -339,14 +319,13 @@ class Study(StrictModel):
 
     @model_validator(mode="after")
     def _check_levels(self):
-        with collected("lubricants"):
-            each_once(tuple(record.name for record in self.lubricants))
-        with collected("operating_grid.temperature"):
+        each_once(tuple(record.name for record in self.lubricants))
+        with located("operating_grid.temperature", ValueError):
             for record in self.lubricants:
                 check_temperatures(record, self.operating_grid.temperature)
         if self.inlet_shear_heating != "none":
             self._check_conductivity()
-        with collected():
+        with located(kind=ValueError):
             for force in self.operating_grid.force:
                 self.check_window(force)
             check_sizes(self)
@@ -419,7 +398,7 @@ class Study(StrictModel):
             "film_formula": self.film_formulas,
         }
         found = {}
-        for variable in TRACED:
+        for variable in TracePoint.model_fields:
             wanted, given = getattr(point, variable), available[variable]
             index = 0 if wanted is None else level_index(given, wanted, SAME)
             if index is None:
@@ -465,20 +444,14 @@ def load_study(
     RecordError
         If a lubricant record that the study names cannot be used.
     """
-    content = resolved_content(path, changes)
     folder = Path(path).parent
+    content = with_paths(resolved_content(path, changes), lambda name: str(folder / name))
     if isinstance(content.get("lubricants"), list):
-        try:
-            records = tuple(load_record(name, folder) for name in content["lubricants"])
-        except LubeError as error:
-            raise type(error)(f"{path}: lubricants: {error}") from None
+        with located(f"{path}: lubricants"):
+            records = tuple(map(load_record, content["lubricants"]))
         content = content | {"lubricants": records}
-    content = with_topographies(content, lambda file: str(folder / file))
     study = validate(Study, content, path, StudyError, readings)
-    if study.experiment.manifest is None:
-        return study
-    manifest = folder / study.experiment.manifest
-    if not manifest.is_file():
+    manifest = study.experiment.manifest
+    if manifest is not None and not Path(manifest).is_file():
         raise StudyError(f"{path}: experiment.manifest: got {manifest}, need a file that exists")
-    experiment = study.experiment.model_copy(update={"manifest": str(manifest)})
-    return study.model_copy(update={"experiment": experiment})
+    return study

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from lube.errors import DataError, LubeError, shown
+from lube.errors import DataError, LubeError, located, shown
 from lube.study.small_csv import read_cells, units_of
 from lube.surfaces.topography import Topography
 from lube.types import File
@@ -109,37 +109,22 @@ def _read_instrument(path):
 
     try:
         channel = SurfaceTopography.open_topography(str(path)).default_channel
-        unit, sizes = channel.unit, channel.physical_sizes
-        heightless = not channel.is_height_channel
-    except Exception as error:  # of many kinds, one for every format
-        raise DataError(f"{path}: cannot be read as a topography: {_reason(error)}") from None
-    if heightless:
-        raise DataError(f"{path}: got {channel.name} in its default channel, need heights")
-    if unit is None or sizes is None:
-        raise DataError(f"{path}: got a topography without unit or lengths, need both")
-    try:
+        if not channel.is_height_channel:
+            raise DataError(f"{path}: got {channel.name} in its default channel, need heights")
+        if channel.unit is None or channel.physical_sizes is None:
+            raise DataError(f"{path}: got a topography without unit or lengths, need both")
         surface = channel.topography().to_unit("m")
+        heights = np.ma.filled(np.ma.asarray(surface.heights(), dtype=float), np.nan)
         if not surface.is_uniform:
-            return _from_positions(path, surface)
-        heights = surface.heights()
+            return Topography(str(path), heights, (_even_spacing(path, surface.positions()),))
         resolution = surface.short_reliability_cutoff() or 0.0
     except DataError:
         raise
-    except Exception as error:  # as above
+    except Exception as error:  # of many kinds, one for every format
         raise DataError(f"{path}: cannot be read as a topography: {_reason(error)}") from None
-    spacing = tuple(
-        float(size) / points
-        for size, points in zip(surface.physical_sizes, heights.shape, strict=True)
-    )
-    heights = np.ma.filled(np.ma.asarray(heights, dtype=float), np.nan)
+    sides = zip(surface.physical_sizes, heights.shape, strict=True)
+    spacing = tuple(float(size) / points for size, points in sides)
     return Topography(str(path), heights, spacing, float(resolution))
-
-
-def _from_positions(path, surface):
-    """Profile from a file that gives the position of every point."""
-    position, heights = surface.positions_and_heights()
-    heights = np.ma.filled(np.ma.asarray(heights, dtype=float), np.nan)
-    return Topography(str(path), heights, (_even_spacing(path, np.asarray(position)),))
 
 
 def _reason(error):
@@ -152,10 +137,8 @@ def _reason(error):
 def _in_metres(path, values, unit):
     if unit is None:
         raise DataError(f"{path}: got no unit, need `units` of the heights and of the positions")
-    try:
+    with located(f"{path}", DataError):
         return np.asarray(convert(values, unit, "m"))
-    except LubeError as error:
-        raise DataError(f"{path}: {error}") from None
 
 
 def _even_spacing(path, position):

@@ -13,7 +13,6 @@ from lube.surfaces.measured_line import closed_line, repeated_line
 from lube.surfaces.measured_spectrum import line_spectrum
 from lube.surfaces.spectrum_table import LineSpectrum, band_table, power_law_integral
 from lube.surfaces.topography import Preparation, Topography, prepare
-from lube.types import Array
 
 
 def preparation(settings: RollerTopography) -> Preparation:
@@ -117,37 +116,39 @@ def table(
 
 
 @functools.lru_cache(maxsize=4)
-def steps(
-    settings: RollerTopography,
-    profile: Topography,
-    grid: tuple[int, float, float],
-    height_step: float,
-) -> Array:
+def measured_line(
+    use: str, profile: Topography, points: int, spacing: float, shortest: float, height_step: float
+) -> tuple[float, bytes]:
     """Turn a profile into the line around a roller.
 
     Parameters
     ----------
-    settings : RollerTopography
-        From the study; its `use` is one of the lines.
+    use : str
+        ``closed line`` or ``repeated line``.
     profile : Topography
         From `prepared`.
-    grid : tuple
-        Points around the roller, their distance, m, and the shortest wavelength, m.
+    points : int
+        Points around the roller.
+    spacing, shortest : float
+        Distance of the points, and shortest wavelength, m.
     height_step : float
         Height of one step of the whole-number heights, m.
 
     Returns
     -------
-    numpy.ndarray
-        Shape (N,), int32: heights in height steps.
+    rms_height : float
+        Rms height of the line, m.
+    heights : bytes
+        As in `lube.study.line_spec.RoughLine`.
 
     Raises
     ------
     DataError
         If the profile is no such line.
     """
-    line = closed_line if settings.use == "closed line" else repeated_line
-    return line(profile, *grid, height_step)
+    line = closed_line if use == "closed line" else repeated_line
+    steps = line(profile, points, spacing, shortest, height_step)
+    return float(np.std(steps)) * height_step, steps.tobytes()
 
 
 def _rounded(value):

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from lube.errors import RecordError
+from lube.errors import RecordError, located
+from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE
 from lube.types import File
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:  # a record checks its points
     from lube.study.lubricant_record import LubricantRecord
 
 ROUNDING = 1e-6
-"""Temperatures converted from K or degF to degC may miss a limit by so much, degC."""
+"""Temperatures converted from K or degF to degC may miss a limit by this much, degC."""
 
 AGREEMENT = 0.02
 """Relative difference up to which two viscosities in the same state count as one, repeated."""
@@ -42,15 +43,13 @@ def check_points(record: LubricantRecord, where: File) -> None:
     Raises
     ------
     RecordError
-        If two viscosities in the same state differ by more than `AGREEMENT`, be they dynamic or
-        kinematic; if they are all at one temperature, rise with the temperature or fall with
+        If two viscosities in the same state, dynamic or kinematic, differ by more than
+        `AGREEMENT`; if all are at one temperature; if they rise with temperature or fall with
         pressure; if they leave the pressure-viscosity coefficient open, or give a second one.
     """
-    try:
+    with located(f"{where}"):
         _check_ambient(record)
         _check_isotherms(record)
-    except RecordError as error:
-        raise RecordError(f"{where}: {error}") from None
     lowest, highest = record.valid_temperatures
     if lowest > highest:
         raise RecordError(
@@ -82,7 +81,7 @@ def _states(record, point) -> Iterable[tuple[float, float, str]]:
         value = point.kinematic_viscosity
         yield point.temperature, value, f"{1e6 * value:.4g} mm2/s"
     if point.dynamic_viscosity is not None:
-        density = record.density_at(point.temperature)
+        density = record.density_at(point.temperature + ZERO_CELSIUS)
         value = point.dynamic_viscosity / density
         words = f"{1e3 * point.dynamic_viscosity:.4g} mPa s over {density:.4g} kg/m3"
         yield point.temperature, value, f"{1e6 * value:.4g} mm2/s ({words})"

@@ -11,7 +11,7 @@ from lube.study.field_types import StrictModel, quantity, validate
 from lube.study.small_csv import read_cells, units_of
 from lube.types import File
 
-# Pressure up to which a viscosity counts as that at atmospheric pressure, Pa. It changes a
+# Pressure up to which a viscosity counts as one at atmospheric pressure, Pa. It changes a
 # viscosity by less than 1 %, so it does not matter whether pressures are absolute.
 _AMBIENT = 2.0 * ATMOSPHERIC_PRESSURE
 

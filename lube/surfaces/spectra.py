@@ -107,6 +107,23 @@ def spectrum_moments(spec: LineSpecLike, roller: int) -> dict[str, float]:
     }
 
 
+def pair_moments(spec: LineSpecLike) -> list[float]:
+    """Moments of the sum of both lines, expected from their spectra.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines.
+
+    Returns
+    -------
+    list of float
+        :math:`m_0` (m^2), :math:`m_2` and :math:`m_4` (1/m^2), as in `lube.physics.excursions`.
+    """
+    lines = [spectrum_moments(spec, roller).values() for roller in (0, 1)]
+    return [sum(root**2 for root in roots) for roots in zip(*lines, strict=True)]
+
+
 def autocovariance(spec: LineSpecLike, roller: int, lags: int) -> np.ndarray:
     r"""Covariance of the heights of one line at two points.
 

@@ -96,7 +96,7 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     # Leave out the wave of two points: its rms height on the grid would depend on its phase.
     last_wave = (line.points - 1) // 2
     if line.heights is not None:
-        waves = scipy.fft.rfft(line.heights.steps * spec.height_step, norm="forward")
+        waves = scipy.fft.rfft(_measured_steps(line) * spec.height_step, norm="forward")
         return 1, 2.0 * np.abs(waves[1 : last_wave + 1])
     turn = line.points * spec.spacing / (2.0 * np.pi)
     # A limit that is a whole number of waves belongs to the band, despite rounding.
@@ -118,6 +118,10 @@ def _self_affine(line, waves, turn):
     shape[below] = (roll_off / waves[0]) ** (-line.hurst_exponent - 0.5)
     shape[below] *= np.sqrt(waves[below] / roll_off)
     return shape
+
+
+def _measured_steps(line):
+    return np.frombuffer(line.heights, np.int32)
 
 
 def _measured(line, wave_vector):
@@ -165,7 +169,7 @@ def draw_line(spec: LineSpecLike, roller: int, seed: np.random.SeedSequence) -> 
     """
     generator, line = np.random.default_rng(seed), spec.lines[roller]
     if line.heights is not None:
-        return line.heights.steps
+        return _measured_steps(line)
     if line.is_gaussian:
         heights = _superposition(_spectrum(spec, roller), line.points, random_phasors, generator)
         return np.rint(heights).astype(np.int32)

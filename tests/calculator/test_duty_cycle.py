@@ -161,7 +161,7 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
         ({"shares": ["90 %", "5 %", "5 %"]}, "unknown column 'shares', did you mean 'share'?"),
         ({"Radii": ["50 mm", "5 mm", "5 mm"]}, "points: unknown column 'Radii', need one of"),
         ({"weight": ["90 %", "5 %", "5 %"]}, "points: unknown column 'weight', need one of"),
-        ({"radus": ["a", "b", "c"]}, "points: unknown column 'radus', did you mean 'radius'?"),
+        ({"radius": ["a", "b", "c"]}, "points: radius: got 'a', need a number with its unit"),
         ({"note": ["a", "b", np.nan]}, "points: unknown column 'note', need one of"),
         ({"share": [1.0, -1.0, 1.0]}, "points: share: got -1, need a value at least 0"),
         ({"share": [0.0] * 3}, "points: share: got 0 at all points, need a weight above 0"),

@@ -8,8 +8,8 @@ import xarray as xr
 
 import lube
 from lube import LubeError
+from lube.stages import tail
 from lube.stages.film_profile import film_profile_table
-from lube.stages.tail import tail_probabilities
 from lube.study.oil_properties import lubricant_table
 
 GRID = {
@@ -46,9 +46,7 @@ def test_rare_contact_is_that_of_the_tail_stage(rollers, oil, busy):
     values = {"realisations": 1, "seed": busy.study.seed}
     formulas = ["paper", "pan-hamrock"]
     found = lube.contact_probability(rollers, oil, **GRID, **values, film_formula=formulas)
-    study = busy.study
-    tail = tail_probabilities(rollers.lines, busy.film, rollers.layer, study.seed)
-    expected = tail.isel(lubricant=0, slide_to_roll_ratio=0)
+    expected = tail.make(busy.study, {"film": busy.film}).isel(lubricant=0, slide_to_roll_ratio=0)
     for name, factor in (
         ("breakthrough_probability", 1.0),
         ("geometric_contact_probability", 1.0),

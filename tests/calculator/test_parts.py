@@ -43,7 +43,7 @@ def test_rollers_take_a_measured_surface_and_have_the_rms_height_of_its_lines():
     assert both.pair.first.rms_roughness == pytest.approx(0.19e-6, rel=0.01)
     one = Rollers("50 mm", "0.1 um", second=surface, **band)
     assert one.pair.rms_heights == (0.1e-6, both.lines.rms_height[1])
-    with pytest.raises(LubeError, match=r"Rollers: topography: got .* beside a roughness of 1e-07"):
+    with pytest.raises(LubeError, match="Rollers: topography: got one beside rms_roughness"):
         Rollers("50 mm", "0.1 um", **surface, **band)
 
 
@@ -158,7 +158,7 @@ def test_both_show_themselves_and_travel_between_processes():
         ),
         (
             lambda: Rollers("50 mm", "0.2 um", second={"rms_roughness": "20 um"}),
-            "Rollers: rms_roughness: got 2e-05, need a value at least 1e-09 and at most 1e-05 m",
+            "rollers.second.rms_roughness: got 2e-05 m, need an rms height of 1e-09 to 1e-05 m",
         ),
         (
             lambda: Rollers("50 mm", "0.2 um", longest_wavelength="contact width"),

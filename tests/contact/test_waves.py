@@ -52,7 +52,7 @@ def test_a_response_of_two_factors_takes_one_function_of_each():
     response = 1.0 + of_wave[:, None] * of_place
     answer = Answer.of(response, wavelength, position, 1e-4, np.ones(41))
     assert answer.shapes.shape == (41, 1)
-    found = answer.filters @ answer.at(position).T
+    found = answer.filters @ answer.at(position, answer.half_width).T
     np.testing.assert_allclose(found[:: waves.FINER], response[:-1] - 1.0, atol=1e-5)
 
 

@@ -80,11 +80,11 @@ def test_a_film_that_is_not_known_is_none():
 
 
 def test_a_spline_through_a_parabola_is_exact():
-    profile = film_table()["film_profile"].isel(force=0)
+    profile = POSITION, film_table()["film_profile"].values[0]
     points = np.arange(-100, 101)
     position = -points * 1e-6 / 50e-6
     expected = np.rint((1.0 + 0.5 * (position - 0.5) ** 2) * 1e6)
-    np.testing.assert_allclose(film_on_points(profile, 50e-6, points, GRID), expected, atol=1)
+    np.testing.assert_allclose(film_on_points(*profile, 50e-6, points, GRID), expected, atol=1)
 
 
 def test_only_points_within_reach_are_kept():

@@ -24,6 +24,7 @@ from lube.ehl import film_formulas
 from lube.ehl.film_formulas import TOLERANCE
 from lube.ehl.line_contact import solve
 from lube.errors import LubeError
+from lube.grid.films import FilmGroups
 from lube.physics import dimensionless, regimes
 
 ROWS = [row for row in film_formulas.FORMULAS.values() if not row.depends_on_oil]
@@ -203,9 +204,8 @@ def test_moes_formula_is_above_the_computed_film_in_all_regimes():
 def test_the_computed_film_is_the_central_film_to_six_digits():
     point = (800, 100, 40)
     contact = contact_at(*point)
-    by_row = film_formulas.formula("computed").film(
-        *groups_at(*point), contact.viscosity, contact.film_modulus
-    )
+    groups = FilmGroups(*groups_at(*point), contact.viscosity, contact.film_modulus, None)
+    by_row = groups.film(film_formulas.formula("computed"))
     assert by_row == pytest.approx(solve(contact).central_film, rel=1e-6)
 
 
@@ -213,7 +213,8 @@ def test_a_film_that_does_not_converge_is_not_a_number_and_is_named_in_the_log(c
     """The others of the array are computed all the same."""
     load, speed, material = groups_at(800, 100, 40)
     row = film_formulas.formula("computed")
-    films = row.film(np.array([1e4, 1.0]) * load, speed, material, VISCOSITY[0], 2 * MODULUS)
+    numbers = np.array([1e4, 1.0]) * load, speed, material, VISCOSITY[0], 2 * MODULUS
+    films = FilmGroups(*numbers, None).film(row)
     assert np.isnan(films[0]) and films[1] > 0.0
     (record,) = caplog.records
     assert record.levelname == "WARNING"

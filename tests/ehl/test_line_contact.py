@@ -52,7 +52,7 @@ def parameter(profile, film):
 
 def film_at_greatest_pressure(profile):
     """In an incompressible oil it is the mass flux: where nothing is driven, all is dragged."""
-    return profile.flux[0] * profile.contact.half_width**2
+    return profile.flow.flux[0] * profile.contact.half_width**2
 
 
 def reduced_pressure(profile):
@@ -158,7 +158,7 @@ def test_film_rises_with_speed_and_material_and_falls_with_load():
         scales = np.ones((7, 3))
         scales[:, which] = np.geomspace(0.2, (3.0, 3.0, 1.5)[which], 7)
         profiles = [solve(LineContact(*row, 0.28, 2.3e11)) for row in base * scales]
-        flux = [each.flux[0] * each.contact.half_width**2 for each in profiles]
+        flux = [each.flow.flux[0] * each.contact.half_width**2 for each in profiles]
         for films in (flux, [each.minimum_film for each in profiles]):
             assert np.all(sign * np.diff(films) > 0.0)
 
@@ -194,7 +194,7 @@ def test_mass_load_and_the_end_of_the_film(point):
     profile = solve(contact_at(*point))
     pressure, nodes, end = profile.pressure, profile.nodes, profile.end
     # The same flux between all nodes with pressure: what is dragged through the film's end.
-    np.testing.assert_allclose(profile.flux[:end], profile.flux[end - 1], rtol=TOLERANCE)
+    np.testing.assert_allclose(profile.flow.flux[:end], profile.flow.flux[end - 1], rtol=TOLERANCE)
     assert profile.mass_flux_defect < TOLERANCE
     assert np.trapezoid(pressure, nodes) == pytest.approx(np.pi / 2.0, rel=TOLERANCE)
     # Complementarity: a film under pressure, then none, and a gap that opens.

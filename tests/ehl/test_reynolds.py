@@ -121,4 +121,4 @@ def test_incompressible_oil_needs_no_special_case(monkeypatch):
     monkeypatch.setattr(line_contact, "dowson_higginson_density", lambda p: (1 + 0 * p, 0 * p))
     assert law(1e9)[0] > 1.2
     stiff = solve(ROELANDS)
-    np.testing.assert_allclose(stiff.flux[: stiff.end], stiff.flux[0], rtol=1e-9)
+    np.testing.assert_allclose(stiff.flow.flux[: stiff.end], stiff.flow.flux[0], rtol=1e-9)

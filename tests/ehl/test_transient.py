@@ -31,11 +31,9 @@ def profile_at(study):
             name: array.sel({dim: at[dim] for dim in array.dims if dim in at})
             for name, array in one.items()
         }
-        return (
-            type(groups)(**picked, film_modulus=groups.film_modulus, meniscus=None)
-            .profiles()
-            .item()
-        )
+        return type(groups)(
+            **picked, film_modulus=groups.film_modulus, meniscus=None
+        ).profiles.item()
 
     return make
 

@@ -16,8 +16,8 @@ def test_every_point_has_the_values_of_its_levels_in_any_order_of_dimensions(fil
         assert point.levels["slide_to_roll_ratio"] == point.slide_to_roll_ratio == 0.1
         here = table.sel({name: point.levels[name] for name in EXPERIMENT_DIMS[1:]})
         for name in ("film_thickness", "contact_half_width", "entrainment_speed"):
-            assert getattr(point, name) == here[name].item()
-        assert point.reduced_modulus == table["reduced_modulus"].item()
+            assert point.row[name].item() == here[name].item()
+        assert point.row["reduced_modulus"].item() == table["reduced_modulus"].item()
     turned = table.transpose("force", "lubricant", "speed", "temperature", ...)
     assert operating_points(turned, 0.1) == points
     forces = table["force"].values.tolist()  # which change fastest

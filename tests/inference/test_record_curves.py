@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy.special import expit, logit
 
-from lube.inference.record_curves import curve_at, layer_curve_at, map_curves
+from lube.inference.record_curves import curve_at, map_curves
 
 WIDTHS = np.array([0.5e-3, 1e-3, 2e-3])
 RATIOS = np.geomspace(0.5, 2.0, 9)
@@ -52,7 +52,7 @@ def test_another_layers_curve_has_no_known_scatter(master):
     layer = master["breakthrough_probability_mean"].rename(
         lambda_ratio="layer_lambda_ratio", contact_width="layer_contact_width"
     )
-    curve = layer_curve_at(layer, master, 0.7e-3)
+    curve = curve_at(master, 0.7e-3, layer)
     np.testing.assert_array_equal(curve.logits, curve_at(master, 0.7e-3).logits)
     assert np.isnan(curve.sample_size).all()
 

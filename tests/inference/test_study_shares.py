@@ -1,4 +1,4 @@
-"""Contact shares of records: the compared threshold, views over the grid, and their names."""
+"""Contact shares of records: views over the grid, and their names."""
 
 import logging
 import warnings
@@ -8,7 +8,6 @@ import pytest
 from experiments import experiment_at, experiment_of
 
 from lube.inference.study_shares import (
-    at_comparison_threshold,
     levels_named,
     log_lines,
     over_grid,
@@ -23,14 +22,6 @@ SHARES = np.linspace(0.0, 0.5, 12)
 def experiment(busy_study):
     """A record at each of the 12 points of the grid."""
     return experiment_at(busy_study.operating_grid.model_dump(), SHARES)
-
-
-def test_the_threshold_to_compare_is_selected(experiment):
-    for threshold, factor in ((10.0, 0.5), (100.0, 1.0)):
-        shares = at_comparison_threshold(experiment.assign(comparison_threshold=threshold))
-        np.testing.assert_array_equal(shares["contact_share"], factor * SHARES)
-        assert shares["contact_share"].dims == ("record",)
-        assert shares["contact_share"]["origin"].item() == "simulated"
 
 
 def test_every_record_stands_at_its_levels(experiment):

@@ -11,6 +11,7 @@ from refusals import one_line
 from lube.ehl.film_formulas import formula
 from lube.ehl.line_contact import solve
 from lube.errors import RangeError
+from lube.grid.films import FilmGroups
 from lube.physics.hertz import hertz_gap
 from lube.physics.starvation import starvation_factor
 
@@ -88,9 +89,9 @@ def test_the_computed_film_is_solved_for_with_its_meniscus():
     contact = contact_at(800, 100, 40)
     groups = contact.load, contact.speed, contact.material, contact.viscosity, contact.film_modulus
     meniscus = 3.0 * contact.half_width
-    found = formula("computed").film(*groups, meniscus)
+    found = FilmGroups(*groups, meniscus).film(formula("computed"))
     assert found == float(f"{solve(contact, meniscus=3.0).central_film:.6g}")
     row = formula("paper")
-    film = row.film(*groups)
+    film = FilmGroups(*groups, None).film(row)
     factor = starvation_factor(film / contact.half_width**2, 3.0)
-    assert row.film(*groups, meniscus) == pytest.approx(film * factor, rel=1e-12)
+    assert FilmGroups(*groups, meniscus).film(row) == pytest.approx(film * factor, rel=1e-12)

@@ -9,7 +9,6 @@ from lube.errors import RangeError
 from lube.physics.viscosity_laws import (
     PARAMETER_UNITS,
     VISCOSITY_LAWS,
-    evaluate_andrade,
     evaluate_astm_d341,
     evaluate_vogel,
     fit_andrade,
@@ -59,18 +58,6 @@ def test_many_points_on_a_law_give_back_its_parameters_in_any_order(law):
     assert forwards == pytest.approx(shuffled, rel=1e-7)
 
 
-@every_law
-def test_data_to_which_no_law_can_be_fitted_are_refused(law):
-    for temperature, viscosity, message in (
-        ([313.15], [335.0], "one temperature"),
-        ([313.15, 313.15], [335.0, 330.0], "one temperature"),
-        ([313.15, 373.15], [335.0, 0.0], "got 0 mm2/s"),
-        ([313.15, 373.15], [335.0, -38.3], "got -38.3 mm2/s"),
-    ):
-        with pytest.raises(RangeError, match=message):
-            law.fit(temperature, viscosity)
-
-
 def test_astm_d341_gives_the_figures_of_physics_section_2():
     parameters = fit_astm_d341(TWO, XMP_320)
     for celsius, printed in ((50.0, 210.665), (70.0, 95.806), (80.0, 68.451)):
@@ -97,7 +84,7 @@ def test_astm_d341_term_is_by_the_natural_base_not_by_ten():
 
 
 def test_astm_d341_refuses_viscosities_below_its_scope():
-    with pytest.raises(RangeError, match=r"got 0\.2 mm2/s, .* more than 0\.21 mm2/s"):
+    with pytest.raises(RangeError, match=r"got 0\.2 mm2/s, .* above 0\.21 mm2/s"):
         fit_astm_d341(TWO, np.array([1.0, 0.2]))
 
 
@@ -122,12 +109,8 @@ def test_vogel_through_two_points_has_camerons_pole_and_refuses_temperatures_bel
         fit_vogel(np.array([173.15, 313.15]), XMP_320)
 
 
-def test_vogel_is_infinite_up_to_its_pole_and_is_andrades_law_with_a_pole_at_zero():
+def test_vogel_is_infinite_up_to_its_pole():
     assert np.isinf(evaluate_vogel(np.array([178.15, 100.0]), 0.3, 950.0, 178.15)).all()
-    temperature = np.linspace(280.0, 370.0, 5)
-    np.testing.assert_array_equal(
-        evaluate_vogel(temperature, 0.1, 2000.0, 0.0), evaluate_andrade(temperature, 0.1, 2000.0)
-    )
 
 
 def test_vogel_fits_scattered_data_better_than_andrade():

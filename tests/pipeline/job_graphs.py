@@ -11,7 +11,7 @@ from pathlib import Path
 from snakemake.api import SnakemakeApi
 from snakemake.settings import types
 
-TARGETS = ["all", "areal_contact", "patch_contact", "computed", "benchmark", "archive", "report"]
+TARGETS = "all areal_contact patch_contact computed rough_passage benchmark archive report".split()
 
 
 def followers(study):

@@ -77,13 +77,9 @@ class Repository:
 
     def planned(self, study=SMOKE):
         """Results that the next run would make, but for pages, which follow all."""
-        return {name for name in self._planned(study) if not name.endswith(".html")}
+        return {name for name in self.all_planned(study) if not name.endswith(".html")}
 
-    def planned_pages(self, study=SMOKE):
-        """Pages of the report that the next run would make."""
-        return {name for name in self._planned(study) if name.startswith("report/")}
-
-    def _planned(self, study):
+    def all_planned(self, study=SMOKE):
         """All files that the next run would make, by Snakemake's own dry plan."""
         rows = [line.split("\t") for line in self.run("--summary", study=study).splitlines()]
         made = {row[0] for row in rows if row[-1] == "update pending"}
@@ -160,12 +156,19 @@ def digest(path):
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
+def not_copied(folder, names):
+    """Names that a copy does without: machine code of kernels, which is shared instead. Bytecode
+    of modules is copied, so that not each copy compiles them anew."""
+    if Path(folder).parts[-2:] == ("kernels", "__pycache__"):
+        return [name for name in names if Path(folder, name).is_dir()]
+    return [name for name in names if name == ".ipynb_checkpoints"]
+
+
 def copy_of_the_repository(folder):
     folder.mkdir(parents=True)
     for name in COPIED:
         if (ROOT / name).is_dir():
-            ignored = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints")
-            shutil.copytree(ROOT / name, folder / name, ignore=ignored)
+            shutil.copytree(ROOT / name, folder / name, ignore=not_copied)
         else:
             shutil.copy2(ROOT / name, folder / name)
     repository = Repository(folder)

@@ -56,6 +56,18 @@ def test_parameters_get_the_datasets_that_they_name(notebook, tmp_path):
         paths_for(notebook, datasets[:1])
 
 
+def test_what_is_not_a_notebook_with_parameters_is_refused(notebook, results):
+    write_notebook(notebook, "x = 1", tag="another")
+    with pytest.raises(LubeError, match="no cell is tagged 'parameters'"):
+        draw(notebook, results)
+    write_notebook(notebook, parameters="film =")
+    with pytest.raises(LubeError, match="got 'film =', which is not Python"):
+        draw(notebook, results)
+    notebook.write_text("no notebook", encoding="utf-8")
+    with pytest.raises(LubeError, match="not a Jupyter notebook"):
+        draw(notebook, results)
+
+
 def test_a_figure_is_the_same_bytes_each_time_and_states_its_origin(notebook, results, monkeypatch):
     monkeypatch.setattr(
         "lube.pipeline.figures.drawn_by", lambda commits, *_: f"changed since {[*commits]}"

@@ -13,7 +13,7 @@ from repository import ROOT
 from lube.schema import STAGES
 
 LOCAL = {"report"}  # runs where Snakemake itself does
-TARGETS = {"all", "areal_contact", "patch_contact", "computed", "benchmark"}
+TARGETS = {"all", "areal_contact", "patch_contact", "computed", "rough_passage", "benchmark"}
 
 
 @pytest.fixture

@@ -31,22 +31,26 @@ def test_unchanged_contents_rerun_nothing(spare):
     assert spare.planned(spare.with_values()) == set()
 
 
-def test_a_changed_module_reruns_the_jobs_that_import_it_and_what_follows(spare):
+def test_changed_modules_rerun_the_jobs_that_import_them_and_what_follows(spare):
     spare.append("lube/stages/trace.py", "# changed")
-    spare.append("lube/study/study.py", "# changed")  # which works by its values alone
-    assert spare.planned() == after(spare, "trace")
-
-
-def test_a_changed_stage_or_lubricant_record_reruns_what_follows(spare):
     spare.append("lube/stages/gauge.py", "# changed")
+    spare.append("lube/study/study.py", "# changed")  # which works by its values alone
     spare.append("lube/study/lubricants/n-dodecane.yaml", "# not of this study")
-    assert spare.planned() == after(spare, "gauge")
-    record = spare / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"
+    change_record(spare, "title: ", "title: New ")
+    assert spare.planned() == after(spare, "trace", "gauge")
+
+
+def test_a_changed_lubricant_record_reruns_what_follows(spare):
+    change_record(spare, "335 mm^2/s", "336 mm^2/s")
+    assert spare.planned() == after(spare, "lubricant") | BATCHES
+
+
+def change_record(repository, old, new):
+    """Change a text in the record of the study's lubricant."""
+    record = repository / "lube/study/lubricants/mobilgear-shc-xmp-320.yaml"
     text = record.read_text(encoding="utf-8")
-    record.write_text(text.replace("title: ", "title: New "), encoding="utf-8")
-    assert spare.planned() == after(spare, "gauge")
-    record.write_text(text.replace("335 mm^2/s", "336 mm^2/s"), encoding="utf-8")
-    assert spare.planned() == after(spare, "lubricant", "gauge") | BATCHES
+    assert old in text
+    record.write_text(text.replace(old, new), encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -70,14 +74,12 @@ def test_a_changed_value_reruns_the_stages_that_use_it_and_what_follows(
 # Notebooks
 
 
-def changed_notebook(repository, change):
-    """Change a notebook, as Jupyter would write it, and return its figure's name."""
-    figure = repository.notebooks[-1]
+def change_notebook(repository, figure, change):
+    """Change a notebook, as Jupyter would write it."""
     path = repository / f"notebooks/{figure}.ipynb"
     notebook = json.loads(path.read_text("utf-8"))
     change(notebook, [cell for cell in notebook["cells"] if cell["cell_type"] == "code"][-1])
     path.write_text(json.dumps(notebook, indent=1), encoding="utf-8")
-    return figure
 
 
 def test_saved_outputs_rerun_nothing_and_a_changed_cell_its_figure_alone(spare):
@@ -89,10 +91,10 @@ def test_saved_outputs_rerun_nothing_and_a_changed_cell_its_figure_alone(spare):
     def change_cell(notebook, cell):
         cell["source"] = ["# changed\n", *cell["source"]]
 
-    changed_notebook(spare, save_outputs)
-    assert spare.planned() == set()
-    figure = changed_notebook(spare, change_cell)
-    assert spare.planned() == products_of(figure)
+    *_, saved, changed = spare.notebooks
+    change_notebook(spare, saved, save_outputs)
+    change_notebook(spare, changed, change_cell)
+    assert spare.planned() == products_of(changed)
 
 
 # Which study

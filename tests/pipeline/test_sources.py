@@ -64,3 +64,5 @@ def test_a_module_is_a_source_of_the_scripts_and_stages_that_use_it():
     assert "figure" in users("pipeline/notebooks")
     assert users("pipeline/jobs") == {*SCRIPTS, *MADE}
     assert {"lube/schema/files.csv", "lube/schema/variables.csv"} <= set(stage_sources("film"))
+    assert "lube/explorer/templates/explorer.html" in script_sources("explorer")
+    assert not {"lube/report/templates/page.html"}.intersection(*map(stage_sources, MADE))

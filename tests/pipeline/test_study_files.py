@@ -6,7 +6,7 @@ import pytest
 from studies import SMOKE
 from unlike_studies import STUDIES, write_study
 
-from lube.pipeline.study_files import StudyFiles, input_paths, one_line_errors
+from lube.pipeline.study_files import StudyFiles, input_paths
 from lube.study.metadata import About
 from lube.study.study import load_study
 
@@ -45,7 +45,7 @@ def test_inputs_are_named_from_the_working_folder_each_once(tmp_path, monkeypatc
 
 def test_a_name_that_snakemake_takes_for_a_wildcard_is_refused():
     line = "The study cannot start. {oil}.yaml: the name of a file must not contain { or }"
-    with pytest.raises(SystemExit, match=f"^{re.escape(line)}$"), one_line_errors():
+    with pytest.raises(SystemExit, match=f"^{re.escape(line)}$"):
         input_paths(["{oil}.yaml"])
 
 

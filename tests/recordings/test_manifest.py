@@ -203,7 +203,7 @@ HEADERS = {
     "file,force [N],speed [rpm],temperature [K],offset": "need 'offset [mV]'",
     "file,force [N],speed [rpm],temperature [K],offset [N]": "offset: got the unit 'N'",
     "file,forse [N],speed [rpm]": "unknown column 'forse [N]', did you mean 'force'?",
-    "file,humidity,speed [rpm]": "unknown column 'humidity', need some of file, channel, unit",
+    "file,humidity,speed [rpm]": "unknown column 'humidity', need one of file, channel, unit",
     "force [N],force [N],speed [rpm]": "column 'force' is repeated",
 }
 FILES = [

@@ -29,8 +29,9 @@ from lube.recordings import csv_signals
 
 
 def test_a_missing_empty_or_unknown_file(tmp_path):
-    assert refusal(tmp_path / "none.csv") == "no such file, need a measured recording"
-    assert refusal(tmp_path) == "no such file, need a measured recording"
+    assert refusal(tmp_path / "none.csv") == "cannot be read: No such file or directory"
+    (tmp_path / "folder.csv").mkdir()
+    assert refusal(tmp_path / "folder.csv") == "cannot be read: Is a directory"
     (tmp_path / "r.xls").write_text("t")
     assert refusal(tmp_path / "r.xls").startswith("got the suffix '.xls', need one of .csv")
     for suffix in (".csv", ".nc", ".tdms"):
@@ -93,7 +94,7 @@ def test_truncated_tdms_files_are_refused(tmp_path):
 def test_the_64_bit_data_format_is_refused(tmp_path):
     """SciPy does not read it, and the NetCDF library reads zeros where it is cut short."""
     path = write_netcdf(tmp_path / "r.nc", VOLTS, format="NETCDF3_64BIT_DATA")
-    assert refusal(path).endswith("need NetCDF-4, as from 'nccopy -k nc4'")
+    assert refusal(path).endswith("or of the 64-bit data format (CDF-5)")
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.999])
@@ -144,7 +145,7 @@ def test_units_of_binary_recordings_are_not_guessed_either(tmp_path):
     assert refusal(numeric).startswith("'Voltage': ")
     for increment in ("soon", True, np.datetime64("2018-11-09")):
         path = write_tdms(tdms, VOLTS, unit_string="V", wf_increment=increment)
-        assert "sampling interval of 'Voltage': got" in refusal(path)
+        assert refusal(path).startswith("sampling interval of 'Voltage': ")
 
 
 @pytest.mark.parametrize("kind", ["csv", "nc", "tdms"])

@@ -10,7 +10,7 @@ from lube.grid.gap import Gap
 from lube.grid.operating_points import operating_points
 from lube.physics.electrical import divider_voltage, resistance_from_voltage
 from lube.rig import simulator as module
-from lube.rig.simulator import SimulatedRig, logged_voltage
+from lube.rig.simulator import Revolution, drifting_rollers, simulated_revolutions
 from lube.stages.contact import contact_statistics
 from lube.study.rig_settings import Rig
 
@@ -19,8 +19,8 @@ QUIET = {"noise": "0 V", "resolution": 32}
 
 
 def logged(contact, rig, seed=1, capacitance=CAPACITANCE):
-    rng = np.random.default_rng(seed)
-    return logged_voltage(np.array(contact, np.int32), TIME_STEP, SPOT, capacitance, rig, rng)
+    contact = np.array(contact, np.int32)
+    return Revolution(contact, None, TIME_STEP, SPOT, capacitance, (seed,)).voltage(rig)
 
 
 def test_a_steady_contact_is_logged_with_its_resistance_and_none_as_the_leak():
@@ -95,7 +95,7 @@ def slipping(rig_film):
 
 
 def run(lines, study, points):
-    return list(SimulatedRig(lines, study, points).revolutions())
+    return list(simulated_revolutions(lines, study, points))
 
 
 def test_every_pair_passes_all_points_for_all_its_revolutions(lines_of, study, with_rig, points):
@@ -146,12 +146,10 @@ def test_under_films_with_a_shape_too(lines_of, study, with_rig, shaped_film, de
 
 
 @pytest.mark.parametrize(("drift", "kept"), [(0.3, 0.7**0.5), (1.0, 0.0)])
-def test_drift_renews_its_share_of_the_variance_each_turn(
-    lines_of, study, with_rig, points, drift, kept
-):
+def test_drift_renews_its_share_of_the_variance_each_turn(lines_of, study, with_rig, drift, kept):
     drifting = with_rig(study, drift=drift, revolutions=3)
-    rig = SimulatedRig(lines_of(drifting), drifting, points)
-    first, second, third = (pair[0] for pair in rig._rollers(drifting.rig_realisations))
+    drawn = drifting_rollers(lines_of(drifting), drifting, drifting.rig_realisations)
+    first, second, third = (pair[0] for pair in drawn)
     assert np.corrcoef(first, second)[0, 1] == pytest.approx(kept, abs=0.05)
     assert np.corrcoef(first, third)[0, 1] == pytest.approx(kept**2, abs=0.05)
     assert np.std(third) == pytest.approx(np.std(first), rel=0.05)
@@ -163,7 +161,7 @@ def test_the_faster_surface_passes_one_grid_point_each_time_step(
     one = with_rig(study, revolutions=1)
     lines = lines_of(one)
     _, _, revolution = run(lines, one, slipping)[0]
-    faster = 1.05 * revolution.point.entrainment_speed
+    faster = 1.05 * revolution.point.row["entrainment_speed"].item()
     assert revolution.time_step == pytest.approx(lines.attrs["spacing"] / faster)
     turn = 2.0 * np.pi * study.rollers.first.radius / faster
     assert revolution.contact.size * revolution.time_step == pytest.approx(turn)

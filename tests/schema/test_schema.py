@@ -116,7 +116,7 @@ def test_a_coordinate_that_is_missing_or_repeats_a_value_is_refused(labelled):
     for kind in ("lubricant", "film", "contact", "trace", "experiment"):
         dataset = labelled[kind]
         name = next(name for name in dataset.indexes if name in COORDINATES)
-        assert f"coordinate {name!r} is missing" in refusal(dataset.drop_vars(name), kind)
+        assert f"variable {name!r} is missing" in refusal(dataset.drop_vars(name), kind)
         twice = dataset.isel({name: [0, 0]})
         assert f"coordinate {name!r} repeats a value" in refusal(twice, kind)
 

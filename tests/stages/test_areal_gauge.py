@@ -7,7 +7,7 @@ from experiments import experiment_of
 
 from lube.inference.record_curves import map_curves
 from lube.schema import CONTACT_DIMS, FILES, LIMITS, check, label
-from lube.stages.areal_gauge import gauge_by_surface
+from lube.stages.areal_gauge import make
 from lube.stages.gauge import gauge_records
 
 NAMES = [f"surface_lambda_ratio{limit}" for limit in LIMITS]
@@ -35,7 +35,8 @@ def read(busy, compared, areal):
     def run(shares, force, areal=areal, **values):
         comparison = compared(experiment_of(shares, force, 100.0, 60.0, **values))
         gauge = gauge_records(map_curves(busy.master, comparison), busy.contact, comparison)
-        return gauge_by_surface(busy.film, areal, comparison, gauge)
+        inputs = {"film": busy.film, "areal": areal, "comparison": comparison, "gauge": gauge}
+        return make(busy.study, inputs)
 
     return run
 

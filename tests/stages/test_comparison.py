@@ -37,6 +37,13 @@ def test_both_sides_stand_beside_each_other_at_every_record(perfect, busy, mean)
     np.testing.assert_array_equal(perfect["measured_share"], mean)
 
 
+def test_the_share_is_that_at_the_threshold_to_compare(compared, busy, mean):
+    experiment = experiment_at(busy.study.operating_grid.model_dump(), mean)
+    for threshold, factor in ((10.0, 0.5), (100.0, 1.0)):
+        found = compared(experiment.assign(comparison_threshold=threshold))
+        np.testing.assert_array_equal(found["measured_share"], factor * mean)
+
+
 def test_a_perfect_rig_agrees_perfectly(perfect, mean):
     figures = perfect.sel(**FORMULA, threshold=100.0)
     for name in ("bias", "rms_difference", "logit_rms_difference"):

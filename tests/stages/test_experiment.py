@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from written_recordings import write_csv
 
-from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError
 from lube.recordings.manifest import read_manifest
 from lube.rig.record import LEVELS, TRACE_SAMPLES
@@ -22,20 +21,25 @@ def at_100_ohm(dataset):
 # Simulated records
 
 
+def with_points(study, points):
+    """The study with lines of so many points."""
+    roughness = study.roughness.model_copy(update={"points": points})
+    return study.model_copy(update={"roughness": roughness})
+
+
 @pytest.fixture(scope="module")
-def ideal(rig_lines, rig_film, study, with_rig):
+def ideal(rig_film, study, with_rig):
     """A rig without inertia or noise."""
-    return simulated_experiment(rig_lines, rig_film, with_rig(study, **FAST))
+    return simulated_experiment(rig_film, with_rig(with_points(study, 60_000), **FAST))
 
 
 @pytest.fixture(scope="module")
-def simulated(rig_film, make_spec, study, with_rig):
+def simulated(rig_film, study, with_rig):
     """Simulate a rig of other values at the two points with most contact."""
 
     def run(**values):
-        changed = with_rig(study, **{"noise": "0 V"} | values)
-        lines = roughness_batch(make_spec(30_000), study.seed, changed.rig_realisations)
-        return simulated_experiment(lines, rig_film.isel(temperature=[1]), changed)
+        changed = with_rig(with_points(study, 30_000), **{"noise": "0 V"} | values)
+        return simulated_experiment(rig_film.isel(temperature=[1]), changed)
 
     return run
 

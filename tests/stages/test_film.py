@@ -11,7 +11,7 @@ from studies import PAPER
 from lube import schema
 from lube.ehl import film_formulas
 from lube.errors import DataError, LubeError
-from lube.grid.films import film_at
+from lube.grid.films import FilmGroups, film_at
 from lube.inference.at_records import film_at_records
 from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
@@ -74,8 +74,8 @@ def test_every_point_agrees_with_the_plain_formula(table):
             )
             load = force / 0.01 / (modulus * radius)
             speed_number = viscosity * (2.0 * np.pi * 0.05 * speed / 60.0) / (modulus * radius)
-            groups = load, speed_number, alpha * modulus, viscosity, modulus
-            expected = radius * row.film(*groups)
+            groups = FilmGroups(load, speed_number, alpha * modulus, viscosity, modulus, None)
+            expected = radius * groups.film(row)
             found = table["film_thickness"].isel(lubricant=0).sel(film_formula=name, **at)
             assert float(found) == pytest.approx(expected, rel=1e-12)
 

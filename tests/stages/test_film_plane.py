@@ -9,7 +9,6 @@ from lube.ehl.film_formulas import FORMULAS
 from lube.ehl.line_contact import LineContact, solve
 from lube.physics.dimensionless import moes_numbers
 from lube.stages import film_plane as stage
-from lube.stages.film_plane import film_plane
 from lube.study.lubricant_record import load_record
 from lube.study.oil_properties import lubricant_table
 
@@ -38,8 +37,8 @@ def contact_of(plane, lubricant, moes_load, moes_material):
     return LineContact(load, speed, material, viscosity, 2 * MODULUS)
 
 
-def test_films_and_errors_are_those_of_single_contacts(few_levels, oils):
-    plane = film_plane(oils, MODULUS)
+def test_films_and_errors_are_those_of_single_contacts(few_levels, oils, study):
+    plane = stage.make(study, {"lubricant": oils})
     assert plane["temperature"].item() == 70.0
     assert plane.attrs["not_converged"] == 0
     for lubricant, at in [(OILS[0], (30.0, 8.0)), (OILS[1], (0.1, 2.0))]:
@@ -59,9 +58,9 @@ def test_films_and_errors_are_those_of_single_contacts(few_levels, oils):
     assert set(plane["film_formula"].values) == set(FORMULAS) - {"computed"}
 
 
-def test_places_of_the_film(few_levels, oils):
+def test_places_of_the_film(few_levels, oils, study):
     """The least film is the least; between flat rollers the mean is the central film."""
-    plane = film_plane(oils, MODULUS)
+    plane = stage.make(study, {"lubricant": oils})
     least, mean, central = (
         plane[f"{place}_film_parameter"] for place in ("minimum", "mean", "central")
     )
@@ -76,7 +75,7 @@ def test_places_of_the_film(few_levels, oils):
 
 
 def test_a_film_that_is_not_found_is_not_a_number_named_and_counted(
-    few_levels, oils, monkeypatch, caplog
+    few_levels, oils, study, monkeypatch, caplog
 ):
     def refuse_some(contact, meniscus):
         if contact.material > 3000.0:
@@ -84,7 +83,7 @@ def test_a_film_that_is_not_found_is_not_a_number_named_and_counted(
         return solve(contact, meniscus)
 
     monkeypatch.setattr(line_contact, "solve", refuse_some)
-    found = film_plane(oils.isel(lubricant=[1, 0]), MODULUS)
+    found = stage.make(study, {"lubricant": oils.isel(lubricant=[1, 0])})
     assert found.attrs["not_converged"] == len(caplog.records) == 6
     assert all("did not converge: mass flux" in each.getMessage() for each in caplog.records)
     lost = found.sel(lubricant=OILS[0])

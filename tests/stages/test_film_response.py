@@ -46,7 +46,7 @@ def profiles(study, files):
     film = files["film"]
     contact = film[["entrainment_speed", "contact_half_width"]]
     groups = FilmGroups.at(files["lubricant"], study.rollers, film["force"], contact)
-    return groups.profiles().isel(lubricant=0, speed=0)
+    return groups.profiles.isel(lubricant=0, speed=0)
 
 
 @pytest.mark.parametrize("roller", [1, 2])

@@ -152,13 +152,13 @@ def test_another_film_of_any_shape_is_gauged_from_what_is_counted_under_it(busy,
     study = busy.study.model_copy(update=changes)
     kinds = ("lubricant", "film", "contact", "experiment", "comparison")
     comparison = made(study, kinds)["comparison"]
+    curves = own_curves(study, comparison)
     for factor in (0.8, 1.15):
         first = comparison.isel(film_formula=0)
         thinner = first.assign(film_thickness=factor * first["film_thickness"])
         windows = ContactWindows(study.line_spec, thinner, study.boundary_layer, study.gap)
         counted = [windows.count(drawn(study, number))[:, 1] for number in range(32)]
         shares = first["measured_share"].copy(data=np.mean(counted, axis=0))
-        curves = own_curves(study, comparison)
         gauged = gauge_film(curves, comparison.assign(measured_share=shares))
         ratio = gauged["gauged_film_thickness"].values / first["film_thickness"].values
         np.testing.assert_allclose(ratio, factor, rtol=0.02)

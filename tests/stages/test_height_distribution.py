@@ -5,44 +5,44 @@ import pytest
 
 from lube.contact.counted import contact_at
 from lube.contact.rough_pair import roughness_batch
-from lube.stages.height_distribution import LAMBDA_RATIOS, PAIRS, height_distributions
+from lube.stages.height_distribution import LAMBDA_RATIOS, PAIRS, make
 
 NAMES = ("breakthrough_probability", "geometric_contact_probability")
 
 
 @pytest.fixture(scope="module")
-def spec(make_spec):
-    return make_spec(50_000)
+def coarse(study):
+    """The study on coarse lines, on which only a weak layer breaks."""
+    changes = {
+        "roughness": study.roughness.model_copy(update={"points": 50_000}),
+        "boundary_layer": study.boundary_layer.model_copy(update={"shear_strength": 1e5}),
+        "seed": 11,
+    }
+    return study.model_copy(update=changes)
 
 
 @pytest.fixture(scope="module")
-def weak(study):
-    """On the coarse lines only a weak layer breaks."""
-    return study.boundary_layer.model_copy(update={"shear_strength": 1e5})
+def found(coarse, film):
+    return make(coarse, {"film": film})
 
 
-@pytest.fixture(scope="module")
-def found(spec, film, weak):
-    return height_distributions(spec, film, weak, seed=11)
-
-
-def test_gaussian_heights_have_the_probabilities_of_the_ensemble(found, spec, film, weak):
+def test_gaussian_heights_have_the_probabilities_of_the_ensemble(found, coarse, film):
     table = film[["reduced_modulus"]].assign(
         film_thickness=("point", LAMBDA_RATIOS * film["composite_rms_roughness"].item()),
         contact_half_width=film["contact_half_width"].max(),
     )
-    contact = contact_at(roughness_batch(spec, 11, range(PAIRS)), table, weak)
+    lines = roughness_batch(coarse.line_spec, coarse.seed, range(PAIRS))
+    contact = contact_at(lines, table, coarse.boundary_layer)
     gaussian = found.sel(height_skewness=0.0, height_kurtosis=3.0)
     for name in NAMES:
         expected = contact[name].isel(slide_to_roll_ratio=0).mean("realisation")
         np.testing.assert_allclose(gaussian[f"{name}_mean"], expected, rtol=1e-12)
 
 
-def test_neither_the_lines_own_heights_nor_threads_matter(found, spec, film, weak):
-    worn = spec.model_copy(
-        update={"lines": tuple(one.model_copy(update={"skewness": -1.0}) for one in spec.lines)}
-    )
-    assert height_distributions(worn, film, weak, seed=11, threads=3).equals(found)
+def test_neither_the_lines_own_heights_nor_threads_matter(found, coarse, film):
+    worn = coarse.roughness.model_copy(update={"skewness": -1.0})
+    worn = coarse.model_copy(update={"roughness": worn})
+    assert make(worn, {"film": film}, threads=3).equals(found)
 
 
 def test_intervals_enclose_the_mean_and_the_moments_are_attained(found):

@@ -1,12 +1,13 @@
 """Contact at any rarity over the grid: theory and limits, then counting, then stored numbers."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import xarray as xr
 from plain_answers import PlainAnswer
 
 from lube.contact.window_films import window_films
-from lube.errors import DataError
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.grid.operating_points import at_slip
@@ -20,7 +21,8 @@ from lube.stages import (
     lubricant_table,
     roughness_lines,
 )
-from lube.stages.tail import tail_probabilities
+from lube.stages.tail import make
+from lube.study.rollers import OwnRoughness
 from lube.surfaces.rare_contact import draw_pair
 
 SEED = 1
@@ -34,31 +36,54 @@ def few(film):
 
 
 @pytest.fixture(scope="module")
-def spec(make_spec):
-    return make_spec(100_000)
+def coarse(study):
+    """The study on coarse lines, with other slips and boundary layer, and any other changes."""
+
+    def change(slips=(0.0,), points=100_000, shear_strength=None, **changes):
+        layer = {"shear_strength": shear_strength or study.boundary_layer.shear_strength}
+        grid = {"slide_to_roll_ratio": tuple(slips)}
+        own = {
+            "seed": SEED,
+            "roughness": study.roughness.model_copy(update={"points": points}),
+            "operating_grid": study.operating_grid.model_copy(update=grid),
+            "boundary_layer": study.boundary_layer.model_copy(update=layer),
+        }
+        return study.model_copy(update=own | changes)
+
+    return change
 
 
 @pytest.fixture(scope="module")
-def tail(spec, few, study):
-    return tail_probabilities(spec, few, study.boundary_layer, SEED, RATIOS)
+def spec(coarse):
+    return coarse().line_spec
 
 
 @pytest.fixture(scope="module")
-def rare(spec, few, study):
+def make_tail(coarse):
+    """Make the dataset of a changed study with some films."""
+    return lambda film, *args, threads=1, **changes: make(
+        coarse(*args, **changes), {"film": film}, threads
+    )
+
+
+@pytest.fixture(scope="module")
+def tail(make_tail, few):
+    return make_tail(few, RATIOS)
+
+
+@pytest.fixture(scope="module")
+def rare(make_tail, few):
     """Contact with twice as thick films; on the coarse lines only a weak layer breaks."""
     thick = few.isel(film_formula=[0], temperature=[0])
     thick = thick.assign(film_thickness=2.0 * thick["film_thickness"])
-    weak = study.boundary_layer.model_copy(update={"shear_strength": 3e4})
-    return tail_probabilities(spec, thick, weak, SEED)
+    return make_tail(thick, shear_strength=3e4)
 
 
 # --- Theory and limits -------------------------------------------------------------------
 
 
-def test_lines_that_the_oil_flattens_are_refused_in_words(few, spec, study):
-    found = tail_probabilities(
-        spec, few, study.boundary_layer, SEED, RATIOS, 1, Gap(roughness_deformation="venner-1997")
-    )
+def test_lines_that_the_oil_flattens_are_refused_in_words(few, make_tail):
+    found = make_tail(few, RATIOS, roughness_deformation="venner-1997")
     assert found.attrs["remarks"].startswith(
         "roughness_deformation: got venner-1997, need none or computed"
     )
@@ -93,18 +118,18 @@ def test_probabilities_do_not_depend_on_slip_but_contacts_become_more_and_shorte
     np.testing.assert_allclose(present, present.isel(slide_to_roll_ratio=[0] * len(RATIOS)))
 
 
-def test_each_slip_has_the_film_that_heating_leaves_there(tail, spec, few, study):
+def test_each_slip_has_the_film_that_heating_leaves_there(tail, few, make_tail):
     """With two formulas; what holds in pure rolling is not known without it."""
     name = "slide_to_roll_ratio"
     thinner = xr.DataArray([1.0, 0.95, 0.8], {name: list(RATIOS)}, name)
     heated = few.drop_dims("slide_to_roll_ratio").assign(
         film_thickness=thinner * few["film_thickness"]
     )
-    found = tail_probabilities(spec, heated, study.boundary_layer, SEED, RATIOS)
+    found = make_tail(heated, RATIOS)
     assert found["breakthrough_asymptote"].dims == CONTACT_DIMS
     for ratio in RATIOS:
         one = at_slip(heated, ratio)
-        alone = tail_probabilities(spec, one, study.boundary_layer, SEED, [ratio])
+        alone = make_tail(one, [ratio])
         for name in (*PROBABILITIES, "breakthrough_rate", "breakthrough_duration"):
             here = found[name].sel(slide_to_roll_ratio=[ratio])
             np.testing.assert_allclose(here, alone[name], rtol=1e-12)
@@ -113,7 +138,7 @@ def test_each_slip_has_the_film_that_heating_leaves_there(tail, spec, few, study
             np.testing.assert_allclose(here, alone[name], rtol=1e-12)
     for name in ("touching_pair_share", "touching_pair_share_upper", "first_breakthrough_time"):
         np.testing.assert_allclose(found[name], tail[name], rtol=1e-12)
-    without = tail_probabilities(spec, heated, study.boundary_layer, SEED, RATIOS[1:])
+    without = make_tail(heated, RATIOS[1:])
     assert without["touching_pair_share"].isnull().all()
     expected = found["breakthrough_rate"].isel(slide_to_roll_ratio=slice(1, None))
     np.testing.assert_allclose(without["breakthrough_rate"], expected, rtol=1e-12)
@@ -155,17 +180,9 @@ def test_for_high_films_the_probabilities_approach_theory(rare):
         assert np.all((ratio > 0.85) & (ratio < 1.02))
 
 
-def test_an_unreasonable_film_is_refused(spec, few, study):
-    none = few.assign(film_thickness=0.0 * few["film_thickness"])
-    with pytest.raises(DataError, match="film thickness: got 0 m, need above 0"):
-        tail_probabilities(spec, none, study.boundary_layer, SEED)
-
-
-def test_threads_and_further_formulas_do_not_change_the_results(tail, spec, few, study):
-    xr.testing.assert_identical(
-        tail_probabilities(spec, few, study.boundary_layer, SEED, RATIOS, threads=3), tail
-    )
-    alone = tail_probabilities(spec, few.isel(film_formula=[0]), study.boundary_layer, SEED, RATIOS)
+def test_threads_and_further_formulas_do_not_change_the_results(tail, few, make_tail):
+    xr.testing.assert_identical(make_tail(few, RATIOS, threads=3), tail)
+    alone = make_tail(few.isel(film_formula=[0]), RATIOS)
     xr.testing.assert_identical(alone, tail.isel(film_formula=[0]))
 
 
@@ -209,19 +226,19 @@ def broken_runs(lines, starts, film, window, factor, margin=60, answers=()):
 
 @pytest.mark.parametrize("gap", [Gap(), Gap("computed"), Gap("computed", "computed")])
 @pytest.mark.parametrize("ratio", [0.0, 0.4])
-def test_breakthroughs_are_as_many_as_counted_step_by_step(make_spec, few, study, ratio, gap):
+def test_breakthroughs_are_as_many_as_counted_step_by_step(coarse, few, study, ratio, gap):
     """A broken run is new unless it overlaps one of the step before, seen from a surface."""
-    spec = make_spec(20_000)
+    weak = coarse([ratio], 20_000, 3e4, **dataclasses.asdict(gap))
+    spec, layer = weak.line_spec, weak.boundary_layer
     point = few.isel(film_formula=[0], temperature=[1], force=[2])
     if gap.has_shape:
         oil = lubricant_table(study.lubricants, point["temperature"].values)
         levels = study.rollers, point["force"], point["speed"], study.film_formulas[:1], True
         answered = spec if gap.is_answered else None
         point = film_table(oil, *levels, slide_to_roll_ratio=[ratio], answered_lines=answered)
-    weak = study.boundary_layer.model_copy(update={"shear_strength": 3e4})
-    tail = tail_probabilities(spec, point, weak, SEED, [ratio], 1, gap).squeeze()
+    tail = make(weak, {"film": point}).squeeze()
     factor = layer_factor(
-        point["reduced_modulus"].item(), weak.critical_thickness, 3e4, spec.spacing, 1e-12
+        point["reduced_modulus"].item(), layer.critical_thickness, 3e4, spec.spacing, 1e-12
     )
     film, margin = point["film_thickness"].item() / spec.height_step, 60
     window = 2 * int(point["contact_half_width"].item() / spec.spacing) + 1
@@ -273,13 +290,13 @@ def steps_to_the_next(line, film, window, factor):
 
 @pytest.mark.parametrize(("shear_strength", "force", "temperature"), [(3e4, 1, 1), (1e4, 0, 1)])
 def test_the_first_breakthrough_comes_when_counting_finds_it(
-    make_spec, few, study, shear_strength, force, temperature
+    coarse, few, shear_strength, force, temperature
 ):
     """Where contact is frequent, in pure rolling; in windows wide and narrow."""
-    spec = make_spec(50_000)
-    weak = study.boundary_layer.model_copy(update={"shear_strength": shear_strength})
+    weak = coarse(points=50_000, shear_strength=shear_strength)
+    spec = weak.line_spec
     point = few.isel(film_formula=[0], temperature=[temperature], force=[force])
-    found = tail_probabilities(spec, point, weak, SEED).squeeze()
+    found = make(weak, {"film": point}).squeeze()
     assert 0.1 < found["breakthrough_probability"] < 0.7
     factor = layer_factor(
         point["reduced_modulus"].item(), 5e-9, shear_strength, spec.spacing, spec.height_step
@@ -297,9 +314,11 @@ def test_the_first_breakthrough_comes_when_counting_finds_it(
 # --- Lines that are not Gaussian ---------------------------------------------------------
 
 
-def test_lines_that_are_not_gaussian_have_no_value_and_a_remark(make_spec, few, study, tail):
-    worn = make_spec(100_000, second_own={"skewness": -1.0, "kurtosis": 5.0})
-    found = tail_probabilities(worn, few, study.boundary_layer, SEED, RATIOS)
+def test_lines_that_are_not_gaussian_have_no_value_and_a_remark(coarse, few, tail):
+    worn, heights = coarse(RATIOS), OwnRoughness(skewness=-1.0, kurtosis=5.0)
+    second = worn.rollers.second.model_copy(update={"roughness": heights})
+    rollers = worn.rollers.model_copy(update={"second": second})
+    found = make(worn.model_copy(update={"rollers": rollers}), {"film": few})
     assert found.attrs["remarks"] == (
         "roughness: got a skewness of -1 and a kurtosis of 5, need 0 and 3: importance sampling is "
         "for Gaussian lines"

@@ -31,11 +31,6 @@ config = {**config, "study": SOURCE | STUDY.readings}
 FILES = StudyFiles(STUDY, **SOURCE)
 RESULTS = FILES.folder
 result = FILES.result
-stage_files = FILES.stage_files
-stage_inputs = FILES.stage_inputs
-record_files = FILES.record_files
-batches_of = FILES.batches_of
-batch_limits = FILES.batch_limits
 
 
 onstart:

@@ -1,17 +1,10 @@
-EXPLORED = [
-    kind
-    for kind in ("lubricant", "film", "contact", "tail", "master", "trace", "comparison")
-    if STUDY.has(kind)
-]
+from lube.explorer import EXPLORED
 
 
 rule explorer:
     """A page on which to move over the operating points."""
     input:
-        **{kind: result(f"{kind}.nc") for kind in EXPLORED},
-        templates=[
-            from_here(path) for path in sorted(Path(ROOT, "lube/explorer/templates").iterdir())
-        ],
+        **{kind: result(f"{kind}.nc") for kind in EXPLORED if STUDY.has(kind)},
         sources=script_sources("explorer"),
     output:
         result("explorer.html"),
@@ -19,8 +12,6 @@ rule explorer:
         result("logs/explorer.log"),
     benchmark:
         result("benchmarks/explorer.tsv")
-    params:
-        kinds=EXPLORED,
     message:
         "Explorer: a page on which to move over the operating points"
     script:

@@ -29,7 +29,8 @@ rule figure:
 
 
 onerror:
-    # Nor is it if a picture alone is asked for: dated 1970, it is older than the rule's inputs.
+    # A picture that alone is asked for is not up to date without its origin either: dated 1970, it
+    # is older than the rule's inputs.
     for figure in FIGURES:
         if not Path(result(f"figures/{figure}.json")).exists():
             for product in map(Path, products([figure])):

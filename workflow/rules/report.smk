@@ -3,7 +3,12 @@ from lube.pipeline.command_line import PAPER, same_study
 
 # Chapter of the report that holds its pages.
 ABOUT_THE_STUDY = "About the study"
-TEMPLATES = [from_here(path) for path in sorted(Path(ROOT, "lube/report/templates").iterdir())]
+PAGES = {
+    "configuration": "every number, as written and as understood",
+    "assumptions": "what the paper leaves open, and what is used instead",
+}
+# Parts of its start page.
+PARTS = ("facts", "findings", "limits", "files", "pipeline")
 
 
 rule pages:
@@ -13,32 +18,18 @@ rule pages:
         study=FILES.study_file,
         paper=from_here(PAPER),
         docs=[from_here(f"docs/{page}.md") for page in ("limits", "assumptions", "architecture")],
-        templates=TEMPLATES,
         sources=script_sources("pages"),
     output:
-        facts=result("report/facts.html"),
-        findings=result("report/findings.html"),
-        limits=result("report/limits.html"),
-        files=result("report/files.html"),
-        pipeline=result("report/pipeline.html"),
-        configuration=report(
-            result("report/configuration.html"),
-            category=ABOUT_THE_STUDY,
-            caption="../report/page.rst",
-            labels={
-                "Page": "Configuration",
-                "Shows": "every number, as written and as understood",
-            },
-        ),
-        assumptions=report(
-            result("report/assumptions.html"),
-            category=ABOUT_THE_STUDY,
-            caption="../report/page.rst",
-            labels={
-                "Page": "Assumptions",
-                "Shows": "what the paper leaves open, and what is used instead",
-            },
-        ),
+        **{part: result(f"report/{part}.html") for part in PARTS},
+        **{
+            page: report(
+                result(f"report/{page}.html"),
+                category=ABOUT_THE_STUDY,
+                caption="../report/page.rst",
+                labels={"Page": page.capitalize(), "Shows": shown},
+            )
+            for page, shown in PAGES.items()
+        },
     log:
         result("logs/pages.log"),
     benchmark:
@@ -58,7 +49,6 @@ rule times:
         [result(f"{kind}.nc") for kind in STUDY.datasets],
         products(ALWAYS),
         result("explorer.html"),
-        templates=TEMPLATES,
         sources=script_sources("times"),
     output:
         report(

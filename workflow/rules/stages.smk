@@ -8,11 +8,11 @@ for stage in STAGES.values():
             name:
                 stage.name
             input:
-                **stage_files(stage.name),
-                batches=batches_of(stage.name) if stage.in_batches else [],
+                **FILES.stage_files(stage.name),
+                batches=FILES.batches_of(stage.name) if stage.in_batches else [],
                 written=FILES.written_files(stage.name),
                 # Their values are parameters; another title, which is none, makes nothing again.
-                records=ancient(record_files()),
+                records=ancient(FILES.record_files()),
                 sources=stage_sources(stage.name),
             output:
                 result(f"{stage.name}.nc"),
@@ -23,7 +23,7 @@ for stage in STAGES.values():
             priority: stage.priority
             threads: workflow.cores if stage.parallel else 1
             params:
-                study=stage_inputs(stage.name),
+                study=FILES.stage_inputs(stage.name),
             message:
                 stage.message
             script:
@@ -37,7 +37,7 @@ for stage in STAGES.values():
             input:
                 script=from_here(f"benchmarks/bench_{stage.name}.py"),
                 study=ancient(result("study.yaml")),
-                records=record_files(),
+                records=FILES.record_files(),
                 sources=script_sources(f"benchmarks/bench_{stage.name}.py"),
             output:
                 result(f"{stage.name}.nc"),
@@ -48,7 +48,7 @@ for stage in STAGES.values():
             # All cores, so that no other job disturbs the measurement.
             threads: workflow.cores
             params:
-                study=stage_inputs(stage.name),
+                study=FILES.stage_inputs(stage.name),
                 python=sys.executable,
             message:
                 stage.message
@@ -77,8 +77,8 @@ rule batch:
     # The summary and most figures wait for them.
     priority: 1
     params:
-        study=stage_inputs("contact", "master"),
-        realisations=batch_limits,
+        study=FILES.stage_inputs("contact", "master"),
+        realisations=FILES.batch_limits,
     message:
         "Batch: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points"
     script:

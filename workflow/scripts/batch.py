@@ -4,13 +4,11 @@ One job for both results: the lines never leave its memory, and Python starts on
 """
 
 from lube.contact.rough_pair import roughness_batch
-from lube.pipeline.jobs import begin_job
+from lube.pipeline.jobs import study_of_job
 from lube.stages import contact, master
 from lube.storage.netcdf import load, save
-from lube.study.study import load_study
 
-begin_job(snakemake.log[0])
-study = load_study(**snakemake.config["study"])
+study = study_of_job(snakemake)
 film = load(snakemake.input.film, "film", study)
 lines = roughness_batch(study.line_spec, study.seed, study.batch(int(snakemake.wildcards.first)))
 for stage in (contact, master):

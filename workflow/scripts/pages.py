@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lube.pipeline.jobs import begin_job
+from lube.pipeline.jobs import study_of_job
 from lube.report import SUMMARISED
 from lube.report.configuration import configuration
 from lube.report.key_tables import files_table
@@ -14,8 +14,7 @@ from lube.storage.files import write_text
 from lube.storage.netcdf import load
 from lube.study.study import load_study
 
-begin_job(snakemake.log[0])
-study, paper = load_study(**snakemake.config["study"]), load_study(snakemake.input.paper)
+study, paper = study_of_job(snakemake), load_study(snakemake.input.paper)
 results = {kind: load(snakemake.input[kind], kind, study) for kind in SUMMARISED if study.has(kind)}
 written = Path(snakemake.input.study).read_text(encoding="utf-8")
 docs = {Path(file).stem: Path(file).read_text(encoding="utf-8") for file in snakemake.input.docs}

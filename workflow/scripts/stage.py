@@ -2,14 +2,12 @@
 
 from pathlib import Path
 
-from lube.pipeline.jobs import begin_job
+from lube.pipeline.jobs import study_of_job
 from lube.schema import STAGES
 from lube.stages import maker
 from lube.storage.netcdf import load, save
-from lube.study.study import load_study
 
-begin_job(snakemake.log[0])
-study = load_study(**snakemake.config["study"])
+study = study_of_job(snakemake)
 # By its file: as a module of another workflow, the rule has a prefix.
 stage = STAGES[Path(snakemake.output[0]).stem]
 files = {kind: snakemake.input[kind] for kind in study.inputs_of(stage.name)}

@@ -6,7 +6,8 @@ import pytest
 import xarray as xr
 
 from lube import StudyError
-from lube.calculator.amounts import amount, described
+from lube.calculator.answers import described
+from lube.calculator.arguments import amount
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,183 @@
+"""Arguments of the answers: numbers with units, choices and counts, checked."""
+
+from collections.abc import Sequence
+from typing import Any, get_args
+
+import numpy as np
+import xarray as xr
+
+from lube.errors import LubeError, StudyError, right_one, shown
+from lube.grid.gap import Gap
+from lube.study.field_types import bounded
+from lube.study.rig_settings import RIG_REALISATIONS
+from lube.study.study import Study
+from lube.units import convert, parse_number, parse_quantity
+
+FORMULA = "pan-hamrock"
+"""Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
+REALISATIONS = 64
+SEED = 1
+
+Amount = str | Sequence[str] | tuple[Any, str] | Any
+"""``"800 N"``, ``["400 N", "800 N"]``, ``([400, 800], "N")``, or a quantity of pint."""
+
+
+def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArray:
+    """Convert an argument to numbers in the units that the study computes in.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, for messages, and of the dimension of several numbers.
+    value : str, sequence of str, tuple or pint.Quantity
+        One number with its unit, such as ``"800 N"``; or several, as ``["400 N", "800 N"]`` or
+        ``([400, 800], "N")``.
+    units : str
+        Unit of the result.
+    **limits : float
+        As in `lube.study.field_types.bounded`, in `units`.
+
+    Returns
+    -------
+    xarray.DataArray
+        Without dimensions, or over `name`.
+
+    Raises
+    ------
+    StudyError
+        Which argument, what came, what is needed.
+
+    Examples
+    --------
+    >>> amount("force", ([0.4, 0.8], "kN"), "N").values
+    array([400., 800.])
+    """
+    try:
+        numbers = np.asarray(_numbers(value, units), float)
+        for number in numbers.ravel():
+            bounded(number, None if units == "1" else units, **limits)
+        if numbers.ndim > 1 or not numbers.size:
+            raise LubeError(f"got {shown(value)}, need one number with its unit, or a list of them")
+    except LubeError as error:
+        raise StudyError(f"{name}: {error}") from None
+    return xr.DataArray(numbers, {name: numbers} if numbers.ndim else None, [name] * numbers.ndim)
+
+
+def _numbers(value, units):
+    match value.tolist() if isinstance(value, np.ndarray) else value:
+        case (numbers, str(given)) if not isinstance(numbers, str):
+            return convert(_floats(numbers), given, units)
+        case [str(), *_] as texts:
+            return [parse_quantity(text, units) for text in texts]
+        case _ if hasattr(value, "magnitude"):
+            return convert(_floats(value.magnitude), f"{value.units}", units)
+    return parse_quantity(value, units)
+
+
+def _floats(numbers):
+    try:
+        return np.asarray(numbers, float)
+    except (TypeError, ValueError):
+        raise LubeError(f"got {shown(numbers)}, need numbers and their unit") from None
+
+
+def bare_number(name: str, value: object, **limits: float) -> float:
+    """Check a number that is given without unit, such as a share; `limits` as of `amount`.
+
+    Raises
+    ------
+    StudyError
+        Which argument, what came, what is needed.
+    """
+    try:
+        return bounded(parse_number(value), None, **limits)
+    except LubeError as error:
+        raise StudyError(f"{name}: {error}") from None
+
+
+def conditions(
+    force: Amount, speed: Amount, temperature: Amount, radius: float
+) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
+    """Force in N, speed in rpm and temperature in degC; the radius as of `rotation_speed`."""
+    return (
+        amount("force", force, "N", above=0.0),
+        rotation_speed(speed, radius),
+        amount("temperature", temperature, "degC", above=-273.15),
+    )
+
+
+def rotation_speed(speed: Amount, radius: float) -> xr.DataArray:
+    """Rotation speed in rpm, from itself or from the entrainment speed at a radius in m.
+
+    Raises
+    ------
+    StudyError
+        If it is neither.
+    """
+    try:
+        return amount("speed", speed, "rpm", above=0.0)
+    except LubeError as error:
+        try:
+            entrainment = amount("speed", speed, "m/s", above=0.0)
+        except LubeError:
+            raise StudyError(f"{error}, or 'm/s'") from None
+        rotation = entrainment * (60.0 / (2.0 * np.pi * radius))
+        return rotation.assign_coords(speed=rotation) if rotation.dims else rotation
+
+
+def single(values: xr.DataArray) -> float:
+    """Return a value of which there must be one.
+
+    Raises
+    ------
+    StudyError
+        If there are several: of which argument.
+    """
+    for name, size in values.sizes.items():
+        raise StudyError(f"{name}: got {size} values, need one")
+    return values.item()
+
+
+def gap_of(film_shape: str, roughness_deformation: str) -> Gap:
+    """How film and roughness make up the gap, in the words of a study.
+
+    Raises
+    ------
+    StudyError
+        If a study has no such choice.
+    """
+    given = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
+    for name, value in given.items():
+        options = get_args(Study.model_fields[name].annotation)
+        if value not in options:
+            raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
+    return Gap(**given)
+
+
+def one_formula(name: str) -> str:
+    """Return the name of a film formula, of which there must be one.
+
+    Raises
+    ------
+    StudyError
+        If there are several.
+    """
+    if not isinstance(name, str):
+        raise StudyError(f"film_formula: got {shown(name)}, need one name")
+    return name
+
+
+def check_realisations(realisations: int, seed: int) -> int:
+    """Return the number of realisations, if it and the seed are suitable whole numbers.
+
+    Raises
+    ------
+    StudyError
+        If one of them is not.
+    """
+    for name, number, least in (("realisations", realisations, 1), ("seed", seed, 0)):
+        if isinstance(number, bool) or not isinstance(number, int) or number < least:
+            raise StudyError(f"{name}: got {shown(number)}, need a whole number, at least {least}")
+    if realisations > RIG_REALISATIONS:
+        raise StudyError(f"realisations: got {realisations}, need at most {RIG_REALISATIONS}")
+    return realisations
