@@ -24,6 +24,7 @@ def measured_values(kind):
         for name, row in FILES[kind].items()
     }
     dims = {dim for row in FILES[kind].values() for dim in row.dims}
+    dims &= COORDINATES.keys()
     coords = {dim: np.arange(2).astype(COORDINATES[dim].kind + "8") for dim in sorted(dims)}
     return label(xr.Dataset(variables, coords), kind)
 

@@ -60,9 +60,15 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     with one_blas_thread():
         found = on_threads(lambda level: _passed(study, oil, *level), levels, threads)
     table = xr.concat(found, "operating_point", join="outer").assign_coords(points.coords)
+    table = table.map(_rounded, keep_attrs=True)
     table["lambda_ratio"] = "operating_point", ratios.values[list(chosen)]
     table["critical_thickness"] = study.boundary_layer.critical_thickness
     return label(table.transpose("operating_point", "answer", ...), "passage")
+
+
+def _rounded(values):
+    """Round to four digits: further ones depend on the processor."""
+    return xr.apply_ufunc(np.vectorize(lambda one: float(f"{one:.4g}"), otypes=[float]), values)
 
 
 def _passed(study, oil, temperature, speed, force):

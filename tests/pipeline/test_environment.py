@@ -16,6 +16,8 @@ BLAS |= {"corrcoef", "cov", "spearmanr", "pearsonr"}
 FITS = {"abel.py", "surface_statistics.py", "topography.py"}
 # They solve for the film and its response, of which six digits are kept.
 FITS |= {"line_contact.py", "reynolds.py", "response.py", "transient.py", "waves.py"}
+# It adds up waves for a passage, of whose gaps four digits are kept.
+FITS |= {"rough_piece.py"}
 
 
 def test_later_processes_import_the_package_of_a_folder(monkeypatch, tmp_path):

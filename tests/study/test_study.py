@@ -130,10 +130,11 @@ def changed_stages(paper_with):
 
 MECHANICS = {"contact", "tail", "areal", "trace", "experiment"}
 # Those that are for pure rolling too.
-LAYER = MECHANICS | {"master", "height_distribution", "variants"}
+LAYER = MECHANICS | {"master", "height_distribution", "variants", "passage"}
 DEFORMED = {"variants", "height_distribution"}
 LINES = LAYER | {"roughness", "patch"}
 SPECTRUM = LINES | {"surface", "film_response"}
+SLIDING = {"film", "film_response", "passage"}
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 
 
@@ -141,7 +142,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
     for key, value, stages in [
         ("resistivity", "0.3 uohm*m", {"trace", "experiment"}),
         ("boundary_layer.critical_thickness", "6 nm", LAYER),
-        ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS | {"film", "film_response"}),
+        ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS | SLIDING),
         ("inlet_shear_heating", "zhu-cheng-1988", {"film"}),
         ("inlet_meniscus", "0.4 mm", {"film"}),
         ("revolutions", 3, {"contact"}),
