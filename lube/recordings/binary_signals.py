@@ -86,7 +86,7 @@ def _read(channels, part, signal):
 
 @contextmanager
 def _channels(path, kind):
-    """Open a file and list its numeric channels; any error of a library is told in one line."""
+    """Open a file and list its numeric channels; an error of a library becomes one line."""
     try:
         with (_netcdf_channels if kind == "NetCDF" else _tdms_channels)(path) as channels:
             yield channels
