@@ -26,12 +26,21 @@ RESULTS = "results/smoke"
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 
 
-def is_left_out(notebook):
-    """Whether a figure compares oils, or shows a file that bare `snakemake` does not make of the
-    smoke study, which has one oil."""
-    text = notebook.read_text("utf-8")
+FEW = ("fig02_film", "fig07_probability", "fig09_roughness", "fig14_experiment", "fig17_gauge")
+"""Figures of the copy, at least one of each chapter: to draw all of them takes longer than the
+rest of the study."""
+
+
+def figures_in(notebooks):
+    """Figures that bare `snakemake` makes of the smoke study; it has one oil to compare."""
     others = set(STAGES).difference(load_study(ROOT / SMOKE).datasets)
-    return "several-lubricant" in text or any(f'study / \\"{kind}.nc' in text for kind in others)
+    texts = {path.stem: path.read_text("utf-8") for path in sorted(notebooks.glob("fig*.ipynb"))}
+    return [
+        figure
+        for figure, text in texts.items()
+        if "several-lubricant" not in text
+        and not any(f'study / \\"{kind}.nc' in text for kind in others)
+    ]
 
 
 @dataclass(frozen=True)
@@ -50,8 +59,12 @@ class Repository:
     @property
     def notebooks(self):
         """Those of the figures that bare `snakemake` makes of the smoke study."""
-        paths = sorted((self.folder / "notebooks").glob("fig*.ipynb"))
-        return [path.stem for path in paths if not is_left_out(path)]
+        return figures_in(self.folder / "notebooks")
+
+    def take_notebooks(self, figures="*"):
+        """Copy the notebooks of more figures, by default of all."""
+        for path in (ROOT / "notebooks").glob(f"{figures}.ipynb"):
+            shutil.copy2(path, self / "notebooks")
 
     def command(self, *arguments, study=SMOKE):
         options = ["--configfile", study] if study else []
@@ -157,10 +170,12 @@ def digest(path):
 
 
 def not_copied(folder, names):
-    """Names that a copy does without: machine code of kernels, which is shared instead. Bytecode
-    of modules is copied, so that not each copy compiles them anew."""
+    """Names that a copy does without: most figures, and machine code of kernels, which is shared
+    instead. Bytecode of modules is copied, so that not each copy compiles them anew."""
     if Path(folder).parts[-2:] == ("kernels", "__pycache__"):
         return [name for name in names if Path(folder, name).is_dir()]
+    if Path(folder).name == "notebooks":
+        return [name for name in names if Path(name).stem not in FEW]
     return [name for name in names if name == ".ipynb_checkpoints"]
 
 

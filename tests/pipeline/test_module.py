@@ -11,7 +11,7 @@ from repository import (
     SNAKEMAKE,
     Repository,
     copy_of_the_repository,
-    is_left_out,
+    figures_in,
     products_of,
 )
 from studies import SMOKE_DATASETS
@@ -46,8 +46,7 @@ def planned(repository):
 
 
 def test_all_results_are_planned_in_the_other_repository(other):
-    paths = (other / "lube/notebooks").glob("fig*.ipynb")
-    figures = [path.stem for path in paths if not is_left_out(path)]
+    figures = figures_in(other / "lube/notebooks")
     results = {f"{kind}.nc" for kind in SMOKE_DATASETS}.union(*map(products_of, figures))
     made = planned(other)
     assert {"number.txt", *(f"results/mine/{name}" for name in results)} <= made

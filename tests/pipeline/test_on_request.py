@@ -21,6 +21,7 @@ def named(repository, *targets):
 
 @pytest.mark.slow
 def test_report_and_archive_have_what_was_made_on_request_and_ask_for_nothing_else(spare):
+    spare.take_notebooks(FIGURE)
     assert named(spare, "archive", "report") == set()
     spare.run(PICTURE)
     assert spare.planned() == set()
@@ -43,6 +44,7 @@ def test_report_and_archive_have_what_was_made_on_request_and_ask_for_nothing_el
 
 @pytest.mark.slow
 def test_an_archive_made_in_the_same_run_has_it_and_is_complete(spare):
+    spare.take_notebooks("fig24_patch")
     spare.run("patch_contact", "archive")
     assert (spare.results / "archive/smoke/data/patch.nc").is_file()
     assert (spare.results / "archive/smoke/figures/fig24_patch.png").is_file()
