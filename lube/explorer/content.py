@@ -9,7 +9,7 @@ import xarray as xr
 
 from lube.contact.ensemble import PROBABILITIES
 from lube.ehl.film_formulas import FORMULAS
-from lube.grid.model_limits import merged, overloaded
+from lube.grid.model_limits import deformed, merged, overloaded
 from lube.schema import COORDINATES, FILES, LIMITS, MEAN_LIMITS
 from lube.units import with_unit
 
@@ -54,7 +54,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         - ``levels``: for each of `CHOICES` its values, and their names for a reader;
         - ``variables``: for each of `SHOWN`, by `page_name`, its dimensions, unit, meaning, and
           values in the order of the dimensions, the last one fastest;
-        - ``marks``: points outside the model, and those where merged segments hold;
+        - ``marks``: points outside the model, those where merged segments hold, and those where the
+          response to roughness is not valid;
         - ``sampled``: whether there is contact at any rarity, by importance sampling;
         - ``regimes``: names of the regimes of lubrication;
         - ``validity``: limits of the Moes numbers within which each film formula was validated;
@@ -66,7 +67,12 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     contact, trace = datasets["contact"], datasets["trace"]
     kept = trace.sizes["operating_point"]
     levels = {name: contact[name].values.tolist() for name in CHOICES}
-    marks = {"overloaded": overloaded(contact), "merged": merged(contact, datasets["film"])}
+    film = datasets["film"]
+    marks = {
+        "overloaded": overloaded(contact),
+        "merged": merged(contact, film),
+        "deformed": deformed(film),
+    }
     load_share = contact["contact_load_share"].mean("realisation", keep_attrs=True)
     return {
         "study": contact.attrs["study"],

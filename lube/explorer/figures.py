@@ -59,7 +59,7 @@ THEME = Theme(
 )
 """Look of all figures, legible on a phone."""
 _POINT = (
-    *"x film mean lower upper limit lambda width M L name outside falling".split(),
+    *"x film mean lower upper limit lambda width M L name outside falling deformed".split(),
     *CHOICES,
 )
 COLUMNS = {
@@ -74,7 +74,8 @@ COLUMNS = {
     "close": ("time", "length", "resistance"),
 }
 """Columns of each source of the figures. ``limit`` is an upper limit where no contact was seen;
-``outside`` and ``falling`` are means where the model cannot hold or where merged segments hold."""
+``outside``, ``falling`` and ``deformed`` are means where the model cannot hold, where merged
+segments hold, or where the response to roughness is not valid."""
 
 
 def draw(
@@ -210,7 +211,9 @@ def _probabilities(plot, sources, x, around):
     _whiskers(plot, sources["chosen"], x, "black", 2)
     _all_points(plot, sources, x, "mean", around)
     _points(plot, sources[around], x, "outside", fill_color="white")
-    _points(plot, sources[around], x, "falling", size=15, fill_color=None, line_color="black")
+    around_it = {"size": 15, "fill_color": None, "line_color": "black"}
+    _points(plot, sources[around], x, "falling", **around_it)
+    _points(plot, sources[around], x, "deformed", marker="square", **around_it)
     look = {"marker": "inverted_triangle", "fill_color": "white"}
     limits = _points(plot, sources[around], x, "limit", **look)
     for tool in (HoverTool, TapTool):

@@ -9,6 +9,7 @@ from lube.ehl.line_contact import ConvergenceError, one_blas_thread
 from lube.ehl.response import WaveResponse, at_wavelengths
 from lube.grid.film_profiles import film_positions, six_digits
 from lube.grid.operating_points import surface_speeds
+from lube.surfaces.synthetic import wave_amplitudes
 from lube.threads import on_threads
 
 log = logging.getLogger(__name__)
@@ -23,7 +24,7 @@ wavelength: the part that the oil carries through the contact runs ahead of the 
 behind."""
 POSITIONS = 0.02, 1.06
 """Distance of positions in the contact, and their growth beyond."""
-VARIABLES = "response_real", "response_imaginary", "interpolation_error"
+VARIABLES = "response_real", "response_imaginary", "interpolation_error", "rms_deformation"
 
 
 def wave_responses(
@@ -47,9 +48,9 @@ def wave_responses(
     Returns
     -------
     xarray.Dataset
-        `VARIABLES` over the dimensions of the films and of the slide-to-roll ratio, and roller; the
-        real and the imaginary part over wavelength and response_position too. NaN where the film is
-        not known.
+        `VARIABLES` over the dimensions of the films and of the slide-to-roll ratio; the error over
+        roller too; the real and the imaginary part over roller, wavelength and response_position.
+        NaN where the film is not known.
 
     Notes
     -----
@@ -79,8 +80,27 @@ def wave_responses(
     error = np.reshape([each for _, each in found], speeds.shape)
     dims = *slips.dims, "roller", "wavelength", "response_position"
     values = (dims, response.real), (dims, response.imag), (dims[:-2], error)
+    inside = response[..., np.abs(positions) <= 1.0]
+    square = np.mean(np.abs(inside - 1.0) ** 2, axis=-1)
+    deformation = np.sqrt(np.einsum("...rw,rw", square, _squared_heights(spec, waves)))
+    values = *values, (slips.dims, six_digits(deformation))
     levels = {"roller": [1, 2], "wavelength": waves, "response_position": positions}
     return xr.Dataset(dict(zip(VARIABLES, values, strict=True)), {**slips.coords, **levels})
+
+
+def _squared_heights(spec, wavelengths):
+    """Mean square height of both lines, as shares that belong to falling wavelengths."""
+    shares = []
+    for roller in (0, 1):
+        first, amplitudes = wave_amplitudes(spec, roller)
+        length = spec.points[roller] * spec.spacing / (first + np.arange(amplitudes.size))
+        # Between two wavelengths what they say is interpolated over the logarithm.
+        weights = [
+            np.interp(-np.log(length), -np.log(wavelengths), each)
+            for each in np.eye(wavelengths.size)
+        ]
+        shares.append(weights @ amplitudes**2 / 2.0)
+    return shares
 
 
 def _of_film(profile, wavelengths, speeds, positions):

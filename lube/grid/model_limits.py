@@ -1,7 +1,11 @@
-"""Operating points at which the model cannot hold, or where its contact falls as the film thins."""
+"""Operating points at which the model cannot hold, or where its answers are doubtful."""
 
 import numpy as np
 import xarray as xr
+
+LARGEST_DEFORMATION = 0.1
+"""Rms of what the oil adds to the roughness, over the film, up to which its answer is called small.
+Three times as much is 0.3; from there on single waves leave the linear response (Figure 35)."""
 
 
 def overloaded(contact: xr.Dataset) -> xr.DataArray:
@@ -63,3 +67,23 @@ def _falls(film, breakthrough, geometric):
     touches = geometric.ravel()[:, None] >= geometric.ravel()
     falls = (there > here) & (excess.mean(axis=0) > 3.0 * error) & touches
     return falls.any(axis=1).reshape(film.shape)
+
+
+def deformed(film: xr.Dataset) -> xr.DataArray:
+    """Find the points where the oil changes the roughness by more than a small part of the film.
+
+    The linear response to roughness is not valid there.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset.
+
+    Returns
+    -------
+    xarray.DataArray
+        Whether `rms_deformation` is above `LARGEST_DEFORMATION` times the film. False where the
+        film is not known, or does not answer the roughness.
+    """
+    thickness = film["film_thickness"]
+    return film.get("rms_deformation", 0.0) > LARGEST_DEFORMATION * thickness

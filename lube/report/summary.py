@@ -8,7 +8,7 @@ from importlib.metadata import version
 import numpy as np
 import xarray as xr
 
-from lube.grid.model_limits import merged, overloaded
+from lube.grid.model_limits import LARGEST_DEFORMATION, deformed, merged, overloaded
 from lube.report.pages import render
 from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
@@ -223,7 +223,10 @@ def _held(film, contact, first):
         "share": share.max().item(),
         "overloaded": int(overloaded(contact).sum()),
         "merged": int(merged(contact, film).sum()),
+        "deformed": int(deformed(film).sum()),
+        "small": LARGEST_DEFORMATION,
         "points": share.size,
+        "films": film["film_thickness"].size,
     }
 
 

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy.linalg import hadamard
 
-from lube.grid.model_limits import merged, overloaded
+from lube.grid.model_limits import deformed, merged, overloaded
 
 
 def table(mean, geometric, error=0.005, film=(3.0, 2.0, 1.0), realisations=8):
@@ -75,3 +75,10 @@ def test_points_are_overloaded_where_the_mean_share_is_above_one():
     share = xr.DataArray([[0.9, 1.2, 1.0], [1.0, 0.9, 1.0]], dims=("realisation", "force"))
     found = overloaded(xr.Dataset({"contact_load_share": share}))
     assert found.values.tolist() == [False, True, False]
+
+
+def test_the_oil_deforms_roughness_strongly_where_it_adds_more_than_a_tenth_of_the_film():
+    film = xr.Dataset({"film_thickness": ("force", [1e-6, 1e-6, np.nan])})
+    assert not deformed(film).any()  # lines as drawn
+    film["rms_deformation"] = "force", [0.09e-6, 0.11e-6, np.nan]
+    assert deformed(film).values.tolist() == [False, True, False]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from made import made
 
+from lube.contact.rough_pair import drawn
 from lube.ehl import line_contact
 from lube.ehl.line_contact import ConvergenceError
 from lube.ehl.response import WaveResponse, at_wavelengths
@@ -97,6 +98,26 @@ def test_the_error_of_interpolation_is_what_a_wave_between_shows(slipping, files
         exact = WaveResponse.of(profile, between).transfer(1.5, positions)
         error = np.sqrt(np.mean(np.abs(estimated[0] - exact)[inside] ** 2))
         assert error < 1.5 * one["interpolation_error"].item() + 1e-3
+
+
+@pytest.mark.parametrize("slip", [0.0, 1.0])
+def test_the_rms_of_the_deformation_is_that_of_drawn_lines_wave_by_wave(slipping, found, slip):
+    one = found.sel(temperature=80.0, force=1600.0, slide_to_roll_ratio=slip)
+    half_width = one["contact_half_width"].item()
+    scaled = one["wavelength"].values / half_width
+    inside = np.abs(one["film_position"].values) <= 1.0
+    squares, spec = 0.0, slipping.line_spec
+    for roller, line in zip((1, 2), drawn(slipping, 0), strict=True):
+        waves = np.fft.rfft(line * spec.height_step, norm="forward")[1:-1]
+        lengths = line.size * spec.spacing / np.arange(1, waves.size + 1)
+        kept = (lengths <= 1.001 * spec.longest_wavelength) & (lengths >= 2.0 * np.pi / spec.q_max)
+        response = transfer(one.sel(roller=roller)).values[:, inside]
+        answered = at_wavelengths(
+            lengths[kept] / half_width, scaled, response, one["film_position"].values[inside]
+        )
+        added = np.abs((answered - 1.0) * waves[kept, None]) ** 2
+        squares += 2.0 * added.sum(axis=0).mean()
+    assert one["rms_deformation"].item() == pytest.approx(np.sqrt(squares), rel=0.01)
 
 
 def test_threads_change_nothing(slipping, files):

@@ -73,6 +73,7 @@ const withInterval = ({ text, seen, lower, upper }) => (seen ? `${text} (${perce
 const marks = {
     overloaded: "outside the model: the asperities would carry more than the load",
     merged: "less contact than at a thicker film: merged segments hold",
+    deformed: "the oil changes the roughness by more than a small part of the film: its linear response is not valid",
 };
 const marked = (point) => Object.keys(marks).filter((name) => at(name, point, content.marks));
 
@@ -94,6 +95,7 @@ function row(point, along) {
         L: at("moes_material", point),
         outside: at("overloaded", point, content.marks) ? positive(mean) : NaN,
         falling: at("merged", point, content.marks) ? positive(mean) : NaN,
+        deformed: at("deformed", point, content.marks) ? positive(mean) : NaN,
         name: [`${named(point, grid)}: ${withInterval(found)}`, ...marked(point).map((name) => marks[name])].join("; "),
     };
 }
