@@ -1,7 +1,7 @@
 """How often the study's intervals contain the true value, for rollers that are in no ensemble.
 
     snakemake benchmark                                              # measures, saves and draws
-    python benchmarks/bench_coverage.py [STUDY [COVERAGE.NC]]  # measures and prints
+    python benchmarks/bench_coverage.py [STUDY [COVERAGE.NC]]        # measures and prints
 
 Each held-out pair of rollers makes a record at several operating points; its contact shares come
 directly from the kernels. The study's own stages judge them: prediction of the share, film
@@ -10,7 +10,8 @@ values are known, so each interval is right or wrong. Its width is compared with
 pairs, so that no interval is right merely by being wide. In one scenario fewer pairs go through the
 circuit, recorded files and a manifest.
 
-With slip a pair takes seconds, so `PAIRS` has fewer of them there; ``--all`` takes as many.
+With slip a pair takes seconds, so `PAIRS` has fewer of them there; ``--pairs`` sets one number for
+all. In a study whose films have a shape, or answer the roughness, each record has a curve of its own.
 """
 
 import argparse
@@ -23,7 +24,7 @@ import tempfile
 import time
 from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -32,9 +33,9 @@ import xarray as xr
 
 from lube.contact.ensemble import gather, gather_map
 from lube.contact.rough_pair import drawn, roughness_batch
-from lube.contact.windows import ContactWindows
+from lube.contact.windows import study_windows
 from lube.grid.discretise import revolution, speed_ratios
-from lube.grid.operating_points import operating_points
+from lube.grid.operating_points import at_slip, operating_points
 from lube.inference.at_records import model_at_records
 from lube.inference.fits import (
     ALPHA_FACTORS,
@@ -43,7 +44,7 @@ from lube.inference.fits import (
     strength_logits,
     study_strength,
 )
-from lube.inference.record_curves import map_curves
+from lube.inference.record_curves import map_curves, own_curves
 from lube.recordings.manifest import Entry, Manifest, read_manifest
 from lube.rig.simulator import simulated_revolutions
 from lube.schema import LIMITS, label
@@ -55,13 +56,14 @@ from lube.stages.gauge import gauge_film
 from lube.stages.master import contact_map
 from lube.storage.netcdf import save
 from lube.study.oil_properties import lubricant_table
-from lube.study.study import load_study
+from lube.study.study import Study, load_study
 
 TURNS = (0.01, 0.3, 1.0, 10.4, 100.4)
 SLIP = 2.0 * (1.0 - 0.9) / (1.0 + 0.9)
 """One surface 0.9 times as fast as the other: the alignments of equal rollers repeat after 10
 turns, so that records of any length follow from these."""
 MOTIONS = {"rolling": 0.0, "slipping": SLIP}
+LEVELS = ("temperature", "speed", "force")
 SMALLER = 0.8
 """Radius of the second of two unequal rollers over the first's: they repeat after 4 turns."""
 SLIP_LAMBDAS = np.geomspace(1.3, 3.8, 7)
@@ -83,12 +85,18 @@ LEAST = 1e-3
 
 @dataclass(frozen=True)
 class Ensemble:
-    """Films, contact and master map of a study with one seed."""
+    """Films, contact and master map of a study with one seed; no map if its gap is not plain."""
 
-    seed: int
+    study: Study
     film: xr.Dataset
     contact: xr.Dataset
-    master: xr.Dataset
+    master: xr.Dataset | None
+
+    def curves(self, comparison):
+        """Curves of the records of a comparison."""
+        if self.master is None:
+            return own_curves(self.study, comparison)
+        return map_curves(self.master, comparison)
 
 
 def variant(study, rollers, motion="rolling"):
@@ -108,12 +116,12 @@ def variant(study, rollers, motion="rolling"):
 
 
 def film_of(study):
-    """Film table of a study's operating grid."""
+    """Film table of a study's operating grid, for all `MOTIONS`."""
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants, grid.temperature)
     levels = grid.force, grid.speed, study.film_formulas
-    slips = {"slide_to_roll_ratio": study.slips}
-    return film_table(oil, study.rollers, *levels, **slips, **study.film_model)
+    slips = {"slide_to_roll_ratio": tuple(MOTIONS.values())}
+    return film_table(oil, study.rough_rollers, *levels, **slips, **study.film_model)
 
 
 def make_ensembles(study, count, pool):
@@ -121,39 +129,39 @@ def make_ensembles(study, count, pool):
     film = film_of(study)
     ensembles = []
     for seed in range(study.seed, study.seed + count):
-        runs, maps = zip(
-            *pool(partial(_realisation, study, film, seed), range(study.realisations)), strict=True
-        )
-        ensembles.append(Ensemble(seed, film, gather(runs, film), gather_map(maps)))
+        own = study.model_copy(update={"seed": seed})
+        run = partial(_realisation, own, at_slip(film, 0.0))
+        runs, maps = zip(*pool(run, range(study.realisations)), strict=True)
+        master = gather_map(maps) if study.gap.is_plain else None
+        ensembles.append(Ensemble(own, film, gather(runs, at_slip(film, 0.0)), master))
     return ensembles
 
 
-def _realisation(study, film, seed, number):
-    lines = roughness_batch(study.line_spec, seed, [number])
+def _realisation(study, film, number):
+    lines = roughness_batch(study.line_spec, study.seed, [number])
     layer = study.boundary_layer
-    return contact_statistics(lines, film, layer), contact_map(lines, film, layer)
+    contact = contact_statistics(lines, film, layer, gap=study.gap)
+    return contact, contact_map(lines, film, layer) if study.gap.is_plain else None
 
 
 # The shares of single pairs
 
 
 def operating_table(film, motion):
-    """Levels, films and widths of the operating points, one column each."""
-    table = film.isel(film_formula=0, lubricant=0, drop=True)
-    names = ["film_thickness", "contact_half_width", "lambda_ratio"]
-    frame = table[names].to_dataframe().reset_index().sort_values("lambda_ratio")
+    """Films of the operating points, over ``point``, from the smallest lambda ratio on."""
+    table = at_slip(film, MOTIONS[motion]).isel(film_formula=0, lubricant=0, drop=True)
+    table = table.stack(point=LEVELS).reset_index("point").sortby("lambda_ratio")
     if motion == "slipping":
-        ratios = np.log(frame["lambda_ratio"].values)
+        ratios = np.log(table["lambda_ratio"].values)
         nearest = [int(np.argmin(np.abs(ratios - np.log(wanted)))) for wanted in SLIP_LAMBDAS]
-        frame = frame.iloc[sorted(set(nearest))]
-    return frame
+        table = table.isel(point=sorted(set(nearest)))
+    return table
 
 
-def windows_of(study, table):
-    """Contact windows of the rows of a table of operating points."""
-    films = {name: ("point", table[name]) for name in ("film_thickness", "contact_half_width")}
-    films = xr.Dataset(films | {"reduced_modulus": study.rollers.reduced_modulus})
-    return ContactWindows(study.line_spec, films, study.boundary_layer)
+def levels_of(table):
+    """Levels of the operating points of a table, a dictionary each."""
+    rows = zip(*(table[name].values.tolist() for name in LEVELS), strict=True)
+    return [dict(zip(LEVELS, row, strict=True)) for row in rows]
 
 
 def record_shares(study, table, slip, turns, realisation):
@@ -168,12 +176,12 @@ def record_shares(study, table, slip, turns, realisation):
     cycle = _cycle(pair, speed_ratios(slip)) * turn
     whole, rest = ends // cycle, ends % cycle
     marks = np.unique([0, *rest, *(cycle * (whole > 0))])
-    windows = windows_of(study, table)
+    windows = study_windows(study, table)
     between = [
         np.rint(windows.count(pair, slip, (end - begin) / turn, begin)[:, 1] * (end - begin))
         for begin, end in itertools.pairwise(marks)
     ]
-    counts = np.cumsum([np.zeros(len(table), np.int64), *between], axis=0)
+    counts = np.cumsum([np.zeros(table.sizes["point"], np.int64), *between], axis=0)
     # The last mark is the cycle's end where there is a whole one.
     return (whole[:, None] * counts[-1] + counts[np.searchsorted(marks, rest)]) / ends[:, None]
 
@@ -197,21 +205,20 @@ def held_out_shares(study, table, motion, pairs, pool):
 def experiment_of(study, table, motion, turns):
     """Records of one pair at all operating points, for each number of turns in turn."""
     entries = []
-    for length, row in itertools.product(turns, table.to_dict("records")):
-        levels = {name: float(row[name]) for name in ("force", "speed", "temperature")}
+    for length, levels in itertools.product(turns, levels_of(table)):
         where = f"record {len(entries)}, {length:g} turns"
         # The shares of the pairs replace this probability later.
         given = {"where": where, "probability": 0.5, "slide_to_roll_ratio": MOTIONS[motion]}
         entries.append(Entry.model_construct(**given | levels))
     experiment = measured_experiment(Manifest("simulated", tuple(entries), ()), study)
-    lengths = np.repeat(np.array(turns, float), len(table))
+    lengths = np.repeat(np.array(turns, float), table.sizes["point"])
     return experiment.assign(turns=experiment["turns"].copy(data=lengths))
 
 
 def comparisons(study, ensemble, table, motion, turns=TURNS):
     """One comparison for each number of turns; the model is made for all of them at once."""
     experiment = experiment_of(study, table, motion, turns)
-    model = model_of(experiment, ensemble, study.model_copy(update={"seed": ensemble.seed}))
+    model = model_of(experiment, ensemble, study)
     parts = np.split(np.arange(experiment.sizes["record"]), len(turns))
     return [
         compare(model.isel(record=part), experiment.isel(record=part), ensemble.contact)
@@ -221,10 +228,11 @@ def comparisons(study, ensemble, table, motion, turns=TURNS):
 
 def model_of(experiment, ensemble, study):
     """The model at the records, by one ensemble."""
+    study = study.model_copy(update={"seed": ensemble.study.seed})
     return model_at_records(experiment, ensemble.film, ensemble.contact, study)
 
 
-def judge(ensemble, comparison, shares):
+def judge(ensemble, comparison, curves, shares):
     """Judge each pair's records of one length by their shares, shape (pairs, points).
 
     Of the result, ``probability`` and ``predicted`` are the mean over the ensemble and the width
@@ -234,7 +242,6 @@ def judge(ensemble, comparison, shares):
     """
     one = comparison.isel(film_formula=0)
     lower, upper = (one[f"predicted_share_{side}"].values for side in ("lower", "upper"))
-    curves = map_curves(ensemble.master, comparison)
     strength = strength_logits(curves, ensemble.contact, comparison)
     fits = {
         "alpha": (ALPHA_FACTORS, alpha_logits(curves, comparison), 1.0),
@@ -245,7 +252,7 @@ def judge(ensemble, comparison, shares):
         "probability": everyone * one["simulated_probability"].values,
         "predicted": everyone * (upper - lower),
         "inside": (lower <= shares) & (shares <= upper),
-        "film": _films(ensemble, comparison, shares),
+        "film": _films(comparison, curves, shares),
     }
     for name, (tried, logits, truth) in fits.items():
         model = np.log(tried), logits.values[:, 0]
@@ -259,13 +266,13 @@ def _with_shares(comparison, shares):
     return comparison.assign(measured_share=("record", shares))
 
 
-def _films(ensemble, comparison, shares):
+def _films(comparison, curves, shares):
     """Gauged films of all pairs, one after the other along the record dimension."""
     names = ["contact_half_width", "film_thickness", "breakthrough_probability"]
     names += ["scatter_ratio", "share_error", "composite_rms_roughness"]
     pairs, points = shares.shape
     everyone = comparison[names].drop_vars("record").isel(record=np.tile(range(points), pairs))
-    curves = map_curves(ensemble.master, everyone)
+    curves = replace(curves, of_records=curves.of_records * pairs)
     gauged = gauge_film(curves, _with_shares(everyone, shares.ravel()))
     limits = [gauged[f"gauged_lambda_ratio{limit}"].values for limit in LIMITS]
     with np.errstate(divide="ignore"):
@@ -275,11 +282,12 @@ def _films(ensemble, comparison, shares):
 def judge_all(ensembles, compared, shares, pool):
     """As `judge`: each ensemble judges its part of the pairs, in several processes."""
     jobs = [
-        (ensemble, comparison, part)
+        (ensemble, comparison, curves, part)
         for ensemble, comparison, own in zip(
             ensembles, compared, np.array_split(shares, len(ensembles)), strict=True
         )
         for part in np.array_split(own, math.ceil(len(own) / 25))
+        for curves in [ensemble.curves(comparison)]
     ]
     return join(pool(judge, *zip(*jobs, strict=True)))
 
@@ -352,17 +360,17 @@ def _width_ratio(interval, found):
 
 def records_on_file(study, table, film, folder):
     """Write the records of the simulated rig, and a manifest of them."""
-    film, names = film.isel(film_formula=0), ("force", "speed", "temperature")
-    levels = [{name: [row[name]] for name in names} for row in table.to_dict("records")]
-    points = [operating_points(film.sel(level), 0.0)[0] for level in levels]
+    film = film.isel(film_formula=0)
+    rows = [{name: [level] for name, level in levels.items()} for levels in levels_of(table)]
+    points = [operating_points(film.sel(row), 0.0)[0] for row in rows]
     lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
-    rows = ["file,force [N],speed [rpm],temperature [degC],pair,origin"]
+    rows = ["file,temperature [degC],speed [rpm],force [N],pair,origin"]
     parts = defaultdict(list)
     for pair, number, part in simulated_revolutions(lines, study, points):
         parts[pair, number].append(part.voltage(study.rig))
         if len(parts[pair, number]) == math.ceil(study.rig.revolutions):
             _write(folder / f"{pair}_{number}.nc", parts.pop((pair, number)), study.rig)
-            level = [repr(points[number].levels[name]) for name in names]
+            level = [repr(points[number].levels[name]) for name in LEVELS]
             rows.append(",".join([f"{pair}_{number}.nc", *level, f"{pair}", "simulated"]))
     (folder / "manifest.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     return folder / "manifest.csv"
@@ -392,7 +400,7 @@ def through_files(study, ensemble, table, pairs, folder):
         own = comparison.isel(record=comparison["pair"].values == f"{pair}")
         own = own.sortby(own["lambda_ratio"].isel(film_formula=0))
         shares.append(own["measured_share"].values)
-        judged.append(judge(ensemble, own, shares[-1][None]))
+        judged.append(judge(ensemble, own, ensemble.curves(own), shares[-1][None]))
     return own, figures(own, np.array(shares), join(judged))
 
 
@@ -484,14 +492,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("study", nargs="?", default="workflow/config/paper.yaml")
     parser.add_argument("output", nargs="?")
-    parser.add_argument("--all", action="store_true", help="as many pairs with slip as without")
+    parser.add_argument("--pairs", type=int, help="held-out pairs of each scenario")
     options = parser.parse_args()
     # Most points of the grid have no record here, and need no warning.
     logging.getLogger("lube").setLevel(logging.ERROR)
     study = load_study(options.study)
     pairs, files = dict(PAIRS), FILES
-    if options.all:
-        pairs["slipping"] = pairs["rolling"]
+    if options.pairs:
+        pairs, files = dict.fromkeys(pairs, options.pairs), min(files, options.pairs)
     if study.name == "smoke":
         pairs, files = dict.fromkeys(pairs, TOY), TOY // 4
     beside = Path(options.output).parent if options.output else None

@@ -17,6 +17,7 @@ import pytest
 from studies import PAPER
 
 from lube.contact.rough_pair import drawn
+from lube.contact.windows import study_windows
 from lube.stages import load_study
 
 ENSEMBLES, REALISATIONS = 2, 32
@@ -56,7 +57,8 @@ def figures_of(coarse):
         for number, ensemble in enumerate(ensembles(rollers)):
             (comparison,) = bench.comparisons(study, ensemble, table, motion, [turns])
             own = shares[number::ENSEMBLES]
-            rows.append(bench.figures(comparison, own, bench.judge(ensemble, comparison, own)))
+            judged = bench.judge(ensemble, comparison, ensemble.curves(comparison), own)
+            rows.append(bench.figures(comparison, own, judged))
         return {name: np.mean([row[name] for row in rows]) for name in rows[0]}
 
     return figures
@@ -103,5 +105,5 @@ def test_a_record_of_several_cycles_is_that_of_the_run_itself(coarse, rollers, m
     study, slip, turns = bench.variant(coarse, rollers, motion), bench.MOTIONS[motion], 10.4
     table = bench.operating_table(bench.film_of(study), "slipping")
     found = bench.record_shares(study, table, slip, [turns], 0)
-    share = bench.windows_of(study, table).count(drawn(study, 0), slip, turns)[:, 1]
+    share = study_windows(study, table).count(drawn(study, 0), slip, turns)[:, 1]
     np.testing.assert_allclose(found[0], share, rtol=1e-12 if motion == "rolling" else 0.01)
