@@ -11,7 +11,7 @@ pairs, so that no interval is right merely by being wide. In one scenario fewer 
 circuit, recorded files and a manifest.
 
 With slip a pair takes seconds, so `PAIRS` has fewer of them there; ``--pairs`` sets one number for
-all. In a study whose films have a shape, or answer the roughness, each record has a curve of its own.
+all. Where films have a shape, or answer the roughness, each record has a curve of its own.
 """
 
 import argparse
