@@ -110,6 +110,8 @@ def duty(
     parts = joined(table, contact, on_pairs)
     found = columns | {"share": share} | dict(parts.data_vars) | whole
     found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers)
+    for name in labels.keys() & found.variables.keys():
+        raise DataError(f"points: got the column {name!r}, which the answer has, need another name")
     return Answer(labels | dict(found.data_vars), found.coords, found.attrs)
 
 

@@ -172,6 +172,10 @@ def test_points_have_their_own_radii_and_surface_speeds(rollers, oil):
         ({"force [m]": [1.0] * 3, "force [N]": None}, "points: force: wrong dimension or unit 'm'"),
         ({"force [kN]": [1.0] * 3}, "points: got the column 'force' twice, need it once"),
         ({name: [] for name in POINTS}, "points: got no rows, need one for each duty point"),
+        (
+            {"lubricant": ["a", "b", "c"]},
+            "points: got the column 'lubricant', which the answer has",
+        ),
         ({"temperature [degC]": [60.0, 60.0, 20.0]}, "got 20 degC, need 40 to 100 degC"),
     ],
 )

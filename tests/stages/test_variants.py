@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from made import made
 
+from lube.grid.film_responses import VARIABLES
 from lube.physics.flattening import amplitude_ratio
 from lube.schema import POINT_DIMS
 from lube.stages.film import film_table
@@ -101,11 +102,18 @@ def test_a_film_that_did_not_converge_is_unknown_in_its_variants_alone(few, file
     profile = files["film_profile"].transpose(*POINT_DIMS, ...).copy(deep=True)
     for name in ("film", "central_film"):
         profile[name][0, 0, 0, 1] = np.nan
-    holed = make(few, files | {"film_profile": profile}).squeeze()["breakthrough_probability"]
-    expected = found["breakthrough_probability"].copy()
-    computed = [number for number, one in enumerate(VARIANTS.values()) if one.film == "computed"]
-    expected[computed, 0, 1] = np.nan
-    np.testing.assert_array_equal(holed, expected)
+    response = files["film_response"].copy(deep=True)
+    for name in VARIABLES:
+        response[name].transpose(*POINT_DIMS, ...)[0, 0, 0, 1] = np.nan
+    holed = make(few, files | {"film_profile": profile, "film_response": response}).squeeze()
+    for name in ("breakthrough_probability", "roughness_ratio"):
+        needs = [
+            one.gap.is_answered or (one.film == "computed" and name != "roughness_ratio")
+            for one in VARIANTS.values()
+        ]
+        expected = found[name].copy()
+        expected[needs, 0, 1] = np.nan
+        np.testing.assert_array_equal(holed[name], expected)
 
 
 def test_the_roughness_ratio_by_a_plain_transform(few, files):
