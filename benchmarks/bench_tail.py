@@ -25,14 +25,15 @@ import scipy.special
 import scipy.stats
 
 from lube.contact.rough_pair import roughness_batch
-from lube.grid.discretise import layer_factor_of
+from lube.contact.windows import study_windows
+from lube.grid.operating_points import at_slip
 from lube.schema import OPERATING_DIMS
 from lube.stages.contact import contact_statistics
 from lube.stages.film import film_table
 from lube.stages.tail import FEWER_PAIRS, PAIRS, make
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import load_study
-from lube.surfaces.rare_contact import draw_pair, rare_contact
+from lube.surfaces.rare_contact import draw_pair
 
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 SEEDS = 20
@@ -51,8 +52,9 @@ def prepared(study_file):
     study = load_study(study_file)
     grid = study.operating_grid
     oil = lubricant_table(study.lubricants[:1], grid.temperature)
-    film = film_table(oil, study.rollers, grid.force, grid.speed, study.film_formulas)
-    return study, film.transpose(*OPERATING_DIMS, ...)
+    levels = grid.force, grid.speed, study.film_formulas
+    film = film_table(oil, study.rough_rollers, *levels, **study.film_model)
+    return study, at_slip(film).transpose(*OPERATING_DIMS, ...)
 
 
 # Stated errors
@@ -60,15 +62,14 @@ def prepared(study_file):
 
 def pairs_of_lines(study, film, seeds):
     """Importance sampling by single pairs, shape (seeds, pairs, probabilities, points)."""
-    spec = study.line_spec
-    point, factor = points_of(study, film)
+    windows = study_windows(study, film)
 
     def one(seed, number):
-        return rare_contact(spec, seed, number, *point, factor)[0][::-1]
+        return windows.sample(study.line_spec, seed, number)[0][::-1]
 
     seeds, numbers = np.repeat(seeds, PAIRS), np.tile(range(PAIRS), len(seeds))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return np.array(list(pool.map(one, seeds, numbers))).reshape(-1, PAIRS, 2, point[0].size)
+        return np.array(list(pool.map(one, seeds, numbers))).reshape(-1, PAIRS, 2, windows.size)
 
 
 def limits_of_stage(study, film):
@@ -114,23 +115,11 @@ def ensemble(study, film, realisations):
 
     def one(number):
         lines = roughness_batch(study.line_spec, study.seed, [number])
-        found = contact_statistics(lines, film, study.boundary_layer)
+        found = contact_statistics(lines, film, study.boundary_layer, gap=study.gap)
         return [found[name].values.ravel() for name in PROBABILITIES]
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return np.array(list(pool.map(one, range(realisations))))
-
-
-def points_of(study, film):
-    """Films in height steps and window points of all operating points, and the layer's factor."""
-    spec = study.line_spec
-    factor = layer_factor_of(study.line_spec, film["reduced_modulus"].item(), study.boundary_layer)
-    half = np.floor(film["contact_half_width"] / spec.spacing).broadcast_like(
-        film["film_thickness"]
-    )
-    half = half.transpose(*film["film_thickness"].dims)
-    films = film["film_thickness"].values.ravel() / spec.height_step
-    return (films, 2 * half.values.ravel().astype(np.int64) + 1), factor
 
 
 def chi_square(difference, covariance):
@@ -198,8 +187,8 @@ def print_held(pairs, counted):
 
 def print_cost(study, film, values, errors):
     """Processor time of the sampling and stated error by decades of rarity."""
-    spec = study.line_spec
-    (films, widths), factor = points_of(study, film)
+    spec, windows = study.line_spec, study_windows(study, film)
+    widths = 2 * windows.half_windows + 1
     probability = values[:, 0].mean(axis=0)
     relative = np.sqrt(np.mean((errors[:, 0] / values[:, 0]) ** 2, axis=0))
     decade = np.floor(np.log10(probability) / 2.0).astype(int)
@@ -209,7 +198,7 @@ def print_cost(study, film, values, errors):
         times = []
         for number in range(4):
             begin = time.process_time()
-            rare_contact(spec, study.seed, number, films[here], widths[here], factor)
+            windows[here].sample(spec, study.seed, number)
             times.append(time.process_time() - begin)
         print(f"P from 1e{2 * one} to 1e{2 * one + 2}: {np.sum(decade == one)} points, ", end="")
         print(f"{np.mean(widths[here]):.0f} window points wide on average, ", end="")
