@@ -76,6 +76,11 @@ class RoughPiece:
             line[index] = heights
         return lines
 
+    @property
+    def highest(self) -> float:
+        """Largest height of both lines together, m, if their highest points met."""
+        return sum(heights.max() for _, heights in self._cut) * self.grid.height_step
+
     def steps(self, least: float, greatest: float) -> tuple[int, int]:
         """First time step, and number of steps, between two travels of the oil, half-widths."""
         by_step = self.grid.spacing / self.half_width / max(self.speeds)

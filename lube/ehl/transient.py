@@ -28,7 +28,8 @@ from lube.types import Array
 CLOSED = 1e-3
 """Gap at which the surfaces touch, over the central film of smooth rollers."""
 REACH, BEYOND = 1.3, 0.15
-"""How far the even nodes reach, in half-widths: into the inlet, and beyond the end of the film."""
+"""How far the even nodes reach, in half-widths: into the inlet, unless high roughness touches
+farther out, and beyond the end of the film."""
 _GROWTH = 1.08, 1.15
 """Growth of the cells towards the inlet, and behind the film."""
 _GROWN, _SETTLED = 1.5, 4.0
@@ -38,12 +39,13 @@ _DAMPING = 1.0
 _ENOUGH, _LARGEST, _MOST = 1e-7, 0.5, 300
 """Change of the pressure at which a time step is solved, the largest in a step of Newton's method,
 and the most of these."""
-_SLOW, _PATIENCE = 0.2, 40
-"""Change of the pressure over that before, above which the derivatives are formed anew; and the
-steps of Newton's method after which smaller ones are taken."""
+_SLOW, _CREEPING, _PATIENCE = 0.2, 1e-4, 40
+"""Change of the pressure over that before, above which the derivatives are formed anew; unless the
+change is so small, while the end of the film creeps from node to node; and the steps of Newton's
+method after which smaller ones are taken."""
 
 
-def passage_nodes(profile: FilmProfile, step: float) -> Array:
+def passage_nodes(profile: FilmProfile, step: float, reach: float = REACH) -> Array:
     """Nodes for the passage of roughness: even in the contact, farther apart outside.
 
     Parameters
@@ -52,13 +54,15 @@ def passage_nodes(profile: FilmProfile, step: float) -> Array:
         The film of smooth rollers.
     step : float
         Distance of the even nodes over the half-width.
+    reach : float, optional
+        How far the even nodes reach into the inlet, in half-widths.
 
     Returns
     -------
     numpy.ndarray
         Positions over the half-width, from the first to the last of the film's own nodes.
     """
-    first, last = int(REACH / step) + 1, int((profile.film_end + BEYOND) / step) + 1
+    first, last = int(reach / step) + 1, int((profile.film_end + BEYOND) / step) + 1
     even = step * np.arange(-first, last + 1)
     before, behind = (
         side * _growing(side * start, side * end, step, growth)
@@ -90,6 +94,9 @@ class RoughPassage:
         The film of smooth rollers, from which the passage begins.
     step : float
         Distance of the even nodes over the half-width, and the time step.
+    highest : float, optional
+        Height of the highest summit, scaled as the gap. The even nodes reach as far into the inlet
+        as it may touch.
 
     Attributes
     ----------
@@ -99,8 +106,11 @@ class RoughPassage:
         Pressure of solid contact and scaled gap midway between the nodes.
     """
 
-    def __init__(self, profile: FilmProfile, step: float) -> None:
-        smooth = on_nodes(profile, passage_nodes(profile, step))
+    def __init__(self, profile: FilmProfile, step: float, highest: float = 0.0) -> None:
+        inlet = profile.nodes[profile.nodes < -REACH]
+        narrow = inlet[profile.scaled_gap(inlet) < highest]
+        reach = max(REACH, -narrow.min(initial=0.0))
+        smooth = on_nodes(profile, passage_nodes(profile, step, reach))
         self._discrete = DiscreteContact(smooth.contact, smooth.nodes)
         self._step, self._late = step, 0.5 * (1.0 + min(step / _DAMPING, 1.0))
         self._squeeze = 0.5 * self._discrete.weight[1:-1] / step
@@ -111,7 +121,7 @@ class RoughPassage:
         self._smooth = self.pressure = smooth.pressure
         self._offset, self.contact_pressure = smooth.offset, np.zeros(smooth.nodes.size - 1)
         self._flow = self._discrete.flow(smooth.pressure, smooth.offset)
-        self.gap, self._factors = self._flow.gap, None
+        self.gap, self._film, self._factors = self._flow.gap, None, None
 
     @property
     def position(self) -> Array:
@@ -149,16 +159,17 @@ class RoughPassage:
             before, (state, change) = change, self._newton(had, gap, flow, state, is_slow, largest)
             if change < _ENOUGH or not np.isfinite(change):
                 break
-            is_slow = change > _SLOW * before
-            largest = (
-                _LARGEST / (1 + number // _PATIENCE) ** 2
-            )  # so that sets of nodes do not cycle
+            is_creeping = self._moves and change < _CREEPING
+            is_slow = change > _SLOW * before and not (is_slow or is_creeping)
+            # So that sets of nodes do not cycle.
+            largest = _LARGEST / (1 + number // _PATIENCE) ** 2
         if not change < _ENOUGH:
             raise ConvergenceError(
                 f"{self._discrete.contact.name}: roughness that passes did not converge in a time "
                 f"step: the pressure changes by {change:.1g}"
             )
         self.pressure, self._offset, self.contact_pressure = state
+        self.pressure[1:-1] *= self._film  # nearly zero outside
         _, self._flow = self._flow_at(heights, *state)
         self.gap = self._flow.gap
 
@@ -167,7 +178,8 @@ class RoughPassage:
         pressure, solid = self._smooth.copy(), np.zeros_like(self.contact_pressure)
         pressure[1:] += (self.pressure - self._smooth)[:-1]
         solid[1:] = self.contact_pressure[:-1]
-        return np.maximum(pressure, 0.0), self._offset, solid
+        # The film ends about where it did, though the first guess has no pressure there.
+        return np.where(pressure > 0.0, pressure, self.pressure), self._offset, solid
 
     def _flow_at(self, heights, pressure, offset, solid):
         """Gap midway between the nodes, and the flow through it, opened where it is closed."""
@@ -185,8 +197,8 @@ class RoughPassage:
         """Step of Newton's method for pressure, offset and contact pressure; the largest change.
 
         Nodes outside the film get no pressure of the oil, and cells without contact none of the
-        solids. The derivatives are formed anew where film or contact have changed, or if the last
-        step came hardly nearer; otherwise those of an earlier step, or time step, are near enough.
+        solids. The derivatives are formed anew if the last step came hardly nearer; otherwise those
+        of an earlier step, or time step, are near enough.
         """
         discrete, (pressure, offset, solid) = self._discrete, state
         late, drag = self._late, flow.flux + flow.pressure_flow
@@ -210,8 +222,9 @@ class RoughPassage:
         touching = solid + self._closed - gap > 0.0
         cells = np.flatnonzero(touching | (solid != 0.0))
         if is_slow or self._factors is None:
-            self._film, self._factors = in_film, derivatives.factors(in_film)
-        changed = np.flatnonzero(in_film != self._film)
+            self._factored_film, self._factors = in_film, derivatives.factors(in_film)
+        self._moves, self._film = not np.array_equal(in_film, self._film), in_film
+        changed = np.flatnonzero(in_film != self._factored_film)
         wanted = np.where(in_film, -residual, -pressure[1:-1])
         missing = HERTZ_LOAD - discrete.weight @ pressure - discrete.step @ solid
         closing = np.where(touching, self._closed - gap, -solid)[cells]

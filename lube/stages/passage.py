@@ -93,10 +93,10 @@ def _passed(study, oil, temperature, speed, force):
 def _of_lines(piece, profile, layer, radius):
     """Least gaps by all answers at every time step, and their shares below the layer."""
     step = piece.grid.spacing / piece.half_width
-    passage = RoughPassage(profile, step)
+    scale = piece.half_width**2 / radius
+    passage = RoughPassage(profile, step, piece.highest / scale)
     position = passage.position
     travel = BEFORE + step * np.arange(round((CROSSING - BEFORE) / step) + 1)
-    scale = piece.half_width**2 / radius
     heights = piece.heights(position, travel)
     smooth = profile.scaled_gap(position)[:, None] * scale
     gaps = np.full((len(ANSWERS), travel.size), np.nan)
