@@ -159,7 +159,7 @@ class RoughPassage:
             before, (state, change) = change, self._newton(had, gap, flow, state, is_slow, largest)
             if change < _ENOUGH or not np.isfinite(change):
                 break
-            is_creeping = self._moves and change < _CREEPING
+            is_creeping = self._moves and change < _CREEPING and number < _PATIENCE
             is_slow = change > _SLOW * before and not (is_slow or is_creeping)
             # So that sets of nodes do not cycle.
             largest = _LARGEST / (1 + number // _PATIENCE) ** 2
