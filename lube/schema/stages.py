@@ -247,7 +247,7 @@ _ROWS = (
     ),
     Stage(
         "passage",
-        "rough lines pass through the contact by Reynolds' equation with time, about an hour",
+        "rough lines pass through the contact by Reynolds' equation with time, some ten minutes",
         inputs=("lubricant", "film_profile"),
         values=_LINES | _LAYER | {"slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"},
         target="rough_passage",
