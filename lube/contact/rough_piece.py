@@ -9,7 +9,7 @@ import scipy.fft
 from lube.ehl.line_contact import FilmProfile
 from lube.ehl.response import WaveResponse, at_wavelengths
 from lube.grid.discretise import LineGrid, speed_ratios
-from lube.grid.film_responses import SHORTEST, SLIDING_RATIO
+from lube.grid.film_responses import SHORTEST, SLIDING_RATIO, UNCHANGED
 from lube.grid.operating_points import surface_speeds
 from lube.types import Array, Pair
 
@@ -126,5 +126,9 @@ def _response(profile, wavenumber, speed, position):
     wanted = 2.0 * np.pi / wavenumber
     count = int(np.log(wanted[0] / SHORTEST) / np.log(SLIDING_RATIO)) + 2
     solved = np.geomspace(wanted[0], SHORTEST, count)
-    transfer = [WaveResponse.of(profile, each).transfer(speed, position) for each in solved]
-    return at_wavelengths(wanted, solved, np.array(transfer), position).T
+    transfer = np.ones((count, position.size), complex)
+    for number, wavelength in enumerate(solved):
+        transfer[number] = WaveResponse.of(profile, wavelength).transfer(speed, position)
+        if np.abs(transfer[number] - 1.0).max() < UNCHANGED:
+            break
+    return at_wavelengths(wanted, solved, transfer, position).T

@@ -99,7 +99,7 @@ def _squared_heights(spec, wavelengths):
             np.interp(-np.log(length), -np.log(wavelengths), each)
             for each in np.eye(wavelengths.size)
         ]
-        shares.append(weights @ amplitudes**2 / 2.0)
+        shares.append(np.einsum("wk,k", weights, amplitudes**2) / 2.0)
     return shares
 
 
