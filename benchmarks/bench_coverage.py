@@ -147,11 +147,14 @@ def _realisation(study, film, number):
 # The shares of single pairs
 
 
-def operating_table(film, motion):
-    """Films of the operating points, over ``point``, from the smallest lambda ratio on."""
+def operating_table(film, motion, few=False):
+    """Films of the operating points, over ``point``, from the smallest lambda ratio on.
+
+    With slip there are few.
+    """
     table = at_slip(film, MOTIONS[motion]).isel(film_formula=0, lubricant=0, drop=True)
     table = table.stack(point=LEVELS).reset_index("point").sortby("lambda_ratio")
-    if motion == "slipping":
+    if few or motion == "slipping":
         ratios = np.log(table["lambda_ratio"].values)
         nearest = [int(np.argmin(np.abs(ratios - np.log(wanted)))) for wanted in SLIP_LAMBDAS]
         table = table.isel(point=sorted(set(nearest)))
@@ -279,15 +282,13 @@ def _films(comparison, curves, shares):
         return np.log(np.stack(limits, axis=-1)).reshape(pairs, points, 3)
 
 
-def judge_all(ensembles, compared, shares, pool):
+def judge_all(ensembles, compared, curves, shares, pool):
     """As `judge`: each ensemble judges its part of the pairs, in several processes."""
+    parts = np.array_split(shares, len(ensembles))
     jobs = [
-        (ensemble, comparison, curves, part)
-        for ensemble, comparison, own in zip(
-            ensembles, compared, np.array_split(shares, len(ensembles)), strict=True
-        )
+        (*judges, part)
+        for *judges, own in zip(ensembles, compared, curves, parts, strict=True)
         for part in np.array_split(own, math.ceil(len(own) / 25))
-        for curves in [ensemble.curves(comparison)]
     ]
     return join(pool(judge, *zip(*jobs, strict=True)))
 
@@ -395,12 +396,13 @@ def through_files(study, ensemble, table, pairs, folder):
     experiment = measured_experiment(manifest, study)
     model = model_of(experiment, ensemble, study)
     comparison = compare(model, experiment, ensemble.contact)
-    judged, shares = [], []
+    judged, shares, curves = [], [], None
     for pair in range(pairs):
         own = comparison.isel(record=comparison["pair"].values == f"{pair}")
         own = own.sortby(own["lambda_ratio"].isel(film_formula=0))
         shares.append(own["measured_share"].values)
-        judged.append(judge(ensemble, own, ensemble.curves(own), shares[-1][None]))
+        curves = curves or ensemble.curves(own)  # the same for all pairs
+        judged.append(judge(ensemble, own, curves, shares[-1][None]))
     return own, figures(own, np.array(shares), join(judged))
 
 
@@ -413,8 +415,10 @@ def measure_scenario(study, ensembles, motion, pairs, pool):
     shares = held_out_shares(study, table, motion, pairs, pool)
     rows = []
     made = [comparisons(study, ensemble, table, motion) for ensemble in ensembles]
+    # How long the records are changes nothing in their curves.
+    curves = [one.curves(own[0]) for one, own in zip(ensembles, made, strict=True)]
     for number, compared in enumerate(zip(*made, strict=True)):
-        judged = judge_all(ensembles, compared, shares[:, number], pool)
+        judged = judge_all(ensembles, compared, curves, shares[:, number], pool)
         rows.append(figures(compared[0], shares[:, number], judged))
         show(f"{TURNS[number]:g} turns", rows[-1])
     return rows, compared[0], shares
@@ -426,7 +430,9 @@ def measure_ensembles(study, shares, ensembles, pool):
     for number, ensemble in enumerate(ensembles):
         table = operating_table(ensemble.film, "rolling")
         compared = comparisons(study, ensemble, table, "rolling", [FILE_TURNS])
-        rows.append(figures(compared[0], own, judge_all([ensemble], compared, own, pool)))
+        curves = [ensemble.curves(compared[0])]
+        judged = judge_all([ensemble], compared, curves, own, pool)
+        rows.append(figures(compared[0], own, judged))
         show(f"ensemble {number}", rows[-1])
     return rows
 
@@ -451,7 +457,7 @@ def measure(study, pairs, files, pool, folder):
             print(f"  {time.perf_counter() - begin:.0f} s")
             if of_ensembles is None:
                 of_ensembles = measure_ensembles(own, shares, ensembles, pool)
-                table = operating_table(ensembles[0].film, "slipping")  # the fewer points
+                table = operating_table(ensembles[0].film, "rolling", few=True)
                 comparison, row = through_files(own, ensembles[0], table, files, folder)
                 show(f"through files, {files} pairs", row)
                 found[f"{name}, through files"] = files, (FILE_TURNS,), [row], comparison

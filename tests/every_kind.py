@@ -39,9 +39,9 @@ def datasets_of_every_kind(study):
         "realisations": 2,
     }
     own = study.model_copy(update=own)
-    # Measured times, what a package makes that need not be installed, and what takes minutes.
+    # Measured times, what a package makes that need not be installed, and what takes long.
     others = [kind for kind, stage in STAGES.items() if stage.target == "benchmark"]
-    others += ["patch", "passage"]
+    others += ["patch", "passage", "film_plane", "heating_plane"]
     return {
         **made(own, [kind for kind in STAGES if kind not in others]),
         "surface": measured_surfaces({"first": example_surface()}, own.line_spec, 0.7),
