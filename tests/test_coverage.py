@@ -91,12 +91,11 @@ def test_intervals_contain_the_true_value_in_rolling(figures_of, rollers, turns)
 
 
 @SLOW
-@pytest.mark.parametrize("motion", bench.MOTIONS)
-def test_intervals_contain_the_true_value_where_the_oil_answers_the_lines(figures_of, motion):
+def test_intervals_contain_the_true_value_where_the_oil_answers_the_lines(figures_of):
     """Each record has a curve of its own, through few pairs."""
-    found = figures_of("equal", motion, 10.4, ("computed", "computed"))
-    assert 0.87 <= found["film_coverage"] <= 0.99
-    assert 0.87 <= found["agreement"] <= 0.99
+    found = figures_of("equal", "rolling", 10.4, ("computed", "computed"))
+    assert 0.89 <= found["film_coverage"] <= 0.99
+    assert 0.89 <= found["agreement"] <= 0.99
     assert found["film_width_ratio"] <= 1.6
     assert found["alpha_coverage"] >= 0.8
     assert found["layer_coverage"] >= 0.8
