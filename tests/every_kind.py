@@ -26,7 +26,7 @@ def measured_values(kind):
     dims = {dim for row in FILES[kind].values() for dim in row.dims}
     dims &= COORDINATES.keys()
     coords = {dim: np.arange(2).astype(COORDINATES[dim].kind + "8") for dim in sorted(dims)}
-    return label(xr.Dataset(variables, coords), kind)
+    return label(xr.Dataset(variables, coords, {"not_converged": 0}), kind)
 
 
 def datasets_of_every_kind(study):

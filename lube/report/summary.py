@@ -226,7 +226,6 @@ def _held(film, contact, first):
         "deformed": int(deformed(film).sum()),
         "small": LARGEST_DEFORMATION,
         "points": share.size,
-        "films": film["film_thickness"].size,
     }
 
 

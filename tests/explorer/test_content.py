@@ -109,3 +109,11 @@ def test_points_outside_the_model_are_marked_and_the_load_share_is_there(explore
     assert set(marked["dims"]) == set(CHOICES) and all(marked["values"])
     assert set(content["variables"]["contact_load_share"]["values"]) == {2.0}
     assert not any(read_back(explored)["marks"]["overloaded"]["values"])
+
+
+def test_points_whose_roughness_is_not_answered_linearly_are_marked(explored):
+    film = explored["film"]
+    changed = film.assign(rms_deformation=0.5 * film["film_thickness"].isel(film_formula=0))
+    marked = read_back(explored | {"film": changed})["marks"]["deformed"]
+    assert any(marked["values"])
+    assert not any(read_back(explored)["marks"]["deformed"]["values"])

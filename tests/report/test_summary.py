@@ -143,6 +143,15 @@ def test_points_at_which_the_model_does_not_hold_are_stated(study, results):
     assert "At 8 of the 16 operating points contact is less frequent than at a thicker film" in text
 
 
+def test_points_whose_roughness_is_not_answered_linearly_are_counted(study, results):
+    assert "linear response" not in findings(study, results)
+    slips = results["contact"]["slide_to_roll_ratio"]
+    film = results["film"].assign(film_thickness=results["film"]["film_thickness"] + 0.0 * slips)
+    half = film["film_thickness"].isel(film_formula=0, drop=True) / 2.0
+    text = findings(study, results | {"film": film.assign(rms_deformation=half.where(slips > 0))})
+    assert "At 8 of the 16 operating points the oil changes the roughness by more than 10 %" in text
+
+
 def test_measured_records_are_not_called_simulated(study, results):
     comparison = results["comparison"].assign_coords(origin="measured")
     text = findings(study, results | {"comparison": comparison})
