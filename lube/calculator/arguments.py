@@ -6,7 +6,7 @@ from typing import Any, get_args
 import numpy as np
 import xarray as xr
 
-from lube.errors import LubeError, StudyError, right_one, shown
+from lube.errors import LubeError, StudyError, located, right_one, shown
 from lube.grid.gap import Gap
 from lube.study.field_types import bounded
 from lube.study.rig_settings import RIG_REALISATIONS
@@ -52,14 +52,12 @@ def amount(name: str, value: Amount, units: str, **limits: float) -> xr.DataArra
     >>> amount("force", ([0.4, 0.8], "kN"), "N").values
     array([400., 800.])
     """
-    try:
+    with located(name, StudyError):
         numbers = np.asarray(_numbers(value, units), float)
         for number in numbers.ravel():
             bounded(number, None if units == "1" else units, **limits)
         if numbers.ndim > 1 or not numbers.size:
             raise LubeError(f"got {shown(value)}, need one number with its unit, or a list of them")
-    except LubeError as error:
-        raise StudyError(f"{name}: {error}") from None
     return xr.DataArray(numbers, {name: numbers} if numbers.ndim else None, [name] * numbers.ndim)
 
 
@@ -89,10 +87,8 @@ def bare_number(name: str, value: object, **limits: float) -> float:
     StudyError
         Which argument, what came, what is needed.
     """
-    try:
+    with located(name, StudyError):
         return bounded(parse_number(value), None, **limits)
-    except LubeError as error:
-        raise StudyError(f"{name}: {error}") from None
 
 
 def conditions(
