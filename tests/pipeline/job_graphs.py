@@ -1,6 +1,7 @@
-"""Print which rules follow which in every shipped study, as Snakemake plans them.
+"""Print which rules follow which in the shipped studies, as Snakemake plans them.
 
-A program of its own, because the Snakefile changes the process that reads it.
+Studies with the same datasets have the same rules, so only one of them is planned. This is a
+program by itself, because the Snakefile changes the process that reads it.
 """
 
 import contextlib
@@ -10,6 +11,8 @@ from pathlib import Path
 
 from snakemake.api import SnakemakeApi
 from snakemake.settings import types
+
+from lube.stages import load_study
 
 TARGETS = "all areal_contact patch_contact computed rough_passage benchmark archive report".split()
 
@@ -30,5 +33,6 @@ def followers(study):
 
 
 if __name__ == "__main__":
-    studies = sorted(Path("workflow/config").glob("*.yaml"))
+    shipped = sorted(Path("workflow/config").glob("*.yaml"))
+    studies = {load_study(study).datasets: study for study in shipped}.values()
     print(json.dumps({study.stem: sorted(followers(study)) for study in studies}))

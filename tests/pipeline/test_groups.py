@@ -27,7 +27,7 @@ def profile(monkeypatch):
 
 @pytest.fixture
 def followers():
-    """Pairs of rules of every shipped study, of which the second follows the first."""
+    """Pairs of rules of the shipped studies, of which the second follows the first."""
     finished = subprocess.run(
         [sys.executable, Path(__file__).with_name("job_graphs.py")],
         cwd=ROOT,
@@ -57,7 +57,7 @@ def test_no_group_of_any_shipped_study_waits_for_itself(profile, followers):
             pytest.fail(f"{study}: groups wait for one another: {' -> '.join(error.args[1])}")
         rules = {rule for pair in pairs for rule in pair} - LOCAL - TARGETS
         assert rules <= profile["groups"].keys(), study
-    assert len(followers) >= 7
+    assert len(followers) >= 2  # with a measured surface and without
 
 
 def test_every_stage_is_in_a_group(profile):
