@@ -250,7 +250,7 @@ def _run_strips(
         first_2 = (position_2 - margin) % lines[1].size
         searched = films[thinnest_first[0]]
         found = fill_high_stretches(lines, ahead, first_1, first_2, searched, line, runs)
-        searched -= 1  # the stretches are no runs yet
+        searched -= 1  # the stretches are not yet divided into runs
         for point in thinnest_first:
             if found == 0:  # a thicker film has none either
                 break
