@@ -13,8 +13,8 @@ its squeeze term,
     \int \hat p\, dX = 0
 
 with the change :math:`\hat q` of the mass flux. The pressure does not change where the oil begins,
-nor beyond the end of the film, as the motion of that end is of second order. The load is fixed: the
-rollers give way by :math:`\hat h_0`.
+nor from the end of the film on, as the motion of that end is of second order. The load is fixed:
+the rollers give way by :math:`\hat h_0`.
 """
 
 from dataclasses import dataclass

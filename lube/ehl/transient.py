@@ -183,7 +183,7 @@ class RoughPassage:
         return np.where(pressure > 0.0, pressure, self.pressure), self._offset, solid
 
     def _flow_at(self, heights, pressure, offset, solid):
-        """Gap midway between the nodes, and the flow through it, which closed cells let leak."""
+        """Gap midway between the nodes, and the flow through it, held open where it is closed."""
         gap, cells = self._discrete.gap(pressure, offset - heights), np.flatnonzero(solid)
         gap += self._by_cell[:, cells] @ solid[cells]
         return gap, self._discrete.flow_through(np.maximum(gap, self._closed), pressure)

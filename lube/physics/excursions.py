@@ -155,7 +155,9 @@ def expected_contacts(level: Array, moments: Sequence[float], length: float, wid
 
 
 def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature: float) -> Array:
-    r"""Fraction of an isotropic surface's summits above a level sharper than a given curvature.
+    r"""Fraction of a surface's summits above a level that are sharper than a given curvature.
+
+    The surface is isotropic.
 
     The mean curvature :math:`\kappa` of a summit in two directions and the difference between the
     directions are independent. Averaged over the difference, summits have the density (Nayak)
@@ -200,7 +202,7 @@ def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature
 
 
 def _share(level, moments, least_curvature, weight):
-    """Fraction of the summits above levels that are sharper, weighted by a function of curvature."""
+    """Fraction of the summits above levels that are sharper than a curvature, given a weight."""
     m0, covariance, variance = moments
     # Heights are integrated by Gauss-Laguerre quadrature, with z = h + m0 t / h.
     scale = np.asarray(level, float)[..., None]

@@ -194,7 +194,7 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
 
     References
     ----------
-    As for `wilson_sheu`, read in a transcription.
+    The paper of `wilson_sheu`, read in a transcription.
 
     Examples
     --------

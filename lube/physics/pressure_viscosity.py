@@ -183,7 +183,7 @@ def roelands_slope(
     if not excess(ends[0]) < 0.0 < excess(ends[1]):
         raise RangeError(
             f"got a pressure-viscosity coefficient of {1e9 * coefficient:g} 1/GPa, which no oil of "
-            f"Roelands of {dynamic_viscosity:g} Pa s has"
+            f"{dynamic_viscosity:g} Pa s has by Roelands' law"
         )
     return float(np.exp(brentq(excess, *ends, xtol=1e-13)))
 

@@ -149,7 +149,7 @@ def repeats(study: Study, ratios: Ratios) -> bool:
 
 
 def _renewed(line, other, drift):
-    """Replace a share of a line's variance by that of another line; int32 height steps."""
+    """Replace a fraction of a line's variance by that of another line; int32 height steps."""
     kept, new = math.sqrt(1.0 - drift), math.sqrt(drift)
     return np.rint(kept * line + new * other).astype(np.int32)
 
@@ -182,14 +182,14 @@ class Revolution:
     seed: tuple[int, ...]
 
     def voltage(self, rig: Rig) -> Array:
-        r"""Log the revolution with a rig's circuit; the noise differs between rigs by a factor.
+        r"""Log the revolution with a rig's circuit.
 
-        With :math:`w` points in contact, conductance :math:`G = 1 / R_c + 1 / R_{leak}` and
+        The noise has the same seed for every rig, so it differs between rigs by a factor only. With :math:`w` points in contact, conductance :math:`G = 1 / R_c + 1 / R_{leak}` and
         :math:`R = R_s + R_l`, the voltage over the gap approaches
 
         .. math:: u_\infty = \frac{U}{1 + R G}
 
-        and in a time step the distance to it decreases by the factor
+        and in a time step the distance to this value decreases by the factor
         :math:`\exp(-\Delta t (G + 1 / R) / C)`.
 
         Parameters
