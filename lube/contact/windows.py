@@ -261,7 +261,7 @@ class ContactWindows:
             yield lines, np.flatnonzero(inverse.ravel() == number)
 
     def _under_flat_films(self, pair):
-        """Yield points with the same lines and layer, the lines, and films, half-windows, factor."""
+        """Yield points with equal lines and layer, the lines, and films, half-windows, factor."""
         for lines, some in self._in_contact(pair):
             for factor in np.unique(self._factors[some]):
                 here = some[self._factors[some] == factor]

@@ -289,11 +289,11 @@ class _Derivatives:
         return by_gap + self.by_gap[1] * deflection[inner, inner + 1] + self.by_node[1]
 
     def opened(self, by):
-        """Changes of the balances if the gap in the cells changes as in a column of `by`."""
+        """Differentiate by gap changes: the columns of `by` give the change in every cell."""
         return self.by_gap[0][:, None] * by[1:] + self.by_gap[1][:, None] * by[:-1]
 
     def rows(self, nodes):
-        """Derivatives at some nodes with respect to all inner pressures and the offset."""
+        """Differentiate at some nodes with respect to all inner pressures and the offset."""
         behind, before = (each[nodes] for each in self.by_gap)
         rows = np.empty((nodes.size, self.by_gap[0].size + 1))
         deflection = self.discrete.deflection[:, 1:-1]

@@ -109,7 +109,9 @@ def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float)
 
 
 def expected_contacts(level: Array, moments: Sequence[float], length: float, width: Array) -> Array:
-    r"""Expected number of contacts of an isotropic surface above a level, in a rectangle.
+    r"""Compute the expected number of contacts of an isotropic surface above a level.
+
+    The surface is a rectangle.
 
     The formula gives the expected Euler characteristic: the number of contacts less the holes in
     them. At high levels contacts have no holes. With :math:`u = h / \sqrt{m_0}` and the sides a
