@@ -273,7 +273,7 @@ def solve(
         )
     if meniscus is not None and not meniscus > 1.0:
         raise RangeError(
-            f"meniscus: got one {meniscus:g} half-widths before the line of centres, inside the "
+            f"meniscus: got {meniscus:g} half-widths before the line of centres, inside the "
             "contact, need more than 1 half-width"
         )
 

@@ -57,7 +57,7 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
     film, meniscus = np.broadcast_arrays(np.asarray(film, float), np.asarray(meniscus, float))
     if not np.all(meniscus > 1.0):
         raise RangeError(
-            f"meniscus: got one {meniscus.min():g} half-widths before the line of centres, inside "
+            f"meniscus: got {meniscus.min():g} half-widths before the line of centres, inside "
             "the contact, need more than 1 half-width"
         )
     wanted, _ = inlet_integral(np.log(film), film, np.inf)

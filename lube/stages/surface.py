@@ -106,8 +106,8 @@ def _remarks(surface, line):
     if resolved > shortest:
         yield (
             f"waves shorter than {resolved:.2g} m show the instrument and not the surface, and the "
-            f"line has waves down to {shortest:.2g} m: set shortest_wavelength to {resolved:.2g} m "
-            "or more"
+            f"line has waves down to {shortest:.2g} m: set a shortest_wavelength above "
+            f"{resolved:.2g} m"
         )
     hurst = surface["hurst_exponent"].item()
     if hurst <= 0.0 or hurst >= 1.0:

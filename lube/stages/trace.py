@@ -115,7 +115,7 @@ def _known_rows(film, points, gap):
     for number in np.flatnonzero(~known):
         log.warning("traces.%d: left out, the film is not known there", number)
     if not known.any():
-        raise DataError("traces: the film is known at none of the points, need it at one at least")
+        raise DataError("traces: the film is known at none of the points, need it at one or more")
     return rows.isel(operating_point=known)
 
 

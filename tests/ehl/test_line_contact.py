@@ -369,7 +369,7 @@ def test_a_naive_solution_gives_the_same_film(point):
 
 
 def test_a_meniscus_inside_the_contact_is_refused():
-    with pytest.raises(RangeError, match=r"got one 0\.8 half-widths before .*, need more than 1"):
+    with pytest.raises(RangeError, match=r"got 0\.8 half-widths before .*, need more than 1"):
         solve(contact_at(800, 100, 40), meniscus=0.8)
 
 
