@@ -48,8 +48,9 @@ def touching_strips(
         with curvatures around it, over the variance of the heights; at distances of 0 .. R rows
         and of -(C - 1) .. C - 1 columns.
     places : tuple of numpy.ndarray
-        Shape (K,) each: row of the surface in which each strip's known point lies, at least R, and
-        column of the surface in which the strip begins.
+        Shape (K,) each: row of the surface in which each strip's known point lies, at least R from
+        the first row and `around` from the last, and column of the surface in which the strip
+        begins.
     touching : tuple of numpy.ndarray
         Shape (K,) each: column of the strip in which the known point lies, and its height,
         float32 height steps.

@@ -9,10 +9,10 @@ a sum of filtered lines, each times a function of the position, so the roughness
 The answer is smooth, so it is computed at some points of the window, the nodes, and taken as linear
 between them.
 
-Blocks of points are skipped where the highest points of both lines lie below the film. All other
-points are read as in the literal scan, so the results equal it to the last bit. Windows a tenth of
-the contact apart see nearly the same points, so a probability does not need a window at every time
-step.
+Blocks of points are skipped where even the sum of both lines' highest points lies below the film.
+All other points are read as in the literal scan, so the results equal it to the last bit. Windows a
+tenth of the contact apart see nearly the same points, so a probability does not need a window at
+every time step.
 """
 
 from typing import NamedTuple

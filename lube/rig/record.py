@@ -172,7 +172,7 @@ class Record:
         return replace(self.conditions, speed=speed) if beyond else self.conditions
 
     def _windows(self, revolutions):
-        """Count the windows in the record that share no roughness."""
+        """Count the windows in the record that have no roughness in common."""
         spec, ratios = self._study.line_spec, self._ratios
         reach = 2.0 * self._study.rollers.contact_half_width(self.conditions.force)
         reach = (reach + spec.longest_wavelength) / spec.spacing

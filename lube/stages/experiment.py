@@ -180,7 +180,7 @@ def _dataset(
     refused: Sequence[str] = (),
     remarks: Sequence[str] = (),
 ) -> xr.Dataset:
-    """Dataset of all records' rows, NaN where one has no value; logs what was refused."""
+    """Dataset of all records' rows, NaN where a row has no value; refusals are logged."""
     for line in (*(f"Refused: {line}" for line in refused), *remarks):
         log.warning("%s", line)
     if not rows:

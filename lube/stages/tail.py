@@ -309,7 +309,7 @@ def _first_breakthrough(runs, points, revolution):
         excess = xr.where(apart > 0.0, (1.0 - run_points - between - searched) / apart, 0.0)
         excess = excess.clip(min=0.0)
         gap = xr.where(apart > 0.0, searched / apart, 0.0) - (points - 1.0)
-        # A window longer than the gap leaves the part of the excess that reaches beyond it.
+        # A window longer than the gap leaves the part of the excess that extends beyond it.
         left = apart * xr.where(excess > 0.0, np.exp(gap.clip(max=0.0) / excess), 1.0)
         gap = gap.clip(min=0.0)
         free = free + left * (gap + excess)

@@ -3,7 +3,7 @@
 The realisations of an ensemble and the blocks of a record both scatter about a share of time.
 Either scatter is equivalent to a number of independent trials, the effective sample size. From
 there on both are treated alike, so that the intervals of simulation and experiment mean the same.
-Without scatter, the number of independent windows takes its place.
+Without scatter, the number of independent windows is used instead.
 """
 
 from collections.abc import Callable
@@ -21,8 +21,8 @@ def mean_over_first(values: Array) -> Array:
     """Mean over the first axis, with the terms added one after the other.
 
     NumPy's own sum pairs the terms by the array's shape and memory layout, so the last digit of
-    one column depends on the columns beside it. Here it does not, and one operating point
-    computed by itself is bit-identical to the same point computed among others.
+    one column depends on the other columns. Here it does not, and one operating point computed by
+    itself is bit-identical to the same point computed among others.
 
     Parameters
     ----------

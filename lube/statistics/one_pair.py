@@ -76,7 +76,7 @@ def repeat_factor(turns: npt.ArrayLike) -> npt.ArrayLike:
 
 
 def distinct_alignments(turns: float, ratios: Ratios, points: Points, reach: float) -> float:
-    """Count the alignments of two lines that share no roughness.
+    """Count the alignments of two lines that have no roughness in common.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def scatter_ratio(
     points : tuple of int
         Points around either roller.
     reach : float
-        Distance of two alignments that share no roughness, points.
+        Distance of two alignments that have no roughness in common, points.
     persistent : float
         :math:`s_\infty^2 / s_1^2`, the part of the variance that new alignments do not average out.
         It has no effect for equal rollers in pure rolling, which keep one alignment.

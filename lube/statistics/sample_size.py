@@ -7,7 +7,7 @@ from lube.types import Array, Values
 
 
 def independent_windows(travel: Values, width: Values, longest_wavelength: float) -> Array:
-    r"""Count the contact windows of one realisation that share no roughness.
+    r"""Count the contact windows of one realisation that have no roughness in common.
 
     Two windows see independent roughness if a longest wavelength lies between them:
 

@@ -157,7 +157,7 @@ def test_a_topography_of_both_rollers_is_read_and_resampled_once(study_file):
 
 def test_no_isotropic_surface_belongs_to_profiles_along_rolling(study_file):
     check_isotropic(load_study(study_file(MAP)).line_spec)
-    with pytest.raises(LubeError, match="need isotropic ones"):
+    with pytest.raises(LubeError, match="need isotropic topographies"):
         check_isotropic(load_study(study_file(SCAN)).line_spec)
     with pytest.raises(LubeError, match="got a measured line, need lines drawn"):
         check_isotropic(load_study(study_file(SCAN | {"use": "repeated line"}, MAP)).line_spec)
