@@ -289,7 +289,7 @@ class _Derivatives:
         return by_gap + self.by_gap[1] * deflection[inner, inner + 1] + self.by_node[1]
 
     def opened(self, by):
-        """Differentiate by gap changes: the columns of `by` give the change in every cell."""
+        """Differentiate with respect to changes of the gap: the columns of `by`, cell by cell."""
         return self.by_gap[0][:, None] * by[1:] + self.by_gap[1][:, None] * by[:-1]
 
     def rows(self, nodes):
