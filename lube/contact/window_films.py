@@ -53,8 +53,8 @@ class WindowFilm:
         first, last = reached[[0, -1]] if reached.size else (self.before, self.before)
         if first == 0 or last == films.shape[1] - 1:
             raise DataError(
-                f"film profile: got {films[:, [0, -1]].min():.3g} height steps at its end, need more "
-                f"than the height of the lines, {height:.3g}, from a longer profile"
+                f"film profile: got {films[:, [0, -1]].min():.3g} height steps at its end, need "
+                f"more than the height of the lines, {height:.3g}, from a longer profile"
             )
         return WindowFilm(self.film[..., first : last + 1], int(self.before - first))
 
