@@ -1,7 +1,7 @@
 r"""Discrete Reynolds equation of a line contact, and one step towards its solution.
 
 The scaled mass flux between two nodes is the flow that the surfaces drag along less the flow that
-the pressure drives back,
+the pressure gradient drives,
 
 .. math::
 

@@ -257,7 +257,7 @@ def _usable(logits, comparison):
 
 
 def _pooled_shift(comparison):
-    """Logits of the pooled probability less those of the mean; 0 where either is infinite."""
+    """Logits of the pooled probability less those of the mean; 0 where either is not finite."""
     pooled, mean = (comparison[f"{name}_probability"].values for name in ("pooled", "simulated"))
     with np.errstate(invalid="ignore"):
         shift = scipy.special.logit(pooled) - scipy.special.logit(mean)

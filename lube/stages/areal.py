@@ -185,8 +185,8 @@ def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:
     touched = np.cumsum(first, axis=-1)
     if rows <= first.shape[-1]:
         return np.minimum(touched[..., rows - 1], 1.0)
-    # After R rows, or once half of the strips have touched, the probability that a row is the first
-    # to touch is taken as constant: its mean over the second half of the rows so far.
+    # After R rows, or once half of the strips have touched, the probability that a row touches if
+    # none before it has is taken as constant: its mean over the second half of the rows so far.
     before = np.concatenate([np.zeros_like(touched[..., :1]), touched[..., :-1]], axis=-1)
     counted = np.minimum(np.sum(before < 0.5, axis=-1), first.shape[-1] - 1)[..., None]
     number = np.arange(first.shape[-1])

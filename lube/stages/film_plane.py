@@ -23,7 +23,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     ----------
     study, inputs, threads
         As in `lube.stages`. The film is computed with each oil at the middle temperature, as
-        Roelands' law needs the viscosity and its pressure coefficient in addition to M and L.
+        Roelands' law needs the viscosity and the pressure-viscosity coefficient besides M and L.
 
     Returns
     -------
