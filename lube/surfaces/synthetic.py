@@ -41,6 +41,8 @@ class LineSpecLike(Protocol):
         Points N around each roller.
     longest_wavelength : float
         Longest wavelength of both lines, m.
+    q_max : float
+        Largest wavenumber of both lines, rad/m.
     spacing : float
         Distance dx of neighbouring points, m.
     height_step : float
@@ -50,6 +52,7 @@ class LineSpecLike(Protocol):
     lines: tuple[Any, Any]
     points: tuple[int, int]
     longest_wavelength: float
+    q_max: float
     spacing: float
     height_step: float
 
