@@ -1,1 +1,1 @@
-"""Contact of rough rollers: what meets in the contact window, counted or sampled."""
+"""Contact of rough rollers in the contact window, counted or sampled."""

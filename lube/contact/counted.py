@@ -32,16 +32,17 @@ def contact_at(
     Parameters
     ----------
     lines, boundary_layer, slide_to_roll_ratio, revolutions, gap
-        As in `contact_statistics`.
+        As in `lube.stages.contact.contact_statistics`.
     film : xarray.Dataset
         As in `lube.contact.windows.ContactWindows`; the films may depend on slip.
 
     Returns
     -------
     xarray.Dataset
-        The results of `contact_statistics` but the share of the load, over (realisation,
-        slide_to_roll_ratio, dimensions of the films), without attributes of their variables. The
-        dataset's attributes are ``travel`` and ``longest_wavelength`` of a realisation, both m.
+        The results of `lube.stages.contact.contact_statistics` except the share of the load, over
+        (realisation, slide_to_roll_ratio, dimensions of the films), and the properties of the
+        boundary layer; the variables have no attributes. The dataset's attributes are ``travel``
+        and ``longest_wavelength`` of a realisation, both m.
     """
     grid, realisations = LineGrid.of(lines), lines["realisation"].values
     films = [at_slip(film, ratio) for ratio in slide_to_roll_ratio]

@@ -1,8 +1,8 @@
 r"""Ensembles: from realisations to probabilities with 95 % intervals.
 
-The scatter between realisations determines the effective sample size n of an ensemble: the
-number of independent trials, each with contact at probability p, whose mean has the variance of
-the mean over the realisations,
+The scatter between realisations determines the effective sample size n of an ensemble. It is the
+number of independent trials, each with contact at probability p, whose mean varies as much as the
+mean over the realisations,
 
 .. math:: s_{\bar p}^2 = \frac{p (1 - p)}{n}
 
@@ -29,9 +29,9 @@ ATTRIBUTES = ("travel", "longest_wavelength")
 def windows_by_force(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
     """Count the independent contact windows in one realisation.
 
-    Two windows see independent roughness where they are a longest wavelength apart on both
-    surfaces. So the travel of the slower surface counts: if one roller stands still, all
-    windows see the same part of it.
+    Two windows see independent roughness if they are a longest wavelength apart on both surfaces.
+    So the travel of the slower surface counts: if one roller stands still, all windows see the same
+    part of it.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def gather_map(batches: Sequence[xr.Dataset]) -> xr.Dataset:
     Raises
     ------
     DataError
-        As `gather`.
+        As from `gather`.
     """
     joined = _join(batches)
     return label(with_limits(joined, windows_in(joined, joined["contact_width"])), "master")
@@ -151,7 +151,7 @@ def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
 
 
 def _join(batches):
-    """Join all realisations in order, and check that each comes once."""
+    """Join all realisations in order, and check that none is missing or repeated."""
     # Other attributes may differ: batches of one study may come from different commits.
     batches = [
         batch.drop_attrs(deep=False).assign_attrs({name: batch.attrs[name] for name in ATTRIBUTES})
@@ -166,7 +166,9 @@ def _join(batches):
     joined = joined.sortby("realisation")
     found = joined["realisation"].values
     if not np.array_equal(found, np.arange(found.size)):
-        raise DataError(f"need realisations 0 to {found.size - 1}, each once, got {found.tolist()}")
+        raise DataError(
+            f"realisations: got {found.tolist()}, need each of 0 to {found.size - 1} exactly once"
+        )
     return joined
 
 

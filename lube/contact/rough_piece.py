@@ -14,12 +14,12 @@ from lube.grid.operating_points import surface_speeds
 from lube.types import Array, Pair
 
 HALF_LENGTH, TAPER = 2.0, 0.25
-"""Half the length of a piece, and how far from its ends it has its full height, half-widths."""
+"""Half the length of a piece, and length of the taper at each end, in half-widths."""
 
 
 @dataclass(frozen=True)
 class RoughPiece:
-    """Piece of two rough lines, two contact widths long, around the place where they are highest.
+    """Piece of two rough lines, two contact widths long, centred where their sum is highest.
 
     Its ends are tapered. When its middle is at the line of centres, it covers the contact.
 
@@ -57,7 +57,7 @@ class RoughPiece:
 
     @cached_property
     def _cut(self):
-        """Points of each line, counted from that in the middle, their indices, and heights."""
+        """Indices of the piece's points in each line, and their tapered heights."""
         reach = int(HALF_LENGTH * self.half_width / self.grid.spacing)
         points = np.arange(-reach, reach + 1)
         part = np.clip((reach - np.abs(points)) / (reach * TAPER / HALF_LENGTH), 0.0, 1.0)
@@ -70,7 +70,7 @@ class RoughPiece:
 
     @property
     def lines(self) -> Pair:
-        """The two lines without all but the piece."""
+        """The two lines, zero outside the piece."""
         lines = tuple(np.zeros_like(line) for line in self.pair)
         for line, (index, heights) in zip(lines, self._cut, strict=True):
             line[index] = heights
@@ -78,7 +78,7 @@ class RoughPiece:
 
     @property
     def highest(self) -> float:
-        """Largest height of both lines together, m, if their highest points met."""
+        """Height of both lines together, m, if their highest points met."""
         return sum(heights.max() for _, heights in self._cut) * self.grid.height_step
 
     def steps(self, least: float, greatest: float) -> tuple[int, int]:
@@ -88,7 +88,7 @@ class RoughPiece:
         return first, round((greatest - least) / by_step) + 1
 
     def heights(self, position: Array, travel: Array, profile: FilmProfile | None = None) -> Array:
-        """Heights of both lines together as they pass.
+        """Heights of both lines together as they pass through the contact.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Waves of rough lines on their way into the gap: the oil flattens or answers them."""
+"""Waves of rough lines in the gap: a formula flattens them, or the computed film answers them."""
 
 from dataclasses import dataclass
 
@@ -23,9 +23,9 @@ from lube.types import Array, Pair, Ratios
 PRECISION = 0.01
 """Largest error of the answers to rough lines, over the rms height of the lines."""
 FINER = 4
-"""Wavelengths at which answers are expanded, for each of the stored wavelengths."""
+"""Number of wavelengths at which answers are expanded, for each of the stored wavelengths."""
 STEEPNESS = 0.7
-"""Waves are weighed by this power of their length, since long waves of rough surfaces are high."""
+"""Waves are weighted by this power of their length, since long waves of rough surfaces are high."""
 NODES = 20
 """Least number of nodes in a half-width of the contact."""
 _IN_PHASE = 0.2
@@ -109,11 +109,11 @@ class Answer:
         return cls(half_width, position, six_digits(shapes), 2.0 * np.pi / finer, filters)
 
     def shift(self, spacing: float) -> int:
-        """Binary logarithm of the points of a line from node to node."""
+        """Binary logarithm of the number of points of a line from node to node."""
         return int(np.log2(np.clip(self.half_width / (NODES * spacing), 1, BLOCK)))
 
     def at(self, points: Array, spacing: float) -> Array:
-        """Functions :math:`u_m` at points, counted from the centre with the motion, a row each."""
+        """Functions :math:`u_m` at points counted from the centre with the motion, (points, M)."""
         position = points * (spacing / self.half_width)
         return CubicSpline(self.position, self.shapes)(np.clip(position, *self.position[[0, -1]]))
 
@@ -121,7 +121,7 @@ class Answer:
 def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:
     """Return the response to both rollers' longest wave at the line of centres.
 
-    This tells operating points apart that differ in slip alone.
+    It distinguishes operating points that differ only in slip.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def lifted(
 
 
 def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answer]) -> UnevenWindow:
-    """Part of a contact window in which contact is likely, with what the oil does there.
+    """Part of a contact window in which contact is likely, with the answers of the oil there.
 
     Parameters
     ----------
@@ -290,7 +290,7 @@ def _bands(spec, roller, answer, points):
 
 
 class Waves:
-    """Waves of a line, which the oil can flatten or answer.
+    """Waves of a line, to be flattened by a formula or filtered by an answer of the oil.
 
     Parameters
     ----------
@@ -308,7 +308,7 @@ class Waves:
         self._waves = scipy.fft.rfft(line.astype(float))[1 : last + 1]
 
     def flattened(self, half_width: float, moes_load: float, moes_material: float) -> Array:
-        """Heights of the line as a formula flattens it.
+        """Heights of the line flattened by `lube.physics.flattening.amplitude_ratio`.
 
         Parameters
         ----------

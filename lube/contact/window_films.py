@@ -14,24 +14,24 @@ from lube.types import Array
 
 @dataclass(frozen=True)
 class WindowFilm:
-    """Film at the points of a contact window and beyond, where lines may still reach it.
+    """Film at the points of a contact window, and beyond it as far as lines may touch.
 
     The surfaces move from the last point to the first: the last ones lie in the inlet.
 
     Attributes
     ----------
     film : numpy.ndarray
-        Film thickness, or gap outside the contact, at each point, shape (W,) or, of several
-        operating points with the same window, (F, W), height steps.
+        Film thickness, or gap outside the contact, at each point, height steps. Shape (W,), or
+        (F, W) for F operating points with the same window.
     before : int
-        Points before that at the line of centres.
+        Number of points before the line of centres.
     """
 
     film: Array
     before: int
 
     def below(self, height: float) -> "WindowFilm":
-        """Return the part that a height can reach, at least one point of it.
+        """Return the part in which the film is lower than a height, at least one point.
 
         Parameters
         ----------
@@ -46,16 +46,15 @@ class WindowFilm:
         Raises
         ------
         DataError
-            If a film is lower still at an end, so that points may be missing.
+            If a film is lower than the height even at an end, so that points may be missing.
         """
         films = np.atleast_2d(self.film)
         reached = np.flatnonzero((films < height).any(axis=0))
         first, last = reached[[0, -1]] if reached.size else (self.before, self.before)
         if first == 0 or last == films.shape[1] - 1:
             raise DataError(
-                f"film profile: the gap at its end, {films[:, [0, -1]].min():.3g} height steps, "
-                f"is within reach of the lines, {height:.3g} height steps high; need a longer "
-                "profile"
+                f"film profile: got {films[:, [0, -1]].min():.3g} height steps at its end, need "
+                f"more than the height of the lines, {height:.3g}, from a longer profile"
             )
         return WindowFilm(self.film[..., first : last + 1], int(self.before - first))
 
@@ -63,14 +62,14 @@ class WindowFilm:
 def shaped_films(film: xr.Dataset) -> xr.DataArray:
     """Films with the computed shape and the thickness of each film formula.
 
-    The shape is scaled so that its film is the formula's: at the line of centres, at the thinnest
-    point, or on average over Hertz' contact, whichever the formula gives. The gap of the dry
-    contact is not scaled. It is zero in the contact, and most of the film far outside.
+    The shape is scaled so that it has the thickness of the formula at the line of centres, at the
+    thinnest point, or on average over Hertz' contact, whichever the formula gives. The gap of the
+    dry contact is not scaled. It is zero in the contact, and far outside it is most of the film.
 
     Parameters
     ----------
     film : xarray.Dataset
-        A ``film`` dataset with ``film_profile``, or its rows.
+        A ``film`` dataset with ``film_profile``, or rows of one.
 
     Returns
     -------
@@ -86,7 +85,7 @@ def shaped_films(film: xr.Dataset) -> xr.DataArray:
 
 
 def film_at_places(film: xr.Dataset) -> xr.DataArray:
-    """Find the film with the computed shape that each film formula gives.
+    """Find the thickness of the computed film that each film formula refers to.
 
     Parameters
     ----------
@@ -141,7 +140,7 @@ def window_films(film: xr.Dataset, grid: LineGrid) -> Array:
 def film_on_points(
     position: Array, profile: Array, half_width: float, points: Array, grid: LineGrid
 ) -> Array:
-    """Film at points of a line, which moves with the oil: in a time step by a point at most.
+    """Film at the points of a line that moves with the oil, by one point at most in a time step.
 
     Parameters
     ----------

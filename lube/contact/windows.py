@@ -1,7 +1,7 @@
-"""Contact windows: what meets at some operating points, and how often it touches.
+"""Contact windows: film and rough lines at some operating points, and how often the lines touch.
 
 The film of a window is flat and ends at the edges of the contact, or has the shape of the computed
-one. The lines reach the gap as drawn, or the oil flattens or answers their waves.
+film. The lines enter the gap as drawn, or the oil flattens or answers their waves.
 """
 
 import copy
@@ -25,8 +25,8 @@ from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair, Values
 
 WINDOWS_PER_WIDTH = 10
-"""Windows per width of the contact, under a film that is not flat. More hardly reduce the scatter
-between realisations, since neighbouring windows see nearly the same."""
+"""Windows per contact width if the window is not uniform. More windows hardly reduce the scatter
+between realisations, since neighbouring windows see nearly the same points."""
 
 
 class ContactWindows:
@@ -70,8 +70,8 @@ class ContactWindows:
     ) -> None:
         self._grid, self._gap, self._places = grid, gap, {}
         names = ["film_thickness", "contact_half_width"]
-        # Where more than film and width decides on contact, Moes' numbers tell the points apart,
-        # and with slip the answer to the longest wave.
+        # If contact depends on more than film and width, points are distinguished by Moes' numbers
+        # and, with slip, by the answer to the longest wave.
         names += ["moes_load", "moes_material"] if not gap.is_plain else []
         longest = longest_answers(film) if gap.is_answered else []
         spread = xr.broadcast(*(film[name] for name in names), *longest)
@@ -105,12 +105,12 @@ class ContactWindows:
 
     @property
     def keys(self) -> list[tuple]:
-        """Numbers that decide on contact at each point: contact is equal where they are equal."""
+        """Numbers that determine contact at each point: contact is equal where they are equal."""
         columns = self._films, self.half_windows, self._factors, *self._contacts.T[1:]
         return list(zip(*(column.tolist() for column in columns), strict=True))
 
     def distinct(self) -> tuple["ContactWindows", Array]:
-        """Select the points that differ, and find the index of every point among them."""
+        """Select one of each set of equal points, and find the index of every point among them."""
         numbers = {}
         inverse = np.array([numbers.setdefault(key, len(numbers)) for key in self.keys], int)
         return self[np.unique(inverse, return_index=True)[1]], inverse
@@ -126,16 +126,16 @@ class ContactWindows:
             Slide-to-roll ratio; the default is pure rolling.
         turns : float, optional
             Revolutions of the roller with the faster surface; a single time step at least. In
-            uneven windows only some of the time steps are looked at.
+            uneven windows contact is counted at some of the time steps only.
         begin : int, optional
             First time step.
 
         Returns
         -------
         numpy.ndarray
-            Means over the time steps, shape (P, 4): share with contact, share with a broken
-            boundary layer, broken points, and overlap (height steps); NaN where the film is not
-            known.
+            Shape (P, 4): share of time with contact, share of time with a broken boundary layer,
+            and the means over time of broken points and overlap (height steps); NaN where the film
+            is not known.
         """
         distinct, inverse = self.distinct()
         if distinct.size < self.size:
@@ -150,7 +150,7 @@ class ContactWindows:
         if self._gap.is_uniform:
             for here, lines, films in self._under_flat_films(pair):
                 if lines[1].size == 1:
-                    lines = lines[0], np.zeros_like(lines[0])  # read faster than point after point
+                    lines = lines[0], np.zeros_like(lines[0])  # faster than wrapping at one point
                 counts[here] = strip_statistics(lines, ratios, steps, *films) / steps
             counts[self.unknown] = np.nan
             return counts
@@ -167,7 +167,7 @@ class ContactWindows:
         Parameters
         ----------
         pair, slip, begin
-            As in `count`; every time step is looked at.
+            As in `count`, but contact is counted at every time step.
 
         Returns
         -------
@@ -188,7 +188,7 @@ class ContactWindows:
         return broken
 
     def count_uncut(self, pair: Pair) -> Array:
-        """Count breakthroughs of whole segments, if any part of them lies in the window.
+        """Count breakthroughs of uncut segments, if any part of them lies in the window.
 
         In `count` the edges of the window cut segments, and the parts inside are judged.
 
@@ -201,8 +201,8 @@ class ContactWindows:
         Returns
         -------
         numpy.ndarray
-            Share of the time steps with a broken boundary layer under flat films, shape (P,); NaN
-            where the film is not known.
+            Share of time with a broken boundary layer under flat films, shape (P,); NaN where the
+            film is not known.
         """
         line = pair[0] + np.resize(pair[1], pair[0].size)
         shares = np.full(self.size, np.nan)
@@ -221,9 +221,9 @@ class ContactWindows:
         Returns
         -------
         windows, runs : numpy.ndarray
-            As of `lube.surfaces.rare_contact.rare_contact`, shapes (2, P) and (10, P); in uneven
-            windows as of `lube.surfaces.rare_contact.rare_contact_under`, shapes (2, P) and (4, P),
-            NaN where the film is not known.
+            As from `lube.surfaces.rare_contact.rare_contact`, shapes (2, P) and (10, P). In uneven
+            windows as from `lube.surfaces.rare_contact.rare_contact_under`, shapes (2, P) and
+            (4, P), NaN where the film is not known.
         """
         if self._gap.is_uniform:
             widths = 2 * self.half_windows + 1
@@ -239,7 +239,7 @@ class ContactWindows:
         return windows, runs
 
     def _place(self, point, spec):
-        """Contact window of a point, in which lines are sampled."""
+        """Contact window of an operating point, in which lines are sampled."""
         key = self._numbers[point]
         if key not in self._places:
             window = self._window([point])
@@ -261,14 +261,14 @@ class ContactWindows:
             yield lines, np.flatnonzero(inverse.ravel() == number)
 
     def _under_flat_films(self, pair):
-        """Yield points of the same lines and layer, the lines, and films, half-windows, factor."""
+        """Yield points with equal lines and layer, the lines, and films, half-windows, factor."""
         for lines, some in self._in_contact(pair):
             for factor in np.unique(self._factors[some]):
                 here = some[self._factors[some] == factor]
                 yield here, lines, (self._films[here], self.half_windows[here], factor)
 
     def _meetings(self, pair):
-        """Yield known points of one window, with the surfaces and the window that meet there."""
+        """Yield points with the same window and a known film, the surfaces, and the window."""
         for lines, here in self._in_contact(pair):
             drawn = [as_drawn(line) for line in lines]
             waves = [Waves(line, self._grid) for line in lines] if self._gap.is_answered else []
@@ -280,7 +280,7 @@ class ContactWindows:
                 yield points, *self._meeting(points, drawn, waves)
 
     def _meeting(self, points, drawn, waves):
-        """Both surfaces, with the answer of the oil if it answers, and the window of the points."""
+        """Both surfaces, with the answers of the oil if there are any, and the points' window."""
         answers = self._answers[points[0]] if waves else []
         filtered = _filtered(waves, answers)
         highest = sum(surface.line.max() for surface in drawn)
@@ -321,5 +321,5 @@ def _begun(pair, ratios, begin):
 
 
 def _filtered(waves, answers):
-    """Two lines as the oil's answers filter them."""
+    """Two lines, each filtered by the answer of the oil to it."""
     return [wave.filtered(answer) for wave, answer in zip(waves, answers, strict=True)]

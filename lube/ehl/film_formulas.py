@@ -1,9 +1,9 @@
 """Film thickness of lubricated line contacts: the formulas, and their ranges of validity.
 
 Each formula is a plain function of the groups W, U and G of `lube.physics.dimensionless` (numbers,
-or arrays that broadcast) and returns the film thickness over R*. The row of `FORMULAS` stands above
-it: to add a formula, write the function and its row. The last row is no formula but the solution of
-Reynolds' equation, which `lube.grid.films` asks for.
+or arrays that broadcast) and returns the film thickness over R*. The decorator above it is its row
+of `FORMULAS`: to add a formula, write the function and its row. The last row is no formula but the
+solution of Reynolds' equation, which `lube.grid.films` calls for.
 """
 
 from collections.abc import Callable
@@ -27,8 +27,8 @@ The validity ranges in the rows below were determined in this study. Each is the
 and L in which the formula stayed within the tolerance of numerical solutions of the Reynolds
 equation (Roelands viscosity, Dowson-Higginson density, fully flooded), at M 0.1 to 100 and L 5 to
 12, with the paper's oil at 40, 60 and 80 degC: ``python tests/film_ranges.py``. Each formula is
-compared with the computed film at the line of centres, the least one, or the mean one of the
-Hertzian zone, whichever it gives.
+compared with the computed film that it stands for: at the line of centres, the minimum, or the mean
+over the Hertzian zone.
 """
 
 
@@ -43,14 +43,15 @@ class Formula:
     thickness : str
         Which film thickness it gives: ``central``, ``minimum`` or ``mean``.
     evaluate : callable or None
-        Film thickness over R* of (load, speed, material), that is of W, U and G; None for the
-        solution of Reynolds' equation.
+        Function of (load, speed, material), that is of W, U and G, that returns the film thickness
+        over R*; None for the solution of Reynolds' equation.
     source : str
         Publication.
     remark : str
         Its error against the numerical solution in its range of validity, and other remarks.
     moes_load, moes_material : tuple of float
-        Lowest and highest M and L of that range, both included; by default all L computed.
+        Lowest and highest M and L of that range, both included; by default the full range of L
+        above.
     """
 
     name: str
@@ -63,7 +64,7 @@ class Formula:
 
     @property
     def depends_on_oil(self) -> bool:
-        """Whether the film is solved for; then it depends on the viscosity and on E' too."""
+        """Whether Reynolds' equation is solved; the film then depends on viscosity and E' too."""
         return self.evaluate is None
 
     def holds(self, moes_load: Values, moes_material: Values) -> bool | np.ndarray:

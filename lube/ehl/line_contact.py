@@ -20,23 +20,23 @@ from lube.types import Array, Values
 log = logging.getLogger(__name__)
 
 FLOODED = 1e4
-"""Height of the gap where the oil begins, over the central film, by which an inlet is flooded.
+"""Height of the gap, over the central film, at which the oil of a flooded inlet begins.
 
-Ten times less thins the film by up to 0.2 %."""
+A tenth of this height thins the film by up to 0.2 %."""
 TOLERANCE = 1e-9
-"""Largest defect of the mass flux, over that at the centre, and of the load, over the load."""
+"""Largest defect of the mass flux, over the flux at the centre, and of the load, over the load."""
 _HERTZ_DEFLECTION = 0.25 + 0.5 * np.log(2.0)
 """Scaled deflection of the dry contact at the line of centres."""
 _FITTINGS = 2
 _MOST_STEPS = 400
 _MOST_NODES = 1000
-"""A very sharp spike of pressure needs more; a step on as many takes half a second."""
+"""A very sharp pressure spike would need more; a step on so many nodes takes half a second."""
 _LARGEST_CHANGE = 0.3
 _FIRST_SETTLING_TIME, _LONGEST_SETTLING_TIME, _SHORTEST_SETTLING_TIME = 0.5, 3.0, 1e-9
 
 
 class ConvergenceError(LubeError):
-    """The film of a contact was not found."""
+    """The computed film of a contact did not converge."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class LineContact:
 
     @property
     def flow_number(self) -> float:
-        """Number that says how much the surfaces drag against what the pressure drives."""
+        """Ratio lambda of dragged to pressure-driven flow, as in `lube.ehl.reynolds`."""
         pressure = np.sqrt(self.load / (2.0 * np.pi))
         return float(12.0 * self.speed / (self.half_width**3 * pressure))
 
@@ -91,13 +91,13 @@ class LineContact:
 
     @property
     def name(self) -> str:
-        """Words for messages, with its Moes numbers."""
+        """Name of its film in messages, by the Moes numbers."""
         moes_load, moes_material = moes_numbers(self.load, self.speed, self.material)
         return f"the film at M = {moes_load:.3g}, L = {moes_material:.3g}"
 
     @property
     def film_guess(self) -> float:
-        """Central film H, roughly: the asymptote of its regime (`lube.physics.regimes`)."""
+        """Guess of the central film H: the asymptote of its regime (`lube.physics.regimes`)."""
         numbers = moes_numbers(self.load, self.speed, self.material)
         return float(asymptotic_film(*numbers) * np.sqrt(2.0 * self.speed) / self.half_width**2)
 
@@ -181,8 +181,8 @@ class FilmProfile:
     def central_film(self) -> float:
         """Film over R* at the line of centres.
 
-        It is that of the cubic through the four nearest positions midway between nodes, where the
-        equation holds: at a node the pressure's kink dents a thin film.
+        It is interpolated by a cubic through the four nearest positions midway between nodes, where
+        the equation holds. At a node the kink of the pressure dents a thin film.
         """
         first = int(np.searchsorted(self.middle, 0.0)) - 2
         near = self.middle[first : first + 4]
@@ -190,7 +190,7 @@ class FilmProfile:
 
     @cached_property
     def minimum_film(self) -> float:
-        """Least film over R*."""
+        """Minimum film over R*."""
         thinnest = self.middle[np.argmin(self.middle_gap)]
         near = np.searchsorted(self.nodes, thinnest) + np.array([-3, 2])
         low, high = self.nodes[np.clip(near, 0, self.nodes.size - 1)]
@@ -204,7 +204,7 @@ class FilmProfile:
 
     @cached_property
     def mass_flux_defect(self) -> float:
-        """Largest difference of the mass flux from that at the centre, over it."""
+        """Largest difference of the mass flux from the flux at the centre, over the latter."""
         central = np.interp(0.0, self.middle, self.flow.flux)
         return float(np.abs(self.flow.flux[: self.end] / central - 1.0).max())
 
@@ -248,12 +248,12 @@ def solve(
     RangeError
         If the meniscus lies inside the contact, or the viscosity is too low for Roelands' law.
     ConvergenceError
-        With the state of the iteration.
+        If the iteration does not converge, or the pressure spike needs too many nodes.
 
     Notes
     -----
     Newton's method starts far from the solution, where it overshoots. Each of its steps is
-    therefore one of a squeeze film that settles in time; a step that changes the pressure too
+    therefore a time step of a squeeze film that settles; a step that changes the pressure too
     much, or closes the gap, is repeated with a shorter time. The mesh is then fitted to the
     solution, twice.
 
@@ -273,8 +273,8 @@ def solve(
         )
     if meniscus is not None and not meniscus > 1.0:
         raise RangeError(
-            f"meniscus: got one {meniscus:g} half-widths before the line of centres, inside the "
-            "contact, need more than 1"
+            f"meniscus: got {meniscus:g} half-widths before the line of centres, inside the "
+            "contact, need more than 1 half-width"
         )
 
     def inlet(offset, film):
@@ -288,8 +288,8 @@ def solve(
         nodes = fitted_mesh(profile, inlet(profile.offset, profile.central_gap), fineness)
         if nodes.size > _MOST_NODES * max(fineness, 1.0):
             raise ConvergenceError(
-                f"{contact.name} needs {nodes.size} nodes, the most are {_MOST_NODES}: the spike "
-                "of pressure is too sharp"
+                f"{contact.name} needs {nodes.size} nodes, more than the limit of {_MOST_NODES}: "
+                "the pressure spike is too sharp"
             )
         profile = on_nodes(profile, nodes)
     return profile
@@ -313,7 +313,7 @@ def on_nodes(profile: FilmProfile, nodes: Array) -> FilmProfile:
     Raises
     ------
     ConvergenceError
-        With the state of the iteration.
+        If the iteration does not converge.
     """
     pressure = np.interp(nodes, profile.nodes, profile.pressure)
     return _settle(profile.contact, nodes, pressure, profile.central_gap, profile.steps)
@@ -342,8 +342,8 @@ def profiles_of(*groups: Values, meniscus: float | None = None) -> Array:
     Returns
     -------
     numpy.ndarray of object
-        A `FilmProfile` each, None where a group is NaN, or the film did not converge; the log names
-        the latter.
+        A `FilmProfile` for each contact. It is None where a group is NaN, or where the film did not
+        converge, which is logged.
     """
 
     def solved(*numbers):
@@ -361,7 +361,7 @@ def profiles_of(*groups: Values, meniscus: float | None = None) -> Array:
 
 def _settle(contact, nodes, pressure, film, steps):
     """Let the film settle on a mesh, from a guess of the pressure and the central film."""
-    # A step that overflows is too large, and repeated.
+    # A step that overflows is too large; it is repeated.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), one_blas_thread():
         discrete = DiscreteContact(contact, nodes)
         pressure = pressure * (HERTZ_LOAD / (discrete.weight @ pressure))
@@ -375,7 +375,7 @@ def _settle(contact, nodes, pressure, film, steps):
             steps += 1
             change, shift = discrete.newton_step(pressure, offset, flow, time)
             widening = shift + discrete.deflection @ change
-            # Not the other way round: a change that is not a number is too large as well.
+            # Written so that NaN counts as too large.
             small = np.abs(change).max() <= _LARGEST_CHANGE
             if not (small and np.all(flow.gap + widening >= 0.3 * flow.gap)):
                 time = min(time, _LONGEST_SETTLING_TIME) / 6.0

@@ -51,7 +51,7 @@ def inlet_end(offset: float, gap: float) -> float:
 
 
 def first_mesh(film: float, end: float) -> Array:
-    """Nodes for a film of which only the thickness is guessed.
+    """Nodes for a film of which only a guess of the thickness is known.
 
     Parameters
     ----------
@@ -63,7 +63,8 @@ def first_mesh(film: float, end: float) -> Array:
     Returns
     -------
     numpy.ndarray
-        Positions X of the nodes, rising: even in the contact, growing towards the inlet.
+        Positions X of the nodes, rising: evenly spaced in the contact, farther and farther apart
+        towards the inlet.
 
     Examples
     --------
@@ -121,8 +122,8 @@ def fitted_mesh(profile, end: float, fineness: float) -> Array:
 def _smooth(values):
     """Remove oscillations from node to node.
 
-    A pressure that oscillates so does not deflect the rollers midway between the nodes. Where the
-    oil is almost solid it drives no oil either, and is no reason for finer nodes.
+    Such an oscillation of the pressure does not deflect the rollers midway between the nodes. Where
+    the oil is almost solid it drives no oil either, so it is no reason for a finer mesh.
     """
     smooth = values.copy()
     smooth[1:-1] = 0.25 * (values[:-2] + 2.0 * values[1:-1] + values[2:])

@@ -12,9 +12,9 @@ its squeeze term,
     \hat h = \hat h_0 - \frac{1}{\pi} \int \hat p \ln|X - X'|\, dX' + e^{ikX}, \qquad
     \int \hat p\, dX = 0
 
-with the change :math:`\hat q` of the mass flux. The pressure does not change where the oil begins
-and from the end of the film on, whose motion is of second order. The load is fixed: the rollers
-give way by :math:`\hat h_0`.
+with the change :math:`\hat q` of the mass flux. The pressure does not change where the oil begins,
+nor from the end of the film on, as the motion of that end is of second order. The load is fixed:
+the rollers give way by :math:`\hat h_0`.
 """
 
 from dataclasses import dataclass
@@ -29,15 +29,15 @@ from lube.ehl.reynolds import DiscreteContact
 from lube.types import Array
 
 POINTS_A_WAVE = 16
-"""Nodes in a wave, where the gap is not wide."""
+"""Nodes per wavelength, where the gap is not wide."""
 WIDE = 6.0
 """Gap, over the central film, beyond which the mesh need not resolve the wave: such a wide gap
 builds up hardly any pressure."""
 _GROWTH = 0.15
 """Growth of the cells per length in the wide gap."""
 _LEAST, _ENOUGH = 3.0, 8.0
-"""With fewer nodes in a wave than the first number, the wave is left out; with more than the
-second, it has its full amplitude."""
+"""With fewer nodes per wavelength than the first number the wave is left out; with more than the
+second it has its full amplitude."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class WaveResponse:
     profile : FilmProfile
         The steady film, on nodes that resolve the wave.
     wavelength : float
-        Over the half-width.
+        Wavelength over the half-width.
     """
 
     profile: FilmProfile
@@ -57,16 +57,16 @@ class WaveResponse:
 
     @classmethod
     def of(cls, profile: FilmProfile, wavelength: float, fineness: float = 1.0) -> "WaveResponse":
-        """Form the response of a film, which is solved for on nodes that resolve the wave.
+        """Form the response of a film, which is solved for again, on nodes that resolve the wave.
 
         Parameters
         ----------
         profile : FilmProfile
             The steady film.
         wavelength : float
-            Over the half-width.
+            Wavelength over the half-width.
         fineness : float, optional
-            The number of nodes in a wave grows in proportion.
+            The number of nodes per wavelength grows in proportion.
 
         Returns
         -------
@@ -76,7 +76,7 @@ class WaveResponse:
         Raises
         ------
         lube.ehl.line_contact.ConvergenceError
-            If the film was not found on these nodes.
+            If the film does not converge on these nodes.
         """
         step = wavelength / (POINTS_A_WAVE * fineness)
         return cls(on_nodes(profile, _resolving_nodes(profile, step)), wavelength)
@@ -91,25 +91,25 @@ class WaveResponse:
         position : numpy.ndarray, shape (n,)
             Positions X over the half-width, in the contact or outside.
         fixed_load : bool, optional
-            Whether the rollers give way so that the load stays; otherwise their distance stays, as
-            that of rollers too heavy to follow.
+            Whether the rollers give way so that the load stays constant. Otherwise their distance
+            stays constant, as with rollers too heavy to follow the wave.
 
         Returns
         -------
         numpy.ndarray of complex, shape (n,)
-            :math:`T_k(X) = \hat h(X) \exp(-i k X)`: the wave in the gap over that of the
-            undeformed surface, 1 where the oil does nothing to it.
+            :math:`T_k(X) = \hat h(X) \exp(-i k X)`: the wave in the gap over the wave of the
+            undeformed surface; 1 where the oil does not change it.
 
         Notes
         -----
-        The mass flux and what is stored between two nodes are taken as travelling with the surface,
+        The mass flux and the oil stored between two nodes are taken as travelling with the surface,
         :math:`\exp(i k c X)`, within a cell. So a wave that the oil carries through the contact
-        keeps its height and phase on any nodes, and only what pressure does to it is approximated.
+        keeps its height and phase on any mesh, and only the effect of pressure is approximated.
         """
         discrete, flow, film, by_pressure = self._linearised
         wavenumber, middle = 2.0 * np.pi / self.wavelength, discrete.middle
         phase = 1j * wavenumber * surface_speed * np.diff(self.profile.nodes) / 2.0
-        # What is stored on either side of a node, in half a cell each, times i k c.
+        # Oil stored on either side of a node, in half a cell each, times i k c.
         ahead, behind = 1.0 - np.exp(-phase[1:]), np.exp(phase[:-1]) - 1.0
 
         def balance(flux, storage):
@@ -130,7 +130,7 @@ class WaveResponse:
 
     @cached_property
     def _linearised(self):
-        """Reynolds' equation about the steady film: inner nodes in it, and their derivatives."""
+        """Mesh, flow, inner nodes in the film, and derivatives of flux and drag by pressure."""
         discrete = DiscreteContact(self.profile.contact, self.profile.nodes)
         flow = discrete.flow(self.profile.pressure, self.profile.offset)
         film = np.flatnonzero(self.profile.pressure[1:-1] > 0.0)
@@ -141,9 +141,9 @@ class WaveResponse:
 def at_wavelengths(wanted: Array, wavelengths: Array, transfer: Array, position: Array) -> Array:
     """Interpolate a transfer function to other wavelengths.
 
-    Its change is interpolated by cubic splines over the logarithm of the wavelength: as it is in
-    the contact, and with the phase at the contact's edge outside, where the gap hardly varies from
-    place to place but the wave does.
+    Its difference from 1 is interpolated by cubic splines over the logarithm of the wavelength.
+    Outside the contact the phase is taken from the contact's edge: there the change of the gap
+    hardly varies with the position, but the phase of the wave does.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def at_wavelengths(wanted: Array, wavelengths: Array, transfer: Array, position:
     wavelengths : numpy.ndarray, shape (n,)
         Wavelengths over the half-width, falling.
     transfer : numpy.ndarray, shape (..., n, x)
-        Transfer function at these and some positions.
+        Transfer function at these wavelengths and some positions.
     position : numpy.ndarray, shape (x,)
         Positions over the half-width.
 
@@ -182,19 +182,19 @@ def _resolving_nodes(profile, step):
 
 
 def resolved_part(points: Array) -> Array:
-    """Part of its amplitude with which a wave enters on a mesh.
+    """Fraction of its amplitude with which a wave enters the calculation on a mesh.
 
-    On too few nodes it would look like a longer one.
+    On too few nodes it would look like a longer wave.
 
     Parameters
     ----------
     points : numpy.ndarray
-        Nodes in a wavelength.
+        Nodes per wavelength.
 
     Returns
     -------
     numpy.ndarray
-        From 0 to 1.
+        The fraction, from 0 to 1.
     """
     part = np.clip((points - _LEAST) / (_ENOUGH - _LEAST), 0.0, 1.0)
     return part * part * (3.0 - 2.0 * part)

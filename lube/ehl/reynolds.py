@@ -1,6 +1,7 @@
 r"""Discrete Reynolds equation of a line contact, and one step towards its solution.
 
-The scaled mass flux between two nodes is what the surfaces drag less what the pressure drives,
+The scaled mass flux between two nodes is the flow that the surfaces drag along less the flow that
+the pressure gradient drives,
 
 .. math::
 
@@ -26,20 +27,20 @@ HERTZ_LOAD = np.pi / 2.0
 
 @dataclass(frozen=True)
 class Flow:
-    """Mass flux between the nodes, and what it depends on.
+    """Mass flux between the nodes, and its derivatives.
 
     Attributes
     ----------
     gap : numpy.ndarray, shape (n - 1,)
         H midway between the nodes.
     flux, pressure_flow : numpy.ndarray, shape (n - 1,)
-        Mass flux Q, and its part that the pressure drives, as a loss.
+        Mass flux Q, and the flow driven by pressure, which is subtracted in Q.
     by_gap : numpy.ndarray, shape (n - 1,)
-        Derivative of Q by H.
+        Derivative of Q with respect to H.
     by_left, by_right : numpy.ndarray, shape (n - 1,)
-        Derivatives of Q by P at the nodes on the left and the right, the gap held.
+        Derivatives of Q with respect to P at the left and at the right node, at constant gap.
     drag_by_gap, drag_by_node : numpy.ndarray, shape (n - 1,)
-        Derivatives of the dragged part, by H and by P at either node.
+        Derivatives of the dragged flow with respect to H and to P at either node.
     """
 
     gap: Array
@@ -102,15 +103,15 @@ class DiscreteContact:
     def newton_step(self, pressure, offset, flow, settling_time):
         """Take one step of Newton's method towards the film after a settling time.
 
-        The equation at a node is that as much oil leaves as enters, less the oil that fills the
-        widening gap in that time (the squeeze film); after a long time no oil does. A node is
-        either in the film, where this holds, or beyond it, where the pressure is zero: the
-        complementarity condition of cavitation, solved by Newton's method too.
+        The oil that leaves a node is the oil that enters it, less the oil that fills the widening
+        gap in that time (the squeeze film); with an infinite time no oil does. A node is either in
+        the film, where this holds, or beyond it, where the pressure is zero: the complementarity
+        condition of cavitation, solved by Newton's method too.
 
         Returns
         -------
         tuple
-            Changes of the pressures and of the offset; NaN if there is no such step.
+            Changes of the pressures and of the offset; NaN if the equations are singular.
         """
         jacobian = np.diff(self.flux_by_pressure(flow), axis=0)
         by_offset, residual = np.diff(flow.by_gap), np.diff(flow.flux)
@@ -140,7 +141,7 @@ class DiscreteContact:
         return self._dense(flow.by_gap, flow.by_left, flow.by_right)
 
     def drag_by_pressure(self, flow: Flow) -> Array:
-        """Differentiate its dragged part, the oil in the gap, by all pressures, (n - 1, n)."""
+        """Differentiate the dragged flow by the pressures at all nodes, shape (n - 1, n)."""
         return self._dense(flow.drag_by_gap, flow.drag_by_node, flow.drag_by_node)
 
     def _dense(self, by_gap, by_left, by_right):
@@ -153,7 +154,7 @@ class DiscreteContact:
 
 
 def _exponential_fit(half):
-    """sinh(u)/u of half the step of ln viscosity, and the slope of its logarithm."""
+    """sinh(u)/u at u = half the step of ln viscosity, and the slope of its logarithm."""
     small = np.abs(half) < 1e-2
     u = np.where(small, 1.0, half)
     factor = np.where(small, 1.0 + half**2 / 6.0 + half**4 / 120.0, np.sinh(u) / u)

@@ -10,9 +10,9 @@ surfaces. In the scaled variables of `lube.ehl.reynolds` and the time :math:`T =
     H = H_0 + \frac{X^2}{2} - \frac{1}{\pi} \int (P + P_c) \ln|X - X'|\, dX' - Z, \qquad
     \int (P + P_c)\, dX = \frac{\pi}{2}
 
-with the heights Z of both surfaces together. Where the gap would close, it stays open by a hair,
-and the surfaces carry the pressure :math:`P_c \ge 0` themselves. Elsewhere that is zero. So the
-amplitude of the roughness may be any.
+with the heights Z of both surfaces together. Where the gap would close, it is held open by a hair,
+and the surfaces carry the pressure :math:`P_c \ge 0` themselves; elsewhere this pressure is zero.
+So the amplitude of the roughness is not limited.
 """
 
 from dataclasses import dataclass
@@ -28,39 +28,40 @@ from lube.types import Array
 CLOSED = 1e-3
 """Gap at which the surfaces touch, over the central film of smooth rollers."""
 REACH, BEYOND = 1.3, 0.15
-"""How far the even nodes reach, in half-widths: into the inlet, unless high roughness touches
-farther out, and beyond the end of the film."""
+"""How far the evenly spaced nodes extend, in half-widths: into the inlet, unless high roughness
+touches farther out, and beyond the end of the film."""
 _GROWTH = 1.08, 1.15
 """Growth of the cells towards the inlet, and behind the film."""
 _GROWN, _SETTLED = 1.5, 4.0
-"""Half-widths that the surfaces travel until a wave has its height, and until the gap repeats."""
+"""Half-widths that the surfaces travel until a wave has grown to its height, and until the gap
+repeats itself."""
 _DAMPING = 1.0
-"""Half-widths that the surfaces travel while what rings in the pressure decays."""
+"""Half-widths that the surfaces travel while oscillations of the pressure decay."""
 _ENOUGH, _LARGEST, _MOST = 1e-7, 0.5, 300
-"""Change of the pressure at which a time step is solved, the largest in a step of Newton's method,
-and the most of these."""
+"""Change of the pressure below which a time step counts as solved, largest change in one step of
+Newton's method, and largest number of these steps."""
 _SLOW, _CREEPING, _PATIENCE = 0.2, 1e-4, 40
-"""Change of the pressure over that before, above which the derivatives are formed anew; unless the
-change is so small, while the end of the film creeps from node to node; and the steps of Newton's
-method after which smaller ones are taken."""
+"""The derivatives are formed anew if the change of the pressure exceeds the first number times the
+change before. They are not if it is below the second number while the end of the film creeps from
+node to node. Whenever Newton's method has taken the third number of steps, smaller ones follow."""
 
 
 def passage_nodes(profile: FilmProfile, step: float, reach: float = REACH) -> Array:
-    """Nodes for the passage of roughness: even in the contact, farther apart outside.
+    """Nodes for the passage of roughness: evenly spaced in the contact, farther apart outside.
 
     Parameters
     ----------
     profile : FilmProfile
         The film of smooth rollers.
     step : float
-        Distance of the even nodes over the half-width.
+        Distance of the evenly spaced nodes over the half-width.
     reach : float, optional
-        How far the even nodes reach into the inlet, in half-widths.
+        How far they extend into the inlet, in half-widths.
 
     Returns
     -------
     numpy.ndarray
-        Positions over the half-width, from the first to the last of the film's own nodes.
+        Positions over the half-width, from the first node of the film to its last.
     """
     first, last = int(reach / step) + 1, int((profile.film_end + BEYOND) / step) + 1
     even = step * np.arange(-first, last + 1)
@@ -74,7 +75,7 @@ def passage_nodes(profile: FilmProfile, step: float, reach: float = REACH) -> Ar
 
 
 def _growing(start, end, step, growth):
-    """Places from a start, not included, to an end, farther and farther apart."""
+    """Positions from a start, not included, to an end, farther and farther apart."""
     count = max(1, round(np.log1p((end - start) * (growth - 1.0) / step) / np.log(growth)))
     sizes = growth ** np.arange(1, count + 1)
     return start + (end - start) * np.cumsum(sizes) / np.sum(sizes)
@@ -83,20 +84,20 @@ def _growing(start, end, step, growth):
 class RoughPassage:
     """Film and solid contact while rough surfaces pass, one time step after the other.
 
-    In a time step the surfaces travel from one of the even nodes to the next at the entrainment
-    speed, so a wave that moves as fast keeps its height and phase. What the pressure drives is
-    taken mostly at the end of the step, by as little as damps the pressure; the scheme is of second
-    order in time.
+    In a time step the surfaces travel from one of the evenly spaced nodes to the next at the
+    entrainment speed, so a wave that moves as fast keeps its height and phase. The pressure-driven
+    flow is weighted towards the end of the step, just enough to damp oscillations of the pressure;
+    the scheme is of second order in time.
 
     Parameters
     ----------
     profile : FilmProfile
         The film of smooth rollers, from which the passage begins.
     step : float
-        Distance of the even nodes over the half-width, and the time step.
+        Distance of the evenly spaced nodes over the half-width, and the time step.
     highest : float, optional
-        Height of the highest summit, scaled as the gap. The even nodes reach as far into the inlet
-        as it may touch.
+        Height of the highest summit, scaled as the gap. The evenly spaced nodes extend as far into
+        the inlet as it may touch.
 
     Attributes
     ----------
@@ -115,7 +116,7 @@ class RoughPassage:
         self._step, self._late = step, 0.5 * (1.0 + min(step / _DAMPING, 1.0))
         self._squeeze = 0.5 * self._discrete.weight[1:-1] / step
         self._closed = CLOSED * profile.central_gap
-        # Of the pressure in a cell, half acts at either node.
+        # Half the pressure in a cell acts at each of its nodes.
         by_node = self._discrete.deflection
         self._by_cell = 0.5 * (by_node[:, 1:] + by_node[:, :-1])
         self._smooth = self.pressure = smooth.pressure
@@ -150,7 +151,7 @@ class RoughPassage:
         Raises
         ------
         ConvergenceError
-            With the pressure's last change.
+            If the time step does not converge.
         """
         had, state = self._left_over(), self._first_guess()
         is_slow, change, largest = False, np.inf, _LARGEST
@@ -161,12 +162,12 @@ class RoughPassage:
                 break
             is_creeping = self._moves and change < _CREEPING and number < _PATIENCE
             is_slow = change > _SLOW * before and not (is_slow or is_creeping)
-            # So that sets of nodes do not cycle.
+            # Smaller steps, lest the set of nodes in the film cycle.
             largest = _LARGEST / (1 + number // _PATIENCE) ** 2
         if not change < _ENOUGH:
             raise ConvergenceError(
-                f"{self._discrete.contact.name}: roughness that passes did not converge in a time "
-                f"step: the pressure changes by {change:.1g}"
+                f"{self._discrete.contact.name}: a time step of the passing roughness did not "
+                f"converge: the pressure still changes by {change:.1g}"
             )
         self.pressure, self._offset, self.contact_pressure = state
         self.pressure[1:-1] *= self._film  # nearly zero outside
@@ -174,7 +175,7 @@ class RoughPassage:
         self.gap = self._flow.gap
 
     def _first_guess(self):
-        """Pressure, offset and contact pressure: what roughness does to them travels with it."""
+        """Guess pressure, offset and contact pressure: the effect of roughness travels with it."""
         pressure, solid = self._smooth.copy(), np.zeros_like(self.contact_pressure)
         pressure[1:] += (self.pressure - self._smooth)[:-1]
         solid[1:] = self.contact_pressure[:-1]
@@ -182,13 +183,13 @@ class RoughPassage:
         return np.where(pressure > 0.0, pressure, self.pressure), self._offset, solid
 
     def _flow_at(self, heights, pressure, offset, solid):
-        """Gap midway between the nodes, and the flow through it, opened where it is closed."""
+        """Gap midway between the nodes, and the flow through it, held open where it is closed."""
         gap, cells = self._discrete.gap(pressure, offset - heights), np.flatnonzero(solid)
         gap += self._by_cell[:, cells] @ solid[cells]
         return gap, self._discrete.flow_through(np.maximum(gap, self._closed), pressure)
 
     def _left_over(self):
-        """Balance of each inner node, as far as the beginning of a time step decides on it."""
+        """Terms of each inner node's mass balance that belong to the beginning of a time step."""
         drag, early = self._flow.flux + self._flow.pressure_flow, 1.0 - self._late
         balance = np.diff(0.5 * drag) - early * np.diff(self._flow.pressure_flow)
         return balance - self._squeeze * (drag[1:] + drag[:-1])
@@ -196,13 +197,13 @@ class RoughPassage:
     def _newton(self, had, gap, flow, state, is_slow, largest):
         """Step of Newton's method for pressure, offset and contact pressure; the largest change.
 
-        Nodes outside the film get no pressure of the oil, and cells without contact none of the
-        solids. The derivatives are formed anew if the last step came hardly nearer; otherwise those
-        of an earlier step, or time step, are near enough.
+        Nodes outside the film get no oil pressure, and cells without contact no solid pressure. The
+        derivatives are formed anew if the last step hardly came nearer to the solution; otherwise
+        the derivatives of an earlier step, or time step, are used again.
         """
         discrete, (pressure, offset, solid) = self._discrete, state
         late, drag = self._late, flow.flux + flow.pressure_flow
-        # Parts of the dragged oil in the cells behind a node and before it.
+        # Fractions of the dragged oil in the cells behind a node and before it.
         behind, before = self._squeeze + 0.5 - late, self._squeeze - 0.5 + late
         residual = had + behind * drag[1:] + before * drag[:-1] + late * np.diff(flow.flux)
         by_gap = (
@@ -229,7 +230,8 @@ class RoughPassage:
         missing = HERTZ_LOAD - discrete.weight @ pressure - discrete.step @ solid
         closing = np.where(touching, self._closed - gap, -solid)[cells]
 
-        # The factored equations, bordered by those of nodes that came or went, and of cells.
+        # The factored equations, bordered by those of the nodes that joined or left the film since,
+        # and by those of the cells in contact.
         count = changed.size
         columns = np.zeros((wanted.size + 1, count + cells.size))
         columns[changed, np.arange(count)] = 1.0
@@ -269,9 +271,10 @@ class _Derivatives:
     discrete : DiscreteContact
         The equation on its mesh.
     by_gap : tuple of numpy.ndarray
-        By the gap in the cells behind the nodes and before them.
+        Derivatives with respect to the gap in the cells behind the nodes and before them.
     by_node : tuple of numpy.ndarray
-        By the pressures at the nodes before, at the nodes themselves, and behind, the gap held.
+        Derivatives at constant gap with respect to the pressures at the nodes before, at the nodes
+        themselves, and at the nodes behind.
     """
 
     discrete: DiscreteContact
@@ -280,17 +283,17 @@ class _Derivatives:
 
     @property
     def own(self):
-        """By the pressure at the node itself."""
+        """Derivatives with respect to the pressure at the node itself."""
         inner, deflection = np.arange(self.by_gap[0].size), self.discrete.deflection
         by_gap = self.by_gap[0] * deflection[inner + 1, inner + 1]
         return by_gap + self.by_gap[1] * deflection[inner, inner + 1] + self.by_node[1]
 
     def opened(self, by):
-        """As the gap opens in the cells, per column."""
+        """Differentiate with respect to changes of the gap: the columns of `by`, cell by cell."""
         return self.by_gap[0][:, None] * by[1:] + self.by_gap[1][:, None] * by[:-1]
 
     def rows(self, nodes):
-        """By all inner pressures and the offset, at some nodes."""
+        """Differentiate at some nodes with respect to all inner pressures and the offset."""
         behind, before = (each[nodes] for each in self.by_gap)
         rows = np.empty((nodes.size, self.by_gap[0].size + 1))
         deflection = self.discrete.deflection[:, 1:-1]
@@ -304,7 +307,7 @@ class _Derivatives:
         return rows
 
     def factors(self, in_film):
-        """Factors of the transposed equations of a film and its load.
+        """LU factors of the transposed equations of a film and its load.
 
         Nodes outside the film get no pressure.
         """
@@ -326,12 +329,12 @@ class PassedWave:
     position : numpy.ndarray, shape (n,)
         Positions over the half-width.
     transfer : numpy.ndarray of complex, shape (n,)
-        Its part of the gap that has its wavelength and speed, over the undeformed wave, as of
-        `lube.ehl.response.WaveResponse`.
+        Component of the gap that has the wavelength and speed of the wave, over the undeformed
+        wave, as from `lube.ehl.response.WaveResponse.transfer`.
     gap : numpy.ndarray, shape (steps, n)
         Scaled gap in the last period.
     oil_load_share : float
-        Least share of the load that the oil carried in that time.
+        Least share of the load that the oil carried in that period.
     """
 
     position: Array
@@ -354,13 +357,13 @@ def pass_wave(
     profile : FilmProfile
         The film of smooth rollers.
     wavelength : float
-        Over the half-width.
+        Wavelength over the half-width.
     surface_speed : float
         Speed of the wave over the entrainment speed, above 0.
     amplitude : float
-        Over the central film.
+        Amplitude over the central film.
     nodes : int, optional
-        Nodes in a wavelength.
+        Nodes per wavelength.
 
     Returns
     -------
@@ -370,7 +373,7 @@ def pass_wave(
     Raises
     ------
     ConvergenceError
-        If a time step is not solved.
+        If a time step does not converge.
     """
     step, wavenumber = wavelength / nodes, 2.0 * np.pi / wavelength
     passage = RoughPassage(profile, step)

@@ -1,1 +1,1 @@
-"""What records tell: the model at their conditions, their scatter, factors fitted to them."""
+"""Inference from records: the model at their conditions, their scatter, factors fitted to them."""

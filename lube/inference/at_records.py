@@ -1,8 +1,8 @@
 """The model at the conditions of each record.
 
-A record has a force, a speed and a temperature of its own. The film thickness there follows from
-the film formulas, and the probability from the study's realisations, run at that film and
-contact width: nothing is rounded to the nearest level of the operating grid.
+The force, speed and temperature of a record need not be levels of the operating grid. The film
+thickness there follows from the film formulas, and the probability from the study's realisations,
+run at that film and contact width: nothing is rounded to the nearest level.
 """
 
 import logging
@@ -35,8 +35,8 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     experiment : xarray.Dataset
         An ``experiment`` dataset.
     film, contact : xarray.Dataset
-        The datasets of these kinds of the study. Probabilities in pure rolling are taken from
-        them at records whose film and contact width they contain.
+        The study's datasets of these kinds. Where they contain the film and contact width of a
+        record, its probability in pure rolling is taken from them.
     study : Study
         Its oils, rollers, films, roughness lines, boundary layer and drift.
 
@@ -49,7 +49,7 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
         ``longest_wavelength``, both m, of one realisation.
 
         The probabilities are those of one revolution of pure rolling, with the film and its
-        response to the roughness at the record's slip. Otherwise slip does not change the
+        response to the roughness at the record's slip. Apart from these, slip does not change the
         expected probability, only the scatter of a record.
     """
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
@@ -93,8 +93,8 @@ def film_at_records(
         ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material``,
         ``contact_half_width`` and ``dynamic_viscosity`` over film_formula and record;
         ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. If films have a
-        shape, ``film_profile`` over record and film_position, and ``formula_place``. With inlet
-        shear heating the factor over record, and with a meniscus its distance.
+        shape, also ``film_profile`` over record and film_position, and ``formula_place``. With
+        inlet shear heating also its factor over record, and with a meniscus its distance.
     """
     force, speed, temperature, oil, slip = (
         xr.DataArray(experiment[name].values, dims="record")
@@ -115,7 +115,7 @@ def film_at_records(
 
 
 def _stored(study, film, contact):
-    """Probability of every realisation at the points of contact.nc in pure rolling, by point."""
+    """Probability of every realisation at the points of contact.nc in pure rolling, by key."""
     rolling = 0.0 in contact["slide_to_roll_ratio"].values
     if not rolling or contact["revolutions"].item() != 1:
         return {}

@@ -29,7 +29,7 @@ COMPUTED_FACTORS = np.array([0.125, 0.25, 0.5, 1.0, 2.0])
 """Factors at which a computed film is solved for. Beyond them it is taken to grow as a power of the
 factor: the pressure spike of so viscous an oil is too steep to be resolved."""
 STRENGTH_LEVELS = 193
-"""Number of layer strengths that are tried, between the curves' weakest and strongest."""
+"""Number of layer strengths that are tried, from the weakest of the curves to the strongest."""
 
 
 def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
@@ -40,7 +40,7 @@ def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
 
     All records of a pair see the same rollers, so their errors are correlated as the
     realisations are; those of different pairs are independent, except for the curves' own error.
-    It is assumed that the film formula is correct but for the coefficient, and that the
+    It is assumed that the film formula is correct except for the coefficient, and that the
     simulated roughness is that of the rollers.
 
     Parameters
@@ -55,8 +55,8 @@ def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
     xarray.Dataset
         ``alpha_factor`` with ``_lower`` and ``_upper`` over (fitted_lubricant, film_formula): 1
         is the coefficient of the study. Beyond `ALPHA_FACTORS` the factor is NaN, a limit 0 or
-        infinity. ``alpha_factor_coverage`` is the share of realisations whose interval, each
-        left out and taken as the records, contains 1.
+        infinity. For ``alpha_factor_coverage`` each realisation in turn is left out of the ensemble
+        and taken as the records; it is the fraction of these cases whose interval contains 1.
     """
     logits = alpha_logits(curves, comparison)
     return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison)
@@ -124,13 +124,13 @@ def strength_logits(
         Over (factor, film_formula, record).
     """
     tried = np.geomspace(*curves.strengths[[0, -1]], STRENGTH_LEVELS)
-    # Curves of layers are coarse: they give the difference to the study's layer.
+    # Curves of layers are coarse, so only their difference from the study's layer is used.
     ratios = comparison["lambda_ratio"]
     coarse = curves.layer_logits(ratios)
     own = coarse.sel(layer_strength=study_strength(contact), method="nearest", drop=True)
     logits = curves.logits(ratios) + coarse - own
     logits = logits.transpose("layer_strength", "film_formula", "record")
-    # A record is left out if the contact of any layer is too rare for the curves there.
+    # A record is left out if contact with any of the layers is too rare for the curves there.
     known = logits.notnull().all("layer_strength")
     spline = scipy.interpolate.PchipInterpolator(
         np.log(logits["layer_strength"]), logits.fillna(0.0)
@@ -139,7 +139,7 @@ def strength_logits(
 
 
 def study_strength(contact: Data) -> float:
-    """Strength of the study's boundary layer; the model depends on its properties only by this.
+    """Strength of the study's boundary layer, its only property on which the model depends.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def _films(row, groups, factor):
         return replace(groups, material=factors * groups.material).film(row)
 
     if not row.depends_on_oil:
-        # Some factors at a time: the integral of starvation takes a hundred times their memory.
+        # A few factors at a time: the integral of starvation takes a hundred times their memory.
         parts = np.array_split(range(factor.size), 1 + factor.size // 20)
         return xr.concat([film(factor[some]) for some in parts], "factor", join="exact")
     films = film(xr.DataArray(COMPUTED_FACTORS, dims="factor"))
@@ -189,7 +189,7 @@ def _films(row, groups, factor):
 
 
 def _between_nodes(films, factor):
-    """Film at each factor, from those at `COMPUTED_FACTORS` that converged."""
+    """Film at each factor, from the films at `COMPUTED_FACTORS` that converged."""
     known = np.isfinite(films)
     if known.sum() < 2:
         return np.full(factor.size, np.nan)
@@ -246,7 +246,7 @@ def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[fl
 def _usable(logits, comparison):
     """Keep the records that have a share and a probability at every factor.
 
-    Also returned are the realisations' probabilities there, and their effective sample size.
+    Returns their logits and rows, the realisations' probabilities and the effective sample size.
     """
     used = np.isfinite(comparison["measured_share"].values) & np.isfinite(logits).all(axis=0)
     comparison = comparison.isel(record=used)
@@ -257,7 +257,7 @@ def _usable(logits, comparison):
 
 
 def _pooled_shift(comparison):
-    """Logits of the pooled probability less those of the mean, 0 where one has none."""
+    """Logits of the pooled probability less those of the mean; 0 where either is not finite."""
     pooled, mean = (comparison[f"{name}_probability"].values for name in ("pooled", "simulated"))
     with np.errstate(invalid="ignore"):
         shift = scipy.special.logit(pooled) - scipy.special.logit(mean)
@@ -265,14 +265,14 @@ def _pooled_shift(comparison):
 
 
 def _pair_scatter(comparison):
-    """Scatter ratio of each two records of one pair; none between records of different pairs."""
+    """Scatter ratio of any two records of one pair; 0 for records of different pairs."""
     ratio = np.sqrt(comparison["scatter_ratio"].values)
     pair = comparison["pair"].values
     return np.where(pair[:, None] == pair, ratio[:, None] * ratio, 0.0)
 
 
 def _coverage(log_factors, truth, logits, comparison):
-    """Share of realisations whose interval, each left out and taken as the records, is correct.
+    """Fraction of realisations whose interval is correct, if each is left out and taken as records.
 
     The interval holds all factors that the misfit does not contradict, so it contains the truth
     where the misfit there is within its quantile.

@@ -1,9 +1,9 @@
 """Curves of the breakthrough probability against the film, one for each record.
 
 Where contact depends on the film thickness and the contact width alone, they are read from the
-master map. Elsewhere, under a film with a shape or on lines that the oil flattens, every record has
-a curve of its own: the film at its conditions is made thinner and thicker, and contact is counted
-on some of the study's realisations, or sampled where it is rare.
+master map. Under a film with a shape, or on lines that the oil flattens or answers, a curve is made
+for every record: the film at its conditions is made thinner and thicker, and contact is counted on
+some of the study's realisations, or sampled where it is rare.
 """
 
 import dataclasses
@@ -27,19 +27,19 @@ from lube.types import Array
 PROBABILITY = "breakthrough_probability"
 
 FILMS = 13
-"""Films of a record at which contact is counted or sampled."""
+"""Number of films of a record at which contact is counted or sampled."""
 FINER = 4
-"""Films of the curve for each of these, by interpolation."""
+"""Number of films of the curve for each of these, by interpolation."""
 BEYOND = 0.3, 1.5
 """Thinnest film of the curves over the thinnest of all records, and thickest over the thickest."""
 PAIRS = 8
-"""Pairs of lines on which contact is counted or sampled."""
+"""Number of pairs of lines on which contact is counted or sampled."""
 FREQUENT = 0.03
-"""Probability from which contact is counted: there sampling scatters more."""
+"""Probability from which on contact is counted, since sampling scatters more there."""
 LAYER_FACTORS = np.array([1 / 8, 1 / 3, 1.0, 3.0, 8.0])
 """Strengths of the boundary layer, relative to the study's."""
 LAYER_FILMS, LAYER_PAIRS = 5, 4
-"""Films and pairs of lines for boundary layers of other strengths."""
+"""Numbers of films and of pairs of lines for boundary layers of other strengths."""
 _LEAST = 1e-40
 """Probability up to which contact is taken as impossible."""
 
@@ -55,9 +55,9 @@ class RecordCurves:
     of_records : list of Curve
         The mean probability for each record.
     offsets : numpy.ndarray
-        Shape (film_formula, record): logarithm of the lambda ratio by the first formula less that
-        by each formula, of the same film. Under a film with a shape they differ: one formula gives
-        the film at its centre, another at its thinnest place.
+        Shape (film_formula, record): logarithm of the lambda ratio that the first formula gives to
+        a film, less the one that each formula gives to it. They differ for a film with a shape: one
+        formula gives the film at the line of centres, another at the thinnest point.
     strengths : numpy.ndarray
         Strengths tau0 / h_c of boundary layers, Pa/m, rising.
     of_layers : list of list of Curve
@@ -80,7 +80,7 @@ class RecordCurves:
         Returns
         -------
         xarray.DataArray
-            Over the same dimensions, these two last.
+            Over the same dimensions, film_formula and record last.
         """
         return self._read(self.of_records, ratios)
 
@@ -138,8 +138,8 @@ def map_curves(master: xr.Dataset, comparison: xr.Dataset) -> RecordCurves:
 def curve_at(master: xr.Dataset, width: float, layer: xr.DataArray | None = None) -> Curve:
     """Curve of the mean breakthrough probability and of its effective sample size.
 
-    If contacts occur independently along the line, -ln(1 - p) is proportional to the width. It is
-    extrapolated so beyond the map's widths, and interpolated linearly between them.
+    If contacts occur independently along the line, -ln(1 - p) is proportional to the width. So it
+    is extrapolated in proportion beyond the map's widths, and interpolated linearly between them.
 
     Parameters
     ----------
@@ -170,15 +170,15 @@ def curve_at(master: xr.Dataset, width: float, layer: xr.DataArray | None = None
     return peaked_curve(np.log(ratios), -np.expm1(-here), sample_size, resolution)
 
 
-# Curves of the records' own films
+# Curves at the films of the records
 
 
 def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None) -> RecordCurves:
-    """Curves of the films at the records' own conditions, made thinner and thicker.
+    """Curves over the films at the conditions of the records, made thinner and thicker.
 
-    The shape of a film, and how much the oil flattens the lines, stay those of the record. The
-    curve is shifted towards the mean over the study's realisations at the record's film, the more
-    the better they determine it.
+    The shape of the film, and how much the oil flattens the lines, stay those of the record. The
+    curve is shifted towards the mean over the study's realisations at the record's film, by more
+    the better the realisations determine it.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
 
 
 def _offsets(comparison, has_shape):
-    """Logarithm of the film that the first formula gives less that of each, of one shape."""
+    """Compute the `offsets` of `RecordCurves`."""
     if not has_shape:
         return np.zeros(comparison["film_thickness"].shape)
     films = np.log(film_at_places(comparison).transpose("film_formula", "record").values)
@@ -302,8 +302,8 @@ def gauged_ratios(curves: Sequence[Curve], comparison: xr.Dataset, noise: Array)
     Returns
     -------
     numpy.ndarray, shape (3, record)
-        Value, lower and upper limit. Beyond its curve a share has no value, NaN, and a limit is 0
-        or infinity.
+        Value, lower and upper limit. If a share lies beyond its curve, the value is NaN, and a
+        limit is 0 or infinity.
     """
     columns = comparison["measured_share"].values, comparison["scatter_ratio"].values[0], noise
     realisations = comparison.sizes["realisation"]

@@ -1,13 +1,13 @@
 r"""The scatter of a record's contact share between pairs of rollers.
 
 The probability is a mean over all pairs of rollers; a record comes from one pair, and its share
-deviates from that mean. The variance of the deviation depends on how the pair is seen:
+deviates from that mean. The variance of the deviation depends on how the record sees the pair:
 
 - *One alignment.* Equal rollers in pure rolling repeat themselves in each revolution. The variance
   is that between the realisations of the ensemble, and longer records do not reduce it.
 - *Several alignments.* With slip, or rollers of different size, the two lines meet in a new
-  alignment in each revolution. What the lines do together is then averaged out; what each line
-  does alone, against any other line, persists.
+  alignment in each revolution. The joint effect of the two lines is then averaged out; the effect
+  of each line alone, against any other line, persists.
 - *Short records.* Less than one revolution shows only a part of the lines, and the parts differ
   more than the whole lines.
 """
@@ -40,7 +40,7 @@ MOST_STRETCHES = 8
 """Largest number of stretches of one realisation that serve as short records."""
 ALIGNMENT_RATIOS = np.linspace(1.0, 3.75, 12)
 """Lambda ratios at which lines are paired crosswise; at higher ones contact is too rare. With fewer
-the interpolation between them makes the effects of lines alone at neighbouring films too alike."""
+levels interpolation would make the effects of single lines at neighbouring films too alike."""
 
 
 def record_scatter(
@@ -140,7 +140,7 @@ def _variance_ratio(slipping, rolling):
 
 
 def _components(study, slip, turns, persistent):
-    """Scatter ratios due to each line alone, and due to both together, two of shape (P,)."""
+    """Scatter ratios due to each line alone, and due to both together, shape (P,) each."""
     spec = study.line_spec
     reach, ratios = spec.longest_wavelength / spec.spacing, speed_ratios(slip)
     alone, together = np.empty((2, turns.size))
@@ -190,8 +190,8 @@ def _standardised(values):
 def _line_effects(model, study, slips, turns, realisations):
     """Part of the scatter that is due to each line alone, and persists in all alignments.
 
-    It is estimated from the ensemble's own lines as drawn, under flat films, paired crosswise, if
-    any record has several alignments.
+    If any record has several alignments, it is estimated from the ensemble's lines as drawn, under
+    flat films, paired crosswise.
 
     Returns
     -------
@@ -221,7 +221,7 @@ def _line_effects(model, study, slips, turns, realisations):
 
 
 def _pooled(study, windows, count, mean, persistent):
-    """Mean over several pairings of the lines, one of which is known, and its relative variance."""
+    """Mean over several pairings of the lines, the first of them known, and its variance ratio."""
     pairings = min(PAIRINGS, count)
     distinct, inverse = windows.distinct()
     shares, firsts = np.zeros(distinct.size), deque(maxlen=pairings - 1)
@@ -236,11 +236,11 @@ def _pooled(study, windows, count, mean, persistent):
 
 
 def _crosswise(study, levels, count):
-    """Share of each first line with each second line, two of shape (count, count, levels).
+    """Contact share of each first line with each second line, two of shape (count, count, levels).
 
-    One is in a whole turn of the first line, the other in a whole turn of the second. In a turn of
-    a line of another size a part of a line passes more often than the rest: this adds to its
-    effect, but does not persist.
+    The first is over a whole turn of the first line, the other over a whole turn of the second. In
+    a turn of a line of another size, part of a line passes more often than the rest: this adds to
+    the line's effect, but does not persist.
     """
     in_first, in_second = np.empty((2, count, count, levels.size))
     for begin in range(0, count, LINES_IN_MEMORY):
@@ -275,9 +275,9 @@ def _whole_turns(pair, levels):
 def _short_variance(study, windows, slips, turns, realisations):
     """Variance between the shares of records of less than one revolution, shape (P,).
 
-    It is not in proportion to 1 / turns: the waves of a whole line have the amplitudes of the
-    study's spectrum, those of a part of the line have not, so the parts differ more. Therefore
-    stretches of the ensemble's own lines serve as records.
+    It is not in proportion to 1 / turns: a whole line has exactly the amplitudes of the study's
+    spectrum, but a part of the line has not, so parts differ more. Therefore stretches of the
+    ensemble's lines serve as records.
     """
     motions = sorted(set(zip(slips.tolist(), turns.tolist(), strict=True)))
     shares = {motion: [] for motion in motions}

@@ -1,4 +1,4 @@
-"""Contact shares of a study's records: arranged over the grid, and described in words."""
+"""Contact shares of a study's records, arranged over the operating grid, and words for messages."""
 
 from collections.abc import Mapping, Sequence
 from logging import Logger
@@ -10,7 +10,7 @@ from lube.schema import COORDINATES
 from lube.units import with_unit
 
 MOST_LINES = 10
-"""Lines of a long list that are logged."""
+"""Largest number of lines of a list that are logged."""
 
 
 def over_grid(dataset: xr.Dataset) -> xr.Dataset:

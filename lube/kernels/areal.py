@@ -11,7 +11,7 @@ from lube.kernels.compiler import inlined, kernel
 from lube.types import Array, Pair
 
 BLOCK = 32
-"""Number of points of a row that are looked at, or left out, together."""
+"""Number of points of a row that are searched, or skipped, together."""
 
 
 @kernel
@@ -48,8 +48,9 @@ def touching_strips(
         with curvatures around it, over the variance of the heights; at distances of 0 .. R rows
         and of -(C - 1) .. C - 1 columns.
     places : tuple of numpy.ndarray
-        Shape (K,) each: the surface's row that is each strip's known row, at least R, and the
-        column that is the strip's first.
+        Shape (K,) each: row of the surface in which each strip's known point lies, at least R from
+        the first row and `around` from the last, and column of the surface in which the strip
+        begins.
     touching : tuple of numpy.ndarray
         Shape (K,) each: column of the strip in which the known point lies, and its height,
         float32 height steps.
@@ -60,17 +61,20 @@ def touching_strips(
     width : int
         Points in a row, at most C.
     around : int
-        Rows on either side of the known one in which its contact is followed.
+        Number of rows ahead of the known one in which its contact is followed; it is followed back
+        through all R rows. A contact that begins as many rows back, or more, is too long for the
+        sums over first contacts.
 
     Returns
     -------
     contact, breakthrough : numpy.ndarray
-        Shape (R - `around` + 1,) each, sums of weights. The first is over the known rows, 1/n for a
-        row of n touching points. The next ones are over contacts of m points, 1/m each, if the
-        strip does not touch in the row before the contact's first one, in the two rows before it,
-        and so on. In `breakthrough` only contacts count whose boundary layer breaks.
+        Shape (R - `around` + 1,) each, sums of weights. Element 0 is the sum over the known rows,
+        1/n for a row of n touching points. Element k is the sum over the first contacts: those of m
+        points count 1/m if the strip does not touch in the k rows before the contact begins, and
+        contacts that begin in the same row divide it among them. `breakthrough` counts only
+        contacts whose boundary layer breaks.
     contacts : numpy.ndarray
-        Shape (2,), sums of 1/m of all contacts, and of those whose boundary layer breaks.
+        Shape (2,), sums of 1/m over all contacts, and over those whose boundary layer breaks.
     """
     reach = covariances[0].shape[0] - 1
     rows = reach - around
@@ -96,9 +100,9 @@ def touching_strips(
         contacts[0] += 1.0 / points
         contacts[1] += breaks / points
         if first <= -around:
-            continue  # too large a contact to be a first one
+            continue  # too long a contact to be a first one
         _, others, broken, earliest = _row(moved, search, heights, first)
-        # Several contacts that begin in the same row are a first one together.
+        # Several contacts that begin in the same row count as one first contact.
         alone, alone_broken = 1 + others, 1 + broken
         if not breaks or earliest < first:
             alone_broken = 0
@@ -124,8 +128,8 @@ def touching_strips(
 def _row(moved, search, heights, row):
     """Follow the contacts of a row that were not followed before.
 
-    Returns the number of touching points; of new contacts; of those whose boundary layer breaks;
-    and the earliest row of these.
+    Returns the numbers of touching points, of new contacts, and of new contacts whose boundary
+    layer breaks, and the earliest row of the last ones.
     """
     film, seen, mark = search[0], search[2], search[3]
     reach = moved[1][0].shape[0] - 1
@@ -160,7 +164,7 @@ def _fill_row(moved, row, heights):
 
 @inlined
 def _ceiling(moved, tops, known, row, width):
-    """Height that no point of a row exceeds, but by rounding."""
+    """Upper limit of the heights in a row, up to rounding."""
     _, _, first_row, first_column, _, rise = moved
     highest = np.float32(-np.inf)
     for block in range(first_column // BLOCK, (first_column + width - 1) // BLOCK + 1):

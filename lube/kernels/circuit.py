@@ -39,7 +39,8 @@ def sampled_voltage(
     targets : numpy.ndarray
         Shape (W + 1,), steady voltage over the gap for each number of points, V.
     decays : numpy.ndarray
-        Shape (W + 1,), factor m by which the distance to it shrinks in one time step.
+        Shape (W + 1,), factor m by which the distance to the steady voltage shrinks in one time
+        step.
     gain, offset : float
         Gain g and offset o (V): the amplifier's input is ``gain * gap voltage + offset``.
     limit : float

@@ -16,7 +16,7 @@ import numba
 
 
 def _cache_folder(sources: Path) -> str:
-    """Cache folder of the present version of the sources; Numba's own if they are read-only."""
+    """Cache folder for the present sources; Numba's default if their folder is read-only."""
     if not os.access(sources, os.W_OK):
         return numba.config.CACHE_DIR
     text = b"".join(path.read_bytes() for path in sorted(sources.glob("*.py")))
@@ -41,7 +41,8 @@ def kernel(function: Callable, **options) -> Callable:
     -------
     callable
         The compiled function. Its machine code is cached on disk. It releases Python's global
-        lock. Arithmetic is strict IEEE (no fast-math), and a division by zero gives infinity.
+        interpreter lock. Arithmetic is strict IEEE (no fast-math), and a division by zero gives
+        infinity.
     """
     # Numba reads this setting while it decorates. It is restored at once, for all other functions.
     users_folder = numba.config.CACHE_DIR

@@ -7,7 +7,7 @@ from lube.kernels.compiler import kernel
 
 @kernel
 def surface_position(step: int, speed_ratio: float) -> int:
-    r"""Count the grid points that a surface has advanced by a time step.
+    r"""Count the grid points by which a surface has advanced at a time step.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 """Runs of points at which the sum of two rough lines lies above a film.
 
-Blocks of points that cannot reach above the film are skipped. In pure
-rolling the two lines keep one alignment for the whole revolution, so their sum is computed once
-and searched point by point. With slip an alignment lasts for a few time steps only. There the
-maxima of two blocks together are an upper limit of their sum. They are computed once, for blocks
-that begin at any point, and exclude most windows before any heights are added.
+Blocks of points that cannot rise above the film are skipped. In pure rolling the two lines keep
+one alignment for the whole revolution, so their sum is computed once and searched point by point.
+With slip an alignment lasts for a few time steps only. There the maxima of two blocks together are
+an upper limit of their sum. They are computed once, for blocks that begin at any point, and exclude
+most windows before any heights are added.
 """
 
 import numpy as np
@@ -51,7 +51,7 @@ def add_lines(lines: Pair, first_1: int, first_2: int, line: Array) -> None:
 
 @kernel
 def _replace_by_highest(line):
-    """Replace each point by the highest of the `BLOCK` points from it on, but for the last ones."""
+    """Replace each point, except the last ones, by the highest of the `BLOCK` points from it on."""
     covered = 1
     while covered < BLOCK:
         for i in range(line.size - covered):
@@ -104,7 +104,7 @@ def fill_high_stretches(
     film : int
         Film thickness, height steps.
     line : numpy.ndarray
-        Shape (L,), int32; filled with the sum, height steps, in the stretches at least.
+        Shape (L,), int32; filled with the sum, height steps, at least in the stretches.
     stretches : tuple of numpy.ndarray
         Filled with the first index of each stretch in `line` and the index after its last.
 

@@ -1,15 +1,16 @@
-r"""Contact in an uneven window: film and oil ride with the contact.
+r"""Contact in an uneven window, whose film stays in the contact while the roughness moves through.
 
-The film may have a shape, and the oil may answer the roughness. Its answer at the position X is a
-sum of filtered lines, each times a function of the position:
+The film may vary along the window, and the oil may answer the roughness: its pressure flattens the
+waves in the contact. The answer is a change of the heights. At the position X of the window it is
+a sum of filtered lines, each times a function of the position, so the roughness there is
 
 .. math:: z(s) + \sum_m u_m(X)\, z_m(s)
 
-It is smooth, so it is computed at some points of the window, the nodes, and taken as linear between
-them.
+The answer is smooth, so it is computed at some points of the window, the nodes, and taken as linear
+between them.
 
-Blocks of points are passed over where the highest points of both lines do not reach the film. All
-other points are read as in the literal scan, so the results equal it to the last bit. Windows a
+Blocks of points are skipped where even the sum of both lines' highest points lies below the film.
+All other points are read as in the literal scan, so the results equal it to the last bit. Windows a
 tenth of the contact apart see nearly the same points, so a probability does not need a window at
 every time step.
 """
@@ -35,10 +36,10 @@ class Surface(NamedTuple):
     highest : numpy.ndarray
         From `highest_ahead`.
     filtered : numpy.ndarray
-        Filtered lines on a coarser grid of n points, the last one the first again, shape
+        M filtered lines on a coarser grid of n points, the first point repeated at the end, shape
         (n + 1, M), float32 height steps; M = 0 if the oil does not answer.
     shapes : numpy.ndarray
-        Functions of the position by which they are multiplied, at the nodes, shape (nodes, M).
+        Functions of the position that multiply the filtered lines, at the nodes, shape (nodes, M).
     """
 
     line: Array
@@ -53,12 +54,12 @@ class Window(NamedTuple):
     Attributes
     ----------
     films : numpy.ndarray
-        Film thickness at each point, shape (F, W), int64 height steps; of F operating points that
-        have the same window and answers.
+        Film thickness at each point, shape (F, W), int64 height steps, for F operating points with
+        the same window and the same answers of the oil.
     before : int
-        Points of the window before its centre.
+        Number of points of the window before its centre.
     shift : int
-        Binary logarithm of the points from node to node, a part of `BLOCK`.
+        Binary logarithm of the number of points from node to node, which divides `BLOCK`.
     """
 
     films: Array
@@ -85,7 +86,7 @@ def phase_of(window):
 
 @inlined
 def node_count(window):
-    """Count the nodes of a window, those beyond its last block included."""
+    """Count the nodes of a window, including those beyond its last block."""
     blocks = (window.films.shape[1] + BLOCK - 1) // BLOCK
     return blocks * (BLOCK >> window.shift) + 2
 
@@ -128,7 +129,7 @@ def _answer(surfaces, speed_ratios, step, window, lift):
 
 @kernel
 def _window(lines, ahead, first_1, first_2, film, least, answers, factor):
-    """Contact points, broken points and overlap in one window, as in the literal scan."""
+    """Sum contact points, broken points and overlap in one window, as in the literal scan."""
     (line_1, line_2), (is_answered, lift, highest, shift, phase) = lines, answers
     step = 1 << shift
     contact_points = broken_points = total_overlap = 0
@@ -178,7 +179,7 @@ def shaped_trace(
     window: Window,
     factors: Array,
 ) -> Array:
-    """Compute the contact in windows evenly spread over the time steps of some operating points.
+    """Compute the contact of some operating points, in windows evenly spread over the time steps.
 
     Parameters
     ----------
@@ -202,8 +203,9 @@ def shaped_trace(
 
     Notes
     -----
-    The answers change as slowly with time as along the window. If every time step is looked at,
-    they are computed as many steps apart as there are points from node to node.
+    The answers change as slowly with time as along the window. With a window at every time step
+    they are computed as many steps apart as there are points from node to node, and taken as linear
+    in between.
 
     Examples
     --------
@@ -255,8 +257,8 @@ def means_of(traces: Array) -> Array:
     Returns
     -------
     numpy.ndarray
-        Shape (F, 4): share of the windows with contact, share with a broken boundary layer, broken
-        points, and overlap (height steps).
+        Shape (F, 4): fraction of the windows with contact, fraction with a broken boundary layer,
+        mean number of broken points, and mean overlap (height steps).
 
     Examples
     --------
@@ -269,7 +271,7 @@ def means_of(traces: Array) -> Array:
 
 
 def as_drawn(line: Array) -> Surface:
-    """Return the surface of a line which reaches the gap as drawn.
+    """Return the surface of a line that enters the gap as drawn.
 
     Parameters
     ----------
@@ -279,6 +281,6 @@ def as_drawn(line: Array) -> Surface:
     Returns
     -------
     Surface
-        Without answers of the oil.
+        The line, which the oil does not answer.
     """
     return Surface(line, highest_ahead(line), np.zeros((2, 0), np.float32), np.zeros((0, 0)))

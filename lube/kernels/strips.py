@@ -6,8 +6,7 @@ the whole revolution in pure rolling, about 1 / slip steps at small slip, a sing
 slip. On a strip the windows pass every run of points above the film in the same three phases: its
 beginning enters at the right edge, it lies inside the window (or fills it), and its end leaves at
 the left edge. So each run is visited once, point by point, for any width of the window. The search
-for runs is shared by all operating points: the runs of a thicker film lie within those of a
-thinner one.
+for runs serves all operating points: the runs of a thicker film lie within those of a thinner one.
 """
 
 import numpy as np
@@ -250,7 +249,7 @@ def _run_strips(
         first_2 = (position_2 - margin) % lines[1].size
         searched = films[thinnest_first[0]]
         found = fill_high_stretches(lines, ahead, first_1, first_2, searched, line, runs)
-        searched -= 1  # the stretches are no runs yet
+        searched -= 1  # the stretches are not yet divided into runs
         for point in thinnest_first:
             if found == 0:  # a thicker film has none either
                 break

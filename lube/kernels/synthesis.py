@@ -1,4 +1,4 @@
-"""Random phases, translated and rounded heights: the steps around a line's Fourier transform."""
+"""Steps before and after a line's Fourier transform: random phases, translated, rounded heights."""
 
 import math
 
@@ -106,7 +106,7 @@ def translated_steps(
         Shape (nodes,), translated heights at equally spaced heights from -reach to reach; straight
         lines between them.
     reach : float
-        Where the curve ends; no height is beyond it.
+        Height at which the curve ends; heights beyond it are translated as this one.
     rms : float
         Rms height of the result, height steps.
 

@@ -42,8 +42,8 @@ def touching_windows(
         Shape (2 W - 1,), float32: autocorrelation :math:`\rho` of the sum at the lags
         -(W - 1) .. W - 1 points.
     touching : tuple of numpy.ndarray
-        The point :math:`\tau` of each window that touches, shape (M,), counted from the window's
-        first, and its height :math:`z_\tau`, float32 height steps.
+        Shape (M,) each: the point :math:`\tau` that is known to touch in each window, counted from
+        the window's first, and its height :math:`z_\tau`, float32 height steps.
     film : numpy.ndarray
         Shape (W,), float32: film thickness at each point of the window, height steps.
     factor : float
@@ -103,11 +103,11 @@ def answered_windows(
     starts, correlation, touching, film, factor
         As in `touching_windows`.
     covariances : numpy.ndarray
-        Shape (2, 2, C, C), float32: what the oil adds to the covariance of each line at two nodes
-        of the window, over the variance of the sum as drawn. With the second index 1 the line lies
-        one point further back at the first node.
+        Shape (2, 2, C, C), float32: what the oil adds to the covariance of each line (first index)
+        at two of the C nodes of the window, over the variance of the sum as drawn. With the second
+        index 1 the line lies one point further back at the first node.
     shift : int
-        As of `lube.kernels.shaped.Window`.
+        As in `lube.kernels.shaped.Window`.
 
     Returns
     -------
@@ -142,7 +142,7 @@ def answered_windows(
 
 @inlined
 def between_nodes(values, point, shift):
-    """Linear interpolation between nodes, single precision."""
+    """Interpolate linearly between nodes, in single precision."""
     node = point >> shift
     part = np.float32((point - (node << shift)) / (1 << shift))
     return values[node] + part * (values[node + 1] - values[node])
@@ -150,9 +150,10 @@ def between_nodes(values, point, shift):
 
 @inlined
 def _judged(overlap, factor):
-    """Count touching points, and find the first segment of them whose boundary layer breaks.
+    """Count touching points, and find the first segment whose boundary layer breaks.
 
-    The last value returned is its first point, or the number of points if there is none.
+    Returns the number of touching points, whether there is such a segment, and its first point, or
+    the number of points of the window if there is none.
     """
     points, total, touching = 0, 0.0, 0
     broken, begin = False, overlap.size
@@ -192,7 +193,8 @@ def touching_runs(
     r"""Weigh runs of points above a film, each found from one point that is known to touch.
 
     The lines are moved as in `touching_windows`, each by its part of the autocorrelation. A
-    run of n points could have been found from any of them, so it counts 1/n. No window cuts it.
+    run of n points could have been found from any of them, so it counts 1/n. Runs are not cut by a
+    window.
 
     Parameters
     ----------
@@ -222,9 +224,9 @@ def touching_runs(
         - 3: weights of the broken runs without a forerunner one relative step earlier;
         - 4, 5: as 1 and 3, each weight times the points of the run;
         - 6: as 2, each weight times the points that were searched behind the run;
-        - 7 to 9: weights of the broken runs with another one behind, times the points between the
-          two, times the windows that hold neither, and times the sum over these windows of the
-          steps until the next run.
+        - 7 to 9: weights of the broken runs with another one behind; 7: each times the points
+          between the two; 8: times the windows that hold neither; 9: times the sum over these
+          windows of the steps until the next run.
     """
     sums = np.zeros(10)
     reach = correlations[0].size // 2
@@ -282,8 +284,8 @@ def touching_runs_under(
     places, correlations, factor
         As in `touching_runs`.
     touching : tuple of numpy.ndarray
-        Point of the window in which each known point lies, shape (M,), and the sum of the lines
-        there, float32 height steps.
+        Shape (M,) each: point of the window at which each known point lies, and the sum of the
+        lines there, float32 height steps.
     film : numpy.ndarray
         Shape (W,), float32: film thickness at each point of the window, height steps.
     steps : numpy.ndarray
@@ -293,8 +295,8 @@ def touching_runs_under(
     Returns
     -------
     numpy.ndarray
-        Shape (1 + S,), sums of weights: of the runs whose boundary layer breaks, and of these
-        without a forerunner one step of each kind earlier.
+        Shape (1 + S,), sums of weights: over the runs whose boundary layer breaks, then, for each
+        kind of time step, over those of them without a forerunner one step earlier.
     """
     sums = np.zeros(1 + len(steps))
     reach = correlations[0].size // 2
@@ -329,9 +331,10 @@ def touching_runs_under(
 
 @inlined
 def _answer(answers, surfaces, covariances, offset, known, shift):
-    """Answers to each line and what they add to its covariance with the known point, at nodes.
+    """Fill in the answers to each line, and what they add to its covariance with the known point.
 
-    The third index is 0 for the line as it lies, and 1 for the line one point further back.
+    The indices are: answer or covariance, roller, 0 for the line as it lies or 1 for the line one
+    point further back, node.
     """
     for roller in range(2):
         for back in range(2):
@@ -344,14 +347,14 @@ def _answer(answers, surfaces, covariances, offset, known, shift):
 
 @inlined
 def _answers_at(answers, kind, point, shift):
-    """Answers to both lines as they lie, or what they add to the covariance, at a point."""
+    """Sum the answers to both lines (0), or what they add to the covariance (1), at a point."""
     first = between_nodes(answers[kind, 0, 0], point, shift)
     return first + between_nodes(answers[kind, 1, 0], point, shift)
 
 
 @inlined
 def _overlap_under(around, point, first, second):
-    """Overlap at a point of the window before the lines moved, below zero beyond what is known."""
+    """Overlap at a point of the window before the lines moved; negative where it is unknown."""
     lines, offset, correlations, centre, rise, film, answers, shift = around
     ahead, behind = point - max(first, second) + centre, point - min(first, second) + centre
     if point < 0 or point >= film.size or ahead < 0 or behind >= correlations[0].size:

@@ -72,8 +72,8 @@ def follow_contact(
     hold : int
         Number of samples that a change must last; 0 and 1 have the same effect.
     states : numpy.ndarray
-        Shape (K, 3), int64, zeros before the record, updated in place: trigger closed, in
-        contact, and samples since the two differ.
+        Shape (K, 3), int64, zeros before the record, updated in place: whether the trigger is
+        closed, whether there is contact, and for how many samples the two have differed.
     counts : numpy.ndarray
         Shape (K, B), int64: samples in contact in each block, increased in place.
 

@@ -1,4 +1,4 @@
-"""Contact judged by whole runs: what the edges of the contact window do not cut."""
+"""Breakthrough of runs of touching points that the edges of the contact window do not cut."""
 
 import numpy as np
 
@@ -7,9 +7,10 @@ from lube.types import Array
 
 
 def whole_run_steps(line: Array, films: Array, half_windows: Array, factor: float) -> Array:
-    """Count the windows that hold a part of a run whose boundary layer breaks as a whole.
+    """Count the windows that hold at least a part of a run whose boundary layer breaks.
 
-    In `benchmarks/literal.py` the edges of the window cut a run, and the piece inside is judged.
+    The run is judged uncut. In `benchmarks/literal.py` the edges of the window cut a run, and only
+    the piece inside is judged.
 
     Parameters
     ----------
@@ -24,7 +25,7 @@ def whole_run_steps(line: Array, films: Array, half_windows: Array, factor: floa
     Returns
     -------
     numpy.ndarray
-        Shape (P,), int64: of the N windows, one around each point.
+        Shape (P,), int64: number of such windows, of N, one around each point of the line.
 
     Examples
     --------

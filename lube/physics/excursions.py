@@ -50,7 +50,7 @@ def crossing_rate(level: Values, moments: Sequence[float]) -> Values:
 
 
 def mean_overlap(level: Values, rms: float) -> Values:
-    r"""Mean height of a Gaussian line above a level, zero where it is below.
+    r"""Mean height of a Gaussian line above a level, counted as zero where it is below.
 
     .. math:: \sigma \left( \varphi(t) - t\, Q(t) \right), \qquad t = h / \sigma
 
@@ -77,7 +77,7 @@ def mean_overlap(level: Values, rms: float) -> Values:
 
 
 def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float) -> Array:
-    r"""Share of the summits of a line above a level that are sharper than a given curvature.
+    r"""Fraction of a line's summits above a level that are sharper than a given curvature.
 
     Summits at the height z with the curvature :math:`\kappa = -z''` have the density
 
@@ -98,7 +98,7 @@ def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float)
     Returns
     -------
     numpy.ndarray
-        Share of each level, from 0 to 1.
+        Fraction at each level, from 0 to 1.
 
     Examples
     --------
@@ -109,11 +109,13 @@ def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float)
 
 
 def expected_contacts(level: Array, moments: Sequence[float], length: float, width: Array) -> Array:
-    r"""Count the contacts to expect of an isotropic surface above a level, in a rectangle.
+    r"""Compute the expected number of contacts of an isotropic surface above a level.
 
-    The formula is that of the Euler characteristic: contacts less the holes in them. At high levels
-    contacts have no holes.
-    With :math:`u = h / \sqrt{m_0}` and the sides a and b,
+    The surface is a rectangle.
+
+    The formula gives the expected Euler characteristic: the number of contacts less the holes in
+    them. At high levels contacts have no holes. With :math:`u = h / \sqrt{m_0}` and the sides a
+    and b,
 
     .. math::
 
@@ -155,7 +157,9 @@ def expected_contacts(level: Array, moments: Sequence[float], length: float, wid
 
 
 def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature: float) -> Array:
-    r"""Share of the summits of an isotropic surface that are sharper than a given curvature.
+    r"""Fraction of a surface's summits above a level that are sharper than a given curvature.
+
+    The surface is isotropic.
 
     The mean curvature :math:`\kappa` of a summit in two directions and the difference between the
     directions are independent. Averaged over the difference, summits have the density (Nayak)
@@ -178,7 +182,7 @@ def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature
     Returns
     -------
     numpy.ndarray
-        Share of each level, from 0 to 1.
+        Fraction at each level, from 0 to 1.
 
     References
     ----------
@@ -200,7 +204,7 @@ def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature
 
 
 def _share(level, moments, least_curvature, weight):
-    """Share of the summits above levels that are sharper than a curvature, given its weight."""
+    """Fraction of the summits above levels that are sharper than a curvature, given a weight."""
     m0, covariance, variance = moments
     # Heights are integrated by Gauss-Laguerre quadrature, with z = h + m0 t / h.
     scale = np.asarray(level, float)[..., None]

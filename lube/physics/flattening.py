@@ -25,11 +25,11 @@ def amplitude_ratio(wavelength: Values, moes_load: Values, moes_material: Values
 
     Notes
     -----
-    The formula is for transverse waves in pure rolling, under a full film. It was read in
-    transcription; its values follow the table of the source, which begins at M = 100, L = 11.
-    Below M = 5 it is an extrapolation, and wrong: at the paper's points waves shorter than the
-    half-width lose up to 22 % by the formula, and at most 5 % by Reynolds' equation
-    (`lube.ehl.response`).
+    The formula is for transverse waves in pure rolling, under a full film. It was read in a
+    transcription of the source, not in print; its values follow the table of the source, which
+    begins at M = 100, L = 11. Below M = 5 it is an extrapolation, and wrong: at the paper's points
+    waves shorter than the half-width lose up to 22 % by the formula, and at most 5 % by Reynolds'
+    equation (`lube.ehl.response`).
 
     References
     ----------

@@ -1,9 +1,9 @@
 r"""Shear heating of the oil at the inlet, where the film forms.
 
 All factors depend on the thermal loading :math:`Q = \eta \beta v^2 / k` and the slide-to-roll ratio
-S. In pure rolling they agree, with slip they do not: at Q = 1 and S = 0.5 the published factors are
-0.68 (Zhu and Cheng) and 0.42 (Wilson and Sheu). The inlet equation to which the second was fitted
-gives 0.54.
+S. In pure rolling they agree; with slip they do not. At Q = 1 and S = 0.5 the published factors are
+0.68 (Zhu and Cheng) and 0.42 (Wilson and Sheu). The inlet equation to which Wilson and Sheu fitted
+their formula gives 0.54.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from lube.physics.starvation import inlet_integral
 from lube.types import Array, Values
 
 INLET_HEATING = ("none", "zhu-cheng-1988", "wilson-sheu-1983", "computed")
-"""Models of the heating that a study may choose."""
+"""Models of inlet heating that a study may choose."""
 _REACH, _NEAREST, _STEPS = 1e3, 1e-7, 200
 """Distances before the contact, over the length of the inlet, at which the integration begins and
 ends, and number of its steps."""
@@ -62,8 +62,8 @@ def heating_factor(
     Parameters
     ----------
     model : str
-        One of `INLET_HEATING`. For ``"none"`` the factor is that of ``"zhu-cheng-1988"``, and is
-        not applied.
+        One of `INLET_HEATING`. For ``"none"`` the factor of ``"zhu-cheng-1988"`` is returned; the
+        films are not multiplied by it.
     loading, slip, relative_pressure, film
         As in `zhu_cheng` and `inlet_equation`.
 
@@ -104,7 +104,8 @@ def zhu_cheng(loading: Values, slip: Values, relative_pressure: Values) -> Value
     References
     ----------
     D. Zhu and H. S. Cheng, private communication (1988), printed by R. S. Zhou and M. R. Hoeprich,
-    Torque of tapered roller bearings, J. Tribol. 113 (1991) 590-597, Eq. 21. Read in transcription.
+    Torque of tapered roller bearings, J. Tribol. 113 (1991) 590-597, Eq. 21, read in a
+    transcription.
     P. K. Gupta and others, Tribol. Trans. 35 (1992) 269-274, print the formula too.
 
     Examples
@@ -136,7 +137,8 @@ def wilson_sheu(loading: Values, slip: Values) -> Values:
     References
     ----------
     W. R. D. Wilson and S. Sheu, Effect of inlet shear heating due to sliding on
-    elastohydrodynamic film thickness, J. Lubr. Technol. 105 (1983) 187-188. Read in transcription.
+    elastohydrodynamic film thickness, J. Lubr. Technol. 105 (1983) 187-188, read in a
+    transcription.
 
     Examples
     --------
@@ -176,7 +178,7 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
     -------
     float or numpy.ndarray
         Factor on the film thickness, above 0 and at most 1; the arguments broadcast. It is NaN
-        where an argument is.
+        where an argument is NaN.
 
     Notes
     -----
@@ -192,7 +194,7 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
 
     References
     ----------
-    The paper of `wilson_sheu`; the equation too was read in transcription.
+    The paper of `wilson_sheu`, read in a transcription.
 
     Examples
     --------
@@ -203,7 +205,7 @@ def inlet_equation(loading: Values, slip: Values, film: Values) -> Values:
 
     arguments = np.broadcast_arrays(*(np.asarray(each, float) for each in (loading, slip, film)))
     scale = np.exp(-inlet_integral(np.log(arguments[2]), arguments[2], np.inf)[0])
-    # Not quite up to 1, which is the root without loading.
+    # Up to a little above 1, which is the root without loading.
     found = find_root(_pressure_missing, (np.log(1e-4), 0.01), args=(*arguments, scale))
     return np.minimum(np.exp(found.x), 1.0)[()]
 

@@ -11,7 +11,7 @@ and the viscosity :math:`\eta_0` at :math:`p = 0` they are
 
 the slope at atmospheric pressure, the secant to a pressure P, and the reciprocal asymptotic
 isoviscous pressure (Arana, Larrañaga & Ulacia, Proc. IMechE J 233 (2019) 303, Eq. 23, who integrate
-to the Hertzian pressure). For an oil of Barus, :math:`\eta = \eta_0 e^{\alpha p}`, all three agree.
+to the Hertzian pressure). With Barus' law, :math:`\eta = \eta_0 e^{\alpha p}`, all three agree.
 """
 
 import numpy as np
@@ -68,10 +68,10 @@ DEFINITIONS = {
 """Definitions of the pressure-viscosity coefficient, with the words for files and figures."""
 
 FORMULA_DEFINITION = "slope-at-atmospheric"
-"""Definition that the film formulas take: the slope of an oil of Roelands.
+"""Definition that the film formulas take: the slope of an oil that follows Roelands' law.
 
 This is a convention of the study. The errors and ranges of validity in `lube.ehl.film_formulas`
-were determined with such oils and the slope.
+were determined with this law and the slope.
 """
 
 _SLOPES = 1e-11, 1e-6  # 1/Pa: limits within which the slope of an oil is sought
@@ -80,7 +80,7 @@ _SLOPES = 1e-11, 1e-6  # 1/Pa: limits within which the slope of an oil is sought
 def roelands_coefficient(
     slope: float, dynamic_viscosity: float, definition: str, span: float | None = None
 ) -> float:
-    r"""Pressure-viscosity coefficient of an oil of Roelands, by any definition.
+    r"""Pressure-viscosity coefficient of an oil that follows Roelands' law, by any definition.
 
     .. math::
 
@@ -101,7 +101,7 @@ def roelands_coefficient(
     definition : str
         A key of `DEFINITIONS`.
     span : float, optional
-        Pressure :math:`P` above atmospheric to which the secant goes, Pa.
+        Pressure :math:`P` above atmospheric to which the secant goes, Pa; for ``"secant"`` only.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def roelands_coefficient(
 def roelands_slope(
     coefficient: float, dynamic_viscosity: float, definition: str, span: float | None = None
 ) -> float:
-    """Slope at atmospheric pressure of the oil of Roelands that has a coefficient.
+    """Slope at atmospheric pressure of the oil that follows Roelands' law and has a coefficient.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def roelands_slope(
     if not excess(ends[0]) < 0.0 < excess(ends[1]):
         raise RangeError(
             f"got a pressure-viscosity coefficient of {1e9 * coefficient:g} 1/GPa, which no oil of "
-            f"Roelands of {dynamic_viscosity:g} Pa s has"
+            f"{dynamic_viscosity:g} Pa s has by Roelands' law"
         )
     return float(np.exp(brentq(excess, *ends, xtol=1e-13)))
 
@@ -226,7 +226,9 @@ def mcewen_log_ratio(pressure: Values, slope: float, curvature: float) -> Values
 def mcewen_coefficient(
     slope: float, curvature: float, definition: str, span: float | None = None
 ) -> float:
-    r"""Pressure-viscosity coefficient of an oil of McEwen, by any definition.
+    r"""Pressure-viscosity coefficient of an oil that follows McEwen's law, by any definition.
+
+    Its reciprocal asymptotic isoviscous pressure is
 
     .. math:: \alpha^* = \alpha_0\, (1 - s)
 
@@ -260,7 +262,7 @@ def mcewen_coefficient(
             if curvature >= 1.0:
                 raise RangeError(
                     "the viscosity rises too slowly with pressure for definition "
-                    "'reciprocal-asymptotic', need another"
+                    "'reciprocal-asymptotic', need another definition"
                 )
             return slope * (1.0 - curvature)
         case _:

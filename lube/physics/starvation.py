@@ -13,7 +13,7 @@ _STEPS = 40
 
 
 def starvation_factor(film: Values, meniscus: Values) -> Values:
-    r"""Factor by which the film is thinner if the oil begins at a meniscus near the contact.
+    r"""Factor by which starvation thins the film if the oil begins at a meniscus near the contact.
 
     In the inlet analysis of Ertel and Grubin the pressure at the edge of Hertz' contact is the
     same at any load, and it is built up in the gap of the dry contact, lifted by the film:
@@ -57,8 +57,8 @@ def starvation_factor(film: Values, meniscus: Values) -> Values:
     film, meniscus = np.broadcast_arrays(np.asarray(film, float), np.asarray(meniscus, float))
     if not np.all(meniscus > 1.0):
         raise RangeError(
-            f"meniscus: got one {meniscus.min():g} half-widths before the line of centres, inside "
-            "the contact, need more than 1"
+            f"meniscus: got {meniscus.min():g} half-widths before the line of centres, inside "
+            "the contact, need more than 1 half-width"
         )
     wanted, _ = inlet_integral(np.log(film), film, np.inf)
     log_film = np.log(film)

@@ -1,1 +1,1 @@
-"""The simulated rig: what it records, and the share of contact in a record."""
+"""The simulated rig, and the contact share of a record."""

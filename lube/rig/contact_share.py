@@ -1,7 +1,7 @@
 """Contact share of a record, and its confidence interval.
 
 A record may hold more samples than fit into memory, so it is counted in pieces as they arrive. The
-result is counts in many equal blocks: their sum is the share of time below a threshold, their
+result is counts in many equal blocks: their sum gives the share of time below a threshold, their
 scatter gives its interval, and they can be folded by the revolution.
 """
 
@@ -18,7 +18,7 @@ from lube.statistics.folding import phases_of_blocks
 from lube.study.rig_settings import Experiment, Rig
 
 BLOCKS = 2**18
-"""Largest number of blocks; when all are full, each two neighbours are added up to one block."""
+"""Largest number of blocks; when all are full, neighbours are added in pairs."""
 
 MOST_STRETCHES = 4096
 """Largest number of stretches; shorter stretches see the same contact as their neighbours."""
@@ -42,12 +42,12 @@ class ContactShare:
     Parameters
     ----------
     limits : array_like
-        Shape (K,), rising, in the record's own unit (V or ohm).
+        Shape (K,), rising, in the unit of the record (V or ohm).
     releases : array_like, optional
         Shape (K,), not below the limits; by default the limits, which is no hysteresis.
     hold : int, optional
-        Number of samples that a change of state must last to count; it then counts from its
-        first sample on. With 0 every change counts.
+        Number of samples that a change of state must last to count; it then counts from the first
+        of them on. With 0 every change counts.
 
     Raises
     ------
@@ -68,10 +68,12 @@ class ContactShare:
     ) -> None:
         self._limits = np.array(limits, float)
         if self._limits.size == 0 or not np.all(np.diff(self._limits) > 0.0):
-            raise RangeError(f"limits: got {limits}, need one or more, rising")
+            raise RangeError(f"limits: got {limits}, need one or more limits, rising")
         releases_of = self._limits if releases is None else np.array(releases, float)
         if releases_of.size != self._limits.size or np.any(releases_of < self._limits):
-            raise RangeError(f"releases: got {releases}, need one for each limit, not below it")
+            raise RangeError(
+                f"releases: got {releases}, need one release for each limit, not below it"
+            )
         self._count, self._triggers = count_below, ()
         if releases is not None or hold > 0:
             states = np.zeros((self._limits.size, 3), np.int64)
@@ -135,7 +137,7 @@ def record_counter(
     Returns
     -------
     ContactShare
-        With limits in the record's own unit, in the order of the thresholds.
+        Counter with limits in the unit of the record, in the order of the thresholds.
     """
     limits = np.array(experiment.thresholds)
     releases = limits * experiment.release_ratio
@@ -190,13 +192,13 @@ def share_interval(
     r"""Contact share of one record and its 95 % interval, from the scatter within the record.
 
     The interval is that of the mean over pairs of rollers, as far as one pair's record shows it.
-    Neighbouring samples see the same roughness and are correlated; long stretches nearly are not.
+    Neighbouring samples see the same roughness and are correlated; long stretches hardly are.
     The variance of the mean estimated from stretches grows with their length, until they are
     longer than the correlation of the record. It is estimated from blocks, from pairs of blocks,
     pairs of pairs and so on, and the largest estimate is used [1]_. Where rollers repeat
     themselves, stretches one revolution apart are correlated too; then the counts are folded by
-    the revolution, and stretches of the circumference take the part of stretches of time. From
-    the variance :math:`s^2` of the share :math:`p` follows the effective sample size
+    the revolution, and stretches of the circumference are used instead of stretches of time. The
+    effective sample size follows from the variance :math:`s^2` of the share :math:`p`,
 
     .. math:: n = \frac{p (1 - p)}{s^2}
 
@@ -235,9 +237,9 @@ def share_interval(
     """
     below, sizes = np.asarray(below), np.asarray(sizes)
     if not sizes.sum() > 0:
-        raise RangeError("got a record without samples, need one or more")
+        raise RangeError("got a record without samples, need one sample or more")
     if not windows >= 1.0:
-        raise RangeError(f"windows: got {windows:g}, need at least 1")
+        raise RangeError(f"windows: got {windows:g}, need at least 1 independent window")
     share = below.sum(axis=-1) / sizes.sum()
     found = [(np.zeros(share.size), 1)]
     for counts in ((below, sizes), *folded):

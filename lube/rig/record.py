@@ -21,10 +21,11 @@ from lube.statistics.one_pair import distinct_alignments
 from lube.study.study import Study
 
 LEVELS = ("force", "speed", "temperature")
-"""Operating variables that are measured, and of which a study has levels."""
+"""Operating variables that are measured, and for which a study has levels."""
 
 TRACE_SAMPLES = 4096
-"""Samples kept of the first revolution of a record; if it has more, extremes of its parts."""
+"""Number of values kept of the first revolution of a record. If it has more samples, these are the
+minimum and the maximum of equal parts."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Conditions:
     Attributes
     ----------
     force, speed, temperature : float
-        N, rpm and degC.
+        Force (N), speed (rpm) and temperature (degC).
     lubricant : str
         Name of the lubricant.
     slide_to_roll_ratio : float
@@ -171,7 +172,7 @@ class Record:
         return replace(self.conditions, speed=speed) if beyond else self.conditions
 
     def _windows(self, revolutions):
-        """Count the windows in the record that share no roughness."""
+        """Count the windows in the record that have no roughness in common."""
         spec, ratios = self._study.line_spec, self._ratios
         reach = 2.0 * self._study.rollers.contact_half_width(self.conditions.force)
         reach = (reach + spec.longest_wavelength) / spec.spacing

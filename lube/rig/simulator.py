@@ -1,8 +1,8 @@
 """The simulated twin-disc rig: from the metal contact of its rollers to the logged voltage.
 
 Its rollers are realisations that no simulation of the study uses. One pair runs all operating
-points, turn after turn, as on a real rig. If the study says so, several pairs follow each other,
-and the roughness drifts from revolution to revolution.
+points, turn after turn, as on a real rig. If the study says so, several pairs run one after the
+other, and the roughness drifts from revolution to revolution.
 
 A bias voltage drives a current through a series resistor, the leads and the contact. The film
 around the contact is a capacitor, and a leak is parallel to it. An amplifier of finite range
@@ -149,7 +149,7 @@ def repeats(study: Study, ratios: Ratios) -> bool:
 
 
 def _renewed(line, other, drift):
-    """Replace a share of a line's variance by that of another line; int32 height steps."""
+    """Replace a fraction of a line's variance by that of another line; int32 height steps."""
     kept, new = math.sqrt(1.0 - drift), math.sqrt(drift)
     return np.rint(kept * line + new * other).astype(np.int32)
 
@@ -182,14 +182,16 @@ class Revolution:
     seed: tuple[int, ...]
 
     def voltage(self, rig: Rig) -> Array:
-        r"""Log the revolution with a rig's circuit; the noise differs between rigs by a factor.
+        r"""Log the revolution with a rig's circuit.
+
+        The noise has the same seed for every rig, so it differs between rigs by a factor only.
 
         With :math:`w` points in contact, conductance :math:`G = 1 / R_c + 1 / R_{leak}` and
         :math:`R = R_s + R_l`, the voltage over the gap approaches
 
         .. math:: u_\infty = \frac{U}{1 + R G}
 
-        and in a time step the distance to it decreases by the factor
+        and in a time step the distance to this value decreases by the factor
         :math:`\exp(-\Delta t (G + 1 / R) / C)`.
 
         Parameters

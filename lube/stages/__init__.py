@@ -1,4 +1,4 @@
-"""Stages of a study: each makes one kind of file from those before it.
+"""Stages of a study: each makes one kind of file from the files of earlier stages.
 
 A stage is a row of `lube.schema.stages` and a module of its name with a function
 ``make(study, inputs, threads)``. It takes the study, the datasets of the kinds that its row lists,
@@ -27,7 +27,7 @@ def maker(stage: str, name: str = "make") -> Callable[..., xr.Dataset]:
     Parameters
     ----------
     stage : str
-        Its name in `lube.schema.STAGES`.
+        Name of the stage in `lube.schema.STAGES`.
     name : str, optional
         ``make``, or ``make_batch`` for a batch of realisations.
 

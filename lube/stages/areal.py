@@ -28,11 +28,12 @@ SURFACES = 24
 STRIPS = 400
 """Strips on each surface."""
 FEWER_STRIPS = 40
-"""Strips where theory expects more contacts than `MANY`: there is no doubt that some touch."""
+"""Strips on each surface where theory expects more contacts than `MANY`: contact is certain."""
 MANY = 30.0
 _NAMES = {"geometric_contact_probability": "contacts", "breakthrough_probability": "breakthroughs"}
 AROUND = 100
-"""Rows on either side of a known point in which its contact is followed."""
+"""Rows beyond a known point in which its contact is followed; a first contact begins within as many
+before it."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -51,7 +52,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     Raises
     ------
     StudyError
-        If the heights of a line are not Gaussian.
+        If the heights of a line are not Gaussian, or a line was measured along rolling.
     DataError
         If the rollers are shorter than the contact is wide, or the band of wavelengths is too wide
         for a surface.
@@ -134,15 +135,14 @@ def _sampled(spec, surface, points, sharp, length, seed, threads=1):
 
 
 def _on_one_surface(seeds, surface, covariances, points, sharp, reach):
-    """Probability of first rows, shape (points, 2, R + 1), and contacts in a row, (points, 2)."""
+    """Probability of first rows, shape (points, 2, R + 1), and contacts per row, (points, 2)."""
     drawing, choosing = map(np.random.default_rng, seeds)
     fields, chosen = surface.draw(drawing), choosing.random((4, STRIPS))
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points, BLOCK), axis=1)
     longest, around = reach
     first, numbers = [], []
     for film, width, count in points:
-        # Known points of strips, and the share of touching rows that each strip stands for, as in
-        # `lube.surfaces.rare_contact`.
+        # Known points of strips, and the weight of each strip, as in `lube.surfaces.rare_contact`.
         log_tail = scipy.special.log_ndtr(-film / surface.rms)
         heights = -surface.rms * scipy.special.ndtri_exp(np.log(chosen[2, :count]) + log_tail)
         touching = (chosen[3, :count] * width).astype(np.int64), heights.astype(np.float32)
@@ -185,8 +185,8 @@ def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:
     touched = np.cumsum(first, axis=-1)
     if rows <= first.shape[-1]:
         return np.minimum(touched[..., rows - 1], 1.0)
-    # Continue after R rows, or where half of the strips have been touched, as the second half of
-    # these rows went on.
+    # After R rows, or once half of the strips have touched, the probability that a row touches if
+    # none before it has is taken as constant: its mean over the second half of the rows so far.
     before = np.concatenate([np.zeros_like(touched[..., :1]), touched[..., :-1]], axis=-1)
     counted = np.minimum(np.sum(before < 0.5, axis=-1), first.shape[-1] - 1)[..., None]
     number = np.arange(first.shape[-1])

@@ -1,8 +1,8 @@
 r"""The gauge by the surface: records read as contact anywhere along the rollers.
 
-A resistance below the threshold says that the rollers touch somewhere in the strip 2a x L'. A line
-has no length along the rollers' axis; the stage gauge reads each record as if the rollers were such
-a line. Here the same share is read from the isotropic surface over the whole strip.
+A resistance below the threshold shows that the rollers touch somewhere in the strip 2a x L'. A line
+has no length along the rollers' axis, and the stage gauge reads each record as contact of such a
+line. Here the same share is read as contact of the isotropic surface in the strip.
 """
 
 from functools import cache
@@ -25,9 +25,9 @@ RESOLUTION = 1e-6
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``areal_gauge.nc``: the lambda ratio of each record by the surface, and by the line.
 
-    The probability of the strip at the operating points of one force is a curve over the lambda
-    ratio. A record's curve is that of the nearest contact width, for which -ln(1 - p) is taken as
-    proportional to the width: contacts of different places are nearly independent.
+    The probability of contact in the strip at the operating points of one force is a curve over the
+    lambda ratio. A record is read on the curve of the nearest contact width, scaled to its width:
+    -ln(1 - p) is proportional to it, as contacts at different positions are nearly independent.
 
     Parameters
     ----------
@@ -38,9 +38,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     -------
     xarray.Dataset
         The ``areal_gauge`` file of `lube.schema`. Values and limits are NaN, zero and infinity as
-        in `lube.stages.gauge.gauge_film`. The 95 % intervals include the record's own noise, the
-        error of the curve, and the scatter of one pair of rollers, for which strips that share no
-        roughness count as independent trials.
+        in `lube.stages.gauge.gauge_film`. The 95 % intervals include the noise of the record, the
+        error of the curve, and the scatter between pairs of rollers, for which strips without
+        common roughness count as independent trials.
     """
     film, areal, comparison = (inputs[kind] for kind in ("film", "areal", "comparison"))
     curve = cache(lambda width: _curve(film, areal, comparison, width))
@@ -61,7 +61,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 
 def _curve(film, areal, comparison, width):
-    """Curve of the strip's probability at a contact width, its rising levels, and their errors."""
+    """Curve of the strip's probability at a contact width, its values, rising, and their errors."""
     widths = 2.0 * film["contact_half_width"].values
     nearest = np.argmin(np.abs(np.log(widths / width)))
     at_force = {"film_formula": 0, "force": nearest}

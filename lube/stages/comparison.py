@@ -120,7 +120,7 @@ def agreement(
     .. math:: \ln \frac{p}{1 - p}
 
     weights a factor between two small probabilities (or two small odds against contact) as much
-    as in mid-range. It is undefined at 0 and 1, so it is taken where both are between.
+    as in mid-range. It is undefined at 0 and 1, so it is taken where both lie in between.
 
     Parameters
     ----------
@@ -135,9 +135,9 @@ def agreement(
     -------
     dict of str to float or int
         ``bias`` (mean of simulated minus measured), ``rms_difference``,
-        ``logit_rms_difference``, ``rank_correlation`` (Spearman's), ``overlap_share`` of the
-        records within their prediction interval, ``compared_records`` and ``logit_records``. A
-        figure without records is NaN.
+        ``logit_rms_difference``, ``rank_correlation`` (Spearman's), ``overlap_share`` (fraction of
+        the records within their prediction interval), ``compared_records`` and ``logit_records``
+        (their numbers). A figure without records is NaN.
 
     Examples
     --------
@@ -243,7 +243,7 @@ def _missing(table, levels):
 
 
 def _contradictions(table):
-    """One line for each two records of one operating point that differ too much.
+    """One line for any two records of one operating point whose shares differ too much.
 
     If the model is correct, one experiment in twenty has such a line by chance.
     """

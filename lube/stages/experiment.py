@@ -1,7 +1,7 @@
 """The experiment stage: the contact shares of measured or simulated records.
 
-All records of a file are measured, or all are simulated, as its coordinate ``origin`` says. Each
-record has its own operating conditions; the study's levels near them are labels.
+All records of a file are measured, or all are simulated, as its coordinate ``origin`` says. The
+operating conditions are those of each record; the study's levels near them are labels.
 """
 
 import logging
@@ -180,11 +180,12 @@ def _dataset(
     refused: Sequence[str] = (),
     remarks: Sequence[str] = (),
 ) -> xr.Dataset:
-    """Dataset of all records' rows, NaN where one has no value; logs what was refused."""
+    """Dataset of all records' rows, NaN where a row has no value; refusals are logged."""
     for line in (*(f"Refused: {line}" for line in refused), *remarks):
         log.warning("%s", line)
     if not rows:
-        raise DataError(f"no record can be used; the first: {refused[0] if refused else 'none'}")
+        first = refused[0] if refused else "none"
+        raise DataError(f"no record can be used, need one at least; the first: {first}")
     thresholds = np.array(study.experiment.thresholds)
     sizes = {"threshold": thresholds.size, "phase": PHASES, "trace_sample": TRACE_SAMPLES}
     levels = {"threshold": thresholds, "phase": (np.arange(PHASES) + 0.5) / PHASES}

@@ -54,7 +54,7 @@ def film_table(
         Normal forces F_N, N.
     speed : array_like, shape (speed,)
         Rotation speeds n of the first roller in pure rolling, rpm. Slip leaves the entrainment
-        speed as it is, so the film depends on it by inlet shear heating alone.
+        speed unchanged, so the film thickness depends on slip only with inlet shear heating.
     formulas : sequence of str
         Names of film formulas, keys of `lube.ehl.film_formulas.FORMULAS`.
     with_shape : bool, optional
@@ -69,14 +69,14 @@ def film_table(
         fully flooded.
     answered_lines : LineSpec, optional
         Roughness lines that the film answers: its response to their waves becomes part of the
-        result. By default they reach the gap as drawn.
+        result. By default lines enter the gap as drawn.
 
     Returns
     -------
     xarray.Dataset
         The ``film`` file of `lube.schema`. With inlet shear heating the film thickness depends on
         slip; it is NaN, and the log says so, where there is no factor. If the film answers
-        roughness lines, each slip has a film of its own.
+        roughness lines, its response depends on slip, so the films are given for each slip.
 
     Raises
     ------

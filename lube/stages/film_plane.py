@@ -22,14 +22,14 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     Parameters
     ----------
     study, inputs, threads
-        As in `lube.stages`. The film is computed with each oil at the middle of its temperatures,
-        as Roelands' law needs the viscosity and its coefficient besides M and L.
+        As in `lube.stages`. The film is computed with each oil at the middle temperature, as
+        Roelands' law needs the viscosity and the pressure-viscosity coefficient besides M and L.
 
     Returns
     -------
     xarray.Dataset
         The ``film_plane`` file of `lube.schema`. A film that did not converge is NaN and named in
-        the log; the attribute ``not_converged`` counts them.
+        the log; the attribute ``not_converged`` is the number of these films.
 
     Notes
     -----
@@ -37,8 +37,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     .. math:: U = \frac{1}{2} \left( \frac{L}{G} \right)^4, \qquad W = M \sqrt{2U}
 
-    Each formula is compared with the computed film that it refers to: at the line of centres, the
-    least, or the mean over the Hertzian zone.
+    Each formula is compared with the computed film that it stands for: at the line of centres, the
+    minimum, or the mean over the Hertzian zone.
     """
     lubricant = inputs["lubricant"]
     levels = np.sort(lubricant["temperature"].values)
@@ -70,7 +70,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 
 def _plane(viscosity, alpha, film_modulus):
-    """Films over R* by place, and W, U and G, shape (materials, loads, 3) each."""
+    """Central, minimum and mean film over R*, and W, U and G, shape (materials, loads, 3) each."""
     material = dimensionless_material(alpha, film_modulus)
     groups = []
     for moes_material in MOES_MATERIALS:

@@ -13,7 +13,7 @@ from lube.study.study import Study
 from lube.types import Datasets
 
 _DIGITS = {"central_film": 6, "minimum_film": 6, "film_end": 6, "mass_flux_defect": 1}
-"""Numbers of a film profile by the names of their variables, and how many digits are kept."""
+"""Numbers of a film profile that become variables, and how many of their digits are kept."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:

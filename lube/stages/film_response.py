@@ -1,4 +1,4 @@
-"""The film response stage: what the oil does to waves of the roughness, by Reynolds' equation."""
+"""The film response stage: how the oil changes waves of the roughness, by Reynolds' equation."""
 
 import numpy as np
 import xarray as xr
@@ -35,10 +35,10 @@ def film_responses(
     lubricant, rollers, inlet_shear_heating, inlet_meniscus
         As in `lube.stages.film.film_table`.
     film : xarray.Dataset
-        A ``film`` dataset of these. If the study's films answer its roughness lines, the responses
-        are taken from it.
+        A ``film`` dataset of these oils and rollers. If the study's films answer its roughness
+        lines, the responses are taken from it.
     spec : LineSpec
-        The roughness lines, whose waves are asked for.
+        The roughness lines, for whose waves the response is computed.
     threads : int, optional
         Threads that share the work; they do not change the results.
 

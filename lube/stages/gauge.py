@@ -78,12 +78,12 @@ def gauge_film(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
     xarray.Dataset
         ``gauged_film_thickness`` (m) and ``gauged_lambda_ratio`` with ``_lower`` and ``_upper``
         over ``record``, NaN without a share. A share below the resolution of its curve has no
-        value, only a lower limit, and infinity as the upper limit; a share above that of the
-        curve's thinnest film has only an upper limit, and zero as the lower limit. The 95 %
+        value, only a lower limit, and infinity as the upper limit; a share above the probability at
+        the curve's thinnest film has only an upper limit, and zero as the lower limit. The 95 %
         intervals include the scatter of one pair's record and the error of the ensemble. Where
-        contact is so frequent that it falls as the film thins, a share belongs to two films: these
-        are the thicker one, and ``gauged_thinner_film_thickness`` (m) is the other, NaN where
-        there is none.
+        contact is so frequent that its probability falls as the film thins, a share belongs to two
+        films: these variables give the thicker film, and ``gauged_thinner_film_thickness`` (m) the
+        thinner one, NaN where there is none.
     """
     sigma = comparison["composite_rms_roughness"].item()
     ratios = gauged_ratios(curves.of_records, comparison, comparison["share_error"].values)
@@ -102,7 +102,7 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
 
     Each realisation in turn is left out of the ensemble and gauged with the others, as a record of
     one pair of rollers, one revolution long, at the films of the first formula. Its interval
-    contains the true film where its share lies within the prediction of the others there.
+    contains the true film if its share lies within the prediction interval of the others there.
 
     Parameters
     ----------
@@ -113,9 +113,9 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
     -------
     xarray.Dataset
         Over ``record``: ``interval_coverage`` of all intervals, ``closed_coverage`` of those
-        with two limits, ``one_sided_coverage`` of the others, and ``closed_share``, the share of
-        intervals with two limits; NaN where there are none, or the ensemble has fewer than three
-        realisations.
+        with two limits, ``one_sided_coverage`` of the others, and ``closed_share``, the fraction
+        of intervals with two limits; NaN where there are no such intervals, or the ensemble has
+        fewer than three realisations.
     """
     members = comparison["breakthrough_probability"].values[:, 0]
     coverage = np.full((4, members.shape[1]), np.nan)

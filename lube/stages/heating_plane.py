@@ -1,4 +1,4 @@
-"""The heating plane stage: how heating at the inlet thins the film, by every model of it."""
+"""The heating plane stage: how heating at the inlet thins the film, by each of the models."""
 
 import numpy as np
 import xarray as xr
@@ -21,8 +21,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     Parameters
     ----------
     study, inputs, threads
-        As in `lube.stages`. A factor depends a little on the pressure and the film: these are those
-        of the middle force, speed and temperature and the first lubricant.
+        As in `lube.stages`. A factor depends a little on the pressure and the film. These are taken
+        at the middle force, speed and temperature, with the first lubricant.
 
     Returns
     -------

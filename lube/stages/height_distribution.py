@@ -1,4 +1,4 @@
-"""The height distribution stage: contact of lines of other skewness and kurtosis."""
+"""The height distribution stage: contact of lines with other values of skewness and kurtosis."""
 
 from itertools import product
 
@@ -22,14 +22,15 @@ KURTOSIS = (3.0, 4.0, 6.0)
 LAMBDA_RATIOS = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0])
 """Levels of the lambda ratio."""
 PAIRS = 8
-"""The study's first realisations: lines of all distributions have the same random phases."""
+"""Number of pairs: the study's first realisations, with the same random phases for every level."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``height_distribution.nc``: probabilities by skewness and kurtosis, in pure rolling.
 
-    The contact is that of the largest force. A shape of the film, and what the oil does to the
-    lines, are those of this force, the middle speed and temperature, and the first lubricant.
+    The contact is that of the largest force. If the film has a shape, or the oil flattens or
+    answers the lines, this is taken at the same force, the middle speed and temperature, and with
+    the first lubricant.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """The passage stage: rough lines and waves of any height pass through the contact.
 
-Reynolds' equation with time says what the gap becomes. Beside it stands what the linear response
-and the contact model make of the same roughness.
+Reynolds' equation with time gives the gap. It is compared with the linear response and with the
+contact model for the same roughness.
 """
 
 import logging
@@ -38,8 +38,8 @@ WAVES = {
 and amplitudes over the central film."""
 REALISATION = 0
 BEFORE, CROSSING = -3.1, 1.0
-"""Half-widths from the line of centres: where the middle of the piece is at first, and how far from
-there the gap is judged, on either side."""
+"""Half-widths from the line of centres: position of the middle of the piece at the beginning, and
+distance on either side within which the gap is judged."""
 INSIDE = 0.95
 """Positions over the half-width up to which waves are compared."""
 
@@ -91,7 +91,7 @@ def _passed(study, oil, temperature, speed, force):
 
 
 def _of_lines(piece, profile, layer, radius):
-    """Least gaps by all answers at every time step, and their shares below the layer."""
+    """Least gap by each answer at every time step, and share of time below the layer thickness."""
     step = piece.grid.spacing / piece.half_width
     scale = piece.half_width**2 / radius
     passage = RoughPassage(profile, step, piece.highest / scale)

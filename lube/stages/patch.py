@@ -23,11 +23,11 @@ from lube.types import Datasets
 log = logging.getLogger(__name__)
 
 REALISATIONS = 4
-"""Surfaces drawn."""
+"""Number of surfaces drawn."""
 PRESSURES = (0.001, 0.003, 0.01, 0.03, 0.1)
 """Pressures on the nominal area, over E* times the rms gradient."""
 LEAST_POINTS = 256
-"""Points along a side, at least."""
+"""Least number of points along a side."""
 _OF_SURFACE = ("gap", "contact_area_share", "contacts")
 _OF_LINE = ("line_pressure", "line_contact_area_share", "line_contacts")
 
@@ -59,9 +59,9 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
     LubeError
         If tamaas is not installed.
     StudyError
-        If the heights of a line are not Gaussian.
+        If the heights of a line are not Gaussian, or a line was measured along rolling.
     DataError
-        If the band of wavelengths is too wide for a surface.
+        If the band of wavelengths is too wide for a surface, or tamaas finds no solution.
     """
     find_tamaas()
     check_isotropic(spec)

@@ -14,7 +14,7 @@ from lube.study.study import Study
 from lube.types import Datasets
 
 BANDWIDTHS = (1e3, 3e3, 1e4, 3e4, 1e5, 3e5)
-"""Bandwidths in Hz of the rigs that are compared, other things equal."""
+"""Bandwidths in Hz of the rigs that are compared; they are equal otherwise."""
 _KEPT = ("bandwidth", "sampling_rate", "bias_voltage")
 
 
@@ -43,7 +43,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     points = [_point_at(levels, inputs["film"]) for levels in study.trace_points]
     points = [point for point in points if known_films(point.row, study.gap)]
     if not points:
-        raise DataError("traces: the film is known at none of the points, need one at least")
+        raise DataError("traces: the film is known at none of the points, need it at one or more")
     rigs = [study.rig.model_copy(update={"bandwidth": band}) for band in BANDWIDTHS]
     interval = 1.0 / study.rig.sampling_rate
     counters = [

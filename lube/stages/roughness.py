@@ -14,7 +14,7 @@ from lube.surfaces.synthetic import ROLLER_NUMBERS
 from lube.types import Datasets
 
 BANDS = 60
-"""Bands of waves of the prescribed spectrum."""
+"""Number of bands over which the prescribed spectrum is averaged."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:

@@ -75,7 +75,7 @@ def measured_surfaces(
 
 
 def _surface(topography, line, hurst):
-    """Describe the surface of a roller; the fits are of the waves in the band of its line."""
+    """Describe the surface of a roller; fits use the waves in the band of its line."""
     surface = prepared(topography)
     spectrum = line_spectrum(surface, preparation(topography))
     waves = waves_of_surface(spectrum, line.longest_wavelength, line.shortest_wavelength)
@@ -101,12 +101,13 @@ def _surface(topography, line, hurst):
 
 
 def _remarks(surface, line):
-    """Yield what a reader must know of the fits."""
+    """Yield remarks on the limits of the measurement and of the fits."""
     resolved, shortest = surface["resolved_wavelength"].item(), line.shortest_wavelength
     if resolved > shortest:
         yield (
             f"waves shorter than {resolved:.2g} m show the instrument and not the surface, and the "
-            f"line has waves down to {shortest:.2g} m: give such a shortest_wavelength"
+            f"line has waves down to {shortest:.2g} m: set a shortest_wavelength above "
+            f"{resolved:.2g} m"
         )
     hurst = surface["hurst_exponent"].item()
     if hurst <= 0.0 or hurst >= 1.0:
@@ -114,7 +115,7 @@ def _remarks(surface, line):
 
 
 def _density(spectrum):
-    """Density with its limits: a mean of exponentially distributed powers has a gamma one."""
+    """Density with its limits: a mean of exponentially distributed powers is gamma distributed."""
     count = spectrum.estimates
     limits = (count / scipy.special.gammaincinv(count, share) for share in (0.975, 0.025))
     return (spectrum.density * factor for factor in (1.0, *limits))
@@ -132,7 +133,7 @@ def _self_affine(wave_vector, line, hurst):
 
 
 def _histogram(heights):
-    """Density of the heights over the rms height."""
+    """Probability density of the heights over the rms height, at `STANDARD_HEIGHTS`."""
     step = STANDARD_HEIGHTS[1] - STANDARD_HEIGHTS[0]
     edges = np.append(STANDARD_HEIGHTS - step / 2.0, STANDARD_HEIGHTS[-1] + step / 2.0)
     centred = heights - heights.mean()

@@ -30,14 +30,14 @@ from lube.threads import on_threads
 from lube.types import Datasets
 
 PAIRS = 40
-"""Pairs of lines for the first film formula, enough for a relative standard error of 2 %; errors
-follow from the scatter between them."""
+"""Number of pairs of lines for the first film formula, enough for a relative standard error of 2 %;
+errors follow from the scatter between them."""
 FEWER_PAIRS = 8
 """The first of these pairs, used for the other film formulas."""
 _SLIP = "slide_to_roll_ratio"
 _FLATTENED = (
-    "roughness_deformation: got venner-1997, need none or computed: importance sampling is not "
-    "for lines that a formula flattens"
+    "roughness_deformation: got venner-1997, need none or computed: lines that a formula flattens "
+    "cannot be sampled"
 )
 _ASYMPTOTES = "geometric_contact_asymptote", "breakthrough_asymptote"
 _PROBABILITIES = "breakthrough_probability", "geometric_contact_probability"
@@ -56,9 +56,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     xarray.Dataset
         The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty unless the lines
         are flattened by a formula or not Gaussian; then it says so, and all values are NaN. In
-        uneven windows the share of pairs and the first time are NaN: they depend on the pauses
-        between breakthroughs, which are sampled in uniform windows only. The theory for high
-        films holds for lines as drawn.
+        uneven windows the share of pairs with a breakthrough and the time to the first one are NaN:
+        they depend on the pauses between breakthroughs, which are sampled in uniform windows only.
+        The theory for high films holds for lines as drawn.
 
     Notes
     -----
@@ -67,14 +67,14 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     contacts there are, and how long they last; the film, where inlet shear heating thins it; and
     the answer of the oil to the roughness, if that is computed.
 
-    A *breakthrough* is counted where the boundary layer breaks on a whole run of touching points,
-    not on a piece that the window's edge cuts off. There are :math:`\nu` of them per point of the
-    line, and in each relative step of one point :math:`\beta` new ones appear in a window. At the
-    entrainment speed v the window sees
+    A *breakthrough* is counted where the boundary layer breaks on an uncut run of touching points,
+    not on a piece that the window's edge cuts off. There are :math:`\nu` breakthroughs per point of
+    the line, and in each relative step of one point :math:`\beta` new ones appear in a window. At
+    the entrainment speed v the rate of breakthroughs in the window is
 
     .. math:: \frac{v}{\Delta x} (\nu + |S|\, \beta)
 
-    of them per second. The mean number in the window, divided by this rate, is the mean duration.
+    The mean number in the window, divided by this rate, is the mean duration.
 
     In pure rolling, equal rollers repeat themselves. Groups of breakthroughs a longest wavelength
     apart are rare and independent, so where :math:`\mu` of them are expected in a revolution, the
@@ -130,9 +130,9 @@ def pair_probabilities(
     -------
     xarray.Dataset
         ``breakthrough_probability``, ``geometric_contact_probability`` and ``breakthrough_rate``
-        (1/s) over pair and those dimensions. All operating points share the pairs, so a quantity
-        of several points is first computed on each pair. With the attribute ``remarks`` of
-        ``tail.nc``.
+        (1/s) over pair and those dimensions. All operating points have the same pairs, so a
+        quantity of several points is first computed on each pair. The attribute ``remarks`` is as
+        in ``tail.nc``.
     """
     if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
@@ -208,7 +208,7 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
 
 
 def _in_time(spec, film, runs, slip, gap):
-    """Broken runs in the window at a time, and new ones per second."""
+    """Calculate the mean number of broken runs in the window, and of new ones per second."""
     if not gap.is_uniform:
         return _in_uneven_windows(spec, film, runs, slip)
     points = _window_points(spec, film)
@@ -221,9 +221,9 @@ def _in_time(spec, film, runs, slip, gap):
 
 
 def _in_uneven_windows(spec, film, runs, slip):
-    """As `_in_time`, in uneven windows: by the time steps in which contact is counted.
+    """As `_in_time`, in uneven windows: from time step to time step.
 
-    In each step the faster surface moves by a point. The other surface moves in a part of the
+    In each step the faster surface moves by a point. The other surface moves in a fraction of the
     steps only.
     """
     in_window, with_both, with_first, with_second = runs.transpose("outcome", ...)
@@ -234,15 +234,15 @@ def _in_uneven_windows(spec, film, runs, slip):
 
 
 def _in_pure_rolling(values):
-    """Values without slip, if they depend on it; NaN if no level is without."""
+    """Values without slip, if they depend on slip; NaN if it is 0 at no level."""
     if _SLIP not in values.dims:
         return values
     return values.reindex({_SLIP: [0.0]}).isel({_SLIP: 0}, drop=True)
 
 
 def _in_a_revolution(spec, film, runs, breakthrough, gap):
-    """Pairs with a breakthrough in a revolution of pure rolling, and when the first comes."""
-    if not gap.is_uniform:  # how far one is from the next is not sampled
+    """Share of pairs with a breakthrough in a revolution of pure rolling, and time to the first."""
+    if not gap.is_uniform:  # the pauses between breakthroughs are not sampled
         unknown = xr.full_like(breakthrough.isel(pair=0, drop=True), np.nan)
         names = (f"touching_pair_share{end}" for end in LIMITS)
         return dict.fromkeys([*names, "first_breakthrough_time"], unknown)
@@ -296,11 +296,11 @@ def _touching_pairs(groups, breakthrough, windows):
 def _first_breakthrough(runs, points, revolution):
     r"""Mean steps to the first breakthrough, for pairs that have one in a revolution.
 
-    The gaps between broken runs are known up to a longest wavelength, from run to run. Longer ones
-    end independently of what was before, so they exceed it by an exponentially distributed length.
-    Its mean follows from the sum of all runs and gaps, which is the whole line. With F the share
-    of windows without a broken run and w the mean steps from any window to the next run, a window
-    without one waits for :math:`m = w / F`, and within T steps for
+    The gaps between broken runs are known up to a longest wavelength. Longer gaps end independently
+    of the runs before, so they exceed a longest wavelength by an exponentially distributed length.
+    Its mean follows from the sum of all runs and gaps, which is the length of the line. With F the
+    fraction of windows without a broken run and w the mean number of steps from any window to the
+    next run, a window without one waits for :math:`m = w / F` steps, and within T steps for
 
     .. math:: m - \frac{T}{e^{T / m} - 1}
     """
@@ -309,13 +309,13 @@ def _first_breakthrough(runs, points, revolution):
         excess = xr.where(apart > 0.0, (1.0 - run_points - between - searched) / apart, 0.0)
         excess = excess.clip(min=0.0)
         gap = xr.where(apart > 0.0, searched / apart, 0.0) - (points - 1.0)
-        # A window longer than the gap leaves the part of the excess that reaches beyond it.
+        # A window longer than the gap leaves the part of the excess that extends beyond it.
         left = apart * xr.where(excess > 0.0, np.exp(gap.clip(max=0.0) / excess), 1.0)
         gap = gap.clip(min=0.0)
         free = free + left * (gap + excess)
         steps = steps + left * (0.5 * gap**2 + gap * excess + excess**2)
         turns = revolution * free / steps
-    # The difference of two large numbers where few breakthroughs are expected.
+    # Where few breakthroughs are expected, `exact` is the difference of two large numbers.
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
         exact = 1.0 / turns - 1.0 / np.expm1(turns)
     return revolution * free * xr.where(turns < 1e-4, 0.5 - turns / 12.0, exact)
@@ -324,7 +324,7 @@ def _first_breakthrough(runs, points, revolution):
 def _asymptotes(spec, film, boundary_layer, gap):
     """Theory for high films: the window's first point touches, or a crossing lies in the window.
 
-    The boundary layer breaks if the summit behind is sharp enough.
+    The boundary layer breaks if the summit that follows is sharp enough.
     """
     if gap.is_answered:  # the moments change along the window
         unknown = xr.full_like(film["film_thickness"], np.nan)
@@ -334,7 +334,7 @@ def _asymptotes(spec, film, boundary_layer, gap):
     moments = pair_moments(spec)
     films = shaped_films(film) if gap.has_shape else film["film_thickness"]
     rows = films.values.reshape(-1, films.shape[-1])
-    # One after the other: the integral over the curvature takes a thousand times their memory.
+    # Row by row: the integral over the curvature takes a thousand times the memory of the films.
     shares = [sharp_summit_share(row, moments, curvature) for row in rows]
     share, rate = films.copy(data=np.reshape(shares, films.shape)), crossing_rate(films, moments)
     if gap.has_shape:  # the slope of the film is neglected

@@ -59,7 +59,7 @@ def contact_trace(
     film : xarray.Dataset
         A ``film`` dataset.
     points : sequence of dict
-        Operating points, each from the coordinates of `lube.schema.CONTACT_DIMS` to levels;
+        Operating points, each a dict from the coordinates of `lube.schema.CONTACT_DIMS` to levels;
         all with the same speed and slide-to-roll ratio.
     boundary_layer : BoundaryLayer
         With attributes ``critical_thickness`` (m) and ``shear_strength`` (Pa).
@@ -115,7 +115,7 @@ def _known_rows(film, points, gap):
     for number in np.flatnonzero(~known):
         log.warning("traces.%d: left out, the film is not known there", number)
     if not known.any():
-        raise DataError("traces: the film is known at none of the points, need one at least")
+        raise DataError("traces: the film is known at none of the points, need it at one or more")
     return rows.isel(operating_point=known)
 
 

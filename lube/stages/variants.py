@@ -1,4 +1,4 @@
-"""The variants stage: what contact becomes if one choice of the study is made otherwise.
+"""The variants stage: how contact changes if a choice of the study is made otherwise.
 
 All variants are computed on the same lines, so their ratios are better known than the probabilities
 themselves.
@@ -26,7 +26,7 @@ from lube.threads import on_threads
 from lube.types import Datasets
 
 PAIRS = 40
-"""Pairs of lines on which contact is sampled; errors follow from the scatter between them."""
+"""Number of pairs of lines on which contact is sampled; errors follow from their scatter."""
 
 
 @dataclass(frozen=True)
@@ -36,16 +36,16 @@ class Variant:
     Attributes
     ----------
     film : str, optional
-        Film formula, or ``computed``, the central film by Reynolds' equation; of the study, its
-        first formula.
+        Film formula, or ``computed``, the central film by Reynolds' equation. The study's choice is
+        its first formula.
     film_shape : str, optional
         ``flat`` and cut off at the edges of the contact; ``open``, flat with the gap of the dry
         contact around it; or ``computed``, the shape by Reynolds' equation.
     roughness_deformation : str, optional
         As in a study.
     is_uncut : bool, optional
-        Whether the boundary layer is judged on whole segments, of which a part lies in the window;
-        else on the parts that the edges of the window leave.
+        Whether the boundary layer is judged on uncut segments, of which any part lies in the
+        window; otherwise on the parts that the edges of the window leave.
     """
 
     film: str | None = None
@@ -88,8 +88,8 @@ VARIANTS = {
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``variants.nc``; see `lube.stages`.
 
-    Contact is sampled at any rarity if the study's lines are Gaussian and as drawn. Variants that
-    cannot be sampled, and all others, are counted on the study's realisations.
+    Contact is sampled at any rarity if the study's lines are Gaussian and no formula flattens them.
+    Otherwise, and for variants that cannot be sampled, it is counted on the study's realisations.
     """
     chosen = {name: variant.of(study) for name, variant in VARIANTS.items()}
     own, spec = chosen[STUDY], study.line_spec

@@ -3,7 +3,7 @@
 The realisations of an ensemble and the blocks of a record both scatter about a share of time.
 Either scatter is equivalent to a number of independent trials, the effective sample size. From
 there on both are treated alike, so that the intervals of simulation and experiment mean the same.
-Without scatter, the number of independent windows takes its place.
+Without scatter, the number of independent windows is used instead.
 """
 
 from collections.abc import Callable
@@ -21,8 +21,8 @@ def mean_over_first(values: Array) -> Array:
     """Mean over the first axis, with the terms added one after the other.
 
     NumPy's own sum pairs the terms by the array's shape and memory layout, so the last digit of
-    one column depends on the columns beside it. Here it does not, and one operating point
-    computed by itself is bit-identical to the same point computed among others.
+    one column depends on the other columns. Here it does not, and one operating point computed by
+    itself is bit-identical to the same point computed among others.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def score_interval(mean: Values, sample_size: Values, quantile: Values) -> Pair:
 
 
 def probability_limits(mean: Array, sample_size: Values, degrees: Values, windows: Values) -> Pair:
-    r"""Limits of the 95 % confidence interval of a probability, which is never a point.
+    r"""Limits of the 95 % confidence interval of a probability; they never coincide.
 
     The limits are Wilson's, with Student's quantile. Where the scatter is unknown, `windows` takes
     the place of the effective sample size. If contact was never seen, the upper limit is the
@@ -95,9 +95,9 @@ def probability_limits(mean: Array, sample_size: Values, degrees: Values, window
 
     .. math:: 1 - 0.05^{1/n_w} ,
 
-    and if it was always seen, the lower limit is one minus this. No upper limit is below it and
-    no lower limit above its mirror image, because frequent and evenly spread events say nothing
-    about rare ones that have not occurred so far.
+    and if it was always seen, the lower limit is one minus this bound. No upper limit is below the
+    bound and no lower limit above one minus it, because frequent and evenly spread events say
+    nothing about rare ones that have not occurred so far.
 
     Parameters
     ----------
@@ -139,8 +139,8 @@ def probability_limits(mean: Array, sample_size: Values, degrees: Values, window
 def ratio_interval(values: Array, reference: Array) -> tuple[Array, Array, Array]:
     """Ratio of two means over the same lines, and its 95 % confidence interval.
 
-    Lines on which one value is large have a large other value too, so the ratio is better known
-    than either mean.
+    Where one value is large for a pair of lines, the other is large too. So the ratio is better
+    known than either mean.
 
     Parameters
     ----------
@@ -176,8 +176,8 @@ def probability_interval(probabilities: Array, windows: Values) -> tuple[Array, 
     with :math:`n` of `lube.statistics.sample_size.effective_sample_size`. Where realisations do
     not scatter, or where there is only one, their independent windows take its place. The windows
     also bound the limits (`probability_limits`), because segments cut by the window's edges break
-    for a few time steps in every realisation: their small scatter says nothing about whole
-    segments, which are rare, break for the whole passage and may not have occurred so far.
+    for a few time steps in every realisation: their small scatter says nothing about uncut
+    segments, which are rare, break throughout their passage and may not have occurred so far.
 
     Parameters
     ----------

@@ -78,8 +78,8 @@ class Curve:
         Returns
         -------
         float
-            Logarithm of the lambda ratio: -inf if the share is above the whole curve, +inf if it
-            is below; NaN if the curve is empty.
+            Logarithm of the lambda ratio: -inf if the share is above all values of the curve, +inf
+            if it is below them; NaN if the curve is empty.
         """
         if not self.films.size:
             return np.nan
@@ -176,7 +176,7 @@ def peaked_curve(
     peak = int(np.argmax(probabilities))
     beyond, before = slice(peak, None), slice(peak, None, -1)
     falling = falling_curve(films[beyond], probabilities[beyond], sample_size[beyond], resolution)
-    # The other side, seen in a mirror, falls too.
+    # The other side falls too if it is read backwards.
     rising = falling_curve(-films[before], probabilities[before], sample_size[before], resolution)
     if not falling.films.size or rising.films.size < 2:
         return falling
@@ -237,9 +237,10 @@ def film_interval(
 
 
 def _distances(curve, ends, record):
-    """Distance of a share from the curve, in standard errors and made non-decreasing.
+    """Films, and the distances of a share from the curve there, in standard errors.
 
-    It is given at films from one end, a level of the curve, to the other.
+    The films go from one end to the other, both given as indices of the curve's levels. The
+    distances are made non-decreasing.
     """
     share, ratio, realisations, noise = record
     first, last = ends
@@ -362,8 +363,8 @@ def fit_factor(
     misfit, limit = score / np.sqrt(variance), quantile(realisations)
     likeliest = np.argmax(scipy.integrate.cumulative_trapezoid(score, log_factors, initial=0.0))
     # From the factor where the score becomes positive, it falls to its zero at the likeliest one.
-    # Before, at films so thin that segments merge, it may have another zero, and be clearly
-    # negative beyond.
+    # At smaller factors, with films so thin that segments merge, it may have another zero, below
+    # which it is clearly negative.
     dip = np.max(np.flatnonzero(misfit[:likeliest] < -limit), initial=0)
     first = dip + np.argmax(score[dip : likeliest + 1] >= 0.0)
     log_factors, falling = log_factors[first:], np.minimum.accumulate(misfit[first:])

@@ -15,17 +15,17 @@ PHASES = 512
 SPAN = 0.05
 """Relative distance from the nominal period within which the period is searched."""
 LEAST_BLOCKS = 8
-"""Blocks in a revolution that are needed to see whether it repeats."""
+"""Fewest blocks per revolution with which a repetition can be seen."""
 ALIKE = 0.98
-"""Height of a peak of the autocorrelation, over the highest, from which it counts as equally high;
-among these the peak nearest to the nominal period is taken."""
+"""Peaks of the autocorrelation above this fraction of the highest count as equally high; of these
+the one nearest to the nominal period is taken."""
 CLEAR = 0.5
-"""Repeatability from which the period found in the record replaces the nominal one."""
+"""Repeatability from which on the period found in the record replaces the nominal one."""
 
 
 @dataclass(frozen=True)
 class Fold:
-    """A record folded by the revolution, by the names of the ``experiment`` file.
+    """A record folded by the revolution, with the names of the ``experiment`` file.
 
     Attributes
     ----------
@@ -102,8 +102,8 @@ def refined_period(shares: np.ndarray, interval: float, nominal_period: float) -
     Returns
     -------
     float
-        The period, s; the nominal one if the record is shorter than it, does not vary, or has
-        too few blocks in a revolution.
+        The period, s; the nominal one if the record is too short, does not vary, or has too few
+        blocks in a revolution.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def _peak(correlation, middle, reach):
     tops = [top for top in tops if correlation[top] >= min(ALIKE * high, high)]
     top = min(tops, key=lambda lag: abs(lag - middle))
     before, here, after = correlation[top - 1 : top + 2]
-    if max(before, after) > here:  # the largest value in reach lies on a slope, not on a peak
+    if max(before, after) > here:  # the largest value searched lies on a slope, not on a peak
         return float(top)
     bend = before - 2.0 * here + after
     return top + (0.5 * (before - after) / bend if bend < 0.0 else 0.0)

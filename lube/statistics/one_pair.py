@@ -26,8 +26,8 @@ def quantile(realisations: int, among: int = 1) -> float:
         Number R of realisations. With one there is no scatter, and the quantile of the normal
         distribution is returned.
     among : int, optional
-        Number of values; in 95 of 100 cases none of them exceeds the quantile (Bonferroni's
-        bound).
+        Number of values that are compared with the quantile; in 95 of 100 cases none of them
+        exceeds it (Bonferroni's bound).
 
     Returns
     -------
@@ -76,7 +76,7 @@ def repeat_factor(turns: npt.ArrayLike) -> npt.ArrayLike:
 
 
 def distinct_alignments(turns: float, ratios: Ratios, points: Points, reach: float) -> float:
-    """Count the alignments of two lines that share no roughness.
+    """Count the alignments of two lines that have no roughness in common.
 
     Parameters
     ----------
@@ -86,7 +86,8 @@ def distinct_alignments(turns: float, ratios: Ratios, points: Points, reach: flo
     Returns
     -------
     float
-        From 1, as for equal rollers without slip, to the number of turns, which may be below 1.
+        Number of alignments, from 1, for equal rollers without slip, to the number of turns, which
+        may be below 1.
 
     Examples
     --------
@@ -126,7 +127,7 @@ def drift_factor(turns: float, drift: float) -> float:
     Returns
     -------
     float
-        At most one.
+        The factor, at most one.
 
     References
     ----------
@@ -149,9 +150,9 @@ def scatter_ratio(
 ) -> float:
     r"""Variance of the share of one pair's record about the mean, over that of one revolution.
 
-    The share of one alignment differs between pairs by an effect of either line alone, which new
-    alignments do not average out, and by an effect of the two together, which is drawn anew with
-    each alignment. For :math:`M` alignments:
+    The share of one alignment differs between pairs of rollers by an effect of either line alone,
+    which new alignments do not average out, and by a joint effect of the two lines, which is drawn
+    anew with each alignment. For :math:`M` alignments:
 
     .. math:: s_M^2 = s_\infty^2 + \frac{s_1^2 - s_\infty^2}{M}
 
@@ -168,10 +169,10 @@ def scatter_ratio(
     points : tuple of int
         Points around either roller.
     reach : float
-        Distance of two alignments that share no roughness, points.
+        Distance of two alignments that have no roughness in common, points.
     persistent : float
-        :math:`s_\infty^2 / s_1^2`, the part that new alignments do not average out. It has no
-        effect for equal rollers in pure rolling, which keep one alignment.
+        :math:`s_\infty^2 / s_1^2`, the part of the variance that new alignments do not average out.
+        It has no effect for equal rollers in pure rolling, which keep one alignment.
     drift : float
         As in `drift_factor`.
 

@@ -7,7 +7,7 @@ from lube.types import Array, Values
 
 
 def independent_windows(travel: Values, width: Values, longest_wavelength: float) -> Array:
-    r"""Count the contact windows of one realisation that share no roughness.
+    r"""Count the contact windows of one realisation that have no roughness in common.
 
     Two windows see independent roughness if a longest wavelength lies between them:
 
@@ -39,8 +39,8 @@ def independent_windows(travel: Values, width: Values, longest_wavelength: float
 def effective_sample_size(probabilities: Array, windows: npt.ArrayLike) -> Array:
     r"""Effective sample size of one realisation, from the scatter between realisations.
 
-    So many independent trials with the probability :math:`p` would scatter as one realisation
-    does, with the variance :math:`s^2`:
+    It is the number of independent trials with the probability :math:`p` that would scatter as much
+    as one realisation, with the variance :math:`s^2`:
 
     .. math:: n = \frac{p (1 - p)}{s^2}
 

@@ -1,4 +1,4 @@
-r"""From the spectrum of an isotropic surface to that of a profile cut from it, and back.
+r"""From the spectrum of an isotropic surface to the spectrum of a profile cut from it, and back.
 
 All spectra are one-sided densities over the wave vector, whose integral is the mean square height.
 The line that stands for an isotropic surface has the density :math:`C(q)`: the mean square height
@@ -31,7 +31,7 @@ _REACH = 12.0  # cosh(12) = 8e4: the waves beyond are negligible for H >= 0
 _NODES = 240
 
 END_RANGE = 3.0
-"""The power law beyond the last wave vector is fitted to the densities from a third of it on."""
+"""The power law beyond the last wave vector is fitted to the densities above a third of it."""
 
 
 def monotone(density: Array, estimates: Array) -> Array:

@@ -22,7 +22,7 @@ from lube.errors import DataError, LubeError
 from lube.types import Array
 
 TOLERANCE = 1e-4
-"""Largest relative error of a solution; a smaller one changes no area by a thousandth."""
+"""Largest relative error of a solution; a smaller one changes areas by less than a thousandth."""
 PIXELS = (math.pi - 1.0 + math.log(2.0)) / 24.0
 """Excess area of a contact on a grid, in grid points, per side of a grid point on its edge."""
 
@@ -49,7 +49,7 @@ class Contact(NamedTuple):
 
 
 def find_tamaas():
-    """Import tamaas, which is installed by name only.
+    """Import tamaas, an optional dependency.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def find_tamaas():
         import tamaas
     except ModuleNotFoundError:
         raise LubeError(
-            "contact of a surface: the package tamaas is not installed, need it: "
+            "contact of a surface: the package tamaas is not installed, install it by "
             "pip install 'lube[contact]'"
         ) from None
     tamaas.set_log_level(tamaas.LogLevel.error)
@@ -77,13 +77,13 @@ def press_surface(
 ) -> Iterator[Contact]:
     r"""Press a rough surface against a rigid flat (Polonsky and Keer's method, by tamaas).
 
-    A contact is a group of touching points that are neighbours in a row or a column. On a grid its
-    edge is too wide, so that from the area of n touching points
+    A contact is a group of touching points that are neighbours in a row or a column. On a grid it
+    is too large at its edge, so the area of n touching points is taken as
 
     .. math:: A = \Delta x^2 \left( n - \frac{\pi - 1 + \ln 2}{24} \, s \right)
 
-    remains, with the number s of sides between a touching point and one that does not touch
-    (Yastrebov et al.).
+    with the number s of sides between a touching point and one that does not touch (Yastrebov et
+    al.).
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def press_surface(
     Yields
     ------
     Contact
-        At each pressure.
+        Contact at each pressure.
 
     Raises
     ------
@@ -159,12 +159,12 @@ def press_line(heights: Array, spacing: float, side: float, modulus: float, gap:
     modulus : float
         Reduced modulus :math:`E^*`, Pa.
     gap : float
-        Mean gap between the line and the flat where they do not touch, zero elsewhere, m.
+        Mean gap between the line and the flat, counted as zero where they touch, m.
 
     Returns
     -------
     Contact
-        At this gap.
+        Contact at this gap.
     """
     distance = scipy.optimize.newton(
         lambda distance: np.mean(np.maximum(distance - heights, 0.0)) - gap,

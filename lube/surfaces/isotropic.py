@@ -11,6 +11,7 @@ all directions:
 
 import functools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,9 +26,9 @@ POINTS_PER_WAVE = 5
 LONGEST_WAVES = 4
 """Longest wavelengths along a side of the surface."""
 POINTS_PER_CONTACT = 4
-"""Grid points in the smallest contacts, unless a side then has more than `LARGE` points."""
+"""Grid points across the smallest contacts, unless a side then has more than `LARGE` points."""
 LARGE, LARGEST = 4096, 8192
-"""Points along a side up to which the grid is refined for small contacts, and at most."""
+"""Most points along a side to which the grid is refined for small contacts, and most allowed."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ class Surface:
         waves *= self.curvatures.astype(np.float32)
         return heights, scipy.fft.irfft2(waves, shape, overwrite_x=True)
 
-    def covariances(self, rows: int, columns: int) -> Pair:
+    def covariances(self, rows: int, columns: int) -> Iterator[Array]:
         """Covariance of a height with heights and with curvatures around it.
 
         Parameters
@@ -84,11 +85,12 @@ class Surface:
         rows, columns : int
             Numbers of distances R + 1 and C.
 
-        Returns
-        -------
-        tuple of numpy.ndarray
-            Shape (R + 1, 2 C - 1) each, float32, over the variance of the heights; at distances
-            of 0 .. R rows and of -(C - 1) .. C - 1 columns.
+        Yields
+        ------
+        numpy.ndarray
+            First the covariance with heights, then with curvatures: shape (R + 1, 2 C - 1),
+            float32, over the variance of the heights; at distances of 0 .. R rows and of
+            -(C - 1) .. C - 1 columns.
         """
         shape = (self.points, self.points)
         for factor in (1.0, self.curvatures):
@@ -111,11 +113,11 @@ def isotropic_surface(
     spec : LineSpecLike
         Parameters of the lines.
     width : float, optional
-        The surface is wider than this by a longest wavelength at least, m.
+        Contact width, m; the surface is wider by a longest wavelength at least.
     contact : float, optional
         Length of the smallest contacts, m.
     waves : int, optional
-        Longest wavelengths along a side.
+        Least number of longest wavelengths along a side.
 
     Returns
     -------
@@ -135,12 +137,12 @@ def isotropic_surface(
     if least > LARGEST:
         raise DataError(
             f"roughness: got a shortest wavelength of {2.0 * np.pi / spec.q_max:.3g} m, too short "
-            f"for a surface of {side:.3g} m, need {least / LARGEST:.3g} times as much"
+            f"for a surface of {side:.3g} m, need one {least / LARGEST:.3g} times as long"
         )
     points = scipy.fft.next_fast_len(math.ceil(least), real=True)
     waves = np.hypot(np.fft.fftfreq(points, 1.0 / points)[:, None], np.arange(points // 2 + 1))
     step = 2.0 * np.pi / (points * spacing)
-    # The variance of the lines' waves of a length is divided among the surface's waves of it.
+    # The variance of the lines' waves is divided among the surface's waves of the same length.
     shell = np.rint(waves).astype(np.int64)
     power = sum(
         _power(spec, roller, step, shell.max() + 1) for roller in range(len(ROLLER_NUMBERS))
@@ -155,7 +157,7 @@ def isotropic_surface(
 
 
 def _power(spec, roller, step, shells):
-    """Variance of a line's waves, rounded to whole multiples of a wavenumber, height steps."""
+    """Variance of a line's waves in each shell of wavenumbers, squared height steps."""
     first, amplitudes = wave_amplitudes(spec, roller)
     own_step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
     shell = np.rint(own_step / step * np.arange(first, first + amplitudes.size)).astype(np.int64)

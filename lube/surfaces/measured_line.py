@@ -7,10 +7,10 @@ than the study's shortest are left out. Two cases:
 - The profile covers the circumference, so its ends meet; it is prepared as a closed one. Its
   length is made the circumference, from which it may differ by 1 %.
 - The profile is repeated, a whole number of times around the roller, as few as its length allows.
-  Its ends do not meet. It is longer than a repeat by `FADED` times the repeat. Over this length
-  at its beginning the surplus of the end is faded out and the beginning is faded in, by weights
-  :math:`\cos` and :math:`\sin` of a quarter turn, which keep the mean square of independent
-  heights. The line is then scaled to the rms height of the profile.
+  Its ends do not meet. Its first part is used as the repeat, and a surplus of `FADED` times the
+  repeat is kept. At the beginning of the repeat the surplus is faded out and the beginning is
+  faded in, by weights :math:`\cos` and :math:`\sin` of a quarter turn, which keep the mean square
+  of independent heights. The line is then scaled to the rms height of the profile.
 """
 
 import math
@@ -37,8 +37,8 @@ def closed_line(
     Parameters
     ----------
     profile : Topography
-        As `lube.surfaces.topography.prepare` returns a closed one: one turn, the last point one
-        spacing before the first.
+        Closed profile, as `lube.surfaces.topography.prepare` returns it: one turn, the last point
+        one spacing before the first.
     points : int
         Points N around the roller.
     point_spacing : float
@@ -51,7 +51,7 @@ def closed_line(
     Returns
     -------
     numpy.ndarray
-        Shape (N,), int32: heights in height steps, of the profile's rms height but for the waves
+        Shape (N,), int32: heights in height steps, of the profile's rms height except for the waves
         left out.
 
     Raises
@@ -96,8 +96,8 @@ def repeated_line(
     Returns
     -------
     numpy.ndarray
-        Shape (N,), int32: heights in height steps, of the rms height of the profile but for the
-        waves left out.
+        Shape (N,), int32: heights in height steps, of the profile's rms height except for the waves
+        left out.
 
     Raises
     ------
@@ -132,8 +132,8 @@ def _check(profile, shortest):
     finest = max(2.0 * profile.spacing[0], profile.resolution)
     if finest > shortest * (1.0 + 1e-9):
         raise DataError(
-            f"{profile.name}: got waves down to {finest:.3g} m, need down to {shortest:.3g} m, the "
-            "shortest wavelength of the study"
+            f"{profile.name}: got waves down to {finest:.3g} m, need waves down to {shortest:.3g} "
+            "m, the shortest wavelength of the study"
         )
 
 

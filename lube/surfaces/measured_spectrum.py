@@ -6,7 +6,7 @@ mean square height. It is
 - of a map of an isotropic surface: :math:`C = 2 \pi q\, C_{2D}(q)`, where :math:`C_{2D}` is the
   mean over all directions and its integral over the plane of wave vectors is the mean square
   height (in the two-sided convention, :math:`C_{1D} = \pi q\, C_{2D}`);
-- of a profile cut from an isotropic surface: the Abel inversion of the profile's own density;
+- of a profile cut from an isotropic surface: the Abel inversion of the profile's density;
 - of a surface taken along rolling, such as a ground one: the density of its profiles along
   rolling.
 
@@ -22,8 +22,8 @@ spectrum differs from that of the measured heights by chance. The difference is 
 densities in proportion to their variance. The few long waves take most of it; the short ones, which
 are known much better than the rms height, hardly change.
 This is done only after a filter of long waves: without one the rms height is that of the measured
-length, which no spectrum of shorter waves can have. In both cases the table as a whole has the
-power of the waves it is made of, though a mean in logarithms between scattered values is lower.
+length, which no spectrum of shorter waves can have. In both cases the table has the power of the
+waves it is made of, although interpolating the logarithm between scattered values lowers it.
 """
 
 import math
@@ -39,7 +39,7 @@ from lube.surfaces.topography import Preparation, Topography, power_transfer, us
 from lube.types import Array, Pair
 
 LEAST_POINTS_PER_WAVE = 4
-"""A wave of fewer points is left out: waves too short for the grid pass for longer ones, which
+"""A wave of fewer points is left out: waves too short for the grid are taken for longer ones, which
 adds a twelfth to the density here (H = 0.7), and doubles it at two points a wave."""
 
 LEAST_WAVES = 2
@@ -81,13 +81,13 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
     surface : Topography
         As `lube.surfaces.topography.prepare` returns it.
     settings : Preparation
-        With which it was prepared.
+        Settings with which it was prepared.
 
     Returns
     -------
     LineSpectrum
-        From two waves on the measured length to four points a wave, the instrument's resolution
-        or the cutoff of short waves.
+        The density of waves from half the measured length down to four points a wave, the
+        instrument's resolution or the cutoff of short waves, whichever is longest.
 
     Raises
     ------
@@ -237,14 +237,14 @@ def _profile_bins(surface, q_max):
     wave_vector, density = profile_density(surface.heights, surface.spacing[0])
     sums = _sums_by_bin(wave_vector, surface.lengths[0], q_max)
     counts, total, places = map(sums, (None, density, wave_vector**-2.0))
-    # Where a power law of the exponent -2 has its mean over the bin.
+    # The wave vector at which a power law of the exponent -2 has its mean over the bin.
     middle, estimates = (places / counts) ** -0.5, np.maximum(counts / _BLUR, 1.0)
     powers = (np.sum(part) * wave_vector[0] for part in (total, density))
     return middle, total / counts, estimates, *powers
 
 
 def _map_bins(surface, q_max, isotropic):
-    """Means over the rings of a map's waves, or over the columns of equal wave along rolling."""
+    """Means over rings of a map's waves, or over its waves of equal wave vector along rolling."""
     power = map_power(surface.heights)
     if not isotropic:
         return *_column_means(power, surface.lengths[0], q_max), power.sum()
@@ -267,7 +267,7 @@ def _ring_means(power, lengths, q_max):
     waves = 2 * sums() - sums(np.broadcast_to(across == 0.0, power.shape))
     wave_vector[0, 0] = 1.0
     wave_vector **= -3.0
-    # Where a power law of the exponent -3 has its mean over the ring.
+    # The wave vector at which a power law of the exponent -3 has its mean over the ring.
     middle = (sums(wave_vector) / sums()) ** (-1.0 / 3.0)
     cell = (2.0 * np.pi) ** 2 / (lengths[0] * lengths[1])
     surface_density = sums(power) / (waves * cell)
@@ -288,7 +288,7 @@ def _column_means(power, length, q_max):
     sums = _sums_by_bin(wave_vector, length, q_max)
     counts, total, places = map(sums, (None, powers, wave_vector**-2.0))
     middle = (places / counts) ** -0.5
-    # Of exponentially distributed powers P the variance of the sum is half the sum of P^2.
+    # The variance of a sum of exponentially distributed powers P is half the sum of P^2.
     with np.errstate(invalid="ignore"):
         estimates = 2.0 * total**2 / sums(squares)
     most = 2.0 * counts * power.shape[1]

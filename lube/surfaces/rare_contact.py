@@ -1,8 +1,9 @@
 r"""Contact of Gaussian lines at any rarity, by importance sampling.
 
-An ensemble sees no contact that is rarer than its number of windows. Here every window touches: a
-point of it is chosen and raised above the film, as often and as high as it would be there by
-itself, and the rest of the window follows as the Gaussian line through that point. With the film
+An ensemble sees no contact that is rarer than one in its number of windows. Here every window
+touches: one of its points is chosen and raised above the film, with the probability and the height
+that it would have there by itself, and the rest of the window follows as the Gaussian line through
+that point. With the film
 :math:`h_j` at the points of the window, the rms height :math:`\sigma` of the sum of both lines and
 the Gaussian tail Q,
 
@@ -48,9 +49,9 @@ RUNS = 400
 RUN_NUMBERS = 10
 """Number of sums over runs that `rare_contact` returns."""
 STEPS = np.array([(1, 1), (1, 0), (0, 1)])
-"""Kinds of time steps, in points by which each surface moves: both, or the faster one alone."""
+"""Kinds of time steps, in points by which each surface moves: both, the first or the second."""
 NEGLIGIBLE = 1e-9
-"""Points are left out where contact is less likely than this times that at the likeliest point."""
+"""Points are left out where contact is less likely than this, relative to the likeliest point."""
 _NO_ANSWERS = np.zeros((0, 0))
 
 
@@ -89,7 +90,7 @@ def check_gaussian(spec: LineSpecLike) -> None:
     Raises
     ------
     StudyError
-        With the skewness and the kurtosis that came.
+        If a line is measured, or its skewness is not 0 or its kurtosis not 3.
     """
     for line in spec.lines:
         if line.heights is not None:
@@ -105,7 +106,7 @@ def check_gaussian(spec: LineSpecLike) -> None:
 
 
 def check_isotropic(spec: LineSpecLike) -> None:
-    """Refuse lines that stand for no isotropic Gaussian surface.
+    """Refuse lines that do not stand for an isotropic Gaussian surface.
 
     Parameters
     ----------
@@ -120,8 +121,8 @@ def check_isotropic(spec: LineSpecLike) -> None:
     check_gaussian(spec)
     if not all(line.isotropic for line in spec.lines):
         raise StudyError(
-            "rollers: got a topography taken along rolling, need isotropic ones: the surface that "
-            "a line stands for is isotropic"
+            "rollers: got a topography taken along rolling, need isotropic topographies: the "
+            "surface that a line stands for is isotropic"
         )
 
 
@@ -164,17 +165,17 @@ def rare_contact(
     widths : numpy.ndarray
         Shape (P,), points in the contact window.
     factor : float or numpy.ndarray
-        From `lube.kernels.layer.layer_factor`, for all or for each.
+        From `lube.kernels.layer.layer_factor`, for all films or for each.
 
     Returns
     -------
     windows : numpy.ndarray
         Shape (2, P): probabilities of geometric contact and of breakthrough in a window.
     runs : numpy.ndarray
-        Shape (10, P), per point of the line: runs of touching points; runs whose boundary layer
-        breaks; groups of these, a longest wavelength apart; those of these that appear in a
-        relative step of one point; and the points of these runs and between them, as in
-        `lube.kernels.tail.touching_runs`.
+        Shape (10, P), expected numbers per point of the line, in the order of
+        `lube.kernels.tail.touching_runs`: runs of touching points; runs whose boundary layer
+        breaks; groups of broken runs, a longest wavelength apart; broken runs that appear in a
+        relative step of one point; and the points of these runs and between them.
 
     Raises
     ------
@@ -278,7 +279,7 @@ def likely_part(film: Array, rms: Array) -> tuple[Array, slice]:
     Returns
     -------
     log_tails : numpy.ndarray
-        Logarithm of the likelihood of contact at each point of the part.
+        Logarithm of the probability of contact at each point of the part.
     part : slice
         The part, from the first to the last likely point.
     """
@@ -289,7 +290,7 @@ def likely_part(film: Array, rms: Array) -> tuple[Array, slice]:
 
 
 class RarePair:
-    """A pair of Gaussian lines, and what is chosen at random on it.
+    """A pair of Gaussian lines, and the points and heights chosen at random on it.
 
     Parameters
     ----------
@@ -336,5 +337,5 @@ def _both_sides(covariance, lags):
 
 
 def _spread(size, width, count):
-    """First points of pieces of a width, evenly spread over a line."""
+    """First points of pieces of equal width, evenly spread over a line."""
     return np.arange(count) * (size - width) // (count - 1)

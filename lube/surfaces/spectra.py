@@ -95,7 +95,7 @@ def spectrum_moments(spec: LineSpecLike, roller: int) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        The square roots: ``rms_height`` (m), ``rms_slope``, ``rms_curvature`` (1/m).
+        Square roots of the moments: ``rms_height`` (m), ``rms_slope``, ``rms_curvature`` (1/m).
     """
     first_wave, amplitudes = wave_amplitudes(spec, roller)
     waves = np.arange(first_wave, first_wave + amplitudes.size)
@@ -125,7 +125,7 @@ def pair_moments(spec: LineSpecLike) -> list[float]:
 
 
 def autocovariance(spec: LineSpecLike, roller: int, lags: int) -> np.ndarray:
-    r"""Covariance of the heights of one line at two points.
+    r"""Covariance of the heights of one line at two points, against their distance.
 
     .. math:: R_n = \frac12 \sum_k a_k^2 \cos \frac{2 \pi k n}{N}
 
@@ -187,13 +187,13 @@ def line_attributes(spec: LineSpecLike) -> dict[str, float | np.ndarray]:
     Returns
     -------
     dict
-        Attribute names and values; lengths in m, wavenumbers in rad/m. Those of the spectrum are
-        single values where both rollers have the same, else arrays of shape (2,), NaN where a
-        measured line or spectrum has none.
+        Attribute names and values; lengths in m, wavenumbers in rad/m. The attributes of the
+        spectrum are single values where both rollers have the same, else arrays of shape (2,), NaN
+        where a measured line or spectrum has none.
     """
     of_rollers = {
         "hurst": [line.hurst_exponent for line in spec.lines],
-        # A measured line is no band of waves.
+        # A measured line has no lowest wavenumber.
         "q_min": [line.q_min if line.heights is None else None for line in spec.lines],
         "q_max": [line.q_max for line in spec.lines],
         "q_roll_off": [line.q_roll_off for line in spec.lines],

@@ -1,4 +1,4 @@
-"""The spectrum of a line as a table: a power law between its values, within a band, its power."""
+"""The spectrum of a line as a table, with a power law between its values, and its power."""
 
 from dataclasses import dataclass
 
@@ -9,10 +9,10 @@ from lube.errors import DataError
 from lube.types import Array, Pair
 
 TABLE_VALUES = 100
-"""Values of a spectrum's table."""
+"""Number of values in a spectrum's table."""
 
 _LAST = 5
-"""Last densities whose slope continues a spectrum to its limit."""
+"""Number of last densities whose slope continues a spectrum to its limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class LineSpectrum:
         Shape (n,): number of independent estimates of which each density is the mean; the
         relative standard error is one over its square root.
     transfer : numpy.ndarray
-        Shape (n,): share of the power that the Gaussian filters have left.
+        Shape (n,): fraction of the power that the Gaussian filters have left.
     isotropic : bool
         Whether the surface is isotropic.
     limits : tuple of float, optional
@@ -73,17 +73,18 @@ def band_table(spectrum: LineSpectrum, q_min: float, q_max: float) -> Pair:
     if q_min < begin * (1.0 - 1e-9):
         raise DataError(
             f"{spectrum.name}: got waves up to {2.0 * np.pi / begin:.3g} m, half the measured "
-            f"length, need up to {2.0 * np.pi / q_min:.3g} m, the longest wavelength of the study"
+            f"length, need waves up to {2.0 * np.pi / q_min:.3g} m, the longest wavelength of the "
+            "study"
         )
     if q_max > end * (1.0 + 1e-9):
         raise DataError(
-            f"{spectrum.name}: got waves down to {2.0 * np.pi / end:.3g} m, need down to "
+            f"{spectrum.name}: got waves down to {2.0 * np.pi / end:.3g} m, need waves down to "
             f"{2.0 * np.pi / q_max:.3g} m, the shortest wavelength of the study"
         )
     if not np.all(spectrum.density > 0.0):
         raise DataError(f"{spectrum.name}: got a density of zero or less, need a positive spectrum")
     places, levels = np.log(spectrum.wave_vector), np.log(spectrum.density)
-    # Half a bin beyond the last density the spectrum goes on with the slope before it.
+    # Up to half a bin beyond the last density the spectrum continues with the slope before it.
     away = places[-_LAST:] - np.mean(places[-_LAST:])
     slope = np.sum(away * levels[-_LAST:]) / np.sum(away**2)
     places = np.append(places, max(np.log(q_max), places[-1]) + 1e-9)
@@ -120,17 +121,17 @@ def power_law_integral(wave_vector: Array, density: Array) -> float:
 
 
 def with_power(wave_vector: Array, density: Array, estimates: Array, power: float) -> Array:
-    r"""Change a spectrum to one of another mean square height, most where it is least certain.
+    r"""Change a spectrum to a given mean square height, most where it is least certain.
 
     The densities are multiplied by :math:`\exp(\mu\, q\, C / n)`, where :math:`n` is the number of
-    estimates: to first order the smallest change in units of the standard errors.
+    estimates. To first order this is the smallest change in units of the standard errors.
 
     Parameters
     ----------
     wave_vector, density, estimates : numpy.ndarray
         Shape (n,), rad/m, m^3 and numbers.
     power : float
-        Mean square height wanted, m^2; the spectrum's is at most doubled or halved.
+        Mean square height wanted, m^2; that of the spectrum is at most doubled or halved.
 
     Returns
     -------

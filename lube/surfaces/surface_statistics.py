@@ -1,15 +1,15 @@
 r"""Numbers that describe a measured surface, each with its 95 % confidence interval.
 
 The Hurst exponent and the roll-off come from the spectrum by weighted least squares of its
-logarithm, which allows for the scatter and the bias of the logarithm of a mean of :math:`n`
+logarithm. The fits allow for the variance and the bias of the logarithm of a mean of :math:`n`
 exponentially distributed powers, :math:`\psi'(n)` and :math:`\psi(n) - \ln n`. If the residuals
-are larger than that, so are the intervals.
+are larger than this scatter, the intervals are widened accordingly.
 
 An instrument blurs or cuts off the shortest waves. `waves_of_surface` finds them, so that the fits
-are of the surface.
+describe the surface.
 
-Moments of the heights have intervals by the jackknife over blocks of the surface, which are longer
-than its waves and so nearly independent.
+Intervals of the moments of the heights follow by the jackknife over blocks of the surface, which
+are longer than its waves and so nearly independent.
 """
 
 from typing import NamedTuple
@@ -24,12 +24,12 @@ BLOCKS = 16
 """Blocks of a profile, or four times four of a map."""
 
 LEAST_TRANSFER = 0.25
-"""Waves of which the Gaussian filters leave less of the power, those beyond the cutoffs, take no
-part in fits; the others are divided by what is left."""
+"""Waves of which the Gaussian filters leave a smaller fraction of the power, those beyond the
+cutoffs, are left out of fits. The densities of the others are divided by the fraction left."""
 
 TOLERANCE = 0.05
-"""Relative deviation from a self-affine spectrum that shows nothing of the instrument, added to the
-standard errors of the densities."""
+"""Relative deviation from a self-affine spectrum that need not come from the instrument. It is
+added to the standard errors of the densities, in quadrature."""
 
 PRICE = 9.0
 """A density is left out of the fits, or a blur is added, if it reduces the squared deviation, in
@@ -39,8 +39,8 @@ LEAST_DENSITIES = 6
 """Fewest densities that the search for the instrument's resolution keeps."""
 
 LEAST_CHANGE = 2.0
-"""A roll-off nearer than this factor to either end of the spectrum cannot be distinguished from
-no roll-off."""
+"""A roll-off within this factor of either end of the spectrum cannot be distinguished from no
+roll-off."""
 
 
 class Estimate(NamedTuple):
@@ -74,9 +74,9 @@ class Waves(NamedTuple):
 def waves_of_surface(spectrum: LineSpectrum, longest: float, shortest: float) -> Waves:
     r"""Find the waves of a spectrum that show the surface rather than the instrument.
 
-    Of all spectra with a roll-off and a power law, up to some wave vector and with a blur
-    :math:`e^{-b q^2}` or without, the one is chosen whose misfit and price are least. An optical
-    instrument blurs; a digital filter may cut all waves from one on.
+    A spectrum with a roll-off and a power law, with a blur :math:`e^{-b q^2}` or without, is fitted
+    up to every wave vector. The fit with the least sum of misfit and `PRICE` is chosen. An optical
+    instrument blurs; a digital filter may cut off all waves beyond one.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def hurst_exponent(spectrum: LineSpectrum, waves: Waves) -> Estimate | None:
     spectrum : LineSpectrum
         The spectrum of the line.
     waves : Waves
-        The range.
+        The range of waves to fit.
 
     Returns
     -------
@@ -160,20 +160,22 @@ def hurst_exponent(spectrum: LineSpectrum, waves: Waves) -> Estimate | None:
 def roll_off(spectrum: LineSpectrum, waves: Waves) -> Estimate | None:
     r"""Fit the wavelength above which the spectrum rises no more.
 
-    The model is a constant below the wave vector of the roll-off and a power law above, of the
-    surface's density :math:`C/q` if it is isotropic and of the profile's density :math:`C` if not.
+    The model is a constant below the wave vector of the roll-off and a power law above it. It is
+    fitted to the surface's density :math:`C/q` if the surface is isotropic, and to the profile's
+    density :math:`C` if not.
 
     Parameters
     ----------
     spectrum : LineSpectrum
         The spectrum of the line.
     waves : Waves
-        The range.
+        The range of waves to fit.
 
     Returns
     -------
     Estimate or None
-        The wavelength, m; None if the best fit is too near to an end of the range.
+        The wavelength, m; None if fewer than three densities lie in the range, or if the best fit
+        is too near to one of its ends.
 
     Examples
     --------
@@ -262,7 +264,7 @@ def _moments(sums):
 def _logarithms(spectrum, waves):
     """Wave vectors, logarithms of the unfiltered density without bias, and their errors.
 
-    The density is that of the surface if it is isotropic and else of the profile.
+    The density is that of the surface if it is isotropic, else that of the profile.
     """
     wavelength = 2.0 * np.pi / spectrum.wave_vector
     used = (wavelength <= waves.longest * (1 + 1e-9)) & (wavelength >= waves.shortest * (1 - 1e-9))
@@ -277,7 +279,7 @@ def _logarithms(spectrum, waves):
 
 
 def _basis(places, bend, blurred):
-    """Functions of ln q that a spectrum's logarithm consists of: level, fall from a bend, blur."""
+    """Functions of ln q of which a spectrum's logarithm is a sum: level, fall from a bend, blur."""
     fall = -np.maximum(places - max(bend, places[0]), 0.0)
     terms = [np.ones(places.size), fall, -np.exp(2.0 * (places - places[-1]))]
     return np.stack(terms[: 2 + blurred], axis=1)

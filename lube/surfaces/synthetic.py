@@ -13,8 +13,8 @@ With fixed amplitudes the rms height of every line is exactly that of the roller
 rounding to height steps; with random amplitudes it would be that of the roller in expectation
 only. The paper does not say which of the two it uses.
 
-Lines with another skewness or kurtosis than that of Gaussian heights are translations of such a
-line, see `lube.surfaces.translation`.
+Lines whose skewness or kurtosis is not that of Gaussian heights are translations of such a line,
+see `lube.surfaces.translation`.
 """
 
 import functools
@@ -41,6 +41,8 @@ class LineSpecLike(Protocol):
         Points N around each roller.
     longest_wavelength : float
         Longest wavelength of both lines, m.
+    q_max : float
+        Largest wavenumber of both lines, rad/m.
     spacing : float
         Distance dx of neighbouring points, m.
     height_step : float
@@ -50,6 +52,7 @@ class LineSpecLike(Protocol):
     lines: tuple[Any, Any]
     points: tuple[int, int]
     longest_wavelength: float
+    q_max: float
     spacing: float
     height_step: float
 
@@ -63,7 +66,7 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
 
     Below the roll-off wavenumber the isotropic surface's density :math:`C_{2D}` is constant, so
     that :math:`C_{1D} = \pi q\, C_{2D}` and :math:`a_k \propto q_k^{1/2}`. With a measured spectrum
-    :math:`a_k \propto C(q_k)^{1/2}`; a measured line has those of its heights.
+    :math:`a_k \propto C(q_k)^{1/2}`. The amplitudes of a measured line follow from its heights.
 
     Parameters
     ----------
@@ -111,7 +114,7 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
 
 
 def _self_affine(line, waves, turn):
-    """Amplitudes relative to the first wave's, without roll-off."""
+    """Amplitudes relative to that of the first wave if there were no roll-off."""
     shape = (waves / waves[0]) ** (-line.hurst_exponent - 0.5)
     roll_off = line.q_roll_off * turn
     below = waves < roll_off * (1.0 - 1e-9)
@@ -141,7 +144,7 @@ def _spectrum(spec, roller):
 
 @functools.lru_cache(maxsize=32)
 def _translation(spec, roller):
-    """Spectrum of rms one of the line to translate, as `_spectrum`, and the curve that does it."""
+    """Spectrum, as from `_spectrum` but of rms one, of the line to translate, and the curve."""
     first_wave, amplitudes = wave_amplitudes(spec, roller)
     line = spec.lines[roller]
     curve = johnson_curve(line.skewness, line.kurtosis)
@@ -202,7 +205,7 @@ def draw_gaussian_line(
 
 
 def _superposition(spectrum, points, phasors, generator):
-    """Sum of the waves, each times a random number of the complex plane."""
+    """Sum of the waves, each times a random complex number."""
     first_wave, amplitudes = spectrum
     waves = np.zeros(points // 2 + 1, np.complex64)
     band = waves[first_wave : first_wave + amplitudes.size]

@@ -29,12 +29,13 @@ FORMS = ("none", "tilt", "curvature")
 """What is removed: the mean, a straight line or plane, or a polynomial of the second order."""
 
 MOST_HOLES = 0.05
-"""Largest share of holes that is interpolated. The heights filled in are smoother than measured
-ones: at most this share of the mean square height is lost, and half as much of the rms height."""
+"""Largest fraction of points in holes that are interpolated. The heights filled in are smoother
+than measured ones: at most this fraction of the mean square height is lost, and half as much of
+the rms height."""
 
 USUAL_STEPS = 3.0
-"""A step from the last point of a closed profile to the first, of more times the rms step between
-neighbours, shows that the ends do not meet."""
+"""If the step from the last point of a closed profile to the first exceeds this many times the rms
+step between neighbours, the ends do not meet."""
 
 LEAST_POINTS = 64
 """Fewest points of a profile, or along either side of a map."""
@@ -78,8 +79,8 @@ class Preparation:
     Attributes
     ----------
     texture : str
-        ``isotropic``: the surface is alike in all directions; or ``along rolling``: only its
-        profile along rolling is used.
+        ``isotropic``: the surface is the same in all directions; or ``along rolling``: only its
+        profiles along rolling are used.
     form : str
         One of `FORMS`.
     long_cutoff : float or None
@@ -127,8 +128,8 @@ def prepare(topography: Topography, settings: Preparation) -> Topography:
     Raises
     ------
     DataError
-        If the topography has holes although none are allowed, too many holes or too few points,
-        or if a cutoff does not suit it.
+        If the topography has holes although none are allowed, too many holes or too few points, if
+        a map is to be closed, or if a cutoff does not suit the topography.
 
     Examples
     --------
@@ -153,7 +154,7 @@ def prepare(topography: Topography, settings: Preparation) -> Topography:
 
 
 def used_directions(sides: tuple[float, ...], settings: Preparation) -> tuple[float, ...]:
-    """Return the sides of a map that matter: if it is taken along rolling, only the first.
+    """Return the sides of a map that are used: if it is taken along rolling, only the first.
 
     Examples
     --------
@@ -171,7 +172,9 @@ def _check_points(topography, settings):
         raise DataError(f"{name}: got a map, need a profile if it is closed")
     holes = np.count_nonzero(~np.isfinite(heights)) / heights.size
     if holes > 0.0 and settings.holes == "refuse":
-        raise DataError(f"{name}: got holes, {holes:.2%} of the points, need none or `interpolate`")
+        raise DataError(
+            f"{name}: got holes, {holes:.2%} of the points, need no holes or `holes: interpolate`"
+        )
     if holes > MOST_HOLES:
         raise DataError(f"{name}: got {holes:.2%} of holes, need at most {MOST_HOLES:.0%}")
 
@@ -197,7 +200,7 @@ def _check_cutoffs(topography, settings):
 def remove_form(heights: Array, form: str) -> Array:
     r"""Subtract the polynomial that fits the measured points best, by least squares.
 
-    Of a map :math:`z(x, y)` the tilt has the terms :math:`1, x, y`, and the curvature also
+    For a map :math:`z(x, y)` the tilt has the terms :math:`1, x, y`, and the curvature also
     :math:`x^2, x y, y^2`.
 
     Parameters
@@ -312,10 +315,10 @@ def gaussian_filter(
     heights : numpy.ndarray
         Shape (n,) or (nx, ny).
     spacing : tuple of float
-        Distance of neighbouring points in each direction, m; of the first only to filter a map
-        along it.
+        Distance of neighbouring points in each direction, m; with the first only, a map is filtered
+        along it alone.
     long_cutoff, short_cutoff : float or None
-        Cutoffs of long and of short waves, m; without one, this filter is not applied.
+        Cutoffs of long and of short waves, m; with None that filter is not applied.
     closed : bool, optional
         Whether the last point is followed by the first.
 
@@ -340,7 +343,7 @@ def gaussian_filter(
 def power_transfer(
     wave_vector: Array, long_cutoff: float | None, short_cutoff: float | None
 ) -> Array:
-    """Share of a wave's power that passes the Gaussian filters.
+    """Fraction of a wave's power that passes the Gaussian filters.
 
     Parameters
     ----------
@@ -368,7 +371,7 @@ def power_transfer(
 
 
 def _transmission(wave_vector, cutoff):
-    """Share of a wave's amplitude that a smoothing Gaussian filter passes."""
+    """Fraction of a wave's amplitude that a smoothing Gaussian filter passes."""
     return np.exp(-np.pi * (_ALPHA * cutoff * wave_vector / (2.0 * np.pi)) ** 2)
 
 

@@ -16,9 +16,9 @@ polynomials :math:`h_n` and :math:`c_n = \langle g\, h_n \rangle` the autocorrel
 so that the spectrum of y is chosen such that z has the prescribed one within its band. A small part
 of the variance of z lies outside the band, mostly in longer waves.
 
-The other known method imposes the sorted heights and the spectrum by turns (Perez-Rafols and
-Almqvist). It leaves nothing outside the band but takes 20 turns or more, each of several times a
-line's cost.
+The other known method imposes the sorted heights and the spectrum in turn (Perez-Rafols and
+Almqvist). It leaves nothing outside the band, but takes 20 iterations or more, each of which costs
+several times as much as a line here.
 
 References
 ----------
@@ -45,11 +45,11 @@ NODES = 4097
 _Y = np.linspace(-REACH, REACH, NODES)
 _WEIGHTS = np.exp(-0.5 * _Y**2) / np.sum(np.exp(-0.5 * _Y**2))
 _ORDERS = 20
-"""Hermite polynomials of the autocorrelation."""
+"""Number of Hermite polynomials in the autocorrelation."""
 _STEPS = 8
-"""Most corrections of the spectrum."""
+"""Largest number of corrections of the spectrum."""
 _CONVERGED = 1e-6
-"""Largest correction that is the last; the lines are single precision."""
+"""Relative correction below which the iteration ends; the lines are single precision."""
 _STEEPEST = {"unbounded": 2.5, "bounded": 30.0}
 """Largest b of either family."""
 
@@ -79,7 +79,7 @@ def standard_moments(heights: Array) -> tuple[float, float]:
 
 
 def johnson_curve(skewness: float, kurtosis: float) -> Array:
-    """Heights of Johnson's curve with a skewness and a kurtosis.
+    """Heights of Johnson's curve with a given skewness and kurtosis.
 
     Parameters
     ----------
@@ -112,14 +112,14 @@ def johnson_curve(skewness: float, kurtosis: float) -> Array:
 
 
 def gaussian_power(power: Array, first_wave: int, points: int, curve: Array) -> Array:
-    """Power of the waves of the Gaussian line whose translation has a prescribed power.
+    """Power of the waves of the Gaussian line whose translation has a prescribed spectrum.
 
     Parameters
     ----------
     power : numpy.ndarray
         Shape (modes,), prescribed variance of each wave.
     first_wave : int
-        Number of waves around the line for the first of them.
+        Number of waves around the line for the first variance.
     points : int
         Points around the line.
     curve : numpy.ndarray
@@ -186,7 +186,7 @@ def _heights(family, steepness, kappa):
 
 
 def _lognormal_steepness(skewness):
-    """Steepness at which the lognormal distribution has a skewness; the least that reaches it."""
+    """Steepness at which the lognormal distribution has a skewness; the least one of its family."""
 
     def excess(steepness):
         return standard_moments(_heights("bounded", steepness, 0.0))[0] - skewness

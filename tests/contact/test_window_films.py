@@ -92,7 +92,7 @@ def test_only_points_within_reach_are_kept():
     reached = one.below(5)
     assert (reached.film.tolist(), reached.before) == ([3, 4], 0)
     assert one.below(2).film.tolist() == [3]  # one point at least
-    with pytest.raises(DataError, match="within reach of the lines, 9 height steps high"):
+    with pytest.raises(DataError, match="need more than the height of the lines, 9, from a longer"):
         one.below(9)
 
 

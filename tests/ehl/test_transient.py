@@ -150,6 +150,6 @@ def test_the_oil_in_the_film_changes_by_what_enters_and_leaves(touching):
 
 def test_a_step_that_is_not_solved_is_named(profile_at):
     """Waves so high that solid contact begins and ends at many places at once."""
-    message = "^the film at M = 8.67, .*: roughness that passes did not converge in a time step"
+    message = "^the film at M = 8.67, .*: a time step of the passing roughness did not converge"
     with pytest.raises(ConvergenceError, match=message):
         pass_wave(profile_at(1600, 100, 80), 0.2, 1.0, 3.0, 12)

@@ -103,7 +103,7 @@ def test_definitions_differ_in_the_order_of_the_pressures_they_weigh():
 def test_a_liquid_too_thin_for_roelands_and_a_coefficient_of_no_oil_are_refused():
     with pytest.raises(RangeError, match=r"got a viscosity of 5e-05 Pa s, .* more than 6.3e-05"):
         roelands_slope(10e-9, 5e-5, "secant", SPAN)
-    with pytest.raises(RangeError, match=r"got .* of -0\.3 1/GPa, which no oil of Roelands"):
+    with pytest.raises(RangeError, match=r"got .* of -0\.3 1/GPa, which no oil of 0\.1 Pa s has"):
         roelands_slope(-0.3e-9, 0.1, "secant", SPAN)
 
 

@@ -52,7 +52,7 @@ def test_the_inlet_builds_up_the_same_pressure():
 
 def test_a_meniscus_inside_the_contact_is_refused():
     line = one_line(RangeError, starvation_factor, np.array([1.0, 2.0]), np.array([3.0, 0.9]))
-    assert "got one 0.9 half-widths before the line of centres, inside the contact" in line
+    assert "got 0.9 half-widths before the line of centres, inside the contact, need more" in line
 
 
 # At M 1.2, 1.9, 9.4 and 2.7.

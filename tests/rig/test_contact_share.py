@@ -78,8 +78,8 @@ def test_a_record_of_single_precision_is_counted_as_it_is():
 def test_impossible_limits_are_refused():
     for options, reason in (
         (([],), "limits: got"),
-        (([2.0, 1.0],), "need one or more, rising"),
-        (([1.0, np.nan],), "need one or more, rising"),
+        (([2.0, 1.0],), "need one or more limits, rising"),
+        (([1.0, np.nan],), "need one or more limits, rising"),
         (([1.0, 2.0], [1.0]), "releases: got"),
         (([1.0, 2.0], [1.0, 1.5]), "not below it"),
     ):

@@ -157,7 +157,7 @@ def test_a_topography_of_both_rollers_is_read_and_resampled_once(study_file):
 
 def test_no_isotropic_surface_belongs_to_profiles_along_rolling(study_file):
     check_isotropic(load_study(study_file(MAP)).line_spec)
-    with pytest.raises(LubeError, match="need isotropic ones"):
+    with pytest.raises(LubeError, match="need isotropic topographies"):
         check_isotropic(load_study(study_file(SCAN)).line_spec)
     with pytest.raises(LubeError, match="got a measured line, need lines drawn"):
         check_isotropic(load_study(study_file(SCAN | {"use": "repeated line"}, MAP)).line_spec)
@@ -211,7 +211,7 @@ REFUSED = {
     "unknown key": (MAP | {"hole": "refuse"}, BAND, "did you mean 'holes'?"),
     "no texture": ({"file": "scan.csv"}, BAND, "topography.texture: missing"),
     "holes": (MAP | {"holes": "refuse"}, BAND, "example.x3p: got holes, 0.07% of the points, need"),
-    "too coarse": (MAP, SHORT, "got waves down to 6.25e-06 m, need down to 4e-06 m, the shortest"),
+    "too coarse": (MAP, SHORT, "down to 6.25e-06 m, need waves down to 4e-06 m, the shortest"),
     "too short": (MAP, {"shortest_wavelength": "7 um", "longest_wavelength": "0.3 mm"}, "half the"),
     "not closed": (SCAN | {"use": "closed line"}, BAND, "got a profile of 0.0039 m, need the circ"),
     "a map as line": (

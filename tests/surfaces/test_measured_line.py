@@ -84,7 +84,7 @@ def test_a_short_profile_is_repeated_a_whole_number_of_times():
     [
         (closed_line, np.zeros((80, 80)), (1e-6, 1e-6), "got a map, need a profile"),
         (closed_line, np.zeros(3900), (1e-6,), r"got a profile of 0\.0039 m, need the circumf"),
-        (closed_line, np.zeros(400), (1e-5,), "got waves down to 2e-05 m, need down to 1e-05 m"),
+        (closed_line, np.zeros(400), (1e-5,), "down to 2e-05 m, need waves down to 1e-05 m"),
     ],
 )
 def test_profiles_that_do_not_suit_are_refused(function, heights, spacing, message):

@@ -119,7 +119,7 @@ def test_rolling_along_y_turns_the_map(rough):
 @pytest.mark.parametrize(
     ("change", "settings", "message"),
     [
-        ("hole", {}, "got holes, 0.02% of the points, need none or `interpolate`"),
+        ("hole", {}, "got holes, 0.02% of the points, need no holes or `holes: interpolate`"),
         ("many", {"holes": "interpolate"}, f"need at most {MOST_HOLES:.0%}"),
         ("small", {}, r"got \(40, 70\) points, need 64"),
         (None, {"long_cutoff": 90.0}, "got a cutoff of long waves of 90 m, need 4 to 70 m"),
