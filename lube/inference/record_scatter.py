@@ -21,6 +21,7 @@ import xarray as xr
 from lube.contact.rough_pair import drawn
 from lube.contact.windows import ContactWindows, study_windows
 from lube.grid.discretise import revolution, speed_ratios
+from lube.grid.gap import Gap
 from lube.statistics.confidence import mean_over_first
 from lube.statistics.one_pair import persistent_share, scatter_ratio
 from lube.study.study import Study
@@ -32,6 +33,9 @@ Data = xr.Dataset
 
 MOST_PAIRS = 64
 """Largest number of pairs of lines that are run to estimate a scatter."""
+SHAPED_PAIRS = 32
+"""As `MOST_PAIRS`, if lines are paired crosswise under films with a shape, where each pairing takes
+20 times as long."""
 LINES_IN_MEMORY = 16
 """Number of first lines kept in memory while all second lines are drawn."""
 PAIRINGS = 4
@@ -190,34 +194,51 @@ def _standardised(values):
 def _line_effects(model, study, slips, turns, realisations):
     """Part of the scatter that is due to each line alone, and persists in all alignments.
 
-    If any record has several alignments, it is estimated from the ensemble's lines as drawn, under
-    flat films, paired crosswise.
+    If any record has several alignments, it is estimated from the ensemble's lines as drawn, paired
+    crosswise.
 
     Returns
     -------
     share : numpy.ndarray
         This part over the variance in pure rolling, shape (P,).
     effects : numpy.ndarray or None
-        Effect of each realisation's lines, up to `MOST_PAIRS`, shape (R, P); None if none were run.
+        Effect of each realisation's lines, up to `MOST_PAIRS`, under films with a shape up to
+        `SHAPED_PAIRS`, shape (R, P); None if none were run.
     """
     ratio = model["lambda_ratio"].values.ravel()
     equal = study.line_spec.points[0] == study.line_spec.points[1]
     one_alignment = equal and not slips.any()
     if one_alignment or not (turns > 1.0).any() or realisations < 2:
         return (np.zeros if one_alignment else np.ones)(ratio.size), None
-    thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
-    levels = model[["reduced_modulus"]].assign(
-        film_thickness=("level", thickness), contact_half_width=model["contact_half_width"].mean()
-    )
-    levels = ContactWindows(study.line_spec, levels, study.boundary_layer)
-    in_first, in_second = _crosswise(study, levels, min(realisations, MOST_PAIRS))
+    most = SHAPED_PAIRS if study.gap.has_shape else MOST_PAIRS
+    levels, windows = _alignment_windows(model, study)
+    in_first, in_second = _crosswise(study, windows, min(realisations, most))
     persistent = persistent_share(in_first, in_second)
     known = np.isfinite(persistent)
     if not known.any():
         return np.ones(ratio.size), None
     effects = _standardised(in_first.mean(axis=1) + in_second.mean(axis=0))
-    rows = [np.interp(ratio, ALIGNMENT_RATIOS[known], row[known]) for row in (*effects, persistent)]
+    rows = [np.interp(ratio, levels[known], row[known]) for row in (*effects, persistent)]
     return rows[-1], np.array(rows[:-1])
+
+
+def _alignment_windows(model, study):
+    """Windows in which lines are paired crosswise, and their lambda ratios, rising.
+
+    They are flat, as wide as the mean contact. If films have a shape, they are those of the records
+    with the nearest lambda ratios: there the effects of single lines are twice as large.
+    """
+    if not study.gap.has_shape:
+        thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()
+        width = model["contact_half_width"].mean()
+        films = {"film_thickness": ("level", thickness), "contact_half_width": width}
+        films = model[["reduced_modulus"]].assign(films)
+        return ALIGNMENT_RATIOS, ContactWindows(study.line_spec, films, study.boundary_layer)
+    windows = ContactWindows(study.line_spec, model, study.boundary_layer, Gap(study.film_shape))
+    ratios = np.where(windows.unknown, np.inf, model["lambda_ratio"].values.ravel())
+    nearest = {int(np.argmin(np.abs(ratios - ratio))) for ratio in ALIGNMENT_RATIOS}
+    nearest = sorted(nearest, key=ratios.__getitem__)
+    return ratios[nearest], windows[nearest]
 
 
 def _pooled(study, windows, count, mean, persistent):
@@ -235,35 +256,35 @@ def _pooled(study, windows, count, mean, persistent):
     return mean, persistent + (1.0 - persistent) / pairings
 
 
-def _crosswise(study, levels, count):
-    """Contact share of each first line with each second line, two of shape (count, count, levels).
+def _crosswise(study, windows, count):
+    """Contact share of each first line with each second line, two of shape (count, count, P).
 
     The first is over a whole turn of the first line, the other over a whole turn of the second. In
     a turn of a line of another size, part of a line passes more often than the rest: this adds to
     the line's effect, but does not persist.
     """
-    in_first, in_second = np.empty((2, count, count, levels.size))
+    in_first, in_second = np.empty((2, count, count, windows.size))
     for begin in range(0, count, LINES_IN_MEMORY):
         numbers = range(begin, min(begin + LINES_IN_MEMORY, count))
         firsts = [drawn(study, number)[0] for number in numbers]
         for other in range(count):
             _, second = drawn(study, other)
             for number, first in zip(numbers, firsts, strict=True):
-                shares = _whole_turns((first, second), levels)
+                shares = _whole_turns((first, second), windows)
                 in_first[number, other], in_second[number, other] = shares
         log.info("lines %d to %d, paired with all others: done", begin, numbers[-1])
     return in_first, in_second
 
 
-def _whole_turns(pair, levels):
+def _whole_turns(pair, windows):
     """Shares in a turn of the first and of the second line."""
     first, second = (line.size for line in pair)
     turns = 1.0, second / first
-    begun = levels.count(pair, turns=min(turns))[:, 1]
+    begun = windows.count(pair, turns=min(turns))[:, 1]
     if first == second:
         return begun, begun
     shorter, longer = sorted((first, second))
-    rest = levels.count(pair, turns=max(turns) - min(turns), begin=shorter)[:, 1]
+    rest = windows.count(pair, turns=max(turns) - min(turns), begin=shorter)[:, 1]
     # Rounded to whole numbers of time steps again.
     whole = (np.rint(begun * shorter) + np.rint(rest * (longer - shorter))) / longer
     return (begun, whole) if first == shorter else (whole, begun)
