@@ -175,9 +175,9 @@ def values_with_limits(
     values : iterable
         Value, lower limit and upper limit.
     dims : str or tuple of str, optional
-        Dimensions of each, to make variables of a dataset of them.
+        Dimensions of the three, to make them variables of a dataset.
     names : tuple of str, optional
-        Ends of the three names: `LIMITS`, or `MEAN_LIMITS` for a mean.
+        Suffixes of the three names: `LIMITS`, or `MEAN_LIMITS` for a mean.
 
     Returns
     -------
