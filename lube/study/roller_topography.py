@@ -23,9 +23,9 @@ class RollerTopography(StrictModel):
     file: Text
     """profile or map: a file of an instrument, CSV (`position [mm],height [um]`) or NetCDF"""
     texture: Literal["isotropic", "along rolling"]
-    """whether the surface is alike in all directions, or only profiles along rolling are used"""
+    """alike in all directions; or, for ground surfaces, only profiles along rolling are used"""
     use: Literal["spectrum", "closed line", "repeated line"] = "spectrum"
-    """whether lines are drawn from its spectrum, or the profile is the line, once or repeated"""
+    """lines are drawn from its spectrum; or the profile is the line, as one turn or repeated"""
     form: Literal["none", "tilt", "curvature"] = "tilt"
     """what is removed by least squares: the mean alone, a straight line or plane, a parabola"""
     long_cutoff: Length | None = None
