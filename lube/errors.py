@@ -116,7 +116,7 @@ def located(where: str = "", kind: type[Exception] | None = None, hint: str = ""
         Type of the new error, by default that of the old one; ``ValueError`` for pydantic, which
         collects errors of this type only.
     hint : str, optional
-        Put after the message.
+        Text to add after the message.
 
     Raises
     ------

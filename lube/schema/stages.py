@@ -1,4 +1,4 @@
-"""The registry of stages: the one place that says what each stage depends on.
+"""The registry of stages: it alone says what each stage depends on.
 
 A stage makes one kind of file. Its row names the stages whose files it reads and the values of
 the study that it uses. From the rows follow the inputs and parameters of the Snakemake rules,

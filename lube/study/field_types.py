@@ -84,18 +84,18 @@ def bounded(number: float, units: str | None, came: object = None, **limits: flo
 def read_by(
     parse: Callable[[Any], object], schema: dict[str, Any], hint: str = ""
 ) -> BeforeValidator:
-    """Say how to read a field that is not kept as it is written, such as 0.05 for ``50 mm``.
+    """Say how to read a field whose value is converted, such as ``50 mm`` to 0.05.
 
     Parameters
     ----------
     parse : callable
-        From what people write to what is kept; raises LubeError.
+        Function that converts the written value to the kept one; raises LubeError.
     schema : dict
         How it is written, for the JSON schema. ``format`` says in words what is needed; from
-        ``form`` and the keys beside it, ``docs/tools/written_forms.py`` makes the schema for
+        ``form`` and the other keys, ``docs/tools/written_forms.py`` makes the schema for
         editors.
     hint : str, optional
-        Put after the message of an error.
+        Text to add to an error message.
 
     Returns
     -------

@@ -333,13 +333,13 @@ def _check_roll_off(longest, shortest, roll_off, key):
 def _check_perimeter(perimeter, longest, shortest, roller):
     if perimeter < longest or math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
         raise StudyError(
-            f"rollers.{roller}.radius: got a perimeter of {perimeter:.3g} m, need one that a whole "
-            f"number of waves of {shortest:.3g} to {longest:.3g} m fits"
+            f"rollers.{roller}.radius: got a perimeter of {perimeter:.3g} m, need room for the "
+            f"longest wave and for a whole number of waves of {shortest:.3g} to {longest:.3g} m"
         )
 
 
 def _check_height_step(rms, step, name, roller):
-    """The rms height must be many height steps, and peaks must fit a 32-bit integer."""
+    """Rms heights must be many height steps, and peaks must fit a 32-bit integer."""
     if 1e3 <= rms / step <= 1e7:
         return
     if 1e-9 <= rms <= 1e-5:

@@ -194,7 +194,7 @@ class LubricantRecord(StrictModel):
     """density; needed unless CoolProp gives it"""
     pressure_viscosity: PressureViscosity
     thermal_conductivity: ThermalConductivity | None = None
-    """thermal conductivity, for the heating of the oil at the inlet; CoolProp gives its own"""
+    """thermal conductivity, for the heating at the inlet; CoolProp gives that of its fluids"""
     temperature_range: TemperatureRange | None = None
 
     _files: tuple[Path, ...] = PrivateAttr(())

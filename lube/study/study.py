@@ -303,7 +303,7 @@ class Study(StrictModel):
         return _plain(self, STAGES[stage].values)
 
     def origin(self, stage: str) -> dict:
-        """Return all values that determine a stage's result, those of its forerunners included.
+        """Return all values that determine a stage's result, including those of its forerunners.
 
         Parameters
         ----------

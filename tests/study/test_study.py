@@ -61,7 +61,7 @@ def test_the_force_of_a_record_needs_a_contact_that_the_grid_resolves():
     study.check_window(123.4)
     with pytest.raises(StudyError, match=r"contact at 1e-06 N is .* need at least two grid spac"):
         study.check_window(1e-6)
-    with pytest.raises(StudyError, match="less than a roller.s perimeter"):
+    with pytest.raises(StudyError, match="less than a roller's perimeter"):
         study.check_window(1e12)
 
 
