@@ -42,7 +42,7 @@ NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
 AROUND = np.exp(np.linspace(-1.0, 0.6, 17))
 """The same if the film has a shape or the oil changes the lines, which the first look ignores."""
 FALLING = 0.9
-"""Share over the largest probability, below which the share lies well on the falling branch."""
+"""Share, relative to the largest probability, below which it is well on the falling branch."""
 OFTEN = 10.0
 """Least number of independent windows with contact, in all realisations, to count contact."""
 FEW_PAIRS = 2

@@ -69,7 +69,7 @@ def new_study(
     Raises
     ------
     LubeError
-        If the study's file exists, or the study cannot be carried out; then no file is written.
+        If the study's file exists, or the study cannot be carried out; then no new file is left.
     """
     path = Path(path)
     if path.suffix not in (".yaml", ".yml"):

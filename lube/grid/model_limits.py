@@ -84,7 +84,7 @@ def deformed(film: xr.Dataset) -> xr.DataArray:
     -------
     xarray.DataArray
         Whether `rms_deformation` is above `LARGEST_DEFORMATION` times the film. False where the
-        film is not known, or the study leaves the lines as drawn.
+        film is not known, or the oil does not answer the lines.
     """
     thickness = film["film_thickness"]
     return film.get("rms_deformation", 0.0) > LARGEST_DEFORMATION * thickness
