@@ -1,7 +1,8 @@
 """Mixed lubrication of rough rollers: film, contact and their probabilities.
 
-Answers take and give quantities with units. `load` and `results_folder` open the results of a
-study. The steps of a study, in SI units, are in `lube.stages`. `__init__.pyi` lists the names.
+Functions such as `film` take and return quantities with units. `load` and `results_folder` open
+the results of a study. The steps of a study, in SI units, are in `lube.stages`. `__init__.pyi`
+lists the names.
 """
 
 from lube.lazy import attach

@@ -18,7 +18,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments : sequence of str, optional
-        Its arguments; by default those of the process.
+        Arguments of the command; by default those of the process.
 
     Returns
     -------
@@ -30,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = _parser()
     options, more = parser.parse_known_args(arguments)
     if "figure" in options and not any(word.startswith("-") for word in more):
-        options.figure += more  # argparse does not know those after --to
+        options.figure += more  # figures after --to, which argparse leaves over
     elif more:
         parser.error(f"unrecognized arguments: {' '.join(more)}")
     try:
@@ -40,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except LubeError as error:
         print(f"Error: {error}", file=sys.stderr)
     except ModuleNotFoundError as error:  # `pip install lube` brings what a notebook needs
-        needed = "need it: pip install 'lube[workflow]'"
+        needed = "need it for this command: pip install 'lube[workflow]'"
         print(f"Error: the package {error.name} is not installed, {needed}", file=sys.stderr)
     except KeyboardInterrupt:
         print("Interrupted", file=sys.stderr)
@@ -58,20 +58,20 @@ def _parser():
     commands = parser.add_subparsers(metavar="COMMAND")
     _add_new(commands)
     check = _add(commands, _check, "check a study and its records without running it")
-    check.add_argument("study", help="its YAML file")
-    help_text = "changes key=value, as with snakemake"
+    check.add_argument("study", help="YAML file of the study")
+    help_text = "values to change, key=value, as in snakemake's --config"
     check.add_argument("--config", "-C", nargs="+", default=[], help=help_text)
     _add_run(commands)
     compare = _add(commands, _compare, "say what differs between two results")
     compare.add_argument("first", help="a folder of results, an archive's folder, or a dataset")
-    compare.add_argument("second", help="another one of the same kind")
+    compare.add_argument("second", help="what to compare it with, of the same kind")
     schema = _add(commands, _schema, "print the JSON Schema of a kind of file")
     schema.add_argument("kind", nargs="?", choices=KINDS, default=KINDS[0], help="default: study")
     _add_explain(commands)
     verify = _add(commands, _verify, "check an archive")
-    verify.add_argument("path", help="its folder or zip")
+    verify.add_argument("path", help="folder or zip file of the archive")
     figures = _add(commands, _figures, "draw an archive's figures again and compare")
-    figures.add_argument("path", help="its folder or zip")
+    figures.add_argument("path", help="folder or zip file of the archive")
     figures.add_argument("figure", nargs="*", help="such as fig02_film; by default all")
     figures.add_argument("--to", required=True, help="folder for the new figures")
     return parser
@@ -88,15 +88,15 @@ def _add_new(commands):
     new = _add(commands, _new, "write a study, based on the paper's")
     new.add_argument("study", help="YAML file to write; results go to results/<its stem>")
     for name, example in (
-        ("radius", "50 mm, or 50 30 mm for the first and the second roller"),
-        ("roughness", "rms height of each roller: 0.2 um"),
+        ("radius", "radius of both rollers, or of the first and the second: 50 mm, or 50 30 mm"),
+        ("roughness", "rms roughness of both rollers, or of the first and the second: 0.2 um"),
         ("force", "levels: 400 800 N"),
         ("speed", "levels: 100 200 rpm"),
         ("temperature", "levels: 40 80 degC"),
     ):
         new.add_argument(f"--{name}", nargs="+", metavar="NUMBERS UNIT", help=example)
     new.add_argument("--oil", nargs="+", default=[], help="lubricants: shipped names or records")
-    new.add_argument("--realisations", type=int, help="pairs of rollers")
+    new.add_argument("--realisations", type=int, help="number of pairs of rollers")
     new.add_argument("--records", help="list of measured records; a new one is written if missing")
 
 
@@ -114,14 +114,14 @@ def _add_run(commands):
 
 def _add_explain(commands):
     explain = _add(commands, _explain, "trace and recompute a number of contact.nc")
-    explain.add_argument("path", help="a contact.nc, with its film.nc and lubricant.nc beside it")
+    explain.add_argument("path", help="a contact.nc, in the folder of its film.nc and lubricant.nc")
     units = {"force": " in N", "speed": " in r/min", "temperature": " in °C"}
     for name in (*units, "slide-to-roll-ratio"):
         help_text = f"a level of the file{units.get(name, '')}, to within half a per cent"
         explain.add_argument(f"--{name}", type=float, help=help_text)
     for name in ("lubricant", "film-formula"):
         explain.add_argument(f"--{name}", help="by name; by default the first")
-    help_text = "its number, or `all` for the mean and its interval; by default 0"
+    help_text = "number of the realisation, or `all` for their mean and interval; by default 0"
     explain.add_argument("--realisation", type=number_or_all, default=0, help=help_text)
 
 

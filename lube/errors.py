@@ -37,19 +37,19 @@ def shown(value: object) -> str:
 
 
 def right_one(wrong: str, names: Iterable[str]) -> str:
-    """Name what was probably meant by an unknown name, or all that there is.
+    """Suggest the known name that was probably meant, or list all known names.
 
     Parameters
     ----------
     wrong : str
         The unknown name.
     names : iterable of str
-        The known ones.
+        The known names.
 
     Returns
     -------
     str
-        The end of a message.
+        The end of an error message.
 
     Examples
     --------
@@ -62,19 +62,19 @@ def right_one(wrong: str, names: Iterable[str]) -> str:
 
 
 def nearest(wrong: str, names: Iterable[str]) -> str | None:
-    """Find the known name that was probably meant: one of the same words, or else of like letters.
+    """Find the known name that was probably meant, by its words or else by its spelling.
 
     Parameters
     ----------
     wrong : str
         The unknown name.
     names : iterable of str
-        The known ones.
+        The known names.
 
     Returns
     -------
     str or None
-        The name, None if none is near.
+        The name; None if no name is similar.
 
     Examples
     --------
@@ -106,22 +106,22 @@ class LubeError(Exception):
 
 @contextmanager
 def located(where: str = "", kind: type[Exception] | None = None, hint: str = "") -> Iterator[None]:
-    """Say in the message of a LubeError what it is about; also a decorator.
+    """Add to the message of a LubeError what it is about; also usable as a decorator.
 
     Parameters
     ----------
     where : str, optional
         File, key or name, put before the message.
     kind : type, optional
-        Kind of the new error, by default that of the old one; ``ValueError`` for pydantic, which
-        collects errors of this kind only.
+        Type of the new error, by default that of the old one; ``ValueError`` for pydantic, which
+        collects errors of this type only.
     hint : str, optional
-        Put after the message.
+        Text to add after the message.
 
     Raises
     ------
     Exception
-        Of this kind, in place of the LubeError.
+        An error of this type, in place of the LubeError.
 
     Examples
     --------

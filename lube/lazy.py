@@ -9,17 +9,18 @@ from pathlib import Path
 
 @functools.cache
 def homes(package: str) -> dict[str, str]:
-    """Names that a package has from other modules, each with its module.
+    """Map the names that a package offers to the modules that define them.
 
     Parameters
     ----------
     package : str
-        ``lube``, or one of its rooms whose folder has an ``__init__.pyi``.
+        ``lube``, or one of its packages whose folder has an ``__init__.pyi``.
 
     Returns
     -------
     dict of str to str
-        From the imports of that file, which editors and type checkers read as well.
+        Module of each name, from the imports in that file. Editors and type checkers read the same
+        file.
 
     Examples
     --------
@@ -36,7 +37,7 @@ def homes(package: str) -> dict[str, str]:
 
 
 def attach(package: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
-    """Return ``__getattr__`` and ``__dir__`` of a package with these names.
+    """Return ``__getattr__`` and ``__dir__`` for a package whose names are imported on first use.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """What all figures share: style, colours, axis labels from attributes, saving.
 
-Colours are those of Okabe and Ito, which readers with any colour vision can tell apart; ordered
-quantities take theirs from a colour map whose lightness changes steadily.
+Colours are those of Okabe and Ito, which readers with any colour vision can tell apart. The levels
+of an ordered quantity get colours from a colour map whose lightness changes steadily.
 """
 
 import io
@@ -80,7 +80,7 @@ _OTHER_COORDINATES = {
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
 _FOOTNOTE_LINE = 130  # characters that fit below a figure
 _MOST_LABELS = 9  # on a logarithmic axis
-_SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) |(?<=pair) ")  # or a letter's
+_SPACE_BEFORE_UNIT = re.compile(r"(?<=\d) (?=\D)|(?<=\)) |(?<=pair) ")  # also after (a) and "pair"
 
 
 def use_style() -> None:
@@ -310,7 +310,7 @@ def footnote(figure: Figure, *shown: xr.Dataset | xr.DataArray) -> None:
         if values:
             different = np.unique(np.concatenate(values)).tolist()
             parts.append(word + ", ".join(map(str, different)))
-    # An empty line keeps the stamp's place free.
+    # An empty line leaves room for the stamp.
     line = textwrap.fill(" · ".join(parts), _FOOTNOTE_LINE) + "\n"
     figure.supxlabel(line, x=0.99, ha="right", fontsize=6.5, color="#5F5F5F")
 
@@ -422,16 +422,16 @@ def interval_bars(
     bars = np.where(seen, [mean - lower, upper - mean], 0.0)
     points = np.where(seen, mean, np.nan)
     axes.errorbar(x, points, yerr=bars, capsize=2, elinewidth=1.0, **style)
-    limited = ~seen & (np.asarray(upper) > 0.0)  # both are 0 below the smallest number there is
+    limited = ~seen & (np.asarray(upper) > 0.0)  # the upper limit may underflow to 0 as well
     at, limits = np.asarray(x)[limited], np.asarray(upper)[limited]
     arrows = {"uplims": True, "linestyle": "none", "capsize": 2.5, "elinewidth": 1.0}
     axes.errorbar(at, limits, yerr=0.5 * limits, color=style.get("color"), **arrows)
 
 
 def probability_limits(*panels: Axes, least: float = 0.0) -> None:
-    """End axes of probabilities above the largest probability shown, at 1 at most.
+    """Set the upper end of probability axes just above the largest value shown, at most 1.
 
-    Points at either end are not cut.
+    Points at either end are not clipped.
 
     Parameters
     ----------
@@ -453,7 +453,7 @@ def probability_limits(*panels: Axes, least: float = 0.0) -> None:
     highest = max([one.dataLim.ymax for one in panels if one.dataLim.ymax > 0.0], default=1.0)
     for panel in panels:
         room = 1.05 if panel.get_yscale() == "linear" else 1.5
-        # Not scaled by its data first: all of them may be 0, on a logarithmic scale.
+        # Without autoscaling: on a logarithmic scale all values may be 0.
         panel.set(autoscaley_on=False, ylim=(least, min(room * highest, 1.0)))
         for line in [line for line in panel.lines if line.get_marker() not in NOT_POINTS]:
             below = (np.asarray(line.get_ydata(), float) < least).any()
@@ -536,7 +536,7 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     _fold_labels(figure)
     if stem is None:
         return
-    # The layout is final, and to find it again takes as long as to draw the picture. The engine
+    # The layout is final, and computing it again takes as long as drawing the picture. The engine
     # "none" would leave a placeholder, with which Matplotlib draws every picture twice.
     with plt.rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
         figure.set_layout_engine(None)

@@ -1,4 +1,4 @@
-"""Work that threads share."""
+"""Run independent pieces of work on several threads."""
 
 import os
 from collections.abc import Callable, Iterable
@@ -9,12 +9,12 @@ from typing import Any
 def on_threads(function: Callable, items: Iterable, threads: int | None = None) -> list[Any]:
     """Call a function for each of some items, such as the numbers of pairs.
 
-    Kernels and linear algebra release Python's lock, so threads share the work.
+    Kernels and linear algebra release Python's global lock, so the threads run in parallel.
 
     Parameters
     ----------
     function : callable
-        Of one item.
+        A function of one item.
     items : iterable
         The items.
     threads : int, optional

@@ -35,7 +35,7 @@ _CUSTOMARY = {"m^2/s": (1e6, "mm²/s"), "1/Pa": (1e9, "1/GPa")}
 SYMBOLS = {"ohm": "Ω", "ohm*m": "Ω m", "degC": "°C", "rpm": "r/min", "Pa*s": "Pa s",
            "kg/m^3": "kg/m³", "um": "µm", "mm2 s-1": "mm²/s", "m2 s-1": "m²/s", "kg m-3": "kg/m³",
            "m s-1": "m/s", "Pa-1": "1/Pa", "GPa-1": "1/GPa"}  # fmt: skip
-"""Units as readers expect them, in figures, explorer and report, by either notation."""
+"""Printed form of each unit, from the notation of pint (``kg/m^3``) or of files (``kg m-3``)."""
 
 
 @functools.cache
@@ -43,8 +43,8 @@ def _registry():
     import pint  # imported on first use: it costs more than the rest of the package
 
     try:
-        # In the user's cache folder pint keeps what it reads from its definitions: every job needs
-        # it, and without the cache it takes ten times as long.
+        # Every job needs pint's definitions, and to parse them takes ten times as long as to read
+        # them from the cache in the user's folder.
         return pint.UnitRegistry(cache_folder=":auto:")
     except Exception:  # a folder that cannot be written, or a file that another job is writing
         return pint.UnitRegistry()
@@ -86,7 +86,7 @@ def parse_number(value: object) -> float:
 def convert(number: float | np.ndarray, units: str, target: str) -> float | np.ndarray:
     """Convert a number, or an array, between two units of the same dimension.
 
-    Two targets have a meaning of their own. ``rpm`` is a speed of rotation: ``1/min`` and ``Hz``
+    Two targets are special. ``rpm`` is a speed of rotation: ``1/min`` and ``Hz``
     count turns, unless the unit names another angle, such as ``rad/s``. ``K`` is a difference of
     temperatures: 1 degC is 1 K.
 

@@ -64,8 +64,8 @@ def test_a_command_that_needs_the_workflow_says_how_to_install_it(monkeypatch, c
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "yaml", None)
     assert main(["verify", "nowhere"]) == 2
-    message = "Error: the package yaml is not installed, need it: pip install 'lube[workflow]'\n"
-    assert capsys.readouterr().err == message
+    message = "Error: the package yaml is not installed, need it for this command: "
+    assert capsys.readouterr().err == f"{message}pip install 'lube[workflow]'\n"
 
 
 def test_the_version_is_that_of_the_package(capsys):

@@ -1,4 +1,4 @@
-"""What the answers are: labelled datasets in the units people use, also tables and plots."""
+"""Answers of the calculator: labelled datasets in customary units, with tables and plots."""
 
 import numpy as np
 import pandas as pd
@@ -25,7 +25,7 @@ _OF_NO_FILE = {
     "surface_speed": ("surface speed of the first roller", "m s-1"),
     "second_surface_speed": ("surface speed of the second roller", "m s-1"),
     "share": ("share of the duty cycle", "1"),
-    "roughness_factor": ("factor of the roughness of both rollers", "1"),
+    "roughness_factor": ("factor on the roughness of both rollers", "1"),
     "position": ("position from the line of centres", "m"),
     "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
     "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
@@ -36,14 +36,14 @@ _KINDS = ("film_profile", "lubricant", "trace", "film", "contact")
 _ROWS = (COORDINATES, *(FILES[kind] for kind in _KINDS))
 _WORDS = {name: (row.long_name, row.units) for rows in _ROWS for name, row in rows.items()}
 _WORDS |= _OF_NO_FILE
-# Those of `tail.nc` get a prefix: some of `contact.nc` have the same names.
+# Variables of `tail.nc` get a prefix: some have the same names as variables of `contact.nc`.
 _WORDS |= {
     f"tail_{name}": (f"{row.long_name}, {_TAIL}", row.units) for name, row in FILES["tail"].items()
 }
 
 
 class _Plots(xr.Dataset.plot):
-    """The plots of xarray, such as ``plot.scatter``; called, the plot of an answer."""
+    """Plots of xarray, such as ``plot.scatter``; a call of the object itself draws the answer."""
 
     __slots__ = ()
 
@@ -76,8 +76,8 @@ class Answer(xr.Dataset):
 
         Counted probabilities have their 95 % intervals, and sampled ones are a curve. They are
         drawn over ``x``: force, speed or temperature, by default the one with most values. A duty
-        cycle is drawn along its points, under its first column of labels, and a profile across the
-        contact. Of other answers the film is drawn, or the variable ``y``.
+        cycle is drawn along its points, named by its first column of labels, and a profile across
+        the contact. For other answers the film is drawn, or the variable ``y``.
 
         The result is the axes of Matplotlib. The plots of xarray, such as ``plot.scatter``, work
         as well.
@@ -125,7 +125,7 @@ def described(results: xr.Dataset) -> Answer:
     """
     found = Answer(results.data_vars, results.coords, results.attrs)
     for name in results.variables:
-        # A limit without a row in the tables has the words of its variable.
+        # A limit without a row in the tables takes the labels of its variable.
         known = name if name in _WORDS else name.removesuffix("_lower").removesuffix("_upper")
         if known not in _WORDS:
             continue

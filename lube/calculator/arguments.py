@@ -1,4 +1,4 @@
-"""Arguments of the answers: numbers with units, choices and counts, checked."""
+"""Check the arguments of the calculator: numbers with units, choices and counts."""
 
 from collections.abc import Sequence
 from typing import Any, get_args
@@ -80,7 +80,7 @@ def _floats(numbers):
 
 
 def bare_number(name: str, value: object, **limits: float) -> float:
-    """Check a number that is given without unit, such as a share; `limits` as of `amount`.
+    """Check a number that is given without unit, such as a share of time; `limits` as for `amount`.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def bare_number(name: str, value: object, **limits: float) -> float:
 def conditions(
     force: Amount, speed: Amount, temperature: Amount, radius: float
 ) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
-    """Force in N, speed in rpm and temperature in degC; the radius as of `rotation_speed`."""
+    """Force in N, speed in rpm and temperature in degC; the radius as for `rotation_speed`."""
     return (
         amount("force", force, "N", above=0.0),
         rotation_speed(speed, radius),
@@ -103,12 +103,12 @@ def conditions(
 
 
 def rotation_speed(speed: Amount, radius: float) -> xr.DataArray:
-    """Rotation speed in rpm, from itself or from the entrainment speed at a radius in m.
+    """Rotation speed in rpm, from a rotation speed or an entrainment speed; the radius in m.
 
     Raises
     ------
     StudyError
-        If it is neither.
+        If the unit is that of neither.
     """
     try:
         return amount("speed", speed, "rpm", above=0.0)
@@ -122,12 +122,12 @@ def rotation_speed(speed: Amount, radius: float) -> xr.DataArray:
 
 
 def single(values: xr.DataArray) -> float:
-    """Return a value of which there must be one.
+    """Return the value of an argument that must be a single number.
 
     Raises
     ------
     StudyError
-        If there are several: of which argument.
+        If there are several numbers, with the name of the argument.
     """
     for name, size in values.sizes.items():
         raise StudyError(f"{name}: got {size} values, need one")
@@ -135,7 +135,7 @@ def single(values: xr.DataArray) -> float:
 
 
 def gap_of(film_shape: str, roughness_deformation: str) -> Gap:
-    """How film and roughness make up the gap, in the words of a study.
+    """Choose how film and roughness make up the gap, by the values of a study's keys.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def gap_of(film_shape: str, roughness_deformation: str) -> Gap:
 
 
 def one_formula(name: str) -> str:
-    """Return the name of a film formula, of which there must be one.
+    """Return the name of a film formula; refuse several names.
 
     Raises
     ------

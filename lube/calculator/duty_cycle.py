@@ -1,4 +1,4 @@
-"""Duty cycles: the answer at each duty point, and the weighted whole."""
+"""Duty cycles: the answer at each duty point, and the weighted mean over the cycle."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -47,7 +47,7 @@ def duty(
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
-    """Film and probability of contact along a duty cycle, and over the whole of it.
+    """Film and probability of contact at each point of a duty cycle, and over the cycle.
 
     The model's probability depends on film thickness and contact width. So each duty point has the
     film and width of its radii, and all points have the roughness lines of `rollers`.
@@ -100,7 +100,7 @@ def duty(
     columns, labels = _columns(points)
     share = columns.get("share", xr.ones_like(columns["force"]))
     if not share.sum() > 0.0:
-        raise DataError("points: share: got 0 at all points, need a weight above 0")
+        raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
     table = _film(columns, rollers, oil, film_formula)
     contact = ensemble(table, rollers, realisations, seed)
     on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, _slip(columns))
@@ -154,7 +154,7 @@ def _film(columns, rollers, oil, film_formula):
 
 
 def _columns(points):
-    """Columns of a table by name, over ``point`` in the units of `_COLUMNS`; columns of labels."""
+    """Numbers of a table by column, over ``point`` in the units of `_COLUMNS`; then its labels."""
     try:
         is_file = isinstance(points, str | Path)
         frame = pd.read_csv(points, skipinitialspace=True) if is_file else pd.DataFrame(points)
@@ -177,7 +177,8 @@ def _columns(points):
             raise DataError(f"points: no column {name!r}, need one, as '{name} [{_COLUMNS[name]}]'")
     given = {name for name in columns if name.endswith("speed")}
     if given not in [set(names.split(" and ")) for names in _SPEEDS]:
-        raise DataError(f"points: need one kind of speed: {', '.join(_SPEEDS)}")
+        came = " and ".join(sorted(given)) or "no speed"
+        raise DataError(f"points: got {came}, need one kind of speed: {', '.join(_SPEEDS)}")
     return columns, labels
 
 

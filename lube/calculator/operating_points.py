@@ -77,9 +77,10 @@ def film(
     Returns
     -------
     Answer
-        Over those of film_formula, temperature, speed and force of which several are given, in
-        customary units. Its attribute ``remarks`` lists what is unlikely to be meant and what the
-        model cannot hold, a line each, as ``lube check`` does; the first film formula counts.
+        The film in customary units. Its dimensions are those of film_formula, temperature, speed
+        and force that have several values. Like ``lube check``, its attribute ``remarks`` has a
+        line for each value that may be a mistake or is beyond the limits of the model, by the first
+        film formula.
 
     Raises
     ------
@@ -140,7 +141,7 @@ def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answ
     Parameters
     ----------
     found : xarray.Dataset
-        What was found, in SI units.
+        Results in SI units.
     table : xarray.Dataset
         The film table that it comes from.
     rollers : Rollers
@@ -149,7 +150,7 @@ def with_remarks(found: xr.Dataset, table: xr.Dataset, rollers: Rollers) -> Answ
     Returns
     -------
     Answer
-        With the attribute ``remarks``, a line each.
+        With the attribute ``remarks``, one line for each remark.
     """
     notes = [found.attrs.get("remarks"), *remarks(table, rollers.lines, rollers.pair)]
     return described(found.assign_attrs(remarks="\n".join(filter(None, notes))))
@@ -172,27 +173,28 @@ def contact_probability(
 ) -> Answer:
     """Probability of metal contact, with its 95 % interval, and the film.
 
-    It is the probability of a line, as a mean over pairs of rollers. One pair, or rollers of some
-    length, touch more or less often.
+    It is the probability for a line, as a mean over pairs of rollers. A single pair touches more or
+    less often than the mean, and the surfaces of rollers, which have a length, touch more often.
 
-    The probability is found in two ways. Realisations are counted, as in ``contact.nc`` of a study;
-    where they see no contact, the upper limit says how rare it is at least. Importance sampling,
-    as in ``tail.nc``, works at any rarity, with a standard error of about 2 %: use it where contact
-    is rare. Both agree where both see contact.
+    The probability is found in two ways. Contact in realisations is counted, as in ``contact.nc``
+    of a study; where they show no contact, the upper limit says how rare it is at least. Importance
+    sampling, as in ``tail.nc``, finds any probability, however small, with a standard error of
+    about 2 %: use it where contact is rare. Both agree where both find contact.
 
     Parameters
     ----------
     rollers, oil, force, speed, temperature, film_formula
         As in `film`.
     film_shape : str, optional
-        ``"flat"``, or ``"computed"`` from Reynolds' equation, a second for each operating point.
+        ``"flat"``; or ``"computed"`` from Reynolds' equation, which takes a second for each
+        operating point.
     roughness_deformation : str, optional
-        ``"none"``; ``"computed"``: the oil answers the waves of the roughness by Reynolds'
-        equation, some seconds for each operating point; or ``"venner-1997"``: it flattens them by a
-        formula.
+        ``"none"``; ``"computed"``: the oil deforms each wave of the roughness by Reynolds'
+        equation, which takes some seconds for each operating point; or ``"venner-1997"``: it
+        flattens long waves by a formula.
     slide_to_roll_ratio : float, optional
         Difference of the surface speeds over their mean. It changes the computing time and the
-        scatter; the expected probability only if the oil answers the roughness by computation.
+        scatter, and with ``roughness_deformation="computed"`` also the expected probability.
     realisations : int, optional
         Number of pairs of roughness lines.
     seed : int, optional
@@ -203,10 +205,11 @@ def contact_probability(
     Answer
         The variables of `film`; ``breakthrough_probability`` and
         ``geometric_contact_probability`` of each realisation, and ``_mean``, ``_lower`` and
-        ``_upper`` of both. By importance sampling ``tail_breakthrough_probability`` and
-        ``tail_geometric_contact_probability``, and ``tail_breakthrough_rate``, breakthroughs per
-        hour, with ``_lower`` and ``_upper``. These are NaN where the heights are not Gaussian, or
-        the oil flattens them; then the attribute ``remarks`` says so, before the remarks of `film`.
+        ``_upper`` of both. Results of importance sampling are ``tail_breakthrough_probability``,
+        ``tail_geometric_contact_probability`` and ``tail_breakthrough_rate``, breakthroughs per
+        hour, each with ``_lower`` and ``_upper``. They are NaN where the heights are not Gaussian,
+        or the formula flattens them; then the attribute ``remarks`` says so, before the remarks of
+        `film`.
 
     Raises
     ------
@@ -234,7 +237,7 @@ def contact_probability(
 
 
 def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.Dataset:
-    """Film, counted probabilities, and those by importance sampling, whose names get ``tail_``."""
+    """Film, counted probabilities, and sampled ones, whose names begin with ``tail_``."""
     sampled = pair_limits(on_pairs)
     tail = {f"tail_{name}": values for name, values in sampled.items()}
     found = table[FILM_VARIABLES].assign(dict(contact.data_vars) | tail)
@@ -314,7 +317,7 @@ def trace(
     Parameters
     ----------
     rollers, oil, force, speed, temperature, film_formula
-        As in `film`, one of each.
+        As in `film`, one value of each.
     slide_to_roll_ratio, seed
         As in `contact_probability`; the trace is that of realisation 0.
 
@@ -354,14 +357,14 @@ def profile(rollers: Rollers, oil: Oil, force: str, speed: str, temperature: str
     Parameters
     ----------
     rollers, oil, force, speed, temperature
-        As in `film`, one of each. The contact is fully flooded, isothermal and smooth.
+        As in `film`, one value of each. The contact is fully flooded, isothermal and smooth.
 
     Returns
     -------
     Answer
-        ``pressure`` (MPa) and ``film`` (um), outside the contact the gap, over ``position`` (um)
-        from the line of centres, the inlet below 0; ``central_film``, ``minimum_film``,
-        ``hertz_pressure`` and ``contact_half_width``.
+        ``pressure`` (MPa) and ``film`` (um), which is the gap outside the contact, over
+        ``position`` (um) from the line of centres, negative at the inlet; also ``central_film``,
+        ``minimum_film``, ``hertz_pressure`` and ``contact_half_width``.
 
     Raises
     ------
@@ -378,7 +381,7 @@ def profile(rollers: Rollers, oil: Oil, force: str, speed: str, temperature: str
     table = film_profile_table(*_one_point(rollers, oil, force, speed, temperature))
     found = table.isel(dict.fromkeys(POINT_DIMS, 0))
     if np.isnan(found["central_film"]):
-        raise RangeError(f"the film of {force}, {speed} and {temperature} did not converge")
+        raise RangeError(f"the film at {force}, {speed} and {temperature} did not converge")
     place = found["film_position"] * found["contact_half_width"]
     found = found.assign_coords(position=place).swap_dims(film_position="position")
     names = ["pressure", "film", "central_film", "minimum_film"]

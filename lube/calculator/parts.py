@@ -90,7 +90,7 @@ class Rollers:
     radius : str
         Radius of the first roller, such as ``"50 mm"``.
     rms_roughness : str, optional
-        Rms roughness of the first roller by itself, such as ``"0.2 um"``. In place of it
+        Rms roughness of the first roller by itself, such as ``"0.2 um"``. Without it,
         `ra_roughness`, `composite_rms_roughness` or a `topography` is needed.
     length : str, optional
         Length of the line contact.
@@ -112,13 +112,14 @@ class Rollers:
     ra_roughness : str, optional
         Mean absolute height Ra of the first roller; the rms is taken as Ra (pi / 2)^0.5.
     composite_rms_roughness : str, optional
-        Rms roughness of both rollers together; each then has this / 2^0.5.
+        Rms roughness of both rollers together; each roller then has this value / 2^0.5.
     topography : dict, optional
         Measured surface of the first roller, from whose spectrum its lines are drawn, such as
         ``{"file": "scan.x3p", "texture": "isotropic"}``; the keys are those of a study. The
         longest and the shortest wavelength must lie within the measured ones.
     roll_off_wavelength : str, optional
-        Beyond it the spectral density of the surface is constant; by default nowhere.
+        Wavelength beyond which the spectral density of the surface is constant; by default there is
+        none.
     skewness, kurtosis : float, optional
         Skewness and kurtosis of the heights, by default Gaussian.
     points : int, optional
@@ -197,7 +198,7 @@ class Rollers:
         _one_of_two(given, boundary_layer, "boundary_layer", _LAYER)
         first, heights, waves = ({name: given[name] for name in names} for names in _MODELS)
         if not isinstance(second, Mapping | None):
-            needed = "need what differs, such as {'radius': '30 mm'}"
+            needed = "need a dict of the values that differ, such as {'radius': '30 mm'}"
             raise StudyError(f"Rollers: second: got {shown(second)}, {needed}")
         own = dict(second or {})
         other = first | ({} if heights.keys() & own.keys() else heights) | own
@@ -230,8 +231,8 @@ class Rollers:
         self.pair = self.pair.with_rms_heights(self.lines.rms_height)
         if not self.lines.is_drawn:
             raise StudyError(
-                "Rollers: topography.use: got a measured line, need 'spectrum': answers here are "
-                "means over drawn lines; a study can do it"
+                "Rollers: topography.use: got a measured line, need 'spectrum': an answer is a "
+                "mean over drawn lines; only a study can use a measured line"
             )
 
     def __repr__(self) -> str:
@@ -245,12 +246,12 @@ class Rollers:
 
 
 def _one_of_two(given, model, name, short):
-    """Refuse single arguments beside a part of a study that has their values."""
+    """Refuse single arguments if a part of a study, which has their values, is given too."""
     usual = inspect.signature(Rollers).parameters
     for argument in short if model is not None else ():
         if given[argument] != usual[argument].default:
-            came = f"{argument}: got {shown(given[argument])} beside `{name}`"
-            raise StudyError(f"Rollers: {came}, which has its own, need one of the two")
+            came = f"{argument}: got {shown(given[argument])} together with `{name}`"
+            raise StudyError(f"Rollers: {came}, which sets it, need only one of the two")
 
 
 def _metres(name, length):
@@ -280,13 +281,13 @@ class Oil:
         atmospheric pressure, in place of the base oil's.
     temperature_range : sequence of str or tuple, optional
         Lowest and highest temperature at which the oil may be used, such as
-        ``["20 degC", "120 degC"]``; by default those of its data. Beyond its data the viscosity
-        follows its law.
+        ``["20 degC", "120 degC"]``; by default those of its data. Beyond the data the viscosity is
+        extrapolated by the oil's viscosity law.
 
     Attributes
     ----------
     record : LubricantRecord
-        The whole lubricant record.
+        The lubricant record.
 
     Raises
     ------
@@ -319,7 +320,7 @@ class Oil:
         if name is None:
             self.record = _record(viscosity, **own)
         else:
-            needed = "beside a lubricant record, which has its own, need one of the two"
+            needed = "together with a lubricant record, which sets it, need only one of the two"
             for key, value in own.items():
                 if value is not None:
                     raise RecordError(f"Oil: {key}: got {shown(value)} {needed}")
@@ -368,7 +369,7 @@ class Oil:
 
 
 def _record(viscosity, density, base, pressure_viscosity):
-    """Lubricant record of some viscosities."""
+    """Lubricant record for given viscosities."""
     base = base_oil(base or "mineral")
     if base not in list(GOLD_BASES):
         raise RecordError(f"Oil: base: got {shown(base)}, need one of {', '.join(GOLD_BASES)}")

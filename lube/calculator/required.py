@@ -1,7 +1,7 @@
 """What keeps contact rare: the film, viscosity, speed, temperature or roughness that it takes.
 
-Each answer lies where the breakthrough probability crosses the share asked for, and its limits lie
-where the limits of the probability cross it. So the 95 % interval is one of the mean over pairs of
+Each answer lies where the breakthrough probability equals the given share of time, and its limits
+lie where the limits of the probability do. So the 95 % interval is that of the mean over pairs of
 rollers.
 """
 
@@ -36,15 +36,15 @@ from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 
 LAMBDA_RATIOS = np.geomspace(0.1, 13.0, 61)
-"""Lambda ratios of the first look; at the last, contact has a probability of 1e-37."""
+"""Lambda ratios of the first look; at the highest, contact has a probability of 1e-37."""
 NEAR = np.exp(np.linspace(-0.2, 0.2, 9))
 """Lambda ratios of the second look, over the one at which the first look finds the share."""
 AROUND = np.exp(np.linspace(-1.0, 0.6, 17))
 """The same if the film has a shape or the oil changes the lines, which the first look ignores."""
 FALLING = 0.9
-"""Share, over the largest probability, below which it lies well on the falling branch."""
+"""Share, relative to the largest probability, below which it is well on the falling branch."""
 OFTEN = 10.0
-"""Independent windows with contact, in all realisations, from which contact is counted."""
+"""Least number of independent windows with contact, in all realisations, to count contact."""
 FEW_PAIRS = 2
 """Pairs of lines of the first look."""
 _LEAST = 1e-40
@@ -120,8 +120,8 @@ def required_viscosity(
     Parameters
     ----------
     rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
-        As in `lube.contact_probability`, one of each. The pressure-viscosity coefficient and the
-        density are the oil's at that temperature.
+        As in `lube.contact_probability`, one value of each. The pressure-viscosity coefficient and
+        the density are those of the oil at that temperature.
     share, realisations, seed
         As in `required_film`.
 
@@ -172,7 +172,7 @@ def required_speed(
     Parameters
     ----------
     rollers, oil, force, temperature, film_formula, film_shape, roughness_deformation
-        As in `lube.contact_probability`, one of each.
+        As in `lube.contact_probability`, one value of each.
     share, realisations, seed
         As in `required_film`.
 
@@ -217,7 +217,7 @@ def required_temperature(
     Parameters
     ----------
     rollers, oil, force, speed, film_formula, film_shape, roughness_deformation
-        As in `lube.contact_probability`, one of each.
+        As in `lube.contact_probability`, one value of each.
     share, realisations, seed
         As in `required_film`.
 
@@ -267,7 +267,7 @@ def required_roughness(
     Parameters
     ----------
     rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
-        As in `lube.contact_probability`, one of each.
+        As in `lube.contact_probability`, one value of each.
     share, realisations, seed
         As in `required_film`.
 
@@ -303,9 +303,9 @@ def required_roughness(
 
 
 class _Search:
-    """Search for the films at which contact has a share.
+    """Search for the films at which the probability of contact equals a share of time.
 
-    Contact is counted where the realisations see enough of it, else sampled.
+    Contact is counted where the realisations show enough of it, else sampled.
     """
 
     def __init__(self, rollers, share, realisations, seed, film_shape, roughness_deformation):
@@ -316,7 +316,7 @@ class _Search:
         self._sigma = rollers.pair.composite_rms_roughness
 
     def along(self, table, levels, tried):
-        """Find the films with the share, and the levels of a condition that give them."""
+        """Find the films that give the share, and the levels of a condition that give them."""
         whole = table(levels)
         for name, size in whole["film_thickness"].sizes.items():
             if size != levels.size:
@@ -334,7 +334,7 @@ class _Search:
         return films, _reached(films, whole, levels, tried)
 
     def films(self, half_width, table_at=None, ends=(0.0, np.inf), own=None):
-        """Find the films at which the probability, its lower and its upper limit have the share.
+        """Find the films at which the probability, its lower and its upper limit equal the share.
 
         Parameters
         ----------
@@ -357,7 +357,7 @@ class _Search:
             raise RangeError(
                 f"share: got {self._share:g}, need at least {1.0 / windows:.2g}: "
                 f"{self._realisations} realisations show no rarer contact, and importance sampling "
-                "is for Gaussian heights as they are drawn"
+                "needs Gaussian lines that no formula flattens"
             )
         ratios, is_plain = LAMBDA_RATIOS, self.gap.is_plain
         if spec.is_gaussian or not is_plain:
@@ -369,7 +369,7 @@ class _Search:
                 ratios = np.unique(np.clip(found * AROUND, *ends))
             elif self._share < FALLING * first[0].max():
                 ratios = found * NEAR
-            else:  # the maximum is flat: to find it takes all thinner films
+            else:  # the maximum is flat: the search for it needs all thinner films
                 ratios = ratios[ratios < 2.0 * found * NEAR[-1]]
         table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
         is_seen = self._share * windows >= OFTEN or not can_sample
@@ -416,13 +416,13 @@ class _Search:
 
 
 def _crossing(ratios, probabilities, share):
-    """Greatest lambda ratio at which a probability has a share: 0 if it is always less.
+    """Greatest lambda ratio at which a probability equals a share: 0 if it is always less.
 
     Where contact is frequent, touching points merge to long segments whose boundary layer holds:
     the probability rises with the film up to a maximum, and falls beyond it.
     """
     unknown = np.full(ratios.size, np.nan)
-    # Over the square, in which the logarithm of a rare probability is nearly linear.
+    # The logarithm of a rare probability is nearly linear in the square of the ratio.
     curve = peaked_curve(ratios**2, probabilities, unknown, _LEAST)
     return np.sqrt(max(curve.film_at(share), 0.0))
 
@@ -437,7 +437,8 @@ def _reached(films, table, levels, tried):
     if sought[0] > thickness.max():
         film, most = 1e6 * np.exp([sought[0], thickness.max()])
         raise RangeError(
-            f"share: it needs a film of {film:.3g} um, and no {tried} gives more than {most:.3g} um"
+            f"share: this share needs a film of {film:.3g} um, and no {tried} gives more than "
+            f"{most:.3g} um"
         )
     return np.interp(sought, thickness[::rising], levels[::rising], **ends)
 

@@ -1,4 +1,4 @@
-"""``lube check``: a whole study with its list of records, without running it."""
+"""``lube check``: check a study and its list of records without running it."""
 
 import math
 import os
@@ -21,19 +21,19 @@ from lube.types import File
 def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], list[str]]:
     """Check a study as the workflow does, without running it.
 
-    The summary has what an engineer looks at first, and remarks on what is unlikely to be meant.
+    The summary has what an engineer looks at first, and remarks on values that may be mistakes.
 
     Parameters
     ----------
     path : str or Path
-        Its YAML file.
+        YAML file of the study.
     entries : sequence of str, optional
-        Changes ``key=value``, as of Snakemake's ``--config``.
+        Changes ``key=value``, as in Snakemake's ``--config``.
 
     Returns
     -------
     summary : list of str
-        What the study will compute, a line each.
+        Lines on what the study will compute.
     refused : list of str
         A line for each measured record that cannot be used.
 
@@ -100,7 +100,7 @@ def _many(number, name):
 def _records(study):
     """Say where the records come from; and one line for each that cannot be used."""
     if not study.conducts:
-        return "none: rollers that do not conduct", []
+        return "none: the rollers do not conduct", []
     manifest = study.experiment.manifest
     if manifest is None:
         return f"simulated, {count(study.rig.pairs, 'pair')} of rollers", []
@@ -116,7 +116,7 @@ def _records(study):
     total = len(content.refused) + len(content.entries)
     usable = total - len(refused)
     if not usable:
-        refused.append(f"{manifest}: no record can be used, need one at least")
+        refused.append(f"{manifest}: no record can be used, need at least one usable record")
     return f"{usable} of the {total} in {manifest} can be used", refused
 
 

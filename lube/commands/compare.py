@@ -95,7 +95,7 @@ def _datasets(first, second, where):
     shared = sorted(set(one.variables) & set(other.variables) - set(labelled))
     differing = {name: line for name in shared if (line := _variables(one, other, name))}
     for name in differing:
-        # The line of a value has its limits.
+        # The line on a value already shows its limits.
         value = name.removesuffix("_lower").removesuffix("_upper")
         if value == name or not differing.keys() & {value, f"{value}_mean"}:
             lines.append(f"{name}: {differing[name]}")

@@ -1,4 +1,4 @@
-"""``lube new``: write a commented study of given rollers and oils, based on the paper's."""
+"""``lube new``: write a commented study for given rollers and oils, based on the paper's."""
 
 import json
 import os
@@ -32,7 +32,7 @@ _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?:/\d+)?"
 _NUMBERS = re.compile(rf"((?:{_NUMBER}[\s,]+)*{_NUMBER})\s*(1/\w+|[^\d\s/,.].*)")
 
 _RECORDS = """\
-# Measured records, one a line; files are named from this folder. Further columns, such as channel,
+# Measured records, one per line; paths start from this folder. Further columns, such as channel,
 # gain and pair, are explained in docs/records.md.
 file, force [N], speed [rpm], temperature [degC]
 # run-07.csv, 800, 100, 40
@@ -69,7 +69,7 @@ def new_study(
     Raises
     ------
     LubeError
-        If the study's file exists, or the study cannot be carried out; nothing is left then.
+        If the study's file exists, or the study cannot be carried out; then no new file is left.
     """
     path = Path(path)
     if path.suffix not in (".yaml", ".yml"):
@@ -98,7 +98,7 @@ def _numbers(option, text):
         raise LubeError(f"--{option}: got {shown(text)}, need numbers with a unit, as in `1 2 mm`")
     values, units = match[1].replace(",", " ").split(), match[2]
     if option in OF_ROLLERS and len(values) > 2:
-        raise LubeError(f"--{option}: got {shown(text)}, need one number, or one of each roller")
+        raise LubeError(f"--{option}: got {shown(text)}, need one number, or one for each roller")
     for value in values:
         try:
             parse_quantity(f"{value} {units}", (OF_ROLLERS | OF_GRID)[option])

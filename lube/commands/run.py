@@ -9,7 +9,7 @@ from typing import NoReturn
 from lube.errors import LubeError
 from lube.storage.git import ROOT
 
-_SIGN = "workflow/rules/study.smk"  # only beside the Snakefile of lube
+_SIGN = "workflow/rules/study.smk"  # only the repository of lube has this file
 
 
 def snakemake_command(arguments: Sequence[str]) -> list[str]:
@@ -18,7 +18,8 @@ def snakemake_command(arguments: Sequence[str]) -> list[str]:
     Parameters
     ----------
     arguments : sequence of str
-        A study's YAML file, or none for the paper's, then targets and options of Snakemake.
+        YAML file of a study (without it, the paper's is run), then targets and options of
+        Snakemake.
 
     Returns
     -------
@@ -37,17 +38,17 @@ def repository(here: Path | None = None) -> Path:
     Parameters
     ----------
     here : Path, optional
-        The current folder, which comes first.
+        Folder to search first, then those above it; by default the current one.
 
     Returns
     -------
     Path
-        The current folder, or else the clone that the package was installed from.
+        This folder or one above it, or else the clone that the package was installed from.
 
     Raises
     ------
     LubeError
-        If neither has the Snakefile.
+        If none of them has the Snakefile.
     """
     here = here or Path.cwd()
     for folder in (here, *here.parents, ROOT):
@@ -59,12 +60,12 @@ def repository(here: Path | None = None) -> Path:
 
 
 def run(arguments: Sequence[str]) -> NoReturn:
-    """Become Snakemake, which then gets the signals and sets the exit status.
+    """Replace this process by Snakemake, which then gets the signals and sets the exit status.
 
     Parameters
     ----------
     arguments : sequence of str
-        As of `snakemake_command`.
+        As for `snakemake_command`.
 
     Raises
     ------

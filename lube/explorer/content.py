@@ -54,15 +54,15 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         - ``levels``: for each of `CHOICES` its values, and their names for a reader;
         - ``variables``: for each of `SHOWN`, by `page_name`, its dimensions, unit, meaning, and
           values in the order of the dimensions, the last one fastest;
-        - ``marks``: points outside the model, those where merged segments hold, and those where the
-          response to roughness is not valid;
-        - ``sampled``: whether there is contact at any rarity, by importance sampling;
+        - ``marks``: points outside the model, those with less contact than at a thicker film, and
+          those where the linear response to roughness is not valid;
+        - ``sampled``: whether the study has probabilities by importance sampling;
         - ``regimes``: names of the regimes of lubrication;
         - ``validity``: limits of the Moes numbers within which each film formula was validated;
         - ``master``: the master map, or None;
         - ``records``: conditions and contact shares of the rig's records;
         - ``conducts``: whether contact has a resistance;
-        - ``traces``: the traces, each with its place in the levels.
+        - ``traces``: the traces, each with the indices of its levels.
     """
     contact, trace = datasets["contact"], datasets["trace"]
     kept = trace.sizes["operating_point"]
@@ -170,7 +170,7 @@ def _records(comparison):
 
 
 def _trace(point, levels):
-    """Describe one trace: its operating point, its whole revolution, a close-up of its peak."""
+    """Describe one trace: its operating point, its revolution, and a close-up of its peak."""
     time, length = point["time"].values, point["contact_length"].values
     crossing = 2.0 * point["contact_half_width"].item() / point["entrainment_speed"].item()
     reach = round(CLOSE_UP * crossing / (time[1] - time[0]))
@@ -186,7 +186,7 @@ def _trace(point, levels):
 
 
 def _thinned(point, part):
-    """Thin out a part of a trace to extreme values, each of the same number of steps."""
+    """Thin out a part of a trace: keep the extreme value of each group of neighbouring steps."""
     part = point.isel(time=part)
     time = part["time"].values
     steps = -(-time.size // TRACE_PIECES)

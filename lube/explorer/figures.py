@@ -34,7 +34,7 @@ _MOST_DECADES = 8
 """Largest number of decades on a logarithmic axis that all get a label."""
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _RAREST = 1e-20
-"""Lowest probability of the axes: at very thick films it is lower than any number."""
+"""Lowest probability on the axes: at very thick films probabilities fall below any number."""
 _FONT = "system-ui, sans-serif"
 THEME = Theme(
     json={
@@ -74,8 +74,8 @@ COLUMNS = {
     "close": ("time", "length", "resistance"),
 }
 """Columns of each source of the figures. ``limit`` is an upper limit where no contact was seen;
-``outside``, ``falling`` and ``deformed`` are means where the model cannot hold, where merged
-segments hold, or where the response to roughness is not valid."""
+``outside``, ``falling`` and ``deformed`` are means where the model cannot hold, where contact is
+less than at a thicker film, or where the linear response to roughness is not valid."""
 
 
 def draw(
@@ -129,7 +129,7 @@ def _ratio_range(datasets):
 
 
 def _share_range(datasets):
-    """Range of the study's probabilities; where no contact was seen, its upper limit counts."""
+    """Range of the study's probabilities, or of their upper limits where no contact was seen."""
     sampled = datasets["tail"]["breakthrough_probability"].values.ravel()
     kinds = [kind for kind in ("contact", "master") if kind in datasets]
     counted = np.concatenate([_estimate_or_limit(datasets[kind]) for kind in kinds])
@@ -161,7 +161,7 @@ def _label(axis, ticks, text):
 
 
 def _round_numbers(low, high):
-    """Round numbers for a logarithmic axis: with more decades, fewer of each."""
+    """Round numbers for a logarithmic axis: the more decades, the fewer numbers in each."""
     decades = math.log10(high / low)
     digits = next(digits for most, digits in _DIGITS.items() if decades <= most)
     step = math.ceil(decades / _MOST_DECADES)
@@ -182,7 +182,7 @@ def _percent(share):
 
 
 def _percent_axis(plot):
-    """Label the shares on a plot's upright axis with percentages."""
+    """Label the probabilities on a plot's vertical axis with percentages."""
     _label(plot.yaxis, [share for share in plot.yaxis[0].ticker.ticks if share <= 1.0], _percent)
 
 
@@ -195,7 +195,7 @@ def _points(plot, source, x, y, size=8, **look):
 
 
 def _all_points(plot, sources, x, y, around="grid"):
-    """Draw the operating points around the chosen one, which can be named and chosen, and it."""
+    """Draw the chosen operating point, and others, which show their names and can be chosen."""
     small = _points(plot, sources[around], x, y, size=6 if around == "grid" else 8)
     _points(
         plot, sources["chosen"], x, y, size=15, fill_color=COLOURS["vermilion"], line_color="black"
@@ -327,7 +327,7 @@ def _master_map(master, span, sources):
     plot.quad(
         source=fields, left="left", right="right", bottom="bottom", top="top",
         fill_color={"field": "mean", "transform": mapper},
-        line_color={"field": "mean", "transform": mapper},  # or gaps would show
+        line_color={"field": "mean", "transform": mapper},  # without outlines, gaps would show
     )  # fmt: skip
     bar = ColorBar(color_mapper=mapper, width=12, padding=4)
     _label(bar, list(_SHARES), _percent)

@@ -1,4 +1,4 @@
-"""The explorer's page: controls and figures by Bokeh, in a template of our own.
+"""The explorer's page: controls and figures by Bokeh, in this package's template.
 
 The page holds everything, Bokeh's JavaScript included, so it needs neither server nor network.
 What happens when a control moves is in ``templates/explorer.mjs``.
@@ -42,7 +42,7 @@ def explorer_page(datasets: dict[str, xr.Dataset], band: str) -> str:
     Parameters
     ----------
     datasets : dict of str to xarray.Dataset
-        As of `lube.explorer.content.page_content`, as loaded.
+        As for `lube.explorer.content.page_content`, as loaded.
     band : str
         `Study.band` of the study.
 
@@ -111,7 +111,7 @@ def _filled(content, datasets, controls, sources, figures):
     places |= {f"figure-{name}": plot for name, plot in figures.items()}
     document = Document(theme=THEME)
     document.js_on_event("document_ready", react)
-    with document.models.freeze():  # or every root would have all models counted again
+    with document.models.freeze():  # otherwise Bokeh counts all models again for every root
         for place, model in places.items():
             model.name = place
             document.add_root(model)
@@ -139,5 +139,5 @@ def _filled(content, datasets, controls, sources, figures):
 
 
 def _script(value):
-    """JSON that cannot end the script element it stands in."""
+    """JSON that cannot end the script element around it."""
     return json.dumps(value, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")

@@ -37,8 +37,8 @@ class LineGrid:
 
 
 UNKNOWN_FILM = 2**40
-"""Height steps of a film that is not known. No sum of lines is so high, and larger films could
-overflow int64."""
+"""Height steps that stand for an unknown film: more than any sum of two lines, and few enough not
+to overflow int64."""
 
 
 def speed_ratios(slide_to_roll_ratio: float) -> tuple[float, float]:
@@ -140,7 +140,7 @@ def layer_factor_of(grid: LineGrid, reduced_modulus: float, boundary_layer) -> f
     reduced_modulus : float
         E*, Pa.
     boundary_layer : lube.study.rollers.BoundaryLayer
-        The boundary layer, or what has its attributes.
+        The boundary layer, or an object with the same attributes.
 
     Returns
     -------
@@ -172,7 +172,7 @@ def whole_numbers(
     -------
     films, half_windows : numpy.ndarray
         int64: :math:`h_0 / q` rounded, with the height step :math:`q`, and
-        :math:`\lfloor a / \Delta x \rfloor`. A film that is not known (NaN) becomes the highest.
+        :math:`\lfloor a / \Delta x \rfloor`. An unknown film (NaN) becomes `UNKNOWN_FILM`.
 
     Examples
     --------

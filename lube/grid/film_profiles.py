@@ -1,4 +1,4 @@
-"""Computed films across the contact, on positions that all operating points share."""
+"""Computed films across the contact, at the same positions for all operating points."""
 
 import numpy as np
 import xarray as xr
@@ -6,27 +6,29 @@ import xarray as xr
 from lube.types import Array
 
 _STEP, _EVEN, _GROWTH = 0.01, 1.5, 1.03
-"""Distance of positions in the contact, end of these even positions, and their growth beyond."""
+"""Spacing of the positions near the contact, end of this even spacing (both over the half-width),
+and ratio of neighbouring positions beyond it."""
 _REACH = 12.0
 """Height of the undeformed gap at the last position, over the composite roughness: no roughness
 line is so high."""
 
 
 def film_positions(contact: xr.Dataset, step: float = _STEP, growth: float = _GROWTH) -> Array:
-    """Positions at which the computed films of some contacts are kept.
+    """Choose the positions at which computed films are stored.
 
     Parameters
     ----------
     contact : xarray.Dataset
         With ``contact_half_width``, ``reduced_radius`` and ``composite_rms_roughness``, m.
     step, growth : float, optional
-        Distance of positions in the contact, and their growth beyond.
+        Even spacing of positions near the contact, and ratio of neighbouring positions beyond.
 
     Returns
     -------
     numpy.ndarray
-        Positions over the half-width, rising, symmetric about 0: even in the contact, farther and
-        farther apart outside, up to a gap that no roughness fills, at the narrowest contact.
+        Positions over the half-width, rising and symmetric about 0: evenly spaced near the contact,
+        farther and farther apart outside. At the last one, the gap of the narrowest contact is
+        higher than any roughness.
 
     Examples
     --------
@@ -55,7 +57,7 @@ def six_digits(values: Array) -> Array:
     Returns
     -------
     numpy.ndarray
-        Their nearest numbers of six decimal digits.
+        The values, rounded to six significant digits.
 
     Examples
     --------
@@ -71,16 +73,17 @@ def over_positions(solved: xr.DataArray, sample, contact: xr.Dataset) -> xr.Data
     Parameters
     ----------
     solved : xarray.DataArray
-        A `lube.ehl.line_contact.FilmProfile` each, or None.
+        Elements are a `lube.ehl.line_contact.FilmProfile`, or None where there is no film.
     sample : callable
-        Values of a `FilmProfile` at positions.
+        Function of a `FilmProfile` and positions that returns the quantity there.
     contact : xarray.Dataset
         As in `film_positions`.
 
     Returns
     -------
     xarray.DataArray
-        Values of six digits, over film_position too; NaN where there is no film.
+        Values to six digits, over the dimensions of `solved` and film_position; NaN where there is
+        no film.
     """
     positions = film_positions(contact)
 

@@ -17,13 +17,13 @@ log = logging.getLogger(__name__)
 SHORTEST = 0.05
 """Shortest wave that is solved for, over the half-width of the contact."""
 UNCHANGED = 0.003
-"""Change of a wave by the oil below which it is neglected, and that of all shorter waves too."""
+"""Relative change of a wave by the oil below which it and all shorter waves count as unchanged."""
 ROLLING_RATIO, SLIDING_RATIO = 1.2, 1.15
-"""Largest ratio of neighbouring wavelengths. With slip the response changes faster with the
-wavelength: the part that the oil carries through the contact runs ahead of the wave, or falls
-behind."""
+"""Largest ratio of neighbouring wavelengths, in pure rolling and with slip. With slip the response
+changes faster with the wavelength: the part of a wave that the oil carries through the contact runs
+ahead of the rough surface, or falls behind it."""
 POSITIONS = 0.02, 1.06
-"""Distance of positions in the contact, and their growth beyond."""
+"""Spacing of positions near the contact, and ratio of neighbouring positions beyond."""
 VARIABLES = "response_real", "response_imaginary", "interpolation_error", "rms_deformation"
 
 
@@ -35,7 +35,7 @@ def wave_responses(
     Parameters
     ----------
     solved : xarray.DataArray
-        A `lube.ehl.line_contact.FilmProfile` each, or None.
+        Elements are a `lube.ehl.line_contact.FilmProfile`, or None where there is no film.
     contact : xarray.Dataset
         From `lube.grid.films.hertz_contact`.
     slide_to_roll_ratio : xarray.DataArray
@@ -48,9 +48,9 @@ def wave_responses(
     Returns
     -------
     xarray.Dataset
-        `VARIABLES` over the dimensions of the films and of the slide-to-roll ratio; the error over
-        roller too; the real and the imaginary part over roller, wavelength and response_position.
-        NaN where the film is not known.
+        `VARIABLES` over the dimensions of the films and of the slide-to-roll ratio. The error is
+        also over roller; the real and the imaginary part are also over roller, wavelength and
+        response_position. All are NaN where the film is not known.
 
     Notes
     -----
@@ -59,7 +59,7 @@ def wave_responses(
     are solved for from the longest to the shortest, until the oil changes one by less than
     `UNCHANGED` anywhere. The response to shorter waves is 1. The error of interpolation is a root
     mean square over the contact. It is found at the two wavelengths midway between the stored one
-    at which the response is most curved and its neighbours, and the larger is taken.
+    at which the response is most curved and its neighbours; the larger of the two is stored.
     """
     widths, longest = contact["contact_half_width"], spec.longest_wavelength
     shortest = max(SHORTEST * widths.min().item(), 2.0 * np.pi / spec.q_max)
@@ -89,12 +89,12 @@ def wave_responses(
 
 
 def _squared_heights(spec, wavelengths):
-    """Mean square height of both lines, as shares that belong to falling wavelengths."""
+    """Distribute the mean square height of each line over the wavelengths, which fall."""
     shares = []
     for roller in (0, 1):
         first, amplitudes = wave_amplitudes(spec, roller)
         length = spec.points[roller] * spec.spacing / (first + np.arange(amplitudes.size))
-        # Between two wavelengths what they say is interpolated over the logarithm.
+        # Between two wavelengths the response is linear in the logarithm of the wavelength.
         weights = [
             np.interp(-np.log(length), -np.log(wavelengths), each)
             for each in np.eye(wavelengths.size)

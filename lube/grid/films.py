@@ -84,7 +84,7 @@ def film_at(
             solved = groups.thinned(factor).profiles if is_heated else groups.profiles
             responses = contact, xr.DataArray(slide_to_roll_ratio), answered_lines, threads
             table = table.merge(wave_responses(solved, *responses), compat="override", join="exact")
-            # The response depends on slip, so each slip has its film.
+            # The response depends on slip, so the film is stored for each slip.
             each = table["interpolation_error"].isel(roller=0, drop=True)
             table.update(table[_THINNED].broadcast_like(each))
     return table
@@ -141,7 +141,7 @@ def _heating_factor(model, lubricant, contact, groups, slip):
 
 @dataclass(frozen=True)
 class FilmGroups:
-    """What the film over R* depends on, at some operating points.
+    """Dimensionless groups that determine the film over R*, at some operating points.
 
     Attributes
     ----------
@@ -152,7 +152,8 @@ class FilmGroups:
     film_modulus : float or xarray.DataArray
         E' = 2 E*, Pa.
     meniscus : float or None
-        Distance over R* at which the oil begins; None if the contact is fully flooded.
+        Distance from the line of centres to the meniscus of the oil, over R*; None if the contact
+        is fully flooded.
     """
 
     load: xr.DataArray
@@ -166,7 +167,7 @@ class FilmGroups:
     def at(
         cls, lubricant: xr.Dataset, rollers, force, contact: xr.Dataset, inlet_meniscus=None
     ) -> "FilmGroups":
-        """Form the groups of an oil in the contact of `hertz_contact`; others as in `film_at`."""
+        """Form the groups for a contact from `hertz_contact`; other arguments as in `film_at`."""
         film_modulus = 2.0 * rollers.reduced_modulus
         scale = film_modulus, rollers.reduced_radius
         viscosity = lubricant["dynamic_viscosity"]
@@ -203,7 +204,7 @@ class FilmGroups:
 
     @cached_property
     def profiles(self) -> xr.DataArray:
-        """The profile of each film, which is solved for; None where it did not converge."""
+        """Profile of each film, solved numerically; None where it did not converge."""
         groups = self.load, self.speed, self.material, self.viscosity, self.film_modulus
         return xr.apply_ufunc(partial(profiles_of, meniscus=self.meniscus), *groups, join="exact")
 
@@ -230,9 +231,9 @@ class FilmGroups:
     def thinned(self, factor: xr.DataArray) -> "FilmGroups":
         """Find the groups of films that heating thins by a factor.
 
-        The film is that of an oil which is thinner at the inlet: so much that the central film is
-        the thinned one. The film is nearly a power of the viscosity at the inlet. The power is
-        found from the film at two viscosities.
+        Heating acts as a lower viscosity at the inlet, at which the central film is thinner by the
+        factor. The film is nearly a power of the viscosity at the inlet; the power follows from the
+        film at two viscosities.
         """
         thinner = factor
         for _ in range(2):
@@ -242,7 +243,7 @@ class FilmGroups:
 
 
 def hertz_contact(rollers, force: xr.DataArray, speed: xr.DataArray) -> xr.Dataset:
-    """Contact without roughness and oil; arguments as in `film_at`."""
+    """Hertz contact of smooth, dry rollers; arguments as in `film_at`."""
     pair = (rollers.length, rollers.reduced_radius, rollers.reduced_modulus)
     return xr.Dataset(
         {

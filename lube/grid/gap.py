@@ -11,10 +11,11 @@ class Gap:
     ----------
     film_shape : str
         ``flat``: the film is flat and ends at the edges of the contact; ``computed``: it has the
-        shape of the computed one.
+        shape that follows from Reynolds' equation.
     roughness_deformation : str
-        ``none``: the lines reach the gap as drawn; ``venner-1997``: the oil flattens their waves by
-        `lube.physics.flattening`; ``computed``: it answers them as `lube.ehl.response` says.
+        ``none``: the lines enter the gap as drawn; ``venner-1997``: the oil flattens their waves by
+        `lube.physics.flattening`; ``computed``: the oil answers the lines, which means that it
+        deforms each wave by the linear response of `lube.ehl.response`.
     """
 
     film_shape: str = "flat"
@@ -37,7 +38,7 @@ class Gap:
 
     @property
     def is_uniform(self) -> bool:
-        """Whether film and lines are the same all over the contact window; else it is uneven."""
+        """Whether film and lines are alike at all positions in the window; else it is uneven."""
         return not (self.has_shape or self.is_answered)
 
     @property

@@ -4,8 +4,9 @@ import numpy as np
 import xarray as xr
 
 LARGEST_DEFORMATION = 0.1
-"""Rms of what the oil adds to the roughness, over the film, up to which its answer is called small.
-Three times as much is 0.3; from there on single waves leave the linear response (Figure 35)."""
+"""Largest rms change of the roughness by the oil, over the film, up to which the linear response
+counts as valid. Three times this rms is 0.3 of the film, from which on single waves deviate from
+the linear response (Figure 35)."""
 
 
 def overloaded(contact: xr.Dataset) -> xr.DataArray:
@@ -27,8 +28,8 @@ def overloaded(contact: xr.Dataset) -> xr.DataArray:
 def merged(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
     """Find the points where breakthrough is rarer than at a thicker film.
 
-    In the model merged segments hold, as h_l grows with D^3/F (Eq. 6): although more of the lines
-    is in contact, fewer segments break.
+    In the model the boundary layer of merged segments holds, as h_l grows with D^3/F (Eq. 6):
+    although more of the lines is in contact, the layer breaks on fewer segments.
 
     Parameters
     ----------
@@ -38,9 +39,9 @@ def merged(contact: xr.Dataset, film: xr.Dataset) -> xr.DataArray:
     Returns
     -------
     xarray.DataArray
-        Whether at a thicker film, at the same force and so the same contact width, the same lines
-        break through more often on average, by three standard errors and more, and no more
-        geometric contact. False where there is one realisation.
+        True where some thicker film, at the same force and so the same contact width, has more
+        breakthrough on the same lines, by three standard errors of the mean or more, but no more
+        geometric contact. False if there is only one realisation.
     """
     breakthrough = contact["breakthrough_probability"]
     geometric = contact["geometric_contact_probability_mean"]
@@ -70,7 +71,7 @@ def _falls(film, breakthrough, geometric):
 
 
 def deformed(film: xr.Dataset) -> xr.DataArray:
-    """Find the points where the oil changes the roughness by more than a small part of the film.
+    """Find the points where the oil changes the roughness by too large a part of the film.
 
     The linear response to roughness is not valid there.
 
@@ -83,7 +84,7 @@ def deformed(film: xr.Dataset) -> xr.DataArray:
     -------
     xarray.DataArray
         Whether `rms_deformation` is above `LARGEST_DEFORMATION` times the film. False where the
-        film is not known, or does not answer the roughness.
+        film is not known, or the oil does not answer the lines.
     """
     thickness = film["film_thickness"]
     return film.get("rms_deformation", 0.0) > LARGEST_DEFORMATION * thickness

@@ -42,14 +42,14 @@ def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tupl
 def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Dataset:
     """Select one slide-to-roll ratio, if the film depends on it.
 
-    The film depends on it with inlet shear heating, or if it answers the roughness.
+    The film depends on it with inlet shear heating, or if the oil answers the roughness.
 
     Parameters
     ----------
     film : xarray.Dataset
         A ``film`` dataset.
     slide_to_roll_ratio : float, optional
-        One of its slide-to-roll ratios; by default pure rolling, or the first if it has none.
+        One of its slide-to-roll ratios; by default pure rolling if it is one, else the first.
 
     Returns
     -------

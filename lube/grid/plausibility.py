@@ -1,4 +1,4 @@
-"""Numbers to look at before a long computation, and remarks on values that are unlikely meant."""
+"""Numbers to look at before a long computation, and remarks on values that may be mistakes."""
 
 import math
 
@@ -10,7 +10,7 @@ from lube.units import with_unit
 
 
 def expected_load_share(film: xr.Dataset, rollers) -> xr.DataArray:
-    r"""Share of the load that the asperities of Gaussian lines carry, in expectation.
+    r"""Compute the expected share of the load that the asperities of Gaussian lines carry.
 
     It is the expectation of ``contact_load_share`` in ``contact.nc``. With the mean overlap
     :math:`\bar z` of the lines it is
@@ -59,15 +59,16 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
         "film": f"{_range(film['film_thickness'], 'm')}, by {film['film_formula'].item()}; "
         f"{int(invalid.sum())} of {invalid.size} outside its range of validity",
         "lambda ratio": _range(film["lambda_ratio"]),
-        "contact width": f"{_range(width, 'm')}, {_range(width / shortest)} shortest waves",
+        "contact width": f"{_range(width, 'm')}, "
+        f"{_range(width / shortest)} times the shortest wave",
         "grid": f"{shortest / lines.spacing:.3g} points in the shortest wave, "
         f"{_range(width / lines.spacing)} in the contact width",
-        "load share": f"{share:.2g} % at most, of the asperities of the line",
+        "load share": f"at most {share:.2g} % is carried by asperities of the line",
     }
 
 
 def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
-    """List values that are unlikely to be meant, and those beyond the limits of the model.
+    """List values that may be mistakes, and those beyond the limits of the model.
 
     Parameters
     ----------
@@ -82,7 +83,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     References
     ----------
     K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, chapter 6, for the pressure
-    at which steel begins to flow.
+    at which steel begins to yield.
     """
     film = film.isel(film_formula=0, missing_dims="ignore")
     moduli = rollers.first.young_modulus, rollers.second.young_modulus
@@ -97,17 +98,18 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
             min(moduli) < 1e9 or max(moduli) > 1.2e12
         ),
         f"Hertz pressure: up to {with_unit(pressure, 'Pa', 3)}; gears and bearings have less than "
-        "2.5 GPa, hardened steel flows from some 3 GPa on, and the model is elastic": (
+        "2.5 GPa, hardened steel yields from some 3 GPa on, and the model is elastic": (
             pressure > 2.5e9
         ),
-        f"contact width: {waves:.2g} shortest waves at the smallest force; with fewer than 20 "
-        "the probability means little": waves < 20.0,
+        f"contact width: {waves:.2g} times the shortest wave at the smallest force; with less than "
+        "20 times the probability means little": waves < 20.0,
         f"shortest wave: {with_unit(shortest, 'm', 3)}; waves of some 3 µm decide whether the "
-        "boundary layer breaks, so there will be too little contact": shortest > 5e-6,
-        f"grid: {points:.3g} points in the shortest wave; for the curvature of asperities it "
-        "takes 10": points < 10.0 * (1.0 - 1e-6),
+        "boundary layer breaks, so contact will be underestimated": shortest > 5e-6,
+        f"grid: {points:.3g} points in the shortest wave; the curvature of asperities needs "
+        "10": points < 10.0 * (1.0 - 1e-6),
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
-        f"more than a tenth of the load, {more}which the film formula leaves to the oil": loaded,
+        f"more than a tenth of the load, {more}although the film formula assumes that the oil "
+        "carries it": loaded,
     }
     return [text for text, unlikely in found.items() if unlikely]
 

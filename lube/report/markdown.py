@@ -22,7 +22,7 @@ def to_html(text: str) -> str:
     Returns
     -------
     str
-        HTML. Raw HTML in the text is escaped. A link to a file keeps its words only, because the
+        HTML. Raw HTML in the text is escaped. A link to a file becomes plain text, because the
         report is passed on without the files around it.
 
     Examples

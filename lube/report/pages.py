@@ -18,7 +18,7 @@ def render(template: str, **values: object) -> str:
         File name in the folder ``templates``. Values are escaped in those that end with
         ``.html``.
     **values
-        What the template names.
+        Values of the names in the template.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def percent(share: float) -> str:
 
 
 def count(number: float, noun: str) -> str:
-    """Print a number of things.
+    """Print a number and a noun.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the documentation says of the paper's study, reduced to what holds for another study.
+"""Statements of the documentation on the paper's study, reduced to those that hold for another.
 
 A section of the documentation under the heading ``In the paper's study`` is about its values.
 """

@@ -121,7 +121,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
 
 
 def _film(film, first, shortest):
-    """Ranges of film and contact width, also in shortest waves; points by regime and validity."""
+    """Ranges of film and contact width, points by regime, and points outside validity ranges."""
     thickness, ratio = (film[name].sel(first) for name in ("film_thickness", "lambda_ratio"))
     half = film["contact_half_width"]
     width = [2.0 * half.min().item(), 2.0 * half.max().item()]
@@ -216,7 +216,7 @@ def _spread(film, contact, first):
 
 
 def _held(film, contact, first):
-    """Load of the line's asperities, and the points at which the model does not hold."""
+    """Load on the line's asperities, and the numbers of points where the model does not hold."""
     film, contact = film.sel(first), contact.sel(first)
     share = contact["contact_load_share"].mean("realisation")
     return {
@@ -241,7 +241,7 @@ def _agreement(comparison, first):
 
 
 def _gauged(gauge):
-    """How many records give both limits of their film, and how many one only."""
+    """How many records give both limits of their film, and how many only one."""
     lower, upper = (gauge[f"gauged_film_thickness_{end}"].values for end in ("lower", "upper"))
     return {
         "records": upper.size,

@@ -1,4 +1,4 @@
-"""The registry of stages: the one place that says what each stage depends on.
+"""The registry of stages: it alone says what each stage depends on.
 
 A stage makes one kind of file. Its row names the stages whose files it reads and the values of
 the study that it uses. From the rows follow the inputs and parameters of the Snakemake rules,
@@ -25,7 +25,7 @@ class Stage:
         Stages whose files it reads, as far as the study has them.
     values : dict
         Values of the study that it uses: from the name of each value in the file's attribute
-        ``config`` to the dotted attribute of `lube.study.study.Study`, or a mapping of such.
+        ``config`` to the dotted attribute of `lube.study.study.Study`, or to a nested mapping.
     same_values : tuple of str
         Stages whose values it uses too, without reading their files.
     target : str
@@ -34,12 +34,12 @@ class Stage:
     only_with : tuple of str
         Attributes of the study without which there is no such file.
     written : str
-        Attribute of `lube.pipeline.study_files.StudyFiles` that lists the files which people wrote
-        and the stage reads; none by default.
+        Attribute of `lube.pipeline.study_files.StudyFiles` that lists those files, written by
+        people, that the stage reads; none by default.
     parameters : tuple of str
         Further attributes of the study that the file depends on; its ``config`` leaves them out.
     priority : int
-        Jobs of a higher one are started first.
+        Jobs of a higher priority are started first.
     parallel : bool
         Whether a job uses all cores.
     in_batches : bool
@@ -66,7 +66,7 @@ class Stage:
 
 
 def _named(attributes):
-    """Values by the last names of their dotted attributes."""
+    """Values by the last parts of their dotted attributes."""
     return {attribute.rpartition(".")[2]: attribute for attribute in attributes.split()}
 
 
@@ -134,7 +134,7 @@ _ROWS = (
     ),
     Stage(
         "tail",
-        "probability and rate of contact at any rarity",
+        "probability and rate of contact, however rare",
         inputs=("film",),
         values=_LINES | _CONTACT,
         priority=2,
@@ -144,7 +144,7 @@ _ROWS = (
         "probabilities by skewness and kurtosis",
         inputs=("film",),
         values=_LINES | _LAYER | _named("roughness_deformation"),
-        same_values=("roughness",),  # its lines have other height distributions here
+        same_values=("roughness",),  # the same lines, with other height distributions
         only_with=("line_spec.is_drawn",),
         priority=2,
     ),
@@ -210,7 +210,7 @@ _ROWS = (
     ),
     Stage(
         "areal_gauge",
-        "films from the records, by the surface",
+        "films gauged from the records, by contact of the surface",
         inputs=("film", "areal", "comparison", "gauge"),
         target="areal_contact",
         only_with=(*_SURFACE, "gap.is_plain", "conducts"),
@@ -231,7 +231,7 @@ _ROWS = (
     ),
     Stage(
         "film_response",
-        "what the oil does to waves of the roughness, a minute or two",
+        "response of the film to waves of the roughness, a minute or two",
         inputs=("lubricant", "film"),
         values={"lines": "line_spec"} | _named("operating_grid.slide_to_roll_ratio"),
         target="computed",
@@ -239,7 +239,7 @@ _ROWS = (
     ),
     Stage(
         "variants",
-        "contact if one choice of the model is made otherwise, some minutes",
+        "contact with one choice of the model changed, some minutes",
         inputs=("lubricant", "film", "film_profile", "film_response"),
         values=_LINES | _LAYER | _named("realisations roughness_deformation"),
         target="computed",
@@ -247,7 +247,7 @@ _ROWS = (
     ),
     Stage(
         "passage",
-        "rough lines pass through the contact by Reynolds' equation with time, some ten minutes",
+        "passage of rough lines by the transient Reynolds equation, some ten minutes",
         inputs=("lubricant", "film_profile"),
         values=_LINES | _LAYER | {"slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"},
         target="rough_passage",
@@ -255,7 +255,7 @@ _ROWS = (
     ),
     Stage(
         "heating_plane",
-        "heating at the inlet by every model of it",
+        "thinning of the film by inlet heating, by every model",
         inputs=("lubricant", "film"),
         target="computed",
     ),

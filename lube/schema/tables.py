@@ -1,4 +1,4 @@
-"""The variables of every file, read from the two tables beside this module.
+"""The variables of every file, read from the two tables in this folder.
 
 ``variables.csv`` has one row per variable, in the order of the file. Its columns:
 
@@ -15,7 +15,7 @@ content        ACDD's ``coverage_content_type``; ``record`` stands for ``physica
                the records are measured and ``modelResult`` if they are simulated
 cell_methods   CF attribute: what a mean is over
 flag_meanings  CF attribute: the meanings of the values 0, 1, ...
-long_name      what the variable is, in words that suit an axis
+long_name      name of the variable, as on an axis
 comment        CF attribute
 =============  ==================================================================================
 
@@ -45,7 +45,7 @@ class Variable:
     units : str or None
         Unit in UDUNITS notation, ``"1"`` for a pure number or a flag, None for text.
     long_name : str
-        What it is, in words that suit an axis.
+        Name of the variable, as on an axis.
     kind : str
         NumPy's letter of its type: ``f`` float, ``i`` integer, ``b`` boolean (stored as int8),
         ``U`` text.
@@ -175,9 +175,9 @@ def values_with_limits(
     values : iterable
         Value, lower limit and upper limit.
     dims : str or tuple of str, optional
-        Dimensions of each, to make variables of a dataset of them.
+        Dimensions of the three, to make them variables of a dataset.
     names : tuple of str, optional
-        Ends of the three names: `LIMITS`, or `MEAN_LIMITS` for a mean.
+        Suffixes of the three names: `LIMITS`, or `MEAN_LIMITS` for a mean.
 
     Returns
     -------

@@ -1,1 +1,1 @@
-"""A study as people write it in YAML, checked, in frozen values."""
+"""Studies and lubricant records as people write them in YAML, checked and frozen."""

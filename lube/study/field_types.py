@@ -23,7 +23,7 @@ class StrictModel(BaseModel, extra="forbid", frozen=True, use_attribute_docstrin
 
 
 def given_keys(model: BaseModel, keys: Iterable[str]) -> list[str]:
-    """Return those of some keys of a model that have a value."""
+    """Return the keys, among some of a model, that have a value."""
     return [key for key in keys if getattr(model, key) is not None]
 
 
@@ -84,18 +84,18 @@ def bounded(number: float, units: str | None, came: object = None, **limits: flo
 def read_by(
     parse: Callable[[Any], object], schema: dict[str, Any], hint: str = ""
 ) -> BeforeValidator:
-    """Say how to read a field that is not kept as it is written, such as 0.05 for ``50 mm``.
+    """Say how to read a field whose value is converted, such as ``50 mm`` to 0.05.
 
     Parameters
     ----------
     parse : callable
-        From what people write to what is kept; raises LubeError.
+        Function that converts the written value to the kept one; raises LubeError.
     schema : dict
         How it is written, for the JSON schema. ``format`` says in words what is needed; from
-        ``form`` and the keys beside it, ``docs/tools/written_forms.py`` makes the schema for
+        ``form`` and the other keys, ``docs/tools/written_forms.py`` makes the schema for
         editors.
     hint : str, optional
-        Put after the message of an error.
+        Text to add to an error message.
 
     Returns
     -------
@@ -222,7 +222,7 @@ def levels(units: str | None, **limits: float) -> BeforeValidator:
         numbers = tuple(_number(one, units, limits) for one in typed)
         for (lower, before), (upper, came) in pairwise(zip(numbers, typed, strict=True)):
             if upper <= lower:
-                raise LubeError(f"got {came} after {before}, need rising levels, each once")
+                raise LubeError(f"got {came} after {before}, need rising levels without repetition")
         return numbers
 
     kind = f"values and units in {units}" if units else "list of numbers"
@@ -249,7 +249,7 @@ def each_once(values: tuple) -> tuple:
     """
     for value, times in Counter(values).items():
         if times > 1:
-            raise ValueError(f"{value} is repeated, need each once")
+            raise ValueError(f"got {value} repeatedly, need it once")
     return values
 
 
@@ -309,7 +309,7 @@ def validate(
 def _as_written(line, content):
     """Quote in an error message the value as written in the file, not as converted to SI."""
     message = re.match(
-        r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)?(?: (?!beside)[^\s,]+)?)(?![^\s,])", line
+        r"([\w.]+): got (-?[\d.]+(?:e[+-]?\d+)?(?: (?!together)[^\s,]+)?)(?![^\s,])", line
     )
     value = content
     for part in message[1].split(".") if message else ():
@@ -323,7 +323,7 @@ _UNKNOWN = ("extra_forbidden", "invalid_key")
 _NEEDED = {
     "model_type": "need keys with their values",
     "tuple_type": "need a list such as [a, b]",
-    "too_short": "need at least {min_length}",
+    "too_short": "need {min_length} or more entries",
     "int_type": "need a whole number",
     "int_parsing_size": "need a smaller number",
     "string_type": "need text",

@@ -17,7 +17,7 @@ from lube.units import with_unit
 
 @functools.lru_cache(maxsize=2)
 def _digest(heights):
-    """SHA-256 sum of a measured line, which stands for it among plain data."""
+    """SHA-256 sum of a measured line, which replaces its heights in plain data."""
     return hashlib.sha256(heights).hexdigest()
 
 
@@ -35,7 +35,7 @@ class RoughLine(StrictModel):
     q_min, q_max : float
         Smallest and largest wave number, rad/m.
     q_roll_off : float
-        Wave number below which C1D ~ q, rad/m; by default `q_min`: nowhere.
+        Wave number below which C1D ~ q, rad/m; by default `q_min`, which means no roll-off.
     skewness, kurtosis : float
         Skewness and kurtosis of the heights; by default 0 and 3, those of Gaussian heights.
     spectrum : tuple of tuple of float, optional
@@ -157,7 +157,7 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     rollers : RollerPair
         The rollers.
     roughness : Roughness
-        Statistics and grid of the lines; the values of a roller come before these.
+        Statistics and grid of the lines; the values of a roller override these.
     largest_force : float
         Largest force of the study, N; its contact width may set the longest wavelength.
 
@@ -169,8 +169,8 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
     Raises
     ------
     StudyError
-        If the grid is too coarse for a shortest wavelength, a perimeter too short for a
-        longest, the height step unsuitable for the roughness, or the kurtosis too small for
+        If the grid is too coarse for the shortest wavelength of a line, a perimeter too short for
+        the longest, the height step unsuitable for the roughness, or the kurtosis too small for
         the skewness.
     """
     spacing = 2.0 * math.pi * rollers.first.radius / roughness.points
@@ -183,7 +183,7 @@ def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -
 
 
 def band_in_words(rollers: RollerPair, roughness: Roughness, spec: LineSpec) -> str:
-    """Say from which to which wave the roughness reaches.
+    """State the band of wavelengths of the roughness.
 
     Parameters
     ----------
@@ -195,8 +195,8 @@ def band_in_words(rollers: RollerPair, roughness: Roughness, spec: LineSpec) -> 
     Returns
     -------
     str
-        Such as ``waves 0.8 mm to 3.14 µm, heights stated for 0.8 mm to 2.5 µm``, or, where they
-        differ, of both rollers.
+        Such as ``waves 0.8 mm to 3.14 µm, heights stated for 0.8 mm to 2.5 µm``; for each roller,
+        if they differ.
     """
     bands = []
     for name, line in zip(ROLLERS, spec.lines, strict=True):
@@ -271,8 +271,8 @@ def check_width(spec: LineSpec, width: float, what: str) -> None:
     least, most = 2.0 * spec.spacing, spec.travel
     if not least <= width < most:
         raise StudyError(
-            f"{what} is {width:.3g} m wide, need at least two grid spacings of {least:.3g} m, and "
-            f"less than a perimeter, {most:.3g} m"
+            f"{what} is {width:.3g} m wide, need at least two grid spacings, {least:.3g} m, and "
+            f"less than a roller's perimeter, {most:.3g} m"
         )
 
 
@@ -333,8 +333,8 @@ def _check_roll_off(longest, shortest, roll_off, key):
 def _check_perimeter(perimeter, longest, shortest, roller):
     if perimeter < longest or math.ceil(perimeter / longest) > math.floor(perimeter / shortest):
         raise StudyError(
-            f"rollers.{roller}.radius: the perimeter, {perimeter:.3g} m, is too short; need "
-            f"one that holds a whole number of waves between {shortest:.3g} and {longest:.3g} m"
+            f"rollers.{roller}.radius: got a perimeter of {perimeter:.3g} m, need room for the "
+            f"longest wave and for a whole number of waves of {shortest:.3g} to {longest:.3g} m"
         )
 
 
@@ -352,7 +352,7 @@ def _check_height_step(rms, step, name, roller):
 
 
 def _check_distribution(own, key):
-    """Close to the least kurtosis the heights have two levels, and no spectrum can be chosen."""
+    """Close to the least kurtosis, heights take only two values, which no given spectrum allows."""
     square = own.skewness**2
     least = 1.5 + 1.25 * square
     if own.kurtosis < least:

@@ -1,9 +1,9 @@
 """Lubricant records: one YAML file per lubricant, checked as a whole and frozen.
 
 A lubricant record gives the viscosity in one of four ways: as points, as a CSV file of
-measurements beside the record, by ISO grade and viscosity index, or by naming a CoolProp fluid.
-Every section names its source, or says ``assumed: ...`` and why. This module only reads and checks;
-the properties at a temperature are computed in `lube.study.oil_properties`.
+measurements in the record's folder, by ISO grade and viscosity index, or by the name of a CoolProp
+fluid. Every section names its source, or says ``assumed: ...`` and why. This module only reads and
+checks; the properties at a temperature are computed in `lube.study.oil_properties`.
 """
 
 import re
@@ -68,7 +68,7 @@ class Viscosity(Sourced):
         if len(given) != 1:
             raise ValueError(f"got {' and '.join(given) or 'none'}, need one of {', '.join(ways)}")
         if (self.iso_vg is None) != (self.viscosity_index is None):
-            raise ValueError("viscosity_index: need it with iso_vg, and only there")
+            raise ValueError("viscosity_index: need one if iso_vg is given, and none otherwise")
         return self
 
 
@@ -126,14 +126,14 @@ class PressureViscosity(Sourced):
     def _check_definition(self):
         gold, given = self.gold_base is not None, self.given
         if gold == (self.definition is not None) or (gold and len(given) > 1):
-            raise ValueError("need either gold_base alone, or definition")
+            raise ValueError("need either gold_base alone, or a definition of the coefficient")
         if len(given) > 1:
             raise ValueError(f"got {' and '.join(given)}, need one of them")
         for cold, hot in pairwise(sorted(point.temperature for point in self.points or ())):
             if hot - cold <= ROUNDING:
                 raise ValueError(f"points: got two values at {hot:g} degC, need one")
         if (self.pressure is None) == (self.definition == "secant"):
-            raise ValueError("pressure: need it with definition 'secant', and only there")
+            raise ValueError("pressure: need one if definition is 'secant', and none otherwise")
         return self
 
     @property
@@ -194,7 +194,7 @@ class LubricantRecord(StrictModel):
     """density; needed unless CoolProp gives it"""
     pressure_viscosity: PressureViscosity
     thermal_conductivity: ThermalConductivity | None = None
-    """thermal conductivity, for the heating of the oil at the inlet; CoolProp gives its own"""
+    """thermal conductivity, for the heating at the inlet; CoolProp gives that of its fluids"""
     temperature_range: TemperatureRange | None = None
 
     _files: tuple[Path, ...] = PrivateAttr(())
@@ -286,8 +286,8 @@ class LubricantRecord(StrictModel):
         same = [nu for at, nu in self.data if abs(at - temperature) <= ROUNDING]
         if not same:
             raise RecordError(
-                f"viscosity: got pressures at {temperature:g} degC without atmospheric pressure, "
-                "need a value there as well"
+                f"viscosity: got values at {temperature:g} degC under pressure only, need one at "
+                "atmospheric pressure as well"
             )
         ambient = sum(same) / len(same) * self.density_at(temperature + ZERO_CELSIUS)
         pairs = [(p.pressure - ATMOSPHERIC_PRESSURE, p.dynamic_viscosity / ambient) for p in points]
@@ -295,7 +295,7 @@ class LubricantRecord(StrictModel):
 
 
 def _shipped():
-    """Shipped records: from name to YAML file, and the grade to put in its place if it has one."""
+    """Shipped records: YAML file of each name, and the ISO grade in the name, if any, to insert."""
     found = {}
     for path in sorted(SHIPPED_FOLDER.glob("*.yaml")):
         graded = _GRADED.fullmatch(path.stem)
@@ -389,7 +389,7 @@ def _regraded(content, name, grade):
 
 
 def _record_path(name_or_path, folder):
-    """Path of a record's file, and the grade to put in its place."""
+    """Path of a record's file, and the ISO grade to insert, if any."""
     if is_record_path(name_or_path):
         return Path(folder) / name_or_path, None
     shipped, is_name = _shipped(), isinstance(name_or_path, str)

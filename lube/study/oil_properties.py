@@ -176,7 +176,7 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
     temperature = np.array(temperature, dtype=float)
     names = [record.name for record in records]
     if len(set(names)) < len(names):
-        raise RecordError(f"lubricants: got the names {', '.join(names)}, need each once")
+        raise RecordError(f"lubricants: got the names {', '.join(names)}, need different names")
     lowest, highest = zip(*(record.valid_temperatures for record in records), strict=True)
     fit_temperature = np.arange(math.floor(min(lowest)), math.ceil(max(highest)) + 1.0)
     rows = [_row(record, temperature, fit_temperature) for record in records]

@@ -2,9 +2,10 @@
 
 A study's file may name another with the key ``based_on`` and then holds only what differs. The
 contents are merged from the last base up: mappings key by key; lists and single values are
-replaced. Each study needs a name of its own, so that the results of different values are not
-mixed in one folder. What ``about`` says of one study's results is not said of another's. A
-roller's roughness takes the place of one that the base gives in another way, such as Ra for rms.
+replaced. Each study needs a different name, so that the results of different values are not mixed
+in one folder. The title, summary, date and DOI in ``about`` are not taken over from the base. A
+roller's roughness replaces that of the base, even if it is given in another way, such as Ra
+instead of rms.
 """
 
 import io
@@ -27,7 +28,7 @@ _OF_BOTH = "composite_rms_roughness"
 _PATHS = {("rollers", name, "topography", "file") for name in ROLLERS} | {
     ("experiment", "manifest")
 }
-"""Keys of these paths, apart from those in the list of lubricants."""
+"""Keys whose values are paths, apart from the list of lubricants."""
 
 _OF_ONE_STUDY = {"title", "summary", "date", "doi"}
 """Keys of ``about`` that a study does not take over from its base."""
@@ -150,7 +151,7 @@ def _on_top(base, changes, where):
 
 
 def _without_replaced(below, above):
-    """Leave out roughness of rollers in whose place the changes give one of another kind."""
+    """Remove the rollers' roughness from the base where the changes give a roughness."""
     given = {}
     for name in ROLLERS:
         roller = above.get(name)

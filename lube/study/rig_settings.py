@@ -24,9 +24,9 @@ class Rig(StrictModel, validate_default=True):
     series_resistance: _Resistance = "100 ohm"
     """resistor in series with the rollers"""
     lead_resistance: Annotated[float, quantity("ohm", least=0.0)] = "0.2 ohm"
-    """leads and slip rings, known and subtracted"""
+    """resistance of leads and slip rings, known and subtracted"""
     leak_resistance: _Resistance = "1 Mohm"
-    """insulation in parallel with the contact"""
+    """resistance of the insulation, in parallel with the contact"""
     oil_permittivity: Annotated[float, quantity(None, least=1.0)] = 2.2
     """relative permittivity, for the film's capacitance; typical of PAO"""
     amplifier_range: Annotated[float, quantity("V", above=0.0)] = "100 mV"
@@ -46,8 +46,8 @@ class Rig(StrictModel, validate_default=True):
     every operating point
     """
     drift: Annotated[float, quantity(None, least=0.0, most=1.0)] = 0
-    """part of the roughness variance that each revolution renews, on the simulated rollers and, as
-    an assumption, on measured ones; at 0 the roughness stays the same
+    """fraction of the roughness variance that each revolution renews, on the simulated rollers and,
+    by assumption, on measured ones; at 0 the roughness stays the same
     """
 
     @property
@@ -66,15 +66,15 @@ class Experiment(StrictModel, validate_default=True):
     )
     """resistances below which a record shows contact"""
     threshold: _Resistance = "100 ohm"
-    """the one of `thresholds` that is compared with the simulation (the paper's)"""
+    """threshold, one of `thresholds`, at which records are compared with the simulation"""
     force_tolerance: Annotated[float, quantity(None, above=0.0, most=1.0)] = 0.01
-    """relative deviation of a record's force from a level of the grid, at most"""
+    """largest relative deviation of a record's force from a level of the grid"""
     speed_tolerance: Annotated[float, quantity(None, above=0.0, most=1.0)] = 0.01
     """the same for its rotation speed; also the largest relative deviation of that speed from the
     one at which the record repeats itself
     """
     temperature_tolerance: Annotated[float, quantity("K", above=0.0)] = "1 K"
-    """deviation of a record's temperature from a level of the grid, at most"""
+    """largest deviation of a record's temperature from a level of the grid"""
     release_ratio: Annotated[float, quantity(None, least=1.0)] = 1
     """contact ends at this multiple of the threshold; 1 is no hysteresis"""
     debounce: Annotated[float, quantity("s", least=0.0)] = "0 s"

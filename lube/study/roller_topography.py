@@ -2,7 +2,7 @@
 
 Its file is read when the study is checked; form and holes are removed, and heights are filtered.
 The roller gets its lines in one of three ways: new lines are drawn from the spectrum, or the
-profile is the line, as one turn around the roller or repeated along it.
+profile is the line, as one turn around the roller or repeated around it.
 
 The modules that read and compute are imported on first use: most studies have no topography.
 """
@@ -23,7 +23,7 @@ class RollerTopography(StrictModel):
     file: Text
     """profile or map: a file of an instrument, CSV (`position [mm],height [um]`) or NetCDF"""
     texture: Literal["isotropic", "along rolling"]
-    """alike in all directions; or only profiles along rolling are used, as of a ground surface"""
+    """alike in all directions; or, for ground surfaces, only profiles along rolling are used"""
     use: Literal["spectrum", "closed line", "repeated line"] = "spectrum"
     """lines are drawn from its spectrum; or the profile is the line, as one turn or repeated"""
     form: Literal["none", "tilt", "curvature"] = "tilt"

@@ -27,7 +27,7 @@ from lube.units import parse_number
 ROLLERS = ("first", "second")
 """Keys of the two rollers."""
 ROUGHNESS_KEYS = ("rms_roughness", "ra_roughness", "topography")
-"""Keys of a roller's roughness, of which it has one."""
+"""Keys that give a roller's roughness; a roller has at most one of them."""
 _OF_SPECTRUM = ("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff")
 """Keys of its section `roughness` that a measured spectrum replaces."""
 INSULATOR = "insulator"
@@ -46,7 +46,7 @@ _POINTS_PER_WAVE = 10  # of the shortest waves, as in the paper
 
 
 def grid_points(radius: float, shortest: float) -> int:
-    """Return the points around a roller of which ten lie in the shortest wavelength, at least.
+    """Return a number of points around a roller with at least ten in the shortest wavelength.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def grid_points(radius: float, shortest: float) -> int:
     Returns
     -------
     int
-        A number with small factors, which Fourier transforms are fast for.
+        A number with small prime factors, for which Fourier transforms are fast.
 
     Examples
     --------
@@ -89,25 +89,25 @@ _Kurtosis = Annotated[float, quantity(None, above=1.0, most=20.0)]
 
 
 class OwnRoughness(StrictModel):
-    """What one roller has in place of the values of the study's section `roughness`."""
+    """Values of one roller that override those of the study's section `roughness`."""
 
     hurst_exponent: _Hurst | None = None
     """Hurst exponent H; a measured surface needs none"""
     longest_wavelength: _LongestWavelength | None = None
-    """2 pi / q_min"""
+    """longest wavelength of the line, 2 pi / q_min"""
     shortest_wavelength: _ShortestWavelength | None = None
-    """2 pi / q_max"""
+    """shortest wavelength of the line, 2 pi / q_max"""
     roll_off_wavelength: Length | None = None
-    """2 pi / q_r: longer waves have the spectral density of the isotropic surface at q_r; without
-    any there is no roll-off
+    """wavelength 2 pi / q_r beyond which the spectral density of the isotropic surface is constant;
+    by default there is no roll-off
     """
     long_cutoff: Length | None = None
-    """lambda_c that the stated height was measured with: it is the rms height of the waves up to
-    this one, and longer ones add to it; by default the longest wavelength
+    """cutoff lambda_c of the measurement: the stated rms height is that of the waves up to this
+    length, and longer waves add to it; by default the longest wavelength
     """
     short_cutoff: Length | None = None
-    """lambda_s that the stated height was measured with: it is the rms height of the waves down to
-    this one, and shorter ones add to it; by default the shortest wavelength
+    """cutoff lambda_s of the measurement: the stated rms height is that of the waves down to this
+    length, and shorter waves add to it; by default the shortest wavelength
     """
     skewness: _Skewness | None = None
     """skewness of the heights"""
@@ -137,14 +137,14 @@ class Roller(StrictModel):
 
     @property
     def kinds(self) -> list[str]:
-        """Keys of its roughness that are given: one, or none if only that of both is known."""
+        """Keys of its roughness that are given: one, or none if only the composite is known."""
         return given_keys(self, ROUGHNESS_KEYS)
 
     @property
     def rms_height(self) -> float | None:
         """Rms height of the roughness, m.
 
-        None if it is measured, or only that of both rollers together is known.
+        None if it is measured, or only the composite roughness is known.
         """
         return RA_TO_RMS * self.ra_roughness if self.ra_roughness else self.rms_roughness
 
@@ -152,12 +152,12 @@ class Roller(StrictModel):
     def _check_roughness(self):
         if len(self.kinds) > 1:
             one, other, *_ = self.kinds
-            raise ValueError(f"{other}: got one beside {one}, need one of the two")
+            raise ValueError(f"{other}: got one together with {one}, need one of the two")
         if self.topography and self.roughness:
             for name in given_keys(self.roughness, _OF_SPECTRUM):
                 raise ValueError(
-                    f"roughness.{name}: got {getattr(self.roughness, name):g} beside a topography, "
-                    "whose spectrum has its own, need one of the two"
+                    f"roughness.{name}: got {getattr(self.roughness, name):g} together with a "
+                    "topography, whose spectrum replaces it, need one of the two"
                 )
         return self
 
@@ -171,7 +171,7 @@ class RollerPair(StrictModel):
     second: Roller
     composite: Length | None = Field(None, alias="composite_rms_roughness")
     """rms height of both rough surfaces together, in place of one for each roller; each roller
-    then has this / 2^0.5
+    then has this value / 2^0.5
     """
 
     @property
@@ -220,12 +220,12 @@ class RollerPair(StrictModel):
             if not kinds and self.composite is None:
                 raise ValueError(
                     f"{name}.rms_roughness: missing, need it, or ra_roughness, or a topography, or "
-                    "composite_rms_roughness of both rollers"
+                    "composite_rms_roughness for both rollers"
                 )
             if kinds and self.composite is not None:
                 raise ValueError(
-                    f"composite_rms_roughness: got one beside {name}.{kinds[0]}, need one of the "
-                    "two"
+                    f"composite_rms_roughness: got one together with {name}.{kinds[0]}, need one "
+                    "of the two"
                 )
         return self
 
@@ -234,12 +234,12 @@ class Roughness(OwnRoughness):
     """Statistics and grid of the random roughness lines of both rollers."""
 
     longest_wavelength: _LongestWavelength
-    """2 pi / q_min; with the automatic choice a larger force level redraws all lines and changes
-    the probability at all points: adding 3200 N to the paper's study multiplies it by 0.86 to
-    0.61
+    """longest wavelength of the lines, 2 pi / q_min; if it is the contact width, a larger force
+    level redraws all lines and changes the probability at all points: adding 3200 N to the paper's
+    study multiplies it by 0.86 to 0.61
     """
     shortest_wavelength: _ShortestWavelength
-    """2 pi / q_max; the break-up of the boundary layer depends on it"""
+    """shortest wavelength of the lines, 2 pi / q_max; break-up of the layer depends on it"""
     skewness: _Skewness = 0.0
     """skewness of the heights, 0 for Gaussian heights; negative where peaks are worn"""
     kurtosis: _Kurtosis = 3.0
@@ -249,10 +249,10 @@ class Roughness(OwnRoughness):
     points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
     """points N around the first roller"""
     height_step: Length
-    """heights and films are whole multiples of this length, so sums are exact"""
+    """heights and films are integer multiples of this length, so sums are exact"""
 
     def of(self, own: OwnRoughness | None) -> "Roughness":
-        """Return the roughness of one roller, which may have values of its own."""
+        """Return the roughness of one roller, whose values override these."""
         given = {name: value for name, value in own or () if value is not None}
         return self.model_copy(update=given)
 

@@ -51,7 +51,7 @@ def _sizes(study):
     combinations = tables * len(study.film_formulas) * study.realisations
     rig_key = "rig.revolutions" if rig.drift > 0.0 else "rig.pairs"
     return [
-        ("rollers.second.radius", points[1], "points around it", MOST_POINTS),
+        ("rollers.second.radius", points[1], "points around the roller", MOST_POINTS),
         ("batch_size", len(study.batches), "batches", MOST_BATCHES),
         ("kept_realisations", pair * len(study.kept_realisations), "heights", MOST_NUMBERS),
         ("batch_size", pair * batch, "heights in a batch", MOST_NUMBERS),

@@ -42,7 +42,7 @@ def read_cells(path: File, error_type: type) -> list[tuple[int, list[str]]]:
 
 
 def units_of(header: list[str]) -> dict[str, str]:
-    """Return the units by the columns' names, of those that have a unit.
+    """Return the unit of each column that has one, by the column's name.
 
     Examples
     --------

@@ -2,8 +2,8 @@
 
 The models below are the only description of the configuration. The documented table of keys
 follows from their JSON schema and the one-line errors from their validators.
-`Study.stage_inputs` gives the values that a stage depends on, so that a change re-runs that stage
-and those after it only.
+`Study.stage_inputs` gives the values that a stage depends on, so that a change re-runs only that
+stage and those after it.
 """
 
 import math
@@ -64,7 +64,7 @@ class Study(StrictModel):
     about: About = Field(default_factory=About)
     """title, authors and licence"""
     seed: Annotated[StrictInt, Field(ge=0, le=2**63 - 1)]
-    """seed of all randomness"""
+    """seed of all random numbers"""
     realisations: Annotated[StrictInt, Field(ge=1, le=RIG_REALISATIONS)]
     """number of pairs of roughness lines"""
     revolutions: Annotated[StrictInt, Field(ge=1, le=1000)]
@@ -94,15 +94,15 @@ class Study(StrictModel):
     or by the equation behind the latter
     """
     inlet_meniscus: _Meniscus = "none"
-    """distance before the line of centres at which the oil begins, more than the half-width of the
+    """distance of the oil's meniscus before the line of centres, more than the half-width of the
     contact; without it the contact is fully flooded
     """
     operating_grid: OperatingGrid
     roughness: Roughness
     roughness_deformation: Literal["none", "computed", "venner-1997"] = "none"
-    """none, as in the paper; computed, waves of the roughness answered by the oil, by Reynolds'
-    equation about the computed film; or venner-1997, long waves flattened by the formula of Venner
-    et al., for pure rolling and high loads
+    """none, as in the paper; computed, the oil deforms each wave of the roughness by the linear
+    response of Reynolds' equation about the computed film; or venner-1997, the oil flattens long
+    waves by the formula of Venner et al., for pure rolling and high loads
     """
     boundary_layer: BoundaryLayer
     resistivity: _Resistivity
@@ -120,7 +120,7 @@ class Study(StrictModel):
 
     @property
     def title(self) -> str:
-        """Title of the results: the study's own, or else one with its name."""
+        """Title of the results: as given, or else one with the study's name."""
         return self.about.title or f"Mixed lubrication study {self.name}"
 
     @property
@@ -130,7 +130,7 @@ class Study(StrictModel):
 
     @property
     def band(self) -> str:
-        """From which to which wave the roughness reaches, in words."""
+        """Band of wavelengths of the roughness, in words."""
         return band_in_words(self.rollers, self.roughness, self.line_spec)
 
     @property
@@ -176,7 +176,7 @@ class Study(StrictModel):
 
     @property
     def answered_lines(self) -> LineSpec | None:
-        """The roughness lines, if the film answers them."""
+        """The roughness lines, if the oil answers them."""
         return self.line_spec if self.gap.is_answered else None
 
     @property
@@ -206,7 +206,7 @@ class Study(StrictModel):
         return tuple(name for name in STAGES[stage].inputs if self.has(name))
 
     def has(self, stage: str) -> bool:
-        """Whether the study has what a stage is about."""
+        """Whether the study has all that a stage needs (`only_with`)."""
         return all(attrgetter(name)(self) for name in STAGES[stage].only_with)
 
     @property
@@ -235,7 +235,7 @@ class Study(StrictModel):
     def check_window(self, force: float) -> None:
         """Refuse a force whose contact is finer than the grid or wider than a roller's perimeter.
 
-        So is one whose contact reaches the meniscus of the oil.
+        A force whose contact extends to the meniscus of the oil is refused, too.
 
         Parameters
         ----------
@@ -303,7 +303,7 @@ class Study(StrictModel):
         return _plain(self, STAGES[stage].values)
 
     def origin(self, stage: str) -> dict:
-        """Return all values that determine a stage's result, those of its forerunners included.
+        """Return all values that determine a stage's result, including those of its forerunners.
 
         Parameters
         ----------
@@ -337,8 +337,8 @@ class Study(StrictModel):
         for record in self.lubricants:
             if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:
                 raise ValueError(
-                    f"inlet_shear_heating: got {self.inlet_shear_heating}, need none for the "
-                    f"lubricant {record.name}, whose thermal_conductivity is not given"
+                    f"inlet_shear_heating: got {self.inlet_shear_heating}, need none, or the "
+                    f"thermal_conductivity of the lubricant {record.name}"
                 )
 
     @model_validator(mode="after")
@@ -356,7 +356,7 @@ class Study(StrictModel):
         # All traces share one time axis, whose step is set by the faster surface.
         axes = {(point["speed"], point["slide_to_roll_ratio"]) for point in self.trace_points}
         if len(axes) > 1:
-            raise ValueError("traces: need the same speed and slide-to-roll ratio for all")
+            raise ValueError("traces: got several speeds or slide-to-roll ratios, need one for all")
         return self
 
     @model_validator(mode="after")
@@ -369,13 +369,13 @@ class Study(StrictModel):
         simulated = self.experiment.manifest is None
         if not (self.conducts or simulated):
             raise ValueError(
-                f"resistivity: got {INSULATOR} beside experiment.manifest, need a resistivity: "
-                "records show contact by its resistance"
+                f"resistivity: got {INSULATOR} together with experiment.manifest, need a "
+                "resistivity: records show contact by its resistance"
             )
         if simulated and self.rig.drift > 0.0 and not self.line_spec.is_gaussian:
             raise ValueError(
                 f"rig.drift: got {self.rig.drift:g}, need 0 for a simulated rig with roughness "
-                "that is measured or not Gaussian: a mixture of lines has another distribution"
+                "that is measured or not Gaussian: mixing lines changes the distribution of heights"
             )
         largest = max(self.experiment.thresholds) * self.experiment.release_ratio
         voltage = divider_voltage(largest, self.rig)

@@ -72,7 +72,7 @@ def read_yaml(path: File, error_type: type, kind: type = dict) -> dict | list:
     text = read_text(path, error_type)
     try:
         content = yaml.load(text)
-    except Exception as error:  # besides the library's own: a tag's value may raise any
+    except Exception as error:  # not only the library's errors: a tag's value may raise any
         mark = getattr(error, "problem_mark", None)
         line = f" at line {mark.line + 1}" if mark else ""
         # For a repeated key the library also prints both values, however long they are.

@@ -150,6 +150,6 @@ def _even_spacing(path, position):
     if spacing <= 0.0 or away > UNEVEN * spacing:
         raise DataError(
             f"{path}: got positions up to {away:.3g} m off an even grid of {spacing:.3g} m, need "
-            "rising, evenly spaced ones"
+            "rising, evenly spaced positions"
         )
     return float(spacing)

@@ -97,14 +97,14 @@ def table(
     Returns
     -------
     rms_height : float
-        Of the band, m.
+        Rms height of the waves in the band, m.
     table : tuple
         Wave vectors, rad/m, and densities, m^3.
 
     Raises
     ------
     DataError
-        If the spectrum does not reach so far.
+        If the spectrum does not cover the band.
     """
     limits = (2.0 * np.pi / wave for wave in band)
     # Rounded: the last digits may depend on the machine.
@@ -144,7 +144,7 @@ def measured_line(
     Raises
     ------
     DataError
-        If the profile is no such line.
+        If the profile cannot be such a line.
     """
     line = closed_line if use == "closed line" else repeated_line
     steps = line(profile, points, spacing, shortest, height_step)

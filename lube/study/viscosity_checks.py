@@ -54,7 +54,7 @@ def check_points(record: LubricantRecord, where: File) -> None:
     if lowest > highest:
         raise RecordError(
             f"{where}: got no temperature with both viscosity and pressure-viscosity coefficient, "
-            "need some, or temperature_range"
+            "need a common range of temperatures, or temperature_range"
         )
 
 
@@ -64,14 +64,13 @@ def _check_ambient(record):
         key=lambda state: state[:2],
     )
     if len({temperature for temperature, *_ in states}) < 2:
-        raise RecordError("viscosity: need values at two temperatures or more")
+        raise RecordError("viscosity: got fewer than two temperatures, need two or more")
     for (cold, thick, words), (hot, thin, others) in pairwise(states):
         if hot - cold <= ROUNDING:
             _check_agreement(thick, thin, f"{words} and {others} at {hot:g} degC")
         elif thick <= thin:
             raise RecordError(
-                f"viscosity: need less at {hot:g} degC than at {cold:g} degC, got {others} and "
-                f"{words}"
+                f"viscosity: got {others} at {hot:g} degC, need less than at {cold:g} degC, {words}"
             )
 
 
@@ -97,9 +96,9 @@ def _check_agreement(one, other, words):
 def _check_isotherms(record):
     given, alpha = record.pressure_viscosity.given, record.pressure_viscosity
     if bool(given) == bool(record.isotherms):
-        came = f"{given[0]} beside viscosities under pressure" if given else "none"
+        came = f"{given[0]} and viscosities under pressure" if given else "none"
         raise RecordError(
-            f"pressure_viscosity: got {came}, need one of gold_base, value, points and viscosities "
+            f"pressure_viscosity: got {came}, need one of gold_base, value, points, or viscosities "
             "under pressure"
         )
     for temperature, pairs in record.isotherms.items():
@@ -110,7 +109,8 @@ def _check_isotherms(record):
                 _check_agreement(thin, thick, f"{words} and {_absolute(high)}")
             elif thick <= thin:
                 raise RecordError(
-                    f"viscosity: need more {at} and {_absolute(high)} than at {_absolute(low)}"
+                    f"viscosity: got no rise {at} from {_absolute(low)} to {_absolute(high)}, "
+                    "need a rise with pressure"
                 )
         count, (most, rise) = len({pressure for pressure, _ in pairs}), pairs[-1]
         if count < LEAST_PRESSURES:
@@ -125,8 +125,8 @@ def _check_isotherms(record):
             )
         if alpha.span is not None and alpha.span > (1.0 + ROUNDING) * most:
             raise RecordError(
-                f"pressure_viscosity.pressure: got {alpha.pressure / 1e6:g} MPa, the viscosities "
-                f"{at} end at {_absolute(most)}"
+                f"pressure_viscosity.pressure: got {alpha.pressure / 1e6:g} MPa, need at most "
+                f"{_absolute(most)}, where the viscosities {at} end"
             )
 
 

@@ -33,7 +33,7 @@ class ViscosityPoint(StrictModel):
     @model_validator(mode="after")
     def _check_viscosity(self):
         if self.kinematic_viscosity is None and self.dynamic_viscosity is None:
-            raise ValueError("need kinematic_viscosity or dynamic_viscosity")
+            raise ValueError("got no viscosity, need kinematic_viscosity or dynamic_viscosity")
         if self.is_under_pressure and self.kinematic_viscosity is not None:
             raise ValueError(
                 f"got kinematic_viscosity at {self.pressure / 1e6:g} MPa, need dynamic_viscosity"
@@ -83,7 +83,9 @@ def read_viscosity_csv(path: File) -> tuple[ViscosityPoint, ...]:
     for number, cells in rows:
         where = f"{path}: line {number}"
         if len(cells) != len(columns):
-            raise RecordError(f"{where}: got {len(cells)} values, need {len(columns)}")
+            raise RecordError(
+                f"{where}: got {len(cells)} values, need one for each of {len(columns)} columns"
+            )
         with_points = [cell for cell in cells if "." in cell]
         if decimal_comma and with_points:  # thousands separators, or mistakes
             raise RecordError(

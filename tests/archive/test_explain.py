@@ -113,7 +113,10 @@ def test_a_corrected_film_is_explained_by_its_factors(study, tmp_path):
     result = explain(path, None, slide_to_roll_ratio=0.1, **POINT)
     assert result.differing == []
     words = in_words(result)
-    for stated in ("film over that of a flooded contact", "film over that without inlet shear"):
+    for stated in (
+        "film thickness relative to a flooded contact",
+        "relative to that without inlet shear",
+    ):
         assert stated in words
 
 

@@ -61,10 +61,10 @@ def test_the_place_of_measured_records_is_named_and_refused_ones_with_their_reas
 
 def test_code_that_is_not_as_in_its_commit_is_named(page_of, monkeypatch):
     monkeypatch.setattr("lube.archive.page.changed_code", lambda: ["notebooks/fig02_film.ipynb"])
-    assert "; not as in that commit: `notebooks/fig02_film.ipynb` |" in page_of()
+    assert "; changed since that commit: `notebooks/fig02_film.ipynb` |" in page_of()
 
 
 def test_the_values_and_findings_of_the_study_are_stated(page_of):
     page = page_of()
-    assert "| **Rollers** | two alike, radius 50 mm, Young's modulus 210 GPa" in page
+    assert "| **Rollers** | two equal rollers: radius 50 mm, Young's modulus 210 GPa" in page
     assert "Metal contact occurs at" in page or "No metal contact was seen" in page

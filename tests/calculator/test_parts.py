@@ -43,7 +43,7 @@ def test_rollers_take_a_measured_surface_and_have_the_rms_height_of_its_lines():
     assert both.pair.first.rms_roughness == pytest.approx(0.19e-6, rel=0.01)
     one = Rollers("50 mm", "0.1 um", second=surface, **band)
     assert one.pair.rms_heights == (0.1e-6, both.lines.rms_height[1])
-    with pytest.raises(LubeError, match="Rollers: topography: got one beside rms_roughness"):
+    with pytest.raises(LubeError, match="Rollers: topography: got one together with rms_roughness"):
         Rollers("50 mm", "0.1 um", **surface, **band)
 
 
@@ -83,7 +83,7 @@ def test_rollers_take_the_roughness_and_the_layer_of_a_study(study):
         assert getattr(found.lines, name) == pytest.approx(getattr(short.lines, name), rel=1e-12)
     assert found.layer == study.boundary_layer
     for name, value in (("skewness", -1.0), ("shear_strength", "2 MPa"), ("points", 5000)):
-        with pytest.raises(LubeError, match=f"^Rollers: {name}: got .* beside `"):
+        with pytest.raises(LubeError, match=f"^Rollers: {name}: got .* together with `"):
             Rollers(radius, rms, **(parts | {name: value}))
 
 
@@ -154,7 +154,7 @@ def test_both_show_themselves_and_travel_between_processes():
         ),
         (
             lambda: Rollers("50 mm", "0.2 um", second="30 mm"),
-            "Rollers: second: got '30 mm', need what differs, such as {'radius': '30 mm'}",
+            "Rollers: second: got '30 mm', need a dict of the values that differ",
         ),
         (
             lambda: Rollers("50 mm", "0.2 um", second={"rms_roughness": "20 um"}),
@@ -174,12 +174,12 @@ def test_both_show_themselves_and_travel_between_processes():
             "Oil: got neither, need either the name of a lubricant record or",
         ),
         (lambda: Oil(OIL, viscosity=TWO), "Oil: got both"),
-        (lambda: Oil(OIL, base="ester"), "Oil: base: got 'ester' beside a lubricant record"),
+        (lambda: Oil(OIL, base="ester"), "Oil: base: got 'ester' together with a"),
         (
             lambda: Oil(viscosity={"40 degC": "30 mm^2/s", "100 degC": "300 mm^2/s"}),
-            "Oil: viscosity: need less at 100 degC than at 40 degC",
+            "Oil: viscosity: got 300 mm2/s at 100 degC",
         ),
-        (lambda: Oil(viscosity={"40 degC": "30 mm^2/s"}), "need values at two temperatures"),
+        (lambda: Oil(viscosity={"40 degC": "30 mm^2/s"}), "got fewer than two temperatures"),
         (
             lambda: Oil(viscosity={"40 degC": "30", "80 degC": "9 mm^2/s"}),
             "got '30', need a number",

@@ -127,4 +127,6 @@ def test_a_list_without_usable_records_is_refused(tmp_path):
     (tmp_path / "mine.yaml").write_text(
         f"based_on: {SMOKE}\nname: mine\nexperiment: {{manifest: records.csv}}\n"
     )
-    assert check_study("mine.yaml")[1] == ["records.csv: no record can be used, need one at least"]
+    assert check_study("mine.yaml")[1] == [
+        "records.csv: no record can be used, need at least one usable record"
+    ]

@@ -180,7 +180,7 @@ def test_without_importance_sampling_the_realisations_are_counted(visit, counted
     assert drawn(page, "along")["limit"] == [2e-7, None]
     choose(page, "temperature", 0)
     assert said(page)["probability"] == "<\u00a02 × 10⁻⁵\u00a0%"
-    assert said(page)["interval"] == "of the time: none was seen; 95 % upper limit"
+    assert said(page)["interval"] == "of the time: no contact was seen; 95 % upper limit"
     assert page.locator("#rate").count() == 0
     assert "no contact seen" in page.inner_text(".key")
 

@@ -336,7 +336,7 @@ def test_what_cannot_be_used_is_refused_in_one_line(measured, tmp_path):
     written(tmp_path / "volts.csv", volts, head="U [V]")
     for column, row, reason in (
         ("lubricant", "half.csv,800,100,40,butter", "lubricant: got butter, need one of the study"),
-        ("", "half.csv,0.001,100,40", "need at least two grid spacings of "),
+        ("", "half.csv,0.001,100,40", "need at least two grid spacings, "),
         ("channel", "half.csv,800,100,40,CH7", "no channel 'CH7', need one of: 'time [s]'"),
         ("", "half.csv,800,100,400", "mobilgear-shc-xmp-320"),
         ("", "volts.csv,800,100,40", "saturated, 50.0% of its samples are at or beyond 0.1 V"),

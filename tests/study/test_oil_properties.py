@@ -369,7 +369,7 @@ def test_temperatures_outside_a_range_and_repeated_names_are_refused(xmp, dodeca
         lubricant_table([record], [40.0])
     with pytest.raises(RangeError, match="mobilgear-shc-xmp-320: got 30 degC, need 40 to 100"):
         lubricant_table([dodecane, xmp], [30.0, 40.0])
-    with pytest.raises(RecordError, match=r"names mobilgear.*need each once"):
+    with pytest.raises(RecordError, match=r"names mobilgear.*need different"):
         lubricant_table([xmp, xmp], STUDY)
 
 

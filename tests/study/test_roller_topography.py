@@ -265,7 +265,7 @@ def test_a_topography_beside_another_roughness_is_refused(study_file):
     content = yaml.safe_load(path.read_text())
     content["rollers"]["first"]["rms_roughness"] = "0.2 um"
     path.write_text(yaml.safe_dump(content))
-    assert "topography: got one beside rms_roughness, need one of the two" in refusal(path)
+    assert "topography: got one together with rms_roughness, need one of the two" in refusal(path)
 
 
 def test_two_measured_surfaces_need_no_hurst_exponent_and_one_does(study_file):
@@ -283,4 +283,4 @@ def test_two_measured_surfaces_need_no_hurst_exponent_and_one_does(study_file):
 def test_cutoffs_beside_a_topography_are_refused(study_file):
     own = BAND | {"long_cutoff": "0.8 mm"}
     message = refusal(study_file(MAP, roughness=own))
-    assert "roughness.long_cutoff: got 0.8 mm beside a topography" in message
+    assert "roughness.long_cutoff: got 0.8 mm together with a topography" in message

@@ -78,11 +78,11 @@ def test_a_roughness_takes_the_place_of_one_given_otherwise_in_the_base(based):
 BOTH = "rollers.composite_rms_roughness"
 OWN = "rollers.second.roughness"
 REFUSED = [
-    ("rollers.first.ra_roughness", "0.1 um", "rollers.first.ra_roughness: got one beside rms_r"),
+    ("rollers.first.ra_roughness", "0.1 um", "rollers.first.ra_roughness: got one together with"),
     (
         BOTH,
         "0.3 um",
-        "rollers.composite_rms_roughness: got one beside first.rms_roughness",
+        "rollers.composite_rms_roughness: got one together with first.rms_roughness",
     ),
     (
         "rollers.second.rms_roughness",

@@ -61,7 +61,7 @@ def test_the_force_of_a_record_needs_a_contact_that_the_grid_resolves():
     study.check_window(123.4)
     with pytest.raises(StudyError, match=r"contact at 1e-06 N is .* need at least two grid spac"):
         study.check_window(1e-6)
-    with pytest.raises(StudyError, match="less than a perimeter"):
+    with pytest.raises(StudyError, match="less than a roller's perimeter"):
         study.check_window(1e12)
 
 
@@ -78,7 +78,9 @@ def test_the_papers_film_is_flat_and_not_corrected_and_another_asks_for_what_it_
         study.check_window(6000.0)
     oil = study.lubricants[0].model_copy(update={"thermal_conductivity": None})
     values = dict(study) | {"lubricants": (oil,)}
-    with pytest.raises(ValueError, match=r"need none for the lubricant .* thermal_conductivity is"):
+    with pytest.raises(
+        ValueError, match=r"need none, or the thermal_conductivity of the lubricant"
+    ):
         study.model_copy(update=values)._check_conductivity()
 
 
@@ -208,7 +210,7 @@ def test_rollers_that_do_not_conduct_have_no_rig(paper_with):
 
 def test_measured_records_of_insulators_are_refused(paper_with):
     changes = ("resistivity", "insulator"), ("experiment.manifest", "records.csv")
-    with pytest.raises(LubeError, match="resistivity: got insulator beside"):
+    with pytest.raises(LubeError, match="resistivity: got insulator together with"):
         load_study(paper_with(*changes))
     with pytest.raises(LubeError, match=r"got 'wood', need a number .*, or insulator"):
         load_study(paper_with(("resistivity", "wood")))

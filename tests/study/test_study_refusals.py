@@ -57,7 +57,7 @@ COUNTS = [
     ("batch_size", 0, "got 0, need at least 1"),
     ("roughness.points", 10, "got 10, need at least 64"),
     ("kept_realisations", [0, 64], "got (0, 64), need 0, which the traces use, and none above 63"),
-    ("kept_realisations", [0, 0], "0 is repeated, need each once"),
+    ("kept_realisations", [0, 0], "got 0 repeatedly, need it once"),
     ("kept_realisations", [1], "got (1,), need 0, which the traces use"),
 ]
 
@@ -67,7 +67,7 @@ GRIDS = [
     ("roughness.shortest_wavelength", "1 mm", "got 1 mm, need less than the longest"),
     ("roughness.shortest_wavelength", "1e308 points", "got 1e308 points, need a value at least 2"),
     ("roughness.longest_wavelength", "long", f", or the words `{AUTOMATIC_WAVELENGTH}`"),
-    ("roughness.longest_wavelength", "1 m", "the perimeter, 0.314 m, is too short"),
+    ("roughness.longest_wavelength", "1 m", "got a perimeter of 0.314 m, need"),
     ("operating_grid.temperature", {"values": [101], "units": "degC"}, f"{OIL}: got 101 degC"),
     (
         "rollers.first.rms_roughness",
@@ -82,13 +82,13 @@ GRIDS = [
 NAMES = [
     ("lubricants", ["nope"], "got 'nope', need one of base-oil-m100"),
     ("lubricants", ["nope.yaml"], "nope.yaml: cannot be read"),
-    ("lubricants", [], "got (), need at least 1"),
+    ("lubricants", [], "got (), need 1 or more entries"),
     ("lubricants", OIL, f"got '{OIL}', need a list"),
     ("lubricants", [3], "lubricants: got 3, need one of "),
     ("lubricants", [[OIL]], f"got ['{OIL}'], need one of "),
-    ("lubricants", [OIL, OIL], f"{OIL} is repeated, need each once"),
+    ("lubricants", [OIL, OIL], f"got {OIL} repeatedly, need it once"),
     ("film_formulas", ["nope"], "film_formulas.0: unknown film formula 'nope', need one of paper"),
-    ("film_formulas", [], "got [], need at least 1"),
+    ("film_formulas", [], "got [], need 1 or more entries"),
     ("name", "My study", "got 'My study', need lower-case letters"),
     ("name", 3, "got 3, need text"),
     ("rollers", 3, "got 3, need keys with their values"),
@@ -100,8 +100,8 @@ TRACES = [
     ("traces.0.speed", "101 rpm", "got 101.0, need one of the study's: 85.7"),
     ("traces.0.lubricant", "nope", f"got nope, need one of the study's: {OIL}"),
     ("traces.0.film_formula", "nope", "got nope, need one of the study's: paper"),
-    ("traces", [], "got [], need at least 1"),
-    ("traces", [TRACE, TRACE | {"speed": "100 rpm"}], "need the same speed and slide-to-roll rat"),
+    ("traces", [], "got [], need 1 or more entries"),
+    ("traces", [TRACE, TRACE | {"speed": "100 rpm"}], "got several speeds or slide-to-roll ratios"),
 ]
 
 
@@ -176,6 +176,6 @@ def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_wi
     for *changes, message in [
         ((forces, [1e-3, 1600]), trace, "operating_grid.force: the contact at 0.001 N"),
         ((forces, [1600, 1e10]), trace, (longest, "0.4 mm"), "force: the contact at 1e+10 N"),
-        (("rollers.second.radius", "25 mm"), (longest, "0.2 m"), "the perimeter, 0.157 m, is too"),
+        (("rollers.second.radius", "25 mm"), (longest, "0.2 m"), "got a perimeter of 0.157 m"),
     ]:
         assert message in refusal(paper_with(*changes))

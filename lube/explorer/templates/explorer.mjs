@@ -50,7 +50,7 @@ function shown(name, point) {
 
 const named = (point, names) => names.map((name) => levels[name].names[point[name]]).join(", ");
 
-// By importance sampling where the study has it, else counted in its realisations.
+// The probability by importance sampling, if the study has it, else counted in its realisations.
 function probability(point, kind = "breakthrough") {
     const sampled = limits(`tail.${kind}_probability`, ["", "_lower", "_upper"], point);
     return sampled.mean === null ? counted(point, kind) : { ...sampled, seen: true, text: percent(sampled.mean) };
@@ -72,8 +72,8 @@ const withInterval = ({ text, seen, lower, upper }) => (seen ? `${text} (${perce
 // Where the model cannot hold, or contact falls as the film thins
 const marks = {
     overloaded: "outside the model: the asperities would carry more than the load",
-    merged: "less contact than at a thicker film: merged segments hold",
-    deformed: "the oil changes the roughness by more than a small part of the film: its linear response is not valid",
+    merged: "less contact than at a thicker film: the layer of merged segments holds",
+    deformed: "the oil changes the roughness by too large a part of the film: the linear response is not valid",
 };
 const marked = (point) => Object.keys(marks).filter((name) => at(name, point, content.marks));
 
@@ -110,7 +110,7 @@ function* neighbours(point, names) {
     for (const index of levels[name].values.keys()) yield* neighbours({ ...point, [name]: index }, rest);
 }
 
-// Logarithmic axes have no place for zero.
+// A logarithmic axis cannot show zero.
 const positive = (share) => (share > 0 ? share : NaN);
 
 function fill(source, rows) {
@@ -131,7 +131,7 @@ function choose(controls, point) {
     }
 }
 
-// The address names the point, so that a link to it can be kept.
+// The page's address names the point, so that a link to the point can be kept.
 
 function fromAddress(controls) {
     for (const [name, value] of new URLSearchParams(location.hash.slice(1))) {
@@ -153,7 +153,7 @@ function showAnswers(point) {
     element("probability").textContent = text;
     element("interval").textContent = seen
         ? `of the time; 95 % interval ${percent(lower)} to ${percent(upper)}`
-        : "of the time: none was seen; 95 % upper limit";
+        : "of the time: no contact was seen; 95 % upper limit";
     element("marks").textContent = marked(point).map((name) => marks[name]).join("; ");
     if (content.sampled) {
         const rate = limits("tail.breakthrough_rate", ["", "_lower", "_upper"], point);
@@ -199,7 +199,7 @@ function showRecords(point, along, source) {
         return line;
     });
     element("records").replaceChildren(...lines);
-    // In the figures: records that differ in the abscissa alone, or that are of the chosen force.
+    // The figures show records that differ in the abscissa alone, or that have the chosen force.
     const others = grid.filter((name) => name !== along);
     fill(
         source,
@@ -215,7 +215,7 @@ function showRecords(point, along, source) {
 }
 
 function showMaster(point, source) {
-    if (content.master === null) return; // the film thickness and the width alone do not tell
+    if (content.master === null) return; // contact depends on more than the film thickness and the width
     const { lambda_ratio, contact_width, mean, lower, upper } = content.master;
     const width = 2 * at("contact_half_width", point);
     const away = contact_width.map((one) => Math.abs(one - width));
@@ -251,7 +251,7 @@ function showTrace(point, sources, figures) {
     element("traces").hidden = trace === undefined;
     element("trace-points").hidden = trace !== undefined;
     if (trace === undefined) {
-        element("trace-text").textContent = "The study kept no trace at this point, but at";
+        element("trace-text").textContent = "The study kept no trace at this point, but at these:";
         return;
     }
     const close = trace.close.steps > 1 ? `within every ${trace.close.steps}` : "in every step";
@@ -349,7 +349,7 @@ export default function ({ controls, sources, figures }, origin) {
     }
     const point = chosen(controls);
     const along = "along" in controls ? controls.along.tags[controls.along.active] : "temperature";
-    setRange(figures.film.x_range, levels[along].values, 0.06); // which both figures share
+    setRange(figures.film.x_range, levels[along].values, 0.06); // the range of both figures
     for (const name of ["film", "probability"]) figures[name].below[0].axis_label = axes[along];
     fill(sources.along, [...neighbours(point, [along])].map((one) => row(one, along)));
     fill(sources.grid, [...neighbours(point, grid)].map((one) => row(one)));
