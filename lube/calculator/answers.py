@@ -41,6 +41,11 @@ _WORDS |= {
     f"tail_{name}": (f"{row.long_name}, {_TAIL}", row.units) for name, row in FILES["tail"].items()
 }
 
+_WORDS |= {
+    f"surface_{name}": (f"{row.long_name}, of the surface", row.units)
+    for name, row in FILES["areal"].items()
+}
+
 
 class _Plots(xr.Dataset.plot):
     """Plots of xarray, such as ``plot.scatter``; a call of the object itself draws the answer."""

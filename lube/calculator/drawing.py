@@ -9,7 +9,13 @@ from lube import plots
 from lube.errors import LubeError
 
 _COUNTED, _SAMPLED = "breakthrough_probability", "tail_breakthrough_probability"
-_SHOWN = (f"{_COUNTED}_mean", "pressure", "contact_length", "film_thickness")
+_SHOWN = (
+    f"{_COUNTED}_mean",
+    "surface_breakthrough_probability",
+    "pressure",
+    "contact_length",
+    "film_thickness",
+)
 """Variable that is drawn where none is named: the first of these that the answer has."""
 _ALONG = ("temperature", "speed", "force")
 """Dimensions along which an answer is drawn, if it has one of them."""
@@ -76,6 +82,9 @@ def _draw_lines(axes, found, x, y):
             _draw_probability(axes, one, x, color, name)
         else:
             axes.plot(one[x], one[y], color=color, label=name)
+            if f"{y}_lower" in one:
+                limits = one[f"{y}_lower"], one[f"{y}_upper"]
+                axes.fill_between(one[x].values, *limits, color=color, alpha=0.25, linewidth=0)
 
 
 def _level(value):

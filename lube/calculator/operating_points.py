@@ -21,8 +21,9 @@ from lube.calculator.arguments import (
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.ensemble import with_limits
 from lube.contact.rough_pair import roughness_batch
+from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
-from lube.errors import RangeError, StudyError, shown
+from lube.errors import RangeError, StudyError, right_one, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
@@ -42,6 +43,7 @@ FILM_VARIABLES = (
     "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
     "entrainment_speed dynamic_viscosity"
 ).split()
+CONTACT_MODELS = "line", "surface"
 _PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 
 
@@ -168,18 +170,20 @@ def contact_probability(
     film_shape: str = "flat",
     roughness_deformation: str = "none",
     slide_to_roll_ratio: float = 0.0,
+    contact_model: str | Sequence[str] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
     """Probability of metal contact, with its 95 % interval, and the film.
 
-    It is the probability for a line, as a mean over pairs of rollers. A single pair touches more or
-    less often than the mean, and the surfaces of rollers, which have a length, touch more often.
+    It is a mean over pairs of rollers; a single pair touches more or less often. By default it is
+    the probability for a line. The surfaces of rollers, which have a length, touch far more often:
+    that is the probability for the surface.
 
-    The probability is found in two ways. Contact in realisations is counted, as in ``contact.nc``
-    of a study; where they show no contact, the upper limit says how rare it is at least. Importance
-    sampling, as in ``tail.nc``, finds any probability, however small, with a standard error of
-    about 2 %: use it where contact is rare. Both agree where both find contact.
+    The probability for the line is found in two ways. Contact in realisations is counted, as in
+    ``contact.nc`` of a study; where they show no contact, the upper limit says how rare it is at
+    least. Importance sampling, as in ``tail.nc``, finds any probability, however small, with a
+    standard error of about 2 %: use it where contact is rare. Both agree where both find contact.
 
     Parameters
     ----------
@@ -195,6 +199,10 @@ def contact_probability(
     slide_to_roll_ratio : float, optional
         Difference of the surface speeds over their mean. It changes the computing time and the
         scatter, and with ``roughness_deformation="computed"`` also the expected probability.
+    contact_model : str or sequence of str, optional
+        ``"line"``; ``"surface"``, the isotropic rough surface that the line stands for, over the
+        length of the rollers, which takes half a minute; or a list of both. The surface needs
+        Gaussian heights and ``roughness_deformation="none"``.
     realisations : int, optional
         Number of pairs of roughness lines.
     seed : int, optional
@@ -210,6 +218,11 @@ def contact_probability(
         hour, each with ``_lower`` and ``_upper``. They are NaN where the heights are not Gaussian,
         or the formula flattens them; then the attribute ``remarks`` says so, before the remarks of
         `film`.
+
+        For the surface, by importance sampling: ``surface_breakthrough_probability`` and
+        ``surface_geometric_contact_probability``, anywhere along the rollers, and the mean numbers
+        ``surface_breakthroughs`` and ``surface_contacts`` at any moment, each with ``_lower`` and
+        ``_upper``; by theory, ``surface_expected_breakthroughs`` and ``surface_expected_contacts``.
 
     Raises
     ------
@@ -230,10 +243,23 @@ def contact_probability(
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     gap = gap_of(film_shape, roughness_deformation)
+    models = np.ravel(contact_model).tolist()
+    for model in models:
+        if model not in CONTACT_MODELS:
+            needed = right_one(model, CONTACT_MODELS)
+            raise StudyError(f"contact_model: got {shown(model)}, {needed}")
+    check_realisations(realisations, seed)
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, gap, slip)
-    contact = ensemble(table, rollers, realisations, seed, slip, gap)
-    on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
-    return with_remarks(joined(table, contact, on_pairs), table, rollers)
+    found = table[FILM_VARIABLES]
+    if "line" in models:
+        contact = ensemble(table, rollers, realisations, seed, slip, gap)
+        on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
+        found = joined(table, contact, on_pairs)
+    if "surface" in models:
+        length = rollers.pair.length
+        surface = surface_contact(rollers.lines, length, table, rollers.layer, seed, gap)
+        found = found.assign({f"surface_{name}": values for name, values in surface.items()})
+    return with_remarks(found, table, rollers)
 
 
 def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.Dataset:

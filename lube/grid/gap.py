@@ -27,6 +27,11 @@ class Gap:
         return self.film_shape != "flat"
 
     @property
+    def is_drawn(self) -> bool:
+        """Whether the roughness reaches the gap as drawn."""
+        return self.roughness_deformation == "none"
+
+    @property
     def is_flattened(self) -> bool:
         """Whether the oil flattens the lines alike everywhere in the contact."""
         return self.roughness_deformation == "venner-1997"

@@ -21,9 +21,8 @@ def touching_strips(
     covariances: Pair,
     places: Pair,
     touching: Pair,
-    film: float,
-    sharp: float,
-    width: int,
+    film: Array,
+    sharp: Array,
     around: int,
 ) -> tuple[Array, Array, Array]:
     r"""Weigh rows of a strip in which one point is known to touch.
@@ -33,8 +32,8 @@ def touching_strips(
     .. math:: z = z' + \rho \, (z_\tau - z'_\tau) ,
 
     and its curvature with it. The boundary layer of a contact breaks if the surface is sharp
-    enough at the contact's highest point. A row of n touching points could have been chosen by any
-    of them, so it counts 1/n.
+    enough where it is highest above the film. A row of n touching points could have been chosen by
+    any of them, so it counts 1/n.
 
     Parameters
     ----------
@@ -46,7 +45,7 @@ def touching_strips(
     covariances : tuple of numpy.ndarray
         Shape (R + 1, 2 C - 1) each, float32: covariance of the height at a point with heights and
         with curvatures around it, over the variance of the heights; at distances of 0 .. R rows
-        and of -(C - 1) .. C - 1 columns.
+        and of -(C - 1) .. C - 1 columns, at least the W columns of the strip.
     places : tuple of numpy.ndarray
         Shape (K,) each: row of the surface in which each strip's known point lies, at least R from
         the first row and `around` from the last, and column of the surface in which the strip
@@ -54,12 +53,10 @@ def touching_strips(
     touching : tuple of numpy.ndarray
         Shape (K,) each: column of the strip in which the known point lies, and its height,
         float32 height steps.
-    film : float
-        Film thickness, height steps.
-    sharp : float
-        Curvature above which the boundary layer breaks, in the unit of the curvatures.
-    width : int
-        Points in a row, at most C.
+    film : numpy.ndarray, shape (W,)
+        Film thickness at each column of the strip, height steps.
+    sharp : numpy.ndarray, shape (W,)
+        Curvature above which the boundary layer breaks there, in the unit of the curvatures.
     around : int
         Number of rows ahead of the known one in which its contact is followed; it is followed back
         through all R rows. A contact that begins as many rows back, or more, is too long for the
@@ -76,7 +73,7 @@ def touching_strips(
     contacts : numpy.ndarray
         Shape (2,), sums of 1/m over all contacts, and over those whose boundary layer breaks.
     """
-    reach = covariances[0].shape[0] - 1
+    reach, width = covariances[0].shape[0] - 1, film.size
     rows = reach - around
     contact, breakthrough, contacts = np.zeros(rows + 1), np.zeros(rows + 1), np.zeros(2)
     seen = np.zeros((reach + 1 + around, width), np.int32)
@@ -85,7 +82,8 @@ def touching_strips(
     known = np.empty((2, reach + 1), np.float32)
     for row in range(reach + 1):
         known[0, row], known[1, row] = covariances[0][row].min(), covariances[0][row].max()
-    nearly = film - 1e-5 * abs(film)
+    least = film.min()
+    nearly = least - 1e-5 * abs(least)
     known_row = np.int64(0)  # for the literal 0, Numba would compile `_row` and `_contact` again
     for k in range(places[0].size):
         origin = touching[0][k]
@@ -109,7 +107,7 @@ def touching_strips(
         for before in range(1, rows + 1):
             row = first - before
             may_touch = _ceiling(moved, tops, known, row, width) > nearly
-            if may_touch and _fill_row(moved, row, heights) > film:
+            if may_touch and _fill_row(moved, row, heights) > least and np.any(heights > film):
                 alone = 0
                 if alone_broken > 0:
                     _, _, broken, _ = _row(moved, search, heights, row)
@@ -136,7 +134,7 @@ def _row(moved, search, heights, row):
     touched, contacts, broken, earliest = 0, 0, 0, row
     _fill_row(moved, row, heights)
     for column in range(heights.size):
-        if heights[column] > film:
+        if heights[column] > film[column]:
             touched += 1
             if seen[reach + row, column] != mark:
                 _, breaks, first = _contact(moved, search, row, column)
@@ -193,23 +191,24 @@ def _contact(moved, search, row, column):
     seen[reach + row, column] = mark
     stack[0, 0], stack[0, 1] = row, column
     waiting, points, earliest = 1, 0, row
-    highest, summit_row, summit_column = np.float32(-np.inf), row, column
+    highest, summit_row, summit_column = -np.inf, row, column
     while waiting > 0:
         waiting -= 1
         here_row, here_column = stack[waiting, 0], stack[waiting, 1]
         points += 1
         earliest = min(earliest, here_row)
-        height = _moved(0, moved, here_row, here_column)
-        if height > highest:
-            highest, summit_row, summit_column = height, here_row, here_column
+        overlap = _moved(0, moved, here_row, here_column) - film[here_column]
+        if overlap > highest:
+            highest, summit_row, summit_column = overlap, here_row, here_column
         for side in range(4):
             next_row = here_row + (side == 0) - (side == 1)
             next_column = here_column + (side == 2) - (side == 3)
             inside = -reach <= next_row <= ahead and 0 <= next_column < seen.shape[1]
             if not inside or seen[reach + next_row, next_column] == mark:
                 continue
-            if _moved(0, moved, next_row, next_column) > film:
+            if _moved(0, moved, next_row, next_column) > film[next_column]:
                 seen[reach + next_row, next_column] = mark
                 stack[waiting, 0], stack[waiting, 1] = next_row, next_column
                 waiting += 1
-    return points, _moved(1, moved, summit_row, summit_column) > sharp, earliest
+    breaks = _moved(1, moved, summit_row, summit_column) > sharp[summit_column]
+    return points, breaks, earliest

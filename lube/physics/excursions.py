@@ -156,7 +156,7 @@ def expected_contacts(level: Array, moments: Sequence[float], length: float, wid
     return scipy.special.ndtr(-height) + (edges + area) * np.exp(-0.5 * height**2)
 
 
-def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature: float) -> Array:
+def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature: Values) -> Array:
     r"""Fraction of a surface's summits above a level that are sharper than a given curvature.
 
     The surface is isotropic.
@@ -176,8 +176,8 @@ def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature
     ----------
     level, moments
         As in `expected_contacts`.
-    curvature : float
-        Mean curvature, 1/m.
+    curvature : float or numpy.ndarray
+        Mean curvature, 1/m, for all levels or for each.
 
     Returns
     -------
@@ -215,7 +215,7 @@ def _share(level, moments, least_curvature, weight):
     deviation = math.sqrt(variance - covariance**2 / m0)
 
     def summits(least):
-        low = np.maximum(least, mean - _WIDE * deviation)
+        low = np.maximum(np.asarray(least)[..., None], mean - _WIDE * deviation)
         half = 0.5 * np.maximum(mean + _WIDE * deviation - low, 0.0)
         kappa = (low + half)[..., None] + half[..., None] * _CURVATURES
         normal = np.exp(-0.5 * ((kappa - mean[..., None]) / deviation) ** 2)

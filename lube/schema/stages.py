@@ -205,7 +205,7 @@ _ROWS = (
         inputs=("film",),
         values=_LINES | _CONTACT | _named("rollers.length"),
         target="areal_contact",
-        only_with=(*_SURFACE, "gap.is_plain"),
+        only_with=(*_SURFACE, "gap.is_drawn"),
         parallel=True,
     ),
     Stage(

@@ -8,7 +8,7 @@ import xarray as xr
 
 import lube
 from lube import LubeError
-from lube.stages import tail
+from lube.stages import areal, tail
 from lube.stages.film_profile import film_profile_table
 from lube.study.oil_properties import lubricant_table
 
@@ -68,6 +68,27 @@ def test_rare_contact_is_that_of_the_tail_stage(rollers, oil, busy):
         "long_name": "breakthroughs per time, by importance sampling",
         "units": "h-1",
     }
+
+
+def test_contact_of_the_surface_is_that_of_the_areal_stage(rollers, oil, busy):
+    one = {name: ([levels[-1]], units) for name, (levels, units) in GRID.items()}
+    choices = {"film_formula": ["paper"], "seed": busy.study.seed, "contact_model": "surface"}
+    found = lube.contact_probability(rollers, oil, **one, **choices)
+    film = busy.film.isel(force=[-1], speed=[-1], temperature=[-1])
+    expected = areal.make(busy.study, {"film": film}).isel(lubricant=0, slide_to_roll_ratio=0)
+    for name, values in expected.drop_vars("length").items():
+        np.testing.assert_array_equal(found[f"surface_{name}"], values)
+    assert found["surface_contacts"].attrs["long_name"].endswith("of the surface")
+    assert "breakthrough_probability" not in found
+
+
+def test_surface_and_line_are_answered_together(rollers, oil):
+    models = {"contact_model": ["line", "surface"], "realisations": 2}
+    found = lube.contact_probability(rollers, oil, **POINT, **models)
+    assert found["surface_contacts"] > 1.0
+    name = "breakthrough_probability"
+    assert found[f"tail_{name}_upper"] < found[f"surface_{name}_lower"]
+    assert {"tail_" + name, name + "_mean"} <= set(found)
 
 
 def test_contact_that_no_realisation_sees_has_a_probability(rollers, oil):
@@ -192,6 +213,11 @@ def test_the_trace_of_an_insulator_has_no_resistance(oil):
         ({"realisations": 10**9}, "realisations: got 1000000000, need at most 1000000"),
         ({"realisations": 0}, "realisations: got 0, need a whole number, at least 1"),
         ({"seed": 1.5}, "seed: got 1.5, need a whole number, at least 0"),
+        ({"contact_model": "strip"}, "contact_model: got 'strip', need one of line, surface"),
+        (
+            {"contact_model": "surface", "roughness_deformation": "venner-1997"},
+            "roughness_deformation: got venner-1997, need none for contact of the surface",
+        ),
         ({"slide_to_roll_ratio": 3}, "slide_to_roll_ratio: got 3, need a value"),
     ],
 )

@@ -6,7 +6,8 @@ import scipy.ndimage
 
 from lube.kernels.areal import BLOCK, touching_strips
 
-REACH, AROUND, WIDTH, SHARP = 60, 20, 24, 0.9
+REACH, AROUND, WIDTH = 60, 20, 24
+ACROSS = np.linspace(-1.0, 1.0, WIDTH)
 
 
 def smooth_surface(rng, size):
@@ -20,7 +21,7 @@ def bump(width, rows, columns):
     return np.exp(-0.5 * (down**2 + across**2) / width**2).astype(np.float32)
 
 
-def naive(fields, covariances, row, column, origin, height, film):
+def naive(fields, covariances, row, column, origin, height, film, sharp):
     """First touching row and contacts of one strip, with all contacts labelled at once."""
     rows = np.arange(-REACH, AROUND + 1)
     columns = np.arange(WIDTH)
@@ -33,8 +34,8 @@ def naive(fields, covariances, row, column, origin, height, film):
     labels, count = scipy.ndimage.label(heights > film)
     breaks = {0: False}
     for number in range(1, count + 1):
-        summit = np.argmax(np.where(labels == number, heights, -np.inf))
-        breaks[number] = curvatures.ravel()[summit] > SHARP
+        summit = np.argmax(np.where(labels == number, heights - film, -np.inf))
+        breaks[number] = curvatures.ravel()[summit] > sharp[summit % WIDTH]
     mine = labels[REACH, origin]
     size, begin = np.sum(labels == mine), np.min(np.nonzero(labels == mine)[0])
     results = [np.zeros(REACH - AROUND + 1), np.zeros(REACH - AROUND + 1)]
@@ -53,23 +54,23 @@ def naive(fields, covariances, row, column, origin, height, film):
     return *results, numbers
 
 
-@pytest.mark.parametrize("film", [1.0, 1.6, 2.4])
-def test_strips_are_weighed_as_by_a_naive_implementation(film):
+@pytest.mark.parametrize("shape", [0.0, 0.8])
+@pytest.mark.parametrize("least", [1.0, 1.6, 2.4])
+def test_strips_are_weighed_as_by_a_naive_implementation(least, shape):
+    film, sharp = least + shape * ACROSS**2, 0.9 + shape * ACROSS
     rng = np.random.default_rng(5)
     fields = smooth_surface(rng, 200)
     covariances = bump(2.0, REACH + 1, WIDTH), 0.5 * bump(1.5, REACH + 1, WIDTH)
     count = 150
     places = rng.integers(REACH, 200 - AROUND, count), rng.integers(0, 200 - WIDTH, count)
-    heights = (film + rng.exponential(0.3, count)).astype(np.float32)
-    touching = rng.integers(0, WIDTH, count), heights
+    known = rng.integers(0, WIDTH, count)
+    touching = known, (film[known] + rng.exponential(0.3, count)).astype(np.float32)
     expected = [0.0, 0.0, 0.0]
     for each in zip(*places, *touching, strict=True):
-        parts = naive(fields, covariances, *each, film)
+        parts = naive(fields, covariances, *each, film, sharp)
         expected = [total + part for total, part in zip(expected, parts, strict=True)]
     tops = np.maximum.reduceat(fields[0], np.arange(0, 200, BLOCK), axis=1)
-    found = touching_strips(
-        fields, tops, covariances, places, touching, np.float32(film), SHARP, WIDTH, AROUND
-    )
+    found = touching_strips(fields, tops, covariances, places, touching, film, sharp, AROUND)
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)
     assert 0.0 < found[1][1] < found[0][1] and 0.0 < found[2][1] < found[2][0]

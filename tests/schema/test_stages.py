@@ -4,6 +4,7 @@ import inspect
 import json
 
 import pytest
+import xarray as xr
 from studies import ROOT, SMOKE
 from unlike_studies import STUDIES, write_study
 
@@ -57,9 +58,10 @@ def refuses(stage, *arguments):
 @pytest.mark.parametrize("name", STUDIES)
 def test_what_the_registry_promises_is_what_the_stages_can_make(name, tmp_path):
     study = load_study(write_study(STUDIES[name], tmp_path / name))
-    areal = refuses(maker("areal"), study, {})
-    assert study.has("areal") == (not areal and study.gap.is_plain)
-    assert study.has("areal_gauge") == (study.has("areal") and study.has("gauge"))
+    films = {"film": xr.Dataset(coords={"film_formula": ["paper"]})}
+    assert study.has("areal") == (not refuses(maker("areal"), study, films))
+    on_surface = study.has("areal") and study.has("gauge") and study.gap.is_plain
+    assert study.has("areal_gauge") == on_surface
     assert study.has("patch") == (not refuses(patch_contact, study.line_spec, None, None))
     assert study.has("surface") == bool(study.topographies)
     for stage in ("rig", "experiment", "comparison"):

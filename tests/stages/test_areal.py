@@ -1,14 +1,11 @@
-"""Contact of a surface over the rollers' length: theory and limits, then counting."""
+"""The areal stage: contact of a surface over the rollers' length, beside its line and theory."""
 
 import numpy as np
 import pytest
-import scipy.ndimage
 
 from lube.errors import DataError
 from lube.schema import CONTACT_DIMS
 from lube.stages import areal, tail
-from lube.stages.areal import strip_probability
-from lube.surfaces.isotropic import isotropic_surface
 
 SEED = 2
 SLIPS = (0.0, 0.1)
@@ -36,11 +33,6 @@ def make_areal(study):
 
 
 @pytest.fixture(scope="module")
-def spec(make_spec):
-    return make_spec(50_000)
-
-
-@pytest.fixture(scope="module")
 def few(film):
     return film.isel(film_formula=[0], temperature=[0, 2], speed=[1], force=[2, 4])
 
@@ -51,14 +43,6 @@ def contacts(make_areal, few):
 
 
 # --- Theory and limits -------------------------------------------------------------------
-
-
-def test_independent_rows_touch_as_by_the_binomial_distribution():
-    for share in (1e-12, 0.02, 0.4):
-        first = share * (1.0 - share) ** np.arange(30)
-        for rows in (1, 7, 30, 1000):
-            expected = -np.expm1(rows * np.log1p(-share))
-            assert strip_probability(first, rows) == pytest.approx(expected, rel=1e-9)
 
 
 def test_results_have_the_dimensions_of_the_contact_model_and_do_not_depend_on_slip(contacts):
@@ -98,28 +82,3 @@ def test_threads_do_not_change_a_bit(make_areal, few, contacts):
 def test_rollers_shorter_than_the_contact_is_wide_are_refused(make_areal, few):
     with pytest.raises(DataError, match=r"rollers\.length: got 0\.0001 m, need the contact width"):
         make_areal(few, 1e-4)
-
-
-# --- Counting ----------------------------------------------------------------------------
-
-
-def test_strips_touch_as_often_as_counted(spec, study):
-    """On whole surfaces, and with all their contacts labelled."""
-    surface = isotropic_surface(spec)
-    ratio, width, rows = 2.6, 12, 40
-    rng = np.random.default_rng(8)
-    shares, numbers = [], []
-    for _ in range(150):
-        heights, _ = surface.draw(rng)
-        above = heights > ratio * surface.rms
-        wide = scipy.ndimage.maximum_filter1d(above.astype(int), width, axis=1, mode="wrap")
-        shares.append(scipy.ndimage.maximum_filter1d(wide, rows, axis=0, mode="wrap").mean())
-        numbers.append(scipy.ndimage.label(above)[1] / above.size)
-    length = (rows + 0.5) * surface.spacing
-    points = [(ratio * surface.rms, width, areal.STRIPS)]
-    found = areal._sampled(spec, surface, points, 0.0, length, SEED)
-    name = "geometric_contact_probability"
-    half = (found[f"{name}_upper"] - found[name]).item()
-    error = np.hypot(np.std(shares, ddof=1) / 150**0.5, half / 2.0)
-    assert abs(found[name].item() - np.mean(shares)) < 4.0 * error
-    assert error < 0.1 * np.mean(shares)

@@ -1,0 +1,324 @@
+r"""Contact of the isotropic surface that the lines stand for, in the strip 2a x L'.
+
+The strip is followed row by row along the rollers. Row j is the first of the strip that touches
+with the probability :math:`g_j`, so that a strip of n rows touches with
+
+.. math:: P = \sum_{j=0}^{n-1} g_j
+
+Importance sampling finds :math:`g_0` from rows that touch, and the other :math:`g_j` from contacts
+that begin in row j while no row of the strip before it touches. Rows further apart than a longest
+wavelength are independent, so from there on a row is the first with the same probability if none
+before it has touched.
+
+A contact breaks its boundary layer if the mean curvature of the overlap at its highest point
+exceeds :math:`\pi \tau_0/(2 E^* h_c)`. The line's criterion is twice that, because the mapping
+doubles the curvature of a summit. Under a film of the shape h(x), half of h'' adds to the mean
+curvature of the surface.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import scipy.special
+import xarray as xr
+from scipy.interpolate import CubicSpline
+
+from lube.contact.window_films import shaped_films
+from lube.errors import DataError, StudyError
+from lube.grid.gap import PLAIN, Gap
+from lube.kernels.areal import BLOCK, touching_strips
+from lube.physics.excursions import (
+    breaking_curvature,
+    expected_contacts,
+    sharp_surface_summit_share,
+)
+from lube.schema import LIMITS, values_with_limits
+from lube.statistics.confidence import jackknife_interval, mean_interval
+from lube.study.rollers import BoundaryLayer
+from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.rare_contact import check_isotropic, likely_part
+from lube.surfaces.spectra import pair_moments
+from lube.surfaces.synthetic import LineSpecLike
+from lube.threads import on_threads
+from lube.types import Array
+
+SURFACES = 24
+"""Surfaces drawn; the errors follow from the scatter between them."""
+STRIPS = 400
+"""Strips on each surface."""
+FEWER_STRIPS = 40
+"""Strips on each surface where theory expects more contacts than `MANY`: contact is certain."""
+MANY = 30.0
+AROUND = 100
+"""Rows beyond a known point in which its contact is followed; a first contact begins within as many
+before it."""
+THEORY_COLUMNS = 200
+"""Columns of a film with a shape, for the contacts that theory expects."""
+_NUMBERS = {
+    "geometric_contact_probability": "contacts",
+    "breakthrough_probability": "breakthroughs",
+}
+_EXPECTED = "expected_contacts", "expected_breakthroughs"
+_SAMPLED = (f"{name}{end}" for pair in _NUMBERS.items() for name in pair for end in LIMITS)
+_VARIABLES = (*_EXPECTED, *_SAMPLED)
+
+
+@dataclass(frozen=True)
+class StripFilm:
+    """Film across the strip, where contact is likely.
+
+    Attributes
+    ----------
+    thickness : CubicSpline
+        Film at positions across the strip, m.
+    begin, width : float
+        Where the strip begins, and its width, m.
+    has_edges : bool
+        Whether contacts are cut where the strip ends.
+    """
+
+    thickness: CubicSpline
+    begin: float
+    width: float
+    has_edges: bool
+
+    @classmethod
+    def flat(cls, thickness: float, half_width: float) -> "StripFilm":
+        """Film of one thickness, as wide as the contact."""
+        film = CubicSpline([-half_width, half_width], [thickness, thickness])
+        return cls(film, -half_width, 2.0 * half_width, True)
+
+    @classmethod
+    def shaped(cls, position: Array, film: Array, rms: float) -> "StripFilm":
+        """Film with a shape, given at positions in m, on a surface of an rms height in m."""
+        part = likely_part(film, np.broadcast_to(rms, film.shape))[1]
+        begin, end = position[max(part.start - 1, 0)], position[min(part.stop, film.size - 1)]
+        return cls(CubicSpline(position, film), begin, end - begin, False)
+
+    def films(self, spacing: float) -> Array:
+        """Film at the columns of a grid, m."""
+        return self.thickness(self._columns(spacing))
+
+    def breaking_curvatures(self, spacing: float, sharp: float) -> Array:
+        """Mean curvature at which a summit breaks its layer, at the columns of a grid, 1/m.
+
+        That of the overlap is `sharp` there; half of the film's curvature is in it.
+        """
+        return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
+
+    def _columns(self, spacing):
+        return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
+
+
+def surface_contact(
+    spec: LineSpecLike,
+    length: float,
+    film: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    seed: int,
+    gap: Gap = PLAIN,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Find how often, and at how many positions, surfaces touch over the length of the rollers.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines that stand for the surfaces; `Study.line_spec` of a study.
+    length : float
+        Length L' of the rollers, m.
+    film : xarray.Dataset
+        ``film_thickness`` and ``contact_half_width`` (m) over any dimensions, and
+        ``reduced_modulus`` (Pa); for a film with a shape also ``film_profile``.
+    boundary_layer : BoundaryLayer
+        The boundary layer.
+    seed : int
+        Seed of the study.
+    gap : Gap, optional
+        How film and roughness make up the gap; by default flat films, and surfaces as drawn.
+    threads : int, optional
+        Threads that share the work, by default one for each core; they do not change the results.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``geometric_contact_probability`` and ``breakthrough_probability``, the numbers ``contacts``
+        and ``breakthroughs`` in the strip, each with ``_lower`` and ``_upper``, and the numbers
+        that theory expects, ``expected_contacts`` and ``expected_breakthroughs``; over the
+        dimensions of the films, NaN where the film is not known. Theory neglects the slope of a
+        film with a shape.
+
+    Raises
+    ------
+    StudyError
+        If the heights of a line are not Gaussian, a line was measured along rolling, or the oil
+        changes the roughness.
+    DataError
+        If the rollers are shorter than the contact is wide, or the band of wavelengths is too wide
+        for a surface.
+    """
+    check_isotropic(spec)
+    if not gap.is_drawn:
+        raise StudyError(
+            f"roughness_deformation: got {gap.roughness_deformation}, need none for contact of the "
+            "surface: how the oil changes waves at an angle to rolling is not computed"
+        )
+    thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
+    widest = 2.0 * half_width.max().item()
+    if length < widest:
+        raise DataError(
+            f"rollers.length: got {length:g} m, need the contact width of {widest:g} m or more"
+        )
+    moments = pair_moments(spec)
+    strips = _strip_films(film, thickness, half_width, gap, math.sqrt(moments[0]))
+    known = [point for point, strip in enumerate(strips) if strip is not None]
+    layer, modulus = boundary_layer, film["reduced_modulus"].item()
+    sharp = 0.5 * breaking_curvature(modulus, layer.critical_thickness, layer.shear_strength)
+    values = {name: np.full(thickness.size, np.nan) for name in _VARIABLES}
+    if known:
+        some = [strips[point] for point in known]
+        for name, of_known in _contacts(spec, some, sharp, length, seed, threads).items():
+            values[name][known] = of_known
+    dims, shape = thickness.dims, thickness.shape
+    values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
+    return xr.Dataset(values, thickness.coords)
+
+
+def _strip_films(film, thickness, half_width, gap, rms):
+    """Film across the strip of every operating point, None where it is not known."""
+    thickness, half_width = thickness.values.ravel(), half_width.values.ravel()
+    if not gap.has_shape:
+        points = zip(thickness.tolist(), half_width.tolist(), strict=True)
+        return [None if math.isnan(one[0]) else StripFilm.flat(*one) for one in points]
+    position, shaped = film["film_position"].values, shaped_films(film)
+    rows = zip(half_width, shaped.values.reshape(thickness.size, -1), strict=True)
+    return [
+        StripFilm.shaped(position * width, row, rms) if np.isfinite(row).all() else None
+        for width, row in rows
+    ]
+
+
+def _contacts(spec, strips, sharp, length, seed, threads):
+    """Variables of `surface_contact` at some strips, shape (strips,) each."""
+    moments = pair_moments(spec)
+    expected = np.array([_expected(strip, moments, sharp, length) for strip in strips]).T
+    # Size of the smallest contact: a parabola as high as the mean summit above the film.
+    thickest = max(strip.films(strip.width / THEORY_COLUMNS).min() for strip in strips)
+    smallest = math.sqrt(8.0 / moments[1]) * moments[0] / thickest
+    surface = isotropic_surface(spec, max(strip.width for strip in strips), smallest)
+    counts = np.where(expected[0] > MANY, FEWER_STRIPS, STRIPS)
+    found = _sampled(spec, surface, strips, counts, sharp, length, seed, threads)
+    return dict(zip(_EXPECTED, expected, strict=True)) | found
+
+
+def _expected(strip, moments, sharp, length):
+    """Numbers of contacts, and of breakthroughs, by theory."""
+    if strip.has_edges:
+        films = strip.thickness([strip.begin])
+        contacts = expected_contacts(films, moments, length, strip.width)
+    else:
+        spacing = strip.width / THEORY_COLUMNS
+        films = strip.films(spacing)
+        # Without edges along the rollers, contacts are in proportion to the width.
+        of_widths = expected_contacts(films, moments, length, np.array([[spacing], [0.0]]))
+        contacts, sharp = of_widths[0] - of_widths[1], strip.breaking_curvatures(spacing, sharp)
+    broken = contacts * sharp_surface_summit_share(films, moments, sharp)
+    return contacts.sum(), broken.sum()
+
+
+def _sampled(spec, surface, strips, counts, sharp, length, seed, threads=1):
+    """Probabilities and numbers of contacts, with their intervals, shape (strips,) each.
+
+    Of each strip so many are placed on every surface as `counts` says.
+    """
+    longest = math.ceil(spec.longest_wavelength / surface.spacing)
+    reach = longest, min(AROUND, longest)
+    films = [strip.films(surface.spacing) / spec.height_step for strip in strips]
+    limits = [strip.breaking_curvatures(surface.spacing, sharp) for strip in strips]
+    limits = [each / spec.height_step for each in limits]
+    strips = list(zip(films, limits, counts, strict=True))
+    covariances = tuple(surface.covariances(sum(reach) + 1, max(film.size for film in films)))
+
+    def on_one_surface(number):
+        # The first two children draw the lines of the realisation of this number, the next three
+        # are those of `lube.surfaces.rare_contact`.
+        seeds = np.random.SeedSequence((seed, number)).spawn(7)[5:]
+        return _on_one_surface(seeds, surface, covariances, strips, reach)
+
+    found = on_threads(on_one_surface, range(SURFACES), threads)
+    first, numbers = map(np.stack, zip(*found, strict=True))
+    rows = max(int(length / surface.spacing), 1)
+    results = {}
+    for which, (name, counts) in enumerate(_NUMBERS.items()):
+        limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)
+        results |= values_with_limits(name, limits)
+        results |= values_with_limits(counts, mean_interval(rows * numbers[:, :, which]))
+    return results
+
+
+def _on_one_surface(seeds, surface, covariances, strips, reach):
+    """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 2)."""
+    drawing, choosing = map(np.random.default_rng, seeds)
+    fields, chosen = surface.draw(drawing), choosing.random((4, STRIPS))
+    tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points, BLOCK), axis=1)
+    longest, around = reach
+    first, numbers = [], []
+    for film, sharp, count in strips:
+        # Known points of strips, and the weight of each strip, as in `lube.surfaces.rare_contact`.
+        log_tails = scipy.special.log_ndtr(-film / surface.rms)
+        likely = np.cumsum(np.exp(log_tails - log_tails.max()))
+        known = np.searchsorted(likely, chosen[3, :count] * likely[-1])
+        heights = np.log(chosen[2, :count]) + log_tails[known]
+        heights = -surface.rms * scipy.special.ndtri_exp(heights)
+        touching = known, heights.astype(np.float32)
+        weight = likely[-1] * np.exp(log_tails.max()) / count
+        room = surface.points - longest - 2 * around, surface.points - film.size + 1
+        row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
+        places = longest + around + row, column
+        *each, contacts = touching_strips(
+            fields, tops, covariances, places, touching, film, sharp, around
+        )
+        first.append(weight * np.stack(each))
+        numbers.append(weight * contacts)
+    return np.stack(first), np.stack(numbers)
+
+
+def strip_probability(first: np.ndarray, rows: int) -> np.ndarray:
+    """Compute the probability that any row of a strip touches.
+
+    Parameters
+    ----------
+    first : numpy.ndarray
+        Shape (..., R + 1): probability that a row touches while none of the 0, 1, ... R rows
+        before it does.
+    rows : int
+        Rows of the strip.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (...).
+
+    Examples
+    --------
+    Independent rows, one in ten of which touches:
+
+    >>> first = 0.1 * 0.9 ** np.arange(4)
+    >>> [f"{strip_probability(first, rows):.6f}" for rows in (2, 10)]
+    ['0.190000', '0.651322']
+    """
+    touched = np.cumsum(first, axis=-1)
+    if rows <= first.shape[-1]:
+        return np.minimum(touched[..., rows - 1], 1.0)
+    # After R rows, or once half of the strips have touched, the probability that a row touches if
+    # none before it has is taken as constant: its mean over the second half of the rows so far.
+    before = np.concatenate([np.zeros_like(touched[..., :1]), touched[..., :-1]], axis=-1)
+    counted = np.minimum(np.sum(before < 0.5, axis=-1), first.shape[-1] - 1)[..., None]
+    number = np.arange(first.shape[-1])
+    late = (number >= counted // 2) & (number <= counted)
+    hazard = np.sum(first * late, axis=-1) / np.sum((1.0 - before) * late, axis=-1)
+    here = np.take_along_axis(before, counted, axis=-1)[..., 0]
+    further = (rows - counted[..., 0]) * np.log1p(-np.minimum(hazard, 1.0 - 1e-12))
+    return -np.expm1(np.log1p(-np.minimum(here, 1.0 - 1e-12)) + further)
