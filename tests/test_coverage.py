@@ -102,8 +102,9 @@ def test_intervals_contain_the_true_value_where_the_oil_answers_the_lines(figure
 
 
 @SLOW
-def test_intervals_contain_the_true_value_with_slip(figures_of):
-    found = figures_of("equal", "slipping", 10.4)
+@pytest.mark.parametrize("gap", [("flat", "none"), ("computed", "computed")])
+def test_intervals_contain_the_true_value_with_slip(figures_of, gap):
+    found = figures_of("equal", "slipping", 10.4, gap)
     assert found["film_coverage"] >= 0.87
     assert found["agreement"] >= 0.87
     assert found["film_width_ratio"] <= 1.6

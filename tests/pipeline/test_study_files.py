@@ -19,12 +19,17 @@ def files(study):
 def test_a_target_that_the_study_lacks_is_refused_in_one_line(paper_with):
     path = paper_with(("film_shape", "computed"), ("name", "mine"))
     files = StudyFiles(load_study(path), path, {})
-    files.check_targets(["computed", "-n", "archive", "results/mine/contact.nc"])
-    for target in ("areal_contact", "master", "./results/mine/areal.nc", "results/mine/master.nc"):
+    files.check_targets(["computed", "-n", "areal_contact", "archive", "results/mine/contact.nc"])
+    for target in ("areal_gauge", "master", "./results/mine/master.nc"):
         with pytest.raises(SystemExit, match=f"got the target {target}, need .*film_shape: flat"):
             files.check_targets(["--cores", "2", target])
     with pytest.raises(SystemExit, match="need a measured topography of a roller"):
         files.check_targets(["results/mine/surface.nc"])
+    path = paper_with(("roughness_deformation", "computed"), ("name", "mine"))
+    files = StudyFiles(load_study(path), path, {})
+    for target in ("areal_contact", "./results/mine/areal.nc"):
+        with pytest.raises(SystemExit, match=f"got the target {target}, need .*tion: none"):
+            files.check_targets([target])
 
 
 def test_a_surface_along_rolling_has_no_isotropic_surface_to_press_or_to_count(tmp_path):
