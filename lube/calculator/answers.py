@@ -29,6 +29,7 @@ _OF_NO_FILE = {
     "position": ("position from the line of centres", "m"),
     "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
     "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
+    "whole_surface_probability": (f"breakthrough probability of the surface {_WHOLE}", "1"),
     "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
 }
 """Long name and SI unit of the variables that no file has."""
@@ -42,7 +43,7 @@ _WORDS |= {
 }
 
 _WORDS |= {
-    f"surface_{name}": (f"{row.long_name}, of the surface", row.units)
+    f"surface_{name}": (f"{row.long_name}, on the surface", row.units)
     for name, row in FILES["areal"].items()
 }
 

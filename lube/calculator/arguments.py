@@ -15,6 +15,7 @@ from lube.units import convert, parse_number, parse_quantity
 
 FORMULA = "pan-hamrock"
 """Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
+CONTACT_MODELS = "line", "surface"
 REALISATIONS = 64
 SEED = 1
 
@@ -148,6 +149,29 @@ def gap_of(film_shape: str, roughness_deformation: str) -> Gap:
         if value not in options:
             raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
     return Gap(**given)
+
+
+def contact_models(names: str | Sequence[str]) -> list[str]:
+    """Return the contact models, of which one or several are named.
+
+    Raises
+    ------
+    StudyError
+        If one of them is none.
+    """
+    models = np.ravel(names).tolist()
+    for model in models:
+        if model not in CONTACT_MODELS:
+            needed = right_one(model, CONTACT_MODELS)
+            raise StudyError(f"contact_model: got {shown(model)}, {needed}")
+    return models
+
+
+def one_model(name: str) -> str:
+    """Return the contact model, of which there must be one; raises as `contact_models`."""
+    if not isinstance(name, str):
+        raise StudyError(f"contact_model: got {shown(name)}, need one name")
+    return contact_models(name)[0]
 
 
 def one_formula(name: str) -> str:

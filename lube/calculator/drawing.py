@@ -7,15 +7,11 @@ from matplotlib.axes import Axes
 
 from lube import plots
 from lube.errors import LubeError
+from lube.schema import LIMITS
 
 _COUNTED, _SAMPLED = "breakthrough_probability", "tail_breakthrough_probability"
-_SHOWN = (
-    f"{_COUNTED}_mean",
-    "surface_breakthrough_probability",
-    "pressure",
-    "contact_length",
-    "film_thickness",
-)
+_SURFACE = "surface_breakthrough_probability"
+_SHOWN = (f"{_COUNTED}_mean", _SURFACE, "pressure", "contact_length", "film_thickness")
 """Variable that is drawn where none is named: the first of these that the answer has."""
 _ALONG = ("temperature", "speed", "force")
 """Dimensions along which an answer is drawn, if it has one of them."""
@@ -58,6 +54,8 @@ def draw(found: xr.Dataset, x: str | None = None, y: str | None = None) -> Axes:
         axes = plt.figure(figsize=(5.6, 3.6)).add_subplot()
         axes.set_xlabel(plots.axis_label(found[x]) if x in found.coords else x.capitalize())
         axes.set_ylabel(plots.axis_label(found[y]))
+        if y == _SURFACE:
+            axes.set(ylabel="Breakthrough probability of the surface", ylim=(0.0, 1.05))
         _draw_lines(axes, found, x, y)
         if x == "point":
             _label_points(axes, found, y)
@@ -80,11 +78,12 @@ def _draw_lines(axes, found, x, y):
         name = ", ".join(_level(one[other]) for other in others)
         if y == _SHOWN[0]:
             _draw_probability(axes, one, x, color, name)
+        elif y == _SURFACE:
+            limits = (one[f"{y}{end}"].values for end in LIMITS)
+            style = {"fmt": "o-", "color": color, "label": name or "sampled, 95 %"}
+            plots.interval_bars(axes, one[x].values, *limits, **style, clip_on=False)
         else:
             axes.plot(one[x], one[y], color=color, label=name)
-            if f"{y}_lower" in one:
-                limits = one[f"{y}_lower"], one[f"{y}_upper"]
-                axes.fill_between(one[x].values, *limits, color=color, alpha=0.25, linewidth=0)
 
 
 def _level(value):
@@ -129,9 +128,10 @@ def _label_points(axes, found, y):
     if texts:
         axes.set_xlabel(texts[0])
         axes.tick_params(axis="x", labelrotation=20)
-    if y == _SHOWN[0]:
-        whole = found["whole_tail_probability"].fillna(found["whole_probability"]).item()
-        axes.axhline(whole, color=plots.COLOURS["grey"], linestyle="--", label="whole cycle")
+    if y in (_SHOWN[0], _SURFACE):
+        whole = found["whole_surface_probability" if y == _SURFACE else "whole_tail_probability"]
+        whole = whole if y == _SURFACE else whole.fillna(found["whole_probability"])
+        axes.axhline(whole.item(), color=plots.COLOURS["grey"], linestyle="--", label="whole cycle")
 
 
 def _draw_film(axes, found):

@@ -10,8 +10,24 @@ import pandas as pd
 import xarray as xr
 
 from lube.calculator.answers import Answer
-from lube.calculator.arguments import FORMULA, REALISATIONS, SEED, amount, one_formula
-from lube.calculator.operating_points import ensemble, film_of_oil, joined, with_remarks
+from lube.calculator.arguments import (
+    FORMULA,
+    REALISATIONS,
+    SEED,
+    amount,
+    contact_models,
+    gap_of,
+    one_formula,
+)
+from lube.calculator.operating_points import (
+    FILM_VARIABLES,
+    ensemble,
+    film_choices,
+    film_of_oil,
+    joined,
+    of_surface,
+    with_remarks,
+)
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.errors import DataError, LubeError, right_one, shown
 from lube.schema import LIMITS, values_with_limits
@@ -44,6 +60,9 @@ def duty(
     oil: Oil,
     *,
     film_formula: str = FORMULA,
+    film_shape: str = "flat",
+    roughness_deformation: str = "none",
+    contact_model: str | Sequence[str] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -66,7 +85,7 @@ def duty(
         Material, roughness and, for points without radii, the radii.
     oil : Oil
         The oil.
-    film_formula, realisations, seed
+    film_formula, film_shape, roughness_deformation, contact_model, realisations, seed
         As in `lube.contact_probability`.
 
     Returns
@@ -77,8 +96,9 @@ def duty(
         metal contact, counted; ``whole_tail_probability``, the same by importance sampling; and
         ``whole_tail_rate``, breakthroughs per hour; each with ``_lower`` and ``_upper``. These
         limits are those of the mean over pairs of rollers. All points have the same pairs, so the
-        whole cycle is computed on each pair first. The attribute ``remarks`` is as in
-        `lube.contact_probability`.
+        whole cycle is computed on each pair first. For the surface it is
+        ``whole_surface_probability``, with limits as wide as if the errors at all points were the
+        same. The attribute ``remarks`` is as in `lube.contact_probability`.
 
     Raises
     ------
@@ -101,13 +121,20 @@ def duty(
     share = columns.get("share", xr.ones_like(columns["force"]))
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
-    table = _film(columns, rollers, oil, film_formula)
-    contact = ensemble(table, rollers, realisations, seed)
-    on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, _slip(columns))
-    share = share / share.sum()
-    width = 2.0 * table["contact_half_width"].max().item()
-    whole = _whole(contact, on_pairs, share, rollers.lines.independent_windows(width))
-    parts = joined(table, contact, on_pairs)
+    gap, models = gap_of(film_shape, roughness_deformation), contact_models(contact_model)
+    table, slip = _film(columns, rollers, oil, film_formula, gap), _slip(columns)
+    share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
+    if "line" in models:
+        contact = ensemble(table, rollers, realisations, seed, gap=gap)
+        on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
+        width = 2.0 * table["contact_half_width"].max().item()
+        whole = _whole(contact, on_pairs, share, rollers.lines.independent_windows(width))
+        parts = joined(table, contact, on_pairs)
+    if "surface" in models:
+        parts = parts.assign(of_surface(table, rollers, seed, gap))
+        for end in LIMITS:
+            of_points = parts[f"surface_breakthrough_probability{end}"]
+            whole[f"whole_surface_probability{end}"] = (of_points * share).sum(skipna=False)
     found = columns | {"share": share} | dict(parts.data_vars) | whole
     found = with_remarks(xr.Dataset(found, attrs=parts.attrs), table, rollers)
     for name in labels.keys() & found.variables.keys():
@@ -135,7 +162,7 @@ def _whole(contact, on_pairs, share, windows):
     return whole
 
 
-def _film(columns, rollers, oil, film_formula):
+def _film(columns, rollers, oil, film_formula, gap):
     """Film table over ``point``, with the radii of each point."""
     pair = rollers.pair
     radius = columns.get("radius", pair.first.radius)
@@ -148,7 +175,9 @@ def _film(columns, rollers, oil, film_formula):
             entrainment = 0.5 * (columns["surface_speed"] + columns["second_surface_speed"])
         rotation = entrainment * 60.0 / (2.0 * np.pi * radius)
     formulas = [one_formula(film_formula)]
-    table = film_of_oil(oil, own, columns["force"], rotation, columns["temperature"], formulas)
+    choices = film_choices(rollers, gap, _slip(columns))
+    point = columns["force"], rotation, columns["temperature"]
+    table = film_of_oil(oil, own, *point, formulas, **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")
     return table.assign(force=columns["force"])
 

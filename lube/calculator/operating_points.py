@@ -1,6 +1,7 @@
 """Film, probability of contact and resistance at operating points."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,6 +15,7 @@ from lube.calculator.arguments import (
     bare_number,
     check_realisations,
     conditions,
+    contact_models,
     gap_of,
     one_formula,
     single,
@@ -23,7 +25,7 @@ from lube.contact.ensemble import with_limits
 from lube.contact.rough_pair import roughness_batch
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
-from lube.errors import RangeError, StudyError, right_one, shown
+from lube.errors import RangeError, StudyError, shown
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.gap import PLAIN, Gap
@@ -43,7 +45,6 @@ FILM_VARIABLES = (
     "film_thickness lambda_ratio regime in_validity_range hertz_pressure contact_half_width "
     "entrainment_speed dynamic_viscosity"
 ).split()
-CONTACT_MODELS = "line", "surface"
 _PROBABILITIES = ("geometric_contact_probability", "breakthrough_probability")
 
 
@@ -118,16 +119,21 @@ def film_in_si(
     formulas = np.ravel(film_formula).tolist()
     if not formulas or not isinstance(formulas[0], str):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    choices = {
-        "with_shape": gap.has_shape,
-        "slide_to_roll_ratio": slip,
-        "answered_lines": rollers.lines if gap.is_answered else None,
-    }
+    choices = film_choices(rollers, gap, slip)
     table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, **choices)
     dims = ("film_formula", "temperature", "speed", "force")
     table = table.assign_coords(force=force, speed=speed)
     table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if np.ndim(film_formula) else table.isel(film_formula=0)
+
+
+def film_choices(rollers, gap, slip) -> dict[str, Any]:
+    """Arguments of `film_of_oil` for a gap and a slide-to-roll ratio."""
+    return {
+        "with_shape": gap.has_shape,
+        "slide_to_roll_ratio": slip,
+        "answered_lines": rollers.lines if gap.is_answered else None,
+    }
 
 
 def film_of_oil(oil, pair, force, speed, temperature, formulas, **choices) -> xr.Dataset:
@@ -243,11 +249,7 @@ def contact_probability(
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     gap = gap_of(film_shape, roughness_deformation)
-    models = np.ravel(contact_model).tolist()
-    for model in models:
-        if model not in CONTACT_MODELS:
-            needed = right_one(model, CONTACT_MODELS)
-            raise StudyError(f"contact_model: got {shown(model)}, {needed}")
+    models = contact_models(contact_model)
     check_realisations(realisations, seed)
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula, gap, slip)
     found = table[FILM_VARIABLES]
@@ -256,10 +258,15 @@ def contact_probability(
         on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
         found = joined(table, contact, on_pairs)
     if "surface" in models:
-        length = rollers.pair.length
-        surface = surface_contact(rollers.lines, length, table, rollers.layer, seed, gap)
-        found = found.assign({f"surface_{name}": values for name, values in surface.items()})
+        found = found.assign(of_surface(table, rollers, seed, gap))
     return with_remarks(found, table, rollers)
+
+
+def of_surface(table: xr.Dataset, rollers: Rollers, seed: int, gap: Gap) -> dict[str, xr.DataArray]:
+    """Contact of the surface at some films, by the names of `contact_probability`."""
+    length = rollers.pair.length
+    found = surface_contact(rollers.lines, length, table, rollers.layer, seed, gap)
+    return {f"surface_{name}": values for name, values in found.items()}
 
 
 def joined(table: xr.Dataset, contact: xr.Dataset, on_pairs: xr.Dataset) -> xr.Dataset:

@@ -18,20 +18,24 @@ from lube.calculator.arguments import (
     check_realisations,
     gap_of,
     one_formula,
+    one_model,
     rotation_speed,
     single,
 )
 from lube.calculator.operating_points import film_in_si
 from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.contact.surface_strip import surface_contact
 from lube.contact.window_films import shaped_films
 from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError
 from lube.grid.gap import PLAIN
-from lube.schema import values_with_limits
+from lube.physics.excursions import expected_contacts
+from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval, probability_interval
 from lube.statistics.curves import peaked_curve
 from lube.study.line_spec import check_width
+from lube.surfaces.spectra import pair_moments
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 
@@ -61,6 +65,7 @@ def required_film(
     force: str,
     *,
     share: float = 0.01,
+    contact_model: str = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -74,6 +79,8 @@ def required_film(
         Normal force, such as ``"800 N"``; it sets the contact width.
     share : float, optional
         Largest breakthrough probability allowed; 0.01 is one per cent.
+    contact_model : str, optional
+        ``"line"`` or ``"surface"``, as in `lube.contact_probability`; the surface takes a minute.
     realisations, seed : int, optional
         As in `lube.contact_probability`.
 
@@ -94,7 +101,7 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    search = _Search(rollers, share, realisations, seed, "flat", "none")
+    search = _Search(rollers, share, realisations, seed, PLAIN, contact_model)
     force = single(amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
     return _labelled(search.films(half_width))
@@ -112,6 +119,7 @@ def required_viscosity(
     film_formula: str = FORMULA,
     film_shape: str = "flat",
     roughness_deformation: str = "none",
+    contact_model: str = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -122,7 +130,7 @@ def required_viscosity(
     rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each. The pressure-viscosity coefficient and
         the density are those of the oil at that temperature.
-    share, realisations, seed
+    share, contact_model, realisations, seed
         As in `required_film`.
 
     Returns
@@ -144,7 +152,8 @@ def required_viscosity(
         speeds = rotation * factors, "rpm"
         return film_in_si(rollers, oil, force, speeds, temperature, one, gap)
 
-    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
+    gap = gap_of(film_shape, roughness_deformation)
+    search = _Search(rollers, share, realisations, seed, gap, contact_model)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors = search.along(table, FACTORS, tried)
     properties = oil.at(amount("temperature", temperature, "degC"))
@@ -164,6 +173,7 @@ def required_speed(
     film_formula: str = FORMULA,
     film_shape: str = "flat",
     roughness_deformation: str = "none",
+    contact_model: str = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -173,7 +183,7 @@ def required_speed(
     ----------
     rollers, oil, force, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
-    share, realisations, seed
+    share, contact_model, realisations, seed
         As in `required_film`.
 
     Returns
@@ -192,7 +202,8 @@ def required_speed(
     def table(speeds, gap=PLAIN):
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, gap)
 
-    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
+    gap = gap_of(film_shape, roughness_deformation)
+    search = _Search(rollers, share, realisations, seed, gap, contact_model)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
@@ -209,6 +220,7 @@ def required_temperature(
     film_formula: str = FORMULA,
     film_shape: str = "flat",
     roughness_deformation: str = "none",
+    contact_model: str = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -218,7 +230,7 @@ def required_temperature(
     ----------
     rollers, oil, force, speed, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
-    share, realisations, seed
+    share, contact_model, realisations, seed
         As in `required_film`.
 
     Returns
@@ -237,7 +249,8 @@ def required_temperature(
     def table(temperatures, gap=PLAIN):
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, gap)
 
-    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
+    gap = gap_of(film_shape, roughness_deformation)
+    search = _Search(rollers, share, realisations, seed, gap, contact_model)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
@@ -255,6 +268,7 @@ def required_roughness(
     film_formula: str = FORMULA,
     film_shape: str = "flat",
     roughness_deformation: str = "none",
+    contact_model: str = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
 ) -> Answer:
@@ -268,7 +282,7 @@ def required_roughness(
     ----------
     rollers, oil, force, speed, temperature, film_formula, film_shape, roughness_deformation
         As in `lube.contact_probability`, one value of each.
-    share, realisations, seed
+    share, contact_model, realisations, seed
         As in `required_film`.
 
     Returns
@@ -282,7 +296,8 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    search = _Search(rollers, share, realisations, seed, film_shape, roughness_deformation)
+    gap = gap_of(film_shape, roughness_deformation)
+    search = _Search(rollers, share, realisations, seed, gap, contact_model)
     one = one_formula(film_formula)
     film = film_in_si(rollers, oil, force, speed, temperature, one, search.gap)
     own = single(film["lambda_ratio"])
@@ -305,12 +320,13 @@ def required_roughness(
 class _Search:
     """Search for the films at which the probability of contact equals a share of time.
 
-    Contact is counted where the realisations show enough of it, else sampled.
+    Contact of lines is counted where the realisations show enough of it, else sampled; that of the
+    surface is sampled.
     """
 
-    def __init__(self, rollers, share, realisations, seed, film_shape, roughness_deformation):
-        self._share = bare_number("share", share, above=0.0, below=1.0)
-        self.gap = gap_of(film_shape, roughness_deformation)
+    def __init__(self, rollers, share, realisations, seed, gap, contact_model):
+        self._share, self.gap = bare_number("share", share, above=0.0, below=1.0), gap
+        self._on_surface = one_model(contact_model) == "surface"
         self._realisations = check_realisations(realisations, seed)
         self._rollers, self._seed = rollers, seed
         self._sigma = rollers.pair.composite_rms_roughness
@@ -349,8 +365,22 @@ class _Search:
             Lambda ratio of the rollers, if their roughness changes and not the film. The layer's
             strength then changes in proportion, as `required_roughness` explains.
         """
+        check_width(self._rollers.lines, 2.0 * half_width, "force: the contact")
+        look = self._at_surfaces if self._on_surface else self._at_lines
+        table, limits = look(half_width, table_at, ends, own)
+        ratios = table["film_thickness"].values / self._sigma
+        found = np.array([_crossing(ratios, each, self._share) for each in limits])
+        if not found[0] > 0.0:
+            peak = np.nanargmax(limits[0])
+            raise RangeError(
+                f"share: got {self._share:g}, which no film has: the largest share is "
+                f"{limits[0][peak]:.3g}, at a lambda ratio of {ratios[peak]:.2g}"
+            )
+        return {"film_thickness": self._sigma * found, "lambda_ratio": found}
+
+    def _at_lines(self, half_width, table_at, ends, own):
+        """Films near the one sought, and the probability on lines there, with its limits."""
         spec = self._rollers.lines
-        check_width(spec, 2.0 * half_width, "force: the contact")
         windows = spec.independent_windows(2.0 * half_width) * self._realisations
         can_sample = spec.is_gaussian and not self.gap.is_flattened
         if not can_sample and self._share * windows < 1.0:
@@ -374,25 +404,34 @@ class _Search:
         table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
         is_seen = self._share * windows >= OFTEN or not can_sample
         method = self._counted if is_seen else self._sampled
-        limits = method(self._windows(table, own, self.gap))
-        ratios = table["film_thickness"].values / self._sigma
-        found = np.array([_crossing(ratios, each, self._share) for each in limits])
-        if not found[0] > 0.0:
-            peak = np.nanargmax(limits[0])
-            raise RangeError(
-                f"share: got {self._share:g}, which no film has: the largest share is "
-                f"{limits[0][peak]:.3g}, at a lambda ratio of {ratios[peak]:.2g}"
-            )
-        return {"film_thickness": self._sigma * found, "lambda_ratio": found}
+        return table, method(self._windows(table, own, self.gap))
+
+    def _at_surfaces(self, half_width, table_at, ends, own):
+        """Films near the one sought, and the probability on surfaces there, with its limits."""
+        spec, length = self._rollers.lines, self._rollers.pair.length
+        # Theory for high, flat films says where to look.
+        ratios = LAMBDA_RATIOS[LAMBDA_RATIOS > 1.0]
+        films, moments = ratios * self._sigma, pair_moments(spec)
+        contacts = expected_contacts(films, moments, length, 2.0 * half_width)
+        found = _crossing(ratios, -np.expm1(-contacts), self._share)
+        ratios = np.unique(np.clip(max(found, ratios[0]) * AROUND, *ends))
+        table = table_at(ratios) if self.gap.has_shape else self._flat(ratios, half_width)
+        weaker = self._weaker(table, own)
+        layer, seed = self._rollers.layer, self._seed
+        found = surface_contact(spec, length, table, layer, seed, self.gap, weaker=weaker)
+        return table, [found[f"breakthrough_probability{end}"].values for end in LIMITS]
 
     def _flat(self, ratios, half_width):
         films = {"film_thickness": ("film", ratios * self._sigma), "contact_half_width": half_width}
         return xr.Dataset(films | {"reduced_modulus": self._rollers.pair.reduced_modulus})
 
+    def _weaker(self, table, own):
+        """How many times weaker than the rollers' the layer is at each film, as `films` says."""
+        return 1.0 if own is None else own * self._sigma / table["film_thickness"].values
+
     def _windows(self, table, own, gap):
-        ratios = table["film_thickness"].values / self._sigma
-        weaker = 1.0 if own is None else own / ratios
-        return ContactWindows(self._rollers.lines, table, self._rollers.layer, gap, weaker)
+        layer, weaker = self._rollers.layer, self._weaker(table, own)
+        return ContactWindows(self._rollers.lines, table, layer, gap, weaker)
 
     def _sampled(self, windows, pairs=PAIRS):
         """Mean and limits of the breakthrough probability, by importance sampling."""

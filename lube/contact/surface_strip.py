@@ -42,7 +42,7 @@ from lube.surfaces.rare_contact import check_isotropic, likely_part
 from lube.surfaces.spectra import pair_moments
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
-from lube.types import Array
+from lube.types import Array, Values
 
 SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""
@@ -120,6 +120,7 @@ def surface_contact(
     seed: int,
     gap: Gap = PLAIN,
     threads: int | None = None,
+    weaker: Values = 1.0,
 ) -> xr.Dataset:
     """Find how often, and at how many positions, surfaces touch over the length of the rollers.
 
@@ -140,6 +141,8 @@ def surface_contact(
         How film and roughness make up the gap; by default flat films, and surfaces as drawn.
     threads : int, optional
         Threads that share the work, by default one for each core; they do not change the results.
+    weaker : float or numpy.ndarray, optional
+        How many times weaker than `boundary_layer` the layer is, at all films or at each.
 
     Returns
     -------
@@ -176,6 +179,7 @@ def surface_contact(
     known = [point for point, strip in enumerate(strips) if strip is not None]
     layer, modulus = boundary_layer, film["reduced_modulus"].item()
     sharp = 0.5 * breaking_curvature(modulus, layer.critical_thickness, layer.shear_strength)
+    sharp = np.broadcast_to(sharp / weaker, thickness.size)[known]
     values = {name: np.full(thickness.size, np.nan) for name in _VARIABLES}
     if known:
         some = [strips[point] for point in known]
@@ -203,7 +207,8 @@ def _strip_films(film, thickness, half_width, gap, rms):
 def _contacts(spec, strips, sharp, length, seed, threads):
     """Variables of `surface_contact` at some strips, shape (strips,) each."""
     moments = pair_moments(spec)
-    expected = np.array([_expected(strip, moments, sharp, length) for strip in strips]).T
+    known = zip(strips, sharp, strict=True)
+    expected = np.array([_expected(strip, moments, own, length) for strip, own in known]).T
     # Size of the smallest contact: a parabola as high as the mean summit above the film.
     thickest = max(strip.films(strip.width / THEORY_COLUMNS).min() for strip in strips)
     smallest = math.sqrt(8.0 / moments[1]) * moments[0] / thickest
@@ -236,8 +241,10 @@ def _sampled(spec, surface, strips, counts, sharp, length, seed, threads=1):
     longest = math.ceil(spec.longest_wavelength / surface.spacing)
     reach = longest, min(AROUND, longest)
     films = [strip.films(surface.spacing) / spec.height_step for strip in strips]
-    limits = [strip.breaking_curvatures(surface.spacing, sharp) for strip in strips]
-    limits = [each / spec.height_step for each in limits]
+    limits = [
+        strip.breaking_curvatures(surface.spacing, own) / spec.height_step
+        for strip, own in zip(strips, sharp, strict=True)
+    ]
     strips = list(zip(films, limits, counts, strict=True))
     covariances = tuple(surface.covariances(sum(reach) + 1, max(film.size for film in films)))
 

@@ -93,6 +93,29 @@ def test_rates_are_those_of_the_points_own_slip(rollers, oil):
     assert rate > rolling["tail_breakthrough_rate"].item()
 
 
+def test_the_surface_is_weighted_as_the_line_is(rollers, oil):
+    one = {name: values[:2] for name, values in POINTS.items()}
+    found = lube.duty(one, rollers, oil, contact_model="surface", film_shape="computed", seed=2)
+    for end in ("", "_lower", "_upper"):
+        of_points = found[f"surface_breakthrough_probability{end}"].values
+        whole = found[f"whole_surface_probability{end}"].item()
+        assert whole == pytest.approx(0.75 * of_points[0] + 0.25 * of_points[1])
+    assert found["whole_surface_probability"] > 0.1 and "whole_probability" not in found
+
+
+def test_what_the_oil_does_to_the_lines_depends_on_the_slip_of_each_point(rollers, oil):
+    speeds = {"surface_speed [m/s]": [0.5, 0.9], "second_surface_speed [m/s]": [0.5, 0.1]}
+    points = speeds | {"force [N]": [400.0, 400.0], "temperature [degC]": [60.0, 60.0]}
+    choices = {"film_shape": "computed", "roughness_deformation": "computed", "realisations": 1}
+    found = lube.duty(points, rollers, oil, **choices)["tail_breakthrough_probability"].values
+    given = {"speed": "0.5 m/s", "force": "400 N", "temperature": "60 degC"}
+    for slip, here in zip((0.0, 1.6), found, strict=True):
+        alone = lube.contact_probability(rollers, oil, **given, **choices, slide_to_roll_ratio=slip)
+        # Interpolated between other wavelengths.
+        assert here == pytest.approx(alone["tail_breakthrough_probability"].item(), rel=2e-3)
+    assert abs(np.log(found[0] / found[1])) > 0.05
+
+
 def test_heights_that_are_not_gaussian_are_counted_only(oil):
     worn = Rollers(
         "50 mm", "0.2 um", points=50_000, shortest_wavelength="60 um", skewness=-1.0, kurtosis=5.0

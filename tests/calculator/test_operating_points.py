@@ -78,7 +78,7 @@ def test_contact_of_the_surface_is_that_of_the_areal_stage(rollers, oil, busy):
     expected = areal.make(busy.study, {"film": film}).isel(lubricant=0, slide_to_roll_ratio=0)
     for name, values in expected.drop_vars("length").items():
         np.testing.assert_array_equal(found[f"surface_{name}"], values)
-    assert found["surface_contacts"].attrs["long_name"].endswith("of the surface")
+    assert found["surface_contacts"].attrs["long_name"].endswith("on the surface")
     assert "breakthrough_probability" not in found
 
 

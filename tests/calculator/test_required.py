@@ -171,6 +171,33 @@ def test_a_rare_share_of_lines_that_the_oil_answers(rollers, oil):
     assert abs(np.log(sliding["tail_breakthrough_probability"].item() / probability)) > 0.02
 
 
+SURFACE = {"contact_model": "surface", "seed": 2}
+
+
+def assert_has_the_share(found, share):
+    """The interval is as wide as the share is badly known."""
+    lower, upper = (found[f"surface_breakthrough_probability{end}"] for end in ("_lower", "_upper"))
+    assert abs(lower + upper - 2.0 * share) < 1.5 * (upper - lower) < 0.5 * share
+
+
+@pytest.mark.parametrize("film_shape", ["flat", pytest.param("computed", marks=pytest.mark.slow)])
+def test_a_share_on_the_surface_needs_more_speed_than_on_the_line(rollers, oil, film_shape):
+    choices = SURFACE | {"film_shape": film_shape}
+    found = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **choices)
+    line = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **ONE)
+    assert found["speed_lower"] > 1.3 * line["speed"]
+    point = POINT | {"speed": (found["speed"].item(), "rpm")}
+    assert_has_the_share(lube.contact_probability(rollers, oil, **point, **choices), 0.2)
+
+
+def test_on_the_surface_the_roughness_has_the_share(rollers, oil, busy):
+    """Rollers of that roughness, drawn anew."""
+    found = lube.required_roughness(rollers, oil, **POINT, share=0.2, **SURFACE)
+    rms = f"{0.2 * found['roughness_factor'].item()!r} um"
+    smoother = of_roughness(rms, busy.study.line_spec)
+    assert_has_the_share(lube.contact_probability(smoother, oil, **POINT, **SURFACE), 0.2)
+
+
 def test_a_choice_that_no_study_has_is_refused(rollers, oil):
     for name in CHOICES:
         with pytest.raises(LubeError, match=f"^{name}: got 'curved', "):

@@ -94,7 +94,7 @@ def test_strips_touch_and_break_as_often_as_on_whole_surfaces(spec, strip):
     counted = np.array([searched(surface, films, sharp, rng) for _ in range(SURFACES)])
     length = (ROWS + 0.5) * surface.spacing
     strips = [film], [surface_strip.STRIPS]
-    found = surface_strip._sampled(spec, surface, *strips, curvature, length, SEED)
+    found = surface_strip._sampled(spec, surface, *strips, [curvature], length, SEED)
     names = ["geometric_contact_probability", "breakthrough_probability"]
     names += ["contacts", "breakthroughs"]
     for name, values in zip(names, counted.reshape(SURFACES, 4).T, strict=True):
