@@ -17,13 +17,14 @@ curvature of the surface.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+import scipy
 import scipy.special
 import xarray as xr
-from scipy.interpolate import CubicSpline
 
 from lube.contact.window_films import shaped_films
 from lube.errors import DataError, StudyError
@@ -71,15 +72,15 @@ class StripFilm:
 
     Attributes
     ----------
-    thickness : CubicSpline
-        Film at positions across the strip, m.
+    thickness : callable
+        Film (m) at positions across the strip (m), a cubic spline; or a derivative of it.
     begin, width : float
         Where the strip begins, and its width, m.
     has_edges : bool
         Whether contacts are cut where the strip ends.
     """
 
-    thickness: CubicSpline
+    thickness: Callable
     begin: float
     width: float
     has_edges: bool
@@ -87,7 +88,7 @@ class StripFilm:
     @classmethod
     def flat(cls, thickness: float, half_width: float) -> "StripFilm":
         """Film of one thickness, as wide as the contact."""
-        film = CubicSpline([-half_width, half_width], [thickness, thickness])
+        film = scipy.interpolate.CubicSpline([-half_width, half_width], [thickness, thickness])
         return cls(film, -half_width, 2.0 * half_width, True)
 
     @classmethod
@@ -95,7 +96,7 @@ class StripFilm:
         """Film with a shape, given at positions in m, on a surface of an rms height in m."""
         part = likely_part(film, np.broadcast_to(rms, film.shape))[1]
         begin, end = position[max(part.start - 1, 0)], position[min(part.stop, film.size - 1)]
-        return cls(CubicSpline(position, film), begin, end - begin, False)
+        return cls(scipy.interpolate.CubicSpline(position, film), begin, end - begin, False)
 
     def films(self, spacing: float) -> Array:
         """Film at the columns of a grid, m."""

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import scipy.fft
 import xarray as xr
-from scipy.interpolate import CubicSpline
 
 from lube.ehl.line_contact import one_blas_thread
 from lube.ehl.response import at_wavelengths
@@ -114,8 +114,8 @@ class Answer:
 
     def at(self, points: Array, spacing: float) -> Array:
         """Functions :math:`u_m` at points counted from the centre with the motion, (points, M)."""
-        position = points * (spacing / self.half_width)
-        return CubicSpline(self.position, self.shapes)(np.clip(position, *self.position[[0, -1]]))
+        position = np.clip(points * (spacing / self.half_width), *self.position[[0, -1]])
+        return scipy.interpolate.CubicSpline(self.position, self.shapes)(position)
 
 
 def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.interpolate import CubicSpline
 
 from lube.errors import DataError
 from lube.grid.discretise import LineGrid
@@ -158,5 +158,5 @@ def film_on_points(
     numpy.ndarray of int64, shape (n,)
         Film at the points, height steps, from a cubic spline through the profile.
     """
-    film = CubicSpline(position, profile)(-points * (grid.spacing / half_width))
+    film = scipy.interpolate.CubicSpline(position, profile)(-points * (grid.spacing / half_width))
     return np.rint(film / grid.height_step).astype(np.int64)

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from lube.ehl.deflection import deflection_matrix
 from lube.ehl.line_contact import FilmProfile, on_nodes, one_blas_thread
@@ -164,7 +164,7 @@ def at_wavelengths(wanted: Array, wavelengths: Array, transfer: Array, position:
     """
     outside = 2j * np.pi * (position - np.clip(position, -1.0, 1.0))
     change = (transfer - 1.0) * np.exp(outside / wavelengths[:, None])
-    spline = CubicSpline(np.log(wavelengths[::-1]), change[..., ::-1, :], axis=-2)
+    spline = scipy.interpolate.CubicSpline(np.log(wavelengths[::-1]), change[..., ::-1, :], axis=-2)
     inside = np.clip(wanted, wavelengths[-1], wavelengths[0])
     found = spline(np.log(inside)) * np.exp(-outside / wanted[:, None])
     return 1.0 + (wanted >= wavelengths[-1])[:, None] * found

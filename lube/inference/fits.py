@@ -7,7 +7,7 @@ varies the pressure-viscosity coefficient, or the strength of the boundary layer
 from dataclasses import replace
 
 import numpy as np
-import scipy.interpolate
+import scipy
 import scipy.special
 import xarray as xr
 

@@ -10,8 +10,8 @@ import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.interpolate import PchipInterpolator
 from scipy.special import expit, logit
 
 from lube.contact.ensemble import windows_in
@@ -283,7 +283,7 @@ def _through(films, mean, sample_size):
     films, mean = films[known], mean[known]
     places = np.linspace(0.0, 1.0, FINER * (films.size - 1) + 1)
     finer = np.exp(np.interp(places, np.linspace(0.0, 1.0, films.size), np.log(films)))
-    logits = PchipInterpolator(films**2, logit(mean))(finer**2)
+    logits = scipy.interpolate.PchipInterpolator(films**2, logit(mean))(finer**2)
     return peaked_curve(np.log(finer), expit(logits), np.full(finer.size, sample_size), _LEAST)
 
 

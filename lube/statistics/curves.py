@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import scipy.integrate
-import scipy.optimize
+import scipy
 import scipy.special
 
 from lube.statistics.one_pair import quantile, standard_error

@@ -21,8 +21,7 @@ P. R. Nayak, Some aspects of surface roughness measurement, Wear 26 (1973) 165-1
 """
 
 import numpy as np
-import scipy.interpolate
-import scipy.optimize
+import scipy
 import scipy.special
 
 from lube.types import Array

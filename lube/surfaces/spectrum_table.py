@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
+import scipy
 
 from lube.errors import DataError
 from lube.types import Array, Pair

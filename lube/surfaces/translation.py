@@ -31,8 +31,8 @@ probability distribution and power spectrum, Tribol. Int. 131 (2019) 591-604.
 """
 
 import numpy as np
+import scipy
 import scipy.fft
-import scipy.optimize
 
 from lube.kernels.synthesis import power_series
 from lube.types import Array
