@@ -41,7 +41,7 @@ def unpacked(path: File) -> Iterator[Path]:
     Raises
     ------
     DataError
-        If it does not exist, is neither, or cannot be unpacked.
+        If it does not exist, is neither a folder nor a zip, or cannot be unpacked.
     """
     path = Path(path)
     if not path.exists():
@@ -54,7 +54,7 @@ def unpacked(path: File) -> Iterator[Path]:
             shutil.unpack_archive(path, scratch, "zip")
         except (OSError, zipfile.BadZipFile, zlib.error) as error:
             raise DataError(f"{path}: neither a folder nor a whole zip ({error})") from None
-        # It may have been packed with its folder or without.
+        # The zip may have been packed with the archive's folder or without it.
         roots = sorted(Path(scratch).rglob(SUMS), key=lambda sums: len(sums.parts))
         if not roots:
             raise DataError(f"{path}: not an archive: {SUMS} is missing")

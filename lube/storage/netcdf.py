@@ -8,7 +8,7 @@ import logging
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import netCDF4  # noqa: F401  (if it is missing, say so on import, not when the first file is read)
+import netCDF4  # noqa: F401  (so that a missing library shows on import, not at the first file)
 import numpy as np
 import xarray as xr
 

@@ -290,4 +290,4 @@ def test_the_line_of_a_fault_is_named_wherever_pieces_end(tmp_path_factory, row,
 
 def test_lines_are_skipped_in_text_alone(tmp_path):
     path = write_tdms(tmp_path / "r.tdms", VOLTS)
-    assert refusal(path, skip=2) == "skip: got 2 lines of a TDMS file, need none but of text"
+    assert refusal(path, skip=2) == "skip: got 2 for TDMS, need none: only text has lines"
