@@ -53,7 +53,7 @@ def unpacked(path: File) -> Iterator[Path]:
         try:
             shutil.unpack_archive(path, scratch, "zip")
         except (OSError, zipfile.BadZipFile, zlib.error) as error:
-            raise DataError(f"{path}: neither a folder nor a whole zip ({error})") from None
+            raise DataError(f"{path}: neither a folder nor a complete zip ({error})") from None
         # The zip may have been packed with the archive's folder or without it.
         roots = sorted(Path(scratch).rglob(SUMS), key=lambda sums: len(sums.parts))
         if not roots:

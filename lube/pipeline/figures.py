@@ -94,7 +94,7 @@ def _commit_of(path):
         with netCDF4.Dataset(path) as dataset:
             return dataset.code_commit
     except (OSError, AttributeError) as error:
-        raise DataError(f"{path}: not a whole NetCDF file of lube ({error})") from None
+        raise DataError(f"{path}: not a complete NetCDF file of lube ({error})") from None
 
 
 def _last_changes(results, figure):

@@ -92,7 +92,7 @@ def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         reason = (str(error) or type(error).__name__).splitlines()[0]
         raise DataError(
-            f"{path}: not a whole NetCDF file, truncated, damaged or of another kind ({reason})"
+            f"{path}: not a complete NetCDF file, truncated, damaged or of another kind ({reason})"
         ) from error
 
 
