@@ -110,7 +110,7 @@ def _wrong_sums(folder):
 
 
 def _wrong_datasets(folder):
-    """Check that the study can be read and that every dataset is whole and of this study."""
+    """Check that the study can be read and that every dataset is complete and of this study."""
     text = (folder / VALUES).read_text(encoding="utf-8")
     study_file = json.loads(text)["study_file"]
     try:

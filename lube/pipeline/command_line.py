@@ -48,7 +48,7 @@ def check_command_line(arguments: Sequence[str]) -> None:
 
 
 def _check_targets(words):
-    """Refuse a study in the place of a target; results, such as ``study.yaml``, are targets."""
+    """Refuse a study given as a target; results, such as ``study.yaml``, are targets."""
     for before, word in pairwise(["", *words]):
         is_target = word.endswith((".yaml", ".yml")) and not before.startswith("--")
         if is_target and "results" not in Path(word).parts:

@@ -187,7 +187,7 @@ def _add_output(cell, output):
 
 
 def _failure(executed, exit_code):
-    """Say in one line which cell fails, where and why; log the whole traceback."""
+    """Say in one line which cell fails, where and why; log the full traceback."""
     cells = [cell for cell in executed.cells if _ADDED.isdisjoint(_tags(cell))]
     # Counted from 1, text included, as a reader of the notebook counts.
     started = [n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time]

@@ -1,4 +1,4 @@
-"""The study whose results a notebook shows, chosen in one place."""
+"""The study whose results a notebook shows."""
 
 import os
 from pathlib import Path

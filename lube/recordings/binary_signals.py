@@ -103,8 +103,8 @@ def _channels(path, kind):
 def _netcdf_channels(path):
     if _is_cut_short(path):
         raise DataError(
-            f"{path}: not a complete NetCDF file, truncated or damaged, or of the 64-bit data format "
-            "(CDF-5)"
+            f"{path}: not a complete NetCDF file, truncated or damaged, or of the 64-bit data "
+            "format (CDF-5)"
         )
     with netCDF4.Dataset(path) as file:
         file.set_always_mask(False)

@@ -1,4 +1,4 @@
-"""Write a file beside its final path, then move it there: readers find a whole file or none."""
+"""Write a file beside its final path, then move it there: readers find a complete file or none."""
 
 import contextlib
 import glob
