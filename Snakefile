@@ -40,7 +40,7 @@ rule areal_contact:
 
 
 rule patch_contact:
-    """Squares of that surface pressed against a flat."""
+    """Squares of the isotropic surface pressed against a flat."""
     input:
         products(made_by("patch_contact", FIGURES)),
     message:
@@ -48,15 +48,15 @@ rule patch_contact:
 
 
 rule computed:
-    """Computed films, and what they do to contact."""
+    """Computed films, and contact under them."""
     input:
         products(made_by("computed", FIGURES)),
     message:
-        f"Done: the computed films, what they do to contact, and their figures are in {RESULTS}"
+        f"Done: the computed films, contact under them, and their figures are in {RESULTS}"
 
 
 rule rough_passage:
-    """Rough lines that pass through the contact, by Reynolds' equation with time."""
+    """Rough lines that pass through the contact, by the transient Reynolds equation."""
     input:
         products(made_by("rough_passage", FIGURES)),
     message:

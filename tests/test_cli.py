@@ -15,7 +15,7 @@ def test_what_is_missing_or_no_archive_is_refused_in_one_line(files, tmp_path, m
     monkeypatch.chdir(tmp_path)
     for arguments, expected in (
         (["verify", "gone"], "Error: gone: no such archive"),
-        (["verify", str(files / "film.nc")], "neither a folder nor a whole zip"),
+        (["verify", str(files / "film.nc")], "neither a folder nor a complete zip"),
         (["explain", "gone/contact.nc"], "Error: gone/contact.nc: no such file"),
     ):
         assert main(arguments) == 2

@@ -52,7 +52,8 @@ def make_archive(study: Study, path: File, results: File, figures: list[str], fo
     figures : list of str
         Figures to include.
     folder : str or Path
-        The archive; its zip goes beside it. An older one is replaced when the new one is whole.
+        The archive; its zip is written beside it. An older archive is replaced when the new one is
+        complete.
 
     Raises
     ------

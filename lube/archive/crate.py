@@ -67,7 +67,7 @@ def crate_metadata(study: Study, files: dict[str, int]) -> str:
     if about.doi:
         crate.root_dataset["identifier"] = f"https://doi.org/{about.doi}"
     for folder, paths in groupby(sorted(files, key=_folder_of), _folder_of):
-        # The code is described as a whole.
+        # The code has one description for its folder.
         listed = () if folder == "code" else sorted(paths)
         described = [crate.add(_file(crate, path, files[path])) for path in listed]
         if folder:

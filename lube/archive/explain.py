@@ -1,7 +1,7 @@
 """Trace a number of contact.nc to what determines it, and compute it again to the last bit.
 
-The file states the values of the study that determine it. With the film table beside it they
-suffice to draw the roughness again and run the contact model on it.
+The file states the values of the study that determine it. Together with the film table in the same
+folder they suffice to draw the roughness again and run the contact model on it.
 """
 
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class Explanation:
     film : xarray.Dataset
         The film table at the operating point.
     values : dict
-        The study's values that determine it, by stage, in SI units (but rpm and degC).
+        The study's values that determine it, by stage, in SI units (except rpm and degC).
     again : xarray.Dataset
         The same operating point, computed again.
     """
@@ -118,7 +118,8 @@ def _operating_point(contact, path, levels):
     """Select one operating point; all dimensions are kept."""
     unknown = sorted(set(levels) - set(CONTACT_DIMS))
     if unknown:
-        raise DataError(f"{path}: got {unknown[0]}, need names among {', '.join(CONTACT_DIMS)}")
+        known = ", ".join(CONTACT_DIMS)
+        raise DataError(f"{path}: got {unknown[0]}, need coordinates of the file: {known}")
     chosen = {name: [_level(contact[name], path, levels.get(name))] for name in CONTACT_DIMS}
     return contact.isel(chosen)
 

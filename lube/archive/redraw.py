@@ -20,7 +20,7 @@ def redraw(folder: File, target: File, figures: list[str]) -> Iterator[tuple[str
     target : str or Path
         Folder for the new figures, outside the archive.
     figures : list of str
-        Which figures, such as ``fig02_film``; all if none is named.
+        Names of the figures, such as ``fig02_film``; all figures if the list is empty.
 
     Yields
     ------

@@ -41,7 +41,7 @@ def unpacked(path: File) -> Iterator[Path]:
     Raises
     ------
     DataError
-        If it does not exist, is neither, or cannot be unpacked.
+        If it does not exist, is neither a folder nor a zip, or cannot be unpacked.
     """
     path = Path(path)
     if not path.exists():
@@ -53,8 +53,8 @@ def unpacked(path: File) -> Iterator[Path]:
         try:
             shutil.unpack_archive(path, scratch, "zip")
         except (OSError, zipfile.BadZipFile, zlib.error) as error:
-            raise DataError(f"{path}: neither a folder nor a whole zip ({error})") from None
-        # It may have been packed with its folder or without.
+            raise DataError(f"{path}: neither a folder nor a complete zip ({error})") from None
+        # The zip may have been packed with the archive's folder or without it.
         roots = sorted(Path(scratch).rglob(SUMS), key=lambda sums: len(sums.parts))
         if not roots:
             raise DataError(f"{path}: not an archive: {SUMS} is missing")
@@ -110,7 +110,7 @@ def _wrong_sums(folder):
 
 
 def _wrong_datasets(folder):
-    """Check that the study can be read and that every dataset is whole and of this study."""
+    """Check that the study can be read and that every dataset is complete and of this study."""
     text = (folder / VALUES).read_text(encoding="utf-8")
     study_file = json.loads(text)["study_file"]
     try:

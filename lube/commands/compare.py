@@ -109,7 +109,7 @@ def _read(path):
         return xr.load_dataset(path, engine="netcdf4")
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         reason = (str(error) or type(error).__name__).splitlines()[0]
-        raise DataError(f"{path}: not a whole NetCDF file ({reason})") from None
+        raise DataError(f"{path}: not a complete NetCDF file ({reason})") from None
 
 
 def _at_common_labels(one, other, dim):

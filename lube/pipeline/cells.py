@@ -100,8 +100,8 @@ def parameters_of(notebook: File) -> dict[str, Any]:
     Returns
     -------
     dict
-        From name to value if that is a single text or number, to the last name if it is a path
-        such as ``study / "film.nc"``, else to None.
+        From the variable's name to its value. A single text or number is kept; of a path such as
+        ``study / "film.nc"`` the last name is kept; any other value becomes None.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def parameters_of(notebook: File) -> dict[str, Any]:
     """
     tagged = [cell for cell in cells_of(notebook) if "parameters" in cell["tags"]]
     if not tagged:
-        raise LubeError(f"{notebook}: no cell is tagged 'parameters', need one with the paths")
+        raise LubeError(f"{notebook}: no cell is tagged 'parameters', need one with the datasets")
     found = {}
     for node in ast.parse(python_of(tagged[0], notebook)).body:
         if isinstance(node, ast.Assign | ast.AnnAssign):
@@ -141,7 +141,7 @@ def datasets_of(notebook: File) -> dict[str, str]:
     Returns
     -------
     dict
-        From parameter to kind: ``film`` for any path that ends in ``film.nc``.
+        From each parameter to its kind of dataset: ``film`` for any path that ends in ``film.nc``.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The study that Snakemake is asked for: by its options, or by the workflow that uses this one."""
+"""The study that a Snakemake command asks for, or another workflow that uses this one."""
 
 import argparse
 import json
@@ -48,7 +48,7 @@ def check_command_line(arguments: Sequence[str]) -> None:
 
 
 def _check_targets(words):
-    """Refuse a study in the place of a target; results, such as ``study.yaml``, are targets."""
+    """Refuse a study given as a target; results, such as ``study.yaml``, are targets."""
     for before, word in pairwise(["", *words]):
         is_target = word.endswith((".yaml", ".yml")) and not before.startswith("--")
         if is_target and "results" not in Path(word).parts:
@@ -103,7 +103,7 @@ def changes_of(entries: Sequence[str]) -> dict[str, Any]:
         _check_entry(entry)
         key, _, value = entry.partition("=")
         changes[key] = value or None
-        with suppress(yaml.YAMLError):  # what is no YAML is text
+        with suppress(yaml.YAMLError):  # a value that is not YAML is text
             changes[key] = yaml.load(value, Loader=yaml.BaseLoader) or None
     return changes
 
@@ -158,7 +158,7 @@ def same_study(path: str, changes: dict) -> list[str]:
 
 
 def study_of_module(config: dict) -> tuple[Study, dict[str, Any]]:
-    """Load the study that another workflow asks for, of which this one is a module.
+    """Load the study that another workflow asks for when it uses this one as a module.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def study_of_module(config: dict) -> tuple[Study, dict[str, Any]]:
 
 
 def _checked(path, changes):
-    """Load a study; check also what takes longer and is left out at the start of each job."""
+    """Load a study; also make the slow checks, which the start of each job leaves out."""
     path = os.path.relpath(path)
     study = load_study(path, changes)
     for record in study.lubricants:

@@ -10,9 +10,9 @@ AVX512 = "X86_V4 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AV
 def compute_alike() -> None:
     """Make NumPy do without its functions for AVX-512, here and in processes started from here.
 
-    They round the last digits differently from those for other processors. It takes effect where
-    NumPy has not been imported yet, so this module and `lube.cli` import nothing that imports it; a
-    value set by the user is kept.
+    These functions round the last digits differently from NumPy's functions for other processors.
+    The setting takes effect only before NumPy is imported, so this module and `lube.cli` import
+    nothing that imports NumPy. A value set by the user is kept.
     """
     os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", AVX512)
 

@@ -1,4 +1,4 @@
-"""The figures of a study, from their notebooks' cells: what each needs and what it says."""
+"""The figures of a study, from the cells of their notebooks: datasets, tags and captions."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ FURTHER = "further-figures"
 """Chapter of a notebook that names none."""
 
 NO_FIGURE = "no-figure"
-"""Tag of a notebook that is none of the study's figures."""
+"""Tag of a notebook that is not a figure of the study."""
 
 _SHOWS = {
     "gaussian-lines": lambda study: study.is_sampled,
@@ -41,7 +41,7 @@ class Figure:
         Files of the lube package that its cells and the script ``figure.py`` depend on, from the
         working folder.
     title, text : str
-        Heading of its first cell, or else its name; and the text below. In Markdown.
+        Heading of the first cell, or else the figure's name; and the text below it, in Markdown.
     tags : list of str
         Tags of all cells.
     """
@@ -56,7 +56,7 @@ class Figure:
 
     @property
     def target(self) -> str:
-        """Target of Snakemake that makes it: ``all``, or that of a dataset made on request only."""
+        """Target of Snakemake that makes it: ``all``, or the target that makes its dataset."""
         return next((ON_REQUEST[name] for name in self.datasets if name in ON_REQUEST), "all")
 
     @property
@@ -76,11 +76,10 @@ class Figure:
         Returns
         -------
         bool
-            False if a tag such as ``several-force`` or ``several-lubricant`` asks for several
-            where the study has one, the tag ``gaussian-lines`` for Gaussian lines as drawn where
-            it has others, the tag ``flat-film`` for contact that depends on the film thickness and
-            the width alone, the tag ``ensemble`` for several pairs where it has one measured pair,
-            or a dataset for what the study lacks.
+            False if the study lacks a dataset of the figure, or what a tag asks for: several levels
+            or oils (``several-force``, ``several-lubricant``), Gaussian lines that can be sampled
+            (``gaussian-lines``), contact that depends only on film thickness and contact width
+            (``flat-film``), or several pairs of lines (``ensemble``).
         """
         if not all(study.has(name) for name in self.datasets):
             return False
@@ -136,7 +135,7 @@ def made_by(target: str, figures: dict[str, Figure]) -> list[str]:
 
 
 def made_on_request(figures: dict[str, Figure], folder: File, words: Iterable[str]) -> list[str]:
-    """List the figures made on request that are there, or that the same run makes.
+    """List the figures made on request that exist, or that the same run makes.
 
     A picture stays where a job fails or is repeated, so the list is the same in every process of a
     run. Measured times are left out: they are not results of the study.

@@ -32,7 +32,7 @@ def paths_for(notebook: File, datasets: Files) -> dict[str, str]:
     notebook : str or Path
         The notebook.
     datasets : iterable of str or Path
-        Datasets, each to replace the one of its kind that the parameters cell names.
+        Datasets, each for the parameter whose path names the same kind of dataset.
 
     Returns
     -------
@@ -42,7 +42,7 @@ def paths_for(notebook: File, datasets: Files) -> dict[str, str]:
     Raises
     ------
     LubeError
-        If there is no file of a kind that it names.
+        If a dataset that the notebook names is not among them.
     """
     paths = {Path(path).stem: str(path) for path in datasets}
     kinds = datasets_of(notebook)
@@ -94,7 +94,7 @@ def _commit_of(path):
         with netCDF4.Dataset(path) as dataset:
             return dataset.code_commit
     except (OSError, AttributeError) as error:
-        raise DataError(f"{path}: not a whole NetCDF file of lube ({error})") from None
+        raise DataError(f"{path}: not a complete NetCDF file of lube ({error})") from None
 
 
 def _last_changes(results, figure):
@@ -116,7 +116,8 @@ def read_origin(figure: str, folder: File) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``datasets`` and ``products``, their SHA-256 sums by kind and by path, and ``drawn_by``.
+        ``datasets``, the SHA-256 sums by kind; ``products``, the SHA-256 sums by path; and
+        ``drawn_by``.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Which jobs share a job of a cluster, by the registry of stages: for ``profiles/slurm``."""
+"""Groups of jobs that run in one cluster job, by the registry of stages, for ``profiles/slurm``."""
 
 from lube.schema import STAGES
 from lube.storage.git import ROOT
@@ -9,8 +9,9 @@ _BATCHED = {name for name, stage in STAGES.items() if stage.in_batches}
 def job_groups() -> dict[str, str]:
     """Assign each rule with a script or a stage to a group, in which its jobs share a cluster job.
 
-    No group depends on itself through another: what the batches need comes before them, what
-    needs them comes after, and the rest neither waits for the batches nor delays them.
+    No group depends on itself through another: the stages that the batches need come before them,
+    the stages that need the batches come after, and all others neither wait for the batches nor
+    delay them.
 
     Returns
     -------
@@ -25,7 +26,7 @@ def job_groups() -> dict[str, str]:
     for name, stage in STAGES.items():
         if after.intersection(stage.inputs):
             after.add(name)
-    # Rules that are no stages, such as `explorer`, follow the stages.
+    # Rules that are not stages, such as `explorer`, follow the stages.
     scripts = {path.stem for path in ROOT.glob("workflow/scripts/*.py")} - {"stage"}
     groups = dict.fromkeys(scripts, "figures")
     groups |= {name: "figures" if name in after else "beside" for name in STAGES}

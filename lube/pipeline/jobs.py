@@ -91,7 +91,7 @@ def _report(kind, error, traceback):
     elif isinstance(error, KeyboardInterrupt):
         logging.error("Interrupted")
     elif isinstance(error, OSError) and error.errno == errno.ENOSPC:
-        # A compiled kernel, for instance; a result that cannot be written raises a LubeError.
+        # For instance for a compiled kernel; a result that cannot be written raises a LubeError.
         logging.error("Error: %s: no space left on its disk", error.filename or "temporary file")
     else:
         logging.error("Error in the study's own code", exc_info=(kind, error, traceback))

@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 logging.getLogger("papermill.translators").setLevel(logging.ERROR)
 
 _CELL_FAILED = 3
-"""Exit code of the process that executes a notebook; 1 is Python's own, of any other error."""
+"""Exit code of the process if a cell fails; Python itself ends with 1 at any other error."""
 
 _INJECTED = "injected-parameters"
 _ADDED = {_INJECTED, "papermill-error-cell-tag"}
@@ -59,14 +59,14 @@ def execute_notebook(
     output : str or Path
         Path of the executed copy, such as ``fig02_film.ipynb``, written only if all cells
         succeed. It has the notebook's own cells, without the given parameters. If a cell fails,
-        those executed so far are saved beside it as ``fig02_film.failed.ipynb``, which the next
-        success removes, and the traceback goes to the log.
+        the cells executed so far are saved beside it as ``fig02_film.failed.ipynb``, which the
+        next successful execution removes, and the traceback goes to the log.
     parameters : dict
         Values for the names in the cell tagged ``parameters``.
     drawn_by : str
         What the figure's stamp says of notebook and code, from `lube.pipeline.stamps.drawn_by`.
     code : str or Path, optional
-        Folder that holds the package ``lube`` for the notebook; if not given, this one is used.
+        Folder with the package ``lube`` for the notebook; by default the running package.
 
     Raises
     ------
@@ -187,7 +187,7 @@ def _add_output(cell, output):
 
 
 def _failure(executed, exit_code):
-    """Say in one line which cell fails, where and why; log the whole traceback."""
+    """Say in one line which cell fails, where and why; log the full traceback."""
     cells = [cell for cell in executed.cells if _ADDED.isdisjoint(_tags(cell))]
     # Counted from 1, text included, as a reader of the notebook counts.
     started = [n for n, cell in enumerate(cells, 1) if cell.metadata.papermill.start_time]
@@ -197,13 +197,13 @@ def _failure(executed, exit_code):
     errors = [(n, one) for n, one in outputs if one.output_type == "error"]
     if not errors:
         return f"cell {started[-1]} fails without an error message"
-    # Not always in the cell that ran last: a cell may show an error and go on.
+    # The error is not always in the cell that ran last: a cell may show an error and go on.
     number, error = errors[-1]
     traceback = _COLOUR.sub("", "\n".join(error.traceback))
     for n, cell in enumerate(cells, 1):
         traceback = traceback.replace(f"Cell In[{cell.get('execution_count')}]", f"Cell {n}")
     log.debug("%s", traceback)
-    # The first frame of the error itself, after those of the errors that caused it.
+    # The first frame of the error itself, after the frames of the errors that caused it.
     lines = re.findall(rf"Cell {number}, line (\d+)", _CAUSE.split(traceback)[-1])
     where = f" at line {lines[0]}" if lines else ""
     return f"cell {number} fails{where}: {' '.join(f'{error.ename}: {error.evalue}'.split())}"
@@ -230,7 +230,7 @@ def _check_parameters(notebook, parameters):
 
 
 def _to_keep(executed):
-    """Remove papermill's clock times and random cell names, and the cell of this run's paths.
+    """Remove papermill's clock times and random cell names, and the cell with this run's paths.
 
     Without that cell the copy, opened and run by hand, shows the study in whose folder it lies,
     and writes nothing.

@@ -17,7 +17,7 @@ from snakemake_interface_logger_plugins.registry import LoggerPluginRegistry
 from lube.pipeline.jobs import SILENT
 
 _SAID = (None, LogEvent.JOB_INFO)  # shown until the bar begins; `--quiet progress` has no bar
-_BESIDE = 66  # characters of a line that the bar, the counts and the times take
+_BESIDE = 66  # characters of a line taken by the bar, the counts and the times
 
 
 def progress_bar() -> bool:
@@ -45,13 +45,13 @@ def reason_of_failure(logs: list[str]) -> str:
     Returns
     -------
     str
-        That line, and where the log is.
+        The last line, and the path of the log.
     """
     for log in map(Path, logs):
         lines = log.read_text("utf-8", "replace").split("\n") if log.exists() else []
         if said := [line for line in lines if line.strip()]:
-            return f"{said[-1]}\n  its whole log: {log}"
-    return "it ended without a word in its log"
+            return f"{said[-1]}\n  full log: {log}"
+    return "it left no message in its log"
 
 
 class LogHandler(LogHandlerBase):

@@ -1,4 +1,4 @@
-"""The study whose results a notebook shows, chosen in one place."""
+"""The study whose results a notebook shows."""
 
 import os
 from pathlib import Path
@@ -29,8 +29,9 @@ def results_folder(study: File | None = None, default: str = "paper") -> Path:
     -------
     Path
         Folder of the study's datasets, absolute. A study's name is looked for in the folder
-        ``results`` of the working folder, of those above it, and of the repository. In a notebook
-        that the workflow executes, it has no meaning, because the workflow gives the datasets.
+        ``results`` of the working folder, of the folders above it, and of the repository. In a
+        notebook that the workflow executes, the folder has no meaning, because the workflow gives
+        the datasets.
 
     Raises
     ------
@@ -67,5 +68,5 @@ def _missing(study, here):
     if near := nearest(study, there):
         return f"{came}, did you mean {near!r}?"
     if there:
-        return f"{came}, need one with results: {', '.join(there)}; {CHOSEN} chooses it"
+        return f"{came}, need a study with results: {', '.join(there)}; {CHOSEN} chooses it"
     return f"{came}, which has no results yet: run snakemake first"

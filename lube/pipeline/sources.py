@@ -14,9 +14,9 @@ from lube.storage.git import ROOT
 from lube.types import File
 
 _PACKAGES = {"lube", "lube.stages"}
-"""Packages with names from other modules."""
+"""Packages that offer names defined in other modules."""
 _BY_VALUE = {"lube.study.study", "lube.schema.stages"}
-"""Modules that reach a stage by the values they give it, which are parameters of its rule."""
+"""Modules that affect a stage only by the values they give it, which are parameters of its rule."""
 
 
 def from_here(name: File) -> str:
@@ -32,7 +32,7 @@ def from_here(name: File) -> str:
     Returns
     -------
     str
-        The path, relative, so that the repository can be moved with what it has made.
+        The relative path, so that the repository can be moved together with its results.
     """
     return os.path.relpath(ROOT / name)
 
@@ -70,7 +70,7 @@ def imported_modules(code: str) -> tuple[str, ...]:
                 found += [known[name] for name in names if name in known]
         elif isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
-            for package in _PACKAGES.intersection(names):  # any may be used
+            for package in _PACKAGES.intersection(names):  # any of its names may be used
                 found += homes(package).values()
             found += names
     return tuple(found)

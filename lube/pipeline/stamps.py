@@ -38,7 +38,7 @@ def stamp(datasets: list[xr.Dataset]) -> str:
         If there is no dataset, or as from `merged_config`.
     """
     if not datasets:
-        raise DataError("a figure needs the datasets that it shows, as loaded: got none")
+        raise DataError("got no dataset, a figure needs the loaded datasets that it shows")
     studies = {}
     for dataset in datasets:
         studies.setdefault(dataset.attrs.get("study"), []).append(dataset)
@@ -68,9 +68,9 @@ def drawn_by(commits: Iterable[str], code: list[str], notebook: File | None = No
     Returns
     -------
     str
-        Such as ``drawn at commit 0123456789 · changed notebook``: the current commit, if another,
-        and what differs from it. Empty if notebook and code are as in one of the commits, or if
-        this is unknown, as in an unpacked archive.
+        Such as ``drawn at commit 0123456789 · changed notebook``: the current commit, if it is not
+        among them, and what differs from it. Empty if notebook and code are as in one of the
+        commits, or if this is unknown, as in an unpacked archive.
     """
     head = commit().partition("+")[0]
     made_at = {name.partition("+")[0] for name in commits}

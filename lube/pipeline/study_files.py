@@ -41,7 +41,7 @@ def input_paths(files: Files) -> list[str]:
     Returns
     -------
     list of str
-        Their paths, sorted, each once.
+        Their paths, sorted, without repetition.
 
     Raises
     ------
@@ -128,7 +128,7 @@ class StudyFiles:
         return {name: self.result(f"{name}.nc") for name in self.study.inputs_of(stage)}
 
     def stage_inputs(self, *stages: str) -> str:
-        """Return a fingerprint of all that a job takes from the study itself.
+        """Return a fingerprint of the values that a job takes from the study itself.
 
         Parameters
         ----------
@@ -138,11 +138,11 @@ class StudyFiles:
         Returns
         -------
         str
-            Of the values that the stages use, and of what a file says about its creators.
+            The fingerprint of the values that the stages use, and of the creators that files name.
         """
         names = set(stages)
         for name in (name for stage in stages for name in STAGES[stage].same_values):
-            # The job does not read their files, so the values of their forerunners count too.
+            # The job does not read these stages' files, so their forerunners' values count too.
             names |= {*forerunners(name), name}
         values = [self.study.stage_inputs(name) for name in STAGES if name in names]
         own = (name for stage in stages for name in STAGES[stage].parameters)
@@ -209,7 +209,7 @@ class StudyFiles:
 
     @one_line_errors()
     def check_targets(self, targets: Iterable[str]) -> None:
-        """End Snakemake with one line if it is asked for what the study lacks.
+        """End Snakemake with one line if it is asked for something that the study lacks.
 
         Parameters
         ----------
@@ -233,7 +233,7 @@ class StudyFiles:
     def refused_records(self) -> str | None:
         """Say in one line which records were refused, and why; None if none was.
 
-        Simulated ones are refused where the film is not known.
+        Simulated records are refused where the film is unknown.
         """
         experiment = Path(self.result("experiment.nc"))
         if not experiment.exists():
@@ -241,6 +241,6 @@ class StudyFiles:
         from lube.inference.study_shares import refused_in_one_line
         from lube.storage.netcdf import load
 
-        with contextlib.suppress(LubeError):  # of an older version, not made by this run
+        with contextlib.suppress(LubeError):  # a file of an older version, not made by this run
             return refused_in_one_line(load(experiment, "experiment"))
         return None

@@ -95,7 +95,7 @@ def _channels(path, kind):
     except Exception as error:  # the libraries raise many kinds for a damaged file
         reason = f"{type(error).__name__}: {error}"
         raise DataError(
-            f"{path}: not a whole {kind} file, truncated, damaged or of another kind ({reason})"
+            f"{path}: not a complete {kind} file, truncated, damaged or of another kind ({reason})"
         ) from error
 
 
@@ -103,8 +103,8 @@ def _channels(path, kind):
 def _netcdf_channels(path):
     if _is_cut_short(path):
         raise DataError(
-            f"{path}: not a whole NetCDF file, truncated or damaged, or of the 64-bit data format "
-            "(CDF-5)"
+            f"{path}: not a complete NetCDF file, truncated or damaged, or of the 64-bit data "
+            "format (CDF-5)"
         )
     with netCDF4.Dataset(path) as file:
         file.set_always_mask(False)
@@ -142,7 +142,7 @@ def _netcdf_channel(variable, attributes):
 def _tdms_channels(path):
     with TdmsFile.open(path) as file:
         if file.file_status.incomplete_final_segment:
-            raise DataError(f"{path}: not a whole TDMS file, truncated within its last segment")
+            raise DataError(f"{path}: not a complete TDMS file, truncated within its last segment")
         yield [
             _tdms_channel(group.name, channel)
             for group in file.groups()

@@ -18,13 +18,13 @@ from lube.errors import DataError, shown
 from lube.recordings.signals import Channel, Signal, find_signals, header_cell
 from lube.study.small_csv import delimiter_of, split_cells
 
-_NUMBER = re.compile(r"[+-]?([.,]?\d|nan\b|inf\b)", re.IGNORECASE)  # how a number begins
+_NUMBER = re.compile(r"[+-]?([.,]?\d|nan\b|inf\b)", re.IGNORECASE)  # the beginning of a number
 
 MOST_LINES = 200
-"""Lines among which the line of column names is looked for."""
+"""Number of first lines that are searched for the line of column names."""
 
 PIECE_BYTES = 2**20
-"""Bytes parsed at a time on each core; a decimal comma is looked for in the first of them."""
+"""Bytes parsed at a time on each core; the first of these pieces shows if decimals have commas."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class TextSignal:
         return f"line {number}"
 
     def may_begin_with(self, row: str) -> bool:
-        """Whether a line has as many cells as there are columns, with numbers in those read."""
+        """Whether a line has as many cells as columns, with numbers in those that are read."""
         cells = split_cells(row, self.delimiter)
         numbers = (_NUMBER.match(cells[signal.index]) for signal in self.signals)
         return len(cells) == self.width and all(numbers)
@@ -170,7 +170,7 @@ def open_text(
     unit : str, optional
         Its unit; overrides the one in the file.
     skip : int, optional
-        Number of lines before the line of column names; without it that line is looked for.
+        Number of lines before the line of column names; without it the line is searched for.
 
     Returns
     -------

@@ -25,7 +25,7 @@ _KIND_OF_SUFFIX = (
 _KIND_OF_MARK = {b"\x89HDF": "NetCDF", b"CDF": "NetCDF", b"TDSm": "TDMS"}
 
 _FIRST_STEPS = 1000  # time steps whose median is the sampling interval
-_AGREEMENT = 0.01  # relative; the interval given and that of the file may differ by rounding
+_AGREEMENT = 0.01  # relative; the given interval may differ from the file's by rounding
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def open_recording(
     elif skip is None:
         signal = open_binary(path, kind, channel, unit)
     else:
-        raise DataError(f"{path}: skip: got {skip} lines of a {kind} file, need none but of text")
+        raise DataError(f"{path}: skip: got {skip} for {kind}, need none: only text has lines")
     *times, measured = signal.signals
     signal = replace(signal, signals=[*times, _before_amplifier(path, measured, gain, offset)])
     head = next(signal.parts(), None)
@@ -204,7 +204,7 @@ def _offset(offset, quantity):
 def _interval_of(path, signal, times):
     """Median of the first positive time steps, s."""
     if times.size == 1:
-        raise DataError(f"{path}: got a single sample, need two or more to know the time between")
+        raise DataError(f"{path}: got a single sample, need two or more for a sampling interval")
     steps = np.diff(times[: _FIRST_STEPS + 1])
     rising = steps[(steps > 0.0) & np.isfinite(steps)]
     if not rising.size:

@@ -16,7 +16,7 @@ from lube.errors import DataError, located, shown
 from lube.units import ELECTRICAL, convert, converts, electrical_quantity, usual_spelling
 
 UNITS = {"time": "s"} | ELECTRICAL
-"""Quantities of a recording, and the unit each is converted to."""
+"""Quantities of a recording, each with the unit to which it is converted."""
 
 _ENDINGS = {
     "time": ("time", "zeit"),
@@ -207,7 +207,7 @@ def _listed(channels):
 
 
 def _quantity_of_name(channel):
-    # Words in any case, compounds too; symbols as they are, since T is a temperature.
+    # Words match in any case, compounds too; symbols only in their case, since T is a temperature.
     words = re.split(r"[\W_\d]+", channel.name)
     for quantity, endings in _ENDINGS.items():
         if any(word.casefold().endswith(endings) for word in words):

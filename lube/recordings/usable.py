@@ -11,7 +11,7 @@ from lube.study.lubricant_record import check_temperatures
 from lube.study.study import Study
 
 SATURATED = 0.001
-"""Share of samples at the amplifier's limits from which a record is refused."""
+"""Largest part of the samples that may lie at the amplifier's limits."""
 
 
 def lubricant_of(entry: Entry, study: Study) -> str:
@@ -32,8 +32,9 @@ def lubricant_of(entry: Entry, study: Study) -> str:
     Raises
     ------
     DataError
-        If the study has no such lubricant, it is not valid at the temperature, the contact at the
-        force is too narrow or too wide, or the study's model does not hold at the slip.
+        If the study has no such lubricant, the lubricant's data do not cover the temperature, the
+        contact at the force is too narrow or too wide, or the study's model does not hold at the
+        slip.
     """
     lubricants = {record.name: record for record in study.lubricants}
     name = entry.lubricant or study.lubricants[0].name

@@ -1,4 +1,4 @@
-"""Write a file beside its final path, then move it there: readers find a whole file or none."""
+"""Write a file beside its final path, then move it there: readers find a complete file or none."""
 
 import contextlib
 import glob
@@ -11,7 +11,7 @@ from lube.errors import DataError
 from lube.types import File
 
 _FULL = 0.5
-"""Free space below which a disk counts as full, MiB; the NetCDF library gives no reason."""
+"""Free space below which a disk counts as full, MiB, since the NetCDF library gives no reason."""
 
 
 @contextlib.contextmanager

@@ -9,7 +9,7 @@ from subprocess import DEVNULL, CalledProcessError, check_output
 ROOT = Path(__file__).parents[2]
 """Folder of the Snakefile, if the code runs from a clone or an unpacked archive."""
 
-# Named one by one, since the user's own studies, records and notes may lie beside them.
+# The files are named one by one, since the user's studies, records and notes may lie beside them.
 _CODE = """
 Snakefile pyproject.toml LICENSE CITATION.cff README.md CHANGELOG.md CONTRIBUTING.md
 docs/**/* lube/**/* notebooks/*.ipynb benchmarks/*.py profiles/*/config.yaml

@@ -8,7 +8,7 @@ import logging
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import netCDF4  # noqa: F401  (if it is missing, say so on import, not when the first file is read)
+import netCDF4  # noqa: F401  (so that a missing library shows on import, not at the first file)
 import numpy as np
 import xarray as xr
 
@@ -92,7 +92,7 @@ def load(path: File, kind: str, study: "Study | None" = None) -> xr.Dataset:
     except (OSError, RuntimeError, ValueError, AttributeError) as error:
         reason = (str(error) or type(error).__name__).splitlines()[0]
         raise DataError(
-            f"{path}: not a whole NetCDF file, truncated, damaged or of another kind ({reason})"
+            f"{path}: not a complete NetCDF file, truncated, damaged or of another kind ({reason})"
         ) from error
 
 

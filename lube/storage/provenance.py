@@ -30,7 +30,7 @@ LIBRARIES = ("numpy", "scipy", "numba", "CoolProp", "xarray", "netCDF4")
 SHORT = 10
 """Digits of a fingerprint where people read it."""
 REMEDY = "; delete it and run snakemake again"
-"""What to do about a result that does not belong to the study, at the end of the message."""
+"""End of a message about a result that does not belong to the study: what to do."""
 
 
 def global_attributes(study: "Study", kind: str, inputs: Files = ()) -> dict[str, Any]:
@@ -151,7 +151,7 @@ def check_config(dataset: xr.Dataset, study: "Study", kind: str, where: File) ->
 
 
 def merged_config(datasets: Iterable[xr.Dataset]) -> str:
-    """Values that determine several files of one study together, as JSON.
+    """Values that together determine several files of one study, as JSON.
 
     Parameters
     ----------

@@ -126,7 +126,7 @@ def test_a_corrected_film_is_explained_by_its_factors(study, tmp_path):
         (POINT | {"force": 700.0}, "force: got 700.0, need one of 800, 1600"),
         (POINT | {"film_formula": "nope"}, "film_formula: got nope, need one of paper, pan-h"),
         ({"force": 800.0}, "temperature: missing, need one of 40, 80"),
-        (POINT | {"colour": 1}, "got colour, need names among slide_to_roll_ratio, "),
+        (POINT | {"colour": 1}, "got colour, need coordinates of the file: slide_to_roll_ratio, "),
         (POINT | {"realisation": 9}, "realisation: got 9, need 0 to 8"),
     ],
 )

@@ -71,7 +71,7 @@ def test_a_dataset_of_another_kind_or_damaged_is_found(changed):
     wrong = verified_with_new_sums(changed)
     for expected in (
         "data/lubricant.nc: not a lubricant file",
-        "data/trace.nc: not a whole NetCDF file",
+        "data/trace.nc: not a complete NetCDF file",
         "data/rig.nc: no such file",
     ):
         assert any(line.startswith(expected) for line in wrong)
@@ -176,7 +176,7 @@ def test_a_damaged_zip_is_found(archive, tmp_path):
         position = member.header_offset + 100 + member.compress_size // 2  # behind its header
         path.write_bytes(packed[:position] + bytes([packed[position] ^ 4]) + packed[position + 1 :])
         with (
-            pytest.raises(DataError, match=r"damaged.zip: neither a folder nor a whole zip"),
+            pytest.raises(DataError, match=r"damaged.zip: neither a folder nor a complete zip"),
             unpacked(path),
         ):
             pass

@@ -190,7 +190,7 @@ def test_what_cannot_be_compared_is_refused_in_one_line(results, tmp_path):
     xr.Dataset({"other": 1.0}).to_netcdf(tmp_path / "other.nc")
     for other, expected in (
         (results, "need two folders or two datasets"),
-        (tmp_path / "damaged.nc", "damaged.nc: not a whole NetCDF file"),
+        (tmp_path / "damaged.nc", "damaged.nc: not a complete NetCDF file"),
         (tmp_path / "other.nc", "no variable in common"),
     ):
         assert expected in one_line(DataError, list, compare_results(file, other))

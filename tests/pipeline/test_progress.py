@@ -16,9 +16,9 @@ from lube.pipeline.progress import LogHandler, progress_bar, reason_of_failure
 
 def test_the_reason_is_the_last_line_of_the_log(tmp_path):
     log = tmp_path / "film.log"
-    assert reason_of_failure([str(log)]) == "it ended without a word in its log"
+    assert reason_of_failure([str(log)]) == "it left no message in its log"
     log.write_text("Traceback\nError: oil.yaml: no source\n\n")
-    assert reason_of_failure([str(log)]) == f"Error: oil.yaml: no source\n  its whole log: {log}"
+    assert reason_of_failure([str(log)]) == f"Error: oil.yaml: no source\n  full log: {log}"
 
 
 def test_a_log_has_no_bar_and_a_terminal_has_one(monkeypatch):

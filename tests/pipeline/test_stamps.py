@@ -45,7 +45,7 @@ def test_files_of_two_studies_are_drawn_together_only_if_they_have_different_nam
 def test_a_figure_needs_datasets_of_known_origin():
     with pytest.raises(DataError, match="attribute 'config' is missing or damaged, so its origin"):
         stamp([xr.Dataset()])
-    with pytest.raises(DataError, match="needs the datasets that it shows, as loaded: got none"):
+    with pytest.raises(DataError, match="needs the loaded datasets that it shows"):
         stamp([])
 
 

@@ -80,7 +80,7 @@ def test_truncated_netcdf_files_are_not_read_as_zeros(tmp_path, format):
         content = path.read_bytes()
         for length in (30, 200, len(content) // 2, len(content) - 9, len(content) - 1):
             path.write_bytes(content[:length])
-            assert refusal(path).startswith("not a whole NetCDF file, truncated")
+            assert refusal(path).startswith("not a complete NetCDF file, truncated")
 
 
 def test_truncated_tdms_files_are_refused(tmp_path):
@@ -88,7 +88,7 @@ def test_truncated_tdms_files_are_refused(tmp_path):
     content = path.read_bytes()
     for share in (0.3, 0.9, 0.999):
         path.write_bytes(content[: int(share * len(content))])
-        assert refusal(path).startswith("not a whole TDMS file, truncated")
+        assert refusal(path).startswith("not a complete TDMS file, truncated")
 
 
 def test_the_64_bit_data_format_is_refused(tmp_path):
@@ -290,4 +290,4 @@ def test_the_line_of_a_fault_is_named_wherever_pieces_end(tmp_path_factory, row,
 
 def test_lines_are_skipped_in_text_alone(tmp_path):
     path = write_tdms(tmp_path / "r.tdms", VOLTS)
-    assert refusal(path, skip=2) == "skip: got 2 lines of a TDMS file, need none but of text"
+    assert refusal(path, skip=2) == "skip: got 2 for TDMS, need none: only text has lines"

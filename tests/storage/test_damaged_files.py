@@ -27,18 +27,18 @@ def test_a_truncated_file_is_refused(files, tmp_path):
         path = tmp_path / f"{kind}.nc"
         for length in (0, 7, len(whole) // 100, len(whole) // 2, len(whole) - 1):
             path.write_bytes(whole[:length])
-            assert "not a whole NetCDF file" in refusal(path, kind)
+            assert "not a complete NetCDF file" in refusal(path, kind)
 
 
 def test_foreign_files_are_refused(tmp_path):
     path = tmp_path / "film.nc"
     path.write_bytes(b"force,speed\n800,100\n")
-    assert "not a whole NetCDF file" in refusal(path, "film")
+    assert "not a complete NetCDF file" in refusal(path, "film")
     xr.Dataset({"sea_surface_temperature": ("time", [1.0, 2.0])}).to_netcdf(path)
     assert "not a film file" in refusal(path, "film")
     time = ("time", [0.0, 1.0], {"units": "days since yesterday"})
     xr.Dataset(coords={"time": time}).to_netcdf(path)
-    assert "not a whole NetCDF file" in refusal(path, "film")
+    assert "not a complete NetCDF file" in refusal(path, "film")
 
 
 def test_a_file_of_another_kind_is_refused(files):

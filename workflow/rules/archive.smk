@@ -3,7 +3,7 @@ from lube.storage.git import changed_code, commit, commit_date
 
 
 rule archive:
-    """The archive of the study, to publish with a paper."""
+    """The archive of the study, to be published with a paper."""
     input:
         written=lambda wildcards: archived_texts(FILES),
         datasets=[result(f"{kind}.nc") for kind in KINDS],
@@ -13,7 +13,7 @@ rule archive:
         # An old archive stays until the new one is complete.
         zip=update(result(f"archive/{STUDY.name}.zip")),
         sums=update(result(f"archive/{STUDY.name}/SHA256SUMS")),
-        # Snakemake removes this one before the job: without it an old archive is not up to date.
+        # Snakemake removes this file before the job, and without it an old archive is out of date.
         zip_sum=result(f"archive/{STUDY.name}.zip.sha256"),
     log:
         result("logs/archive.log"),
@@ -32,7 +32,7 @@ rule archive:
 rule verify:
     """Check the archive as it is."""
 
-    # Without inputs: it checks the archive as it is. Without outputs: it is repeated each time.
+    # It has no inputs, so the archive is checked as it is, and no outputs, so it runs each time.
     log:
         result("logs/verify.log"),
     params:

@@ -15,7 +15,7 @@ from lube.pipeline.environment import compute_alike, use_package
 from lube.pipeline.sources import from_here, script_sources, stage_sources
 from lube.pipeline.study_files import StudyFiles, digest, one_line_errors
 
-# For all jobs.
+# The environment of all jobs.
 use_package(ROOT)
 compute_alike()
 
@@ -26,7 +26,7 @@ with one_line_errors():
     else:
         STUDY, SOURCE = study_of_command(workflow.configfiles, workflow.config_settings.config)
 
-# For the scripts and the report. The dictionary of another Snakefile stays as it is.
+# The scripts and the report use it. The dictionary of another Snakefile stays unchanged.
 config = {**config, "study": SOURCE | STUDY.readings}
 FILES = StudyFiles(STUDY, **SOURCE)
 RESULTS = FILES.folder
@@ -34,7 +34,7 @@ result = FILES.result
 
 
 onstart:
-    # In a folder that cannot be written Snakemake itself ends in a traceback.
+    # Snakemake itself ends in a traceback if it cannot write to the folder.
     with one_line_errors():
         check_writable(RESULTS)
 

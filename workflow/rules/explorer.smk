@@ -2,7 +2,7 @@ from lube.explorer import EXPLORED
 
 
 rule explorer:
-    """A page on which to move over the operating points."""
+    """A page that shows any operating point of the study."""
     input:
         **{kind: result(f"{kind}.nc") for kind in EXPLORED if STUDY.has(kind)},
         sources=script_sources("explorer"),
@@ -13,6 +13,6 @@ rule explorer:
     benchmark:
         result("benchmarks/explorer.tsv")
     message:
-        "Explorer: a page on which to move over the operating points"
+        "Explorer: a page that shows any operating point of the study"
     script:
         "../scripts/explorer.py"

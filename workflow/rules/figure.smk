@@ -1,7 +1,7 @@
 rule figure:
     """A figure, drawn by its notebook."""
     input:
-        # Saving a notebook with its outputs must not make the figure again; its cells must.
+        # A saved notebook makes the figure again only if its cells have changed, not its outputs.
         notebook=ancient(from_here("notebooks/{figure}.ipynb")),
         datasets=lambda wildcards: [
             result(f"{kind}.nc") for kind in FIGURES[wildcards.figure].datasets
@@ -12,7 +12,7 @@ rule figure:
         in_report(update(result("figures/{figure}.png"))),
         in_report(update(result("figures/{figure}.pdf"))),
         notebook=update(result("notebooks/{figure}.ipynb")),
-        # Snakemake removes this one before the job: without it the old figure is not up to date.
+        # Snakemake removes this file before the job, and without it the old figure is out of date.
         origin=result("figures/{figure}.json"),
     log:
         result("logs/{figure}.log"),
@@ -29,8 +29,8 @@ rule figure:
 
 
 onerror:
-    # A picture that alone is asked for is not up to date without its origin either: dated 1970, it
-    # is older than the rule's inputs.
+    # A picture without its origin must not count as up to date, even if it is the only target. Dated
+    # 1970, it is older than the rule's inputs.
     for figure in FIGURES:
         if not Path(result(f"figures/{figure}.json")).exists():
             for product in map(Path, products([figure])):

@@ -7,8 +7,8 @@ from lube.pipeline.figure_list import chapters, made_by, made_on_request, study_
 with one_line_errors():
     FIGURES = study_figures(STUDY)
 
-# Others are made on request only, such as `snakemake computed`. Report and archive have those that
-# were made, and keep them up to date; bare `snakemake` leaves them alone.
+# Other figures are made on request only, for example by `snakemake computed`. Report and archive
+# have those that were made, and keep them up to date; bare `snakemake` leaves them alone.
 ALWAYS = made_by("all", FIGURES)
 EXTRA = made_on_request(FIGURES, RESULTS, sys.argv[1:])
 KINDS = {kind for name in EXTRA for kind in FIGURES[name].datasets}
@@ -18,7 +18,7 @@ CHAPTERS = chapters(FIGURES)
 products = FILES.products
 
 if not IS_MODULE:
-    # Snakemake itself reads its targets later.
+    # The targets are checked here because Snakemake reads them later.
     FILES.check_targets(sys.argv[1:])
 
 
@@ -31,7 +31,7 @@ def in_report(path):
         labels=lambda wildcards: {
             "Figure": wildcards.figure.split("_")[0],
             "Shows": plain(FIGURES[wildcards.figure].title),
-            # The report shows the alphabetically first one and offers the other.
+            # The report shows the format that is first in the alphabet and offers the other.
             "Format": "PNG" if path.endswith("png") else "pdf",
         },
     )

@@ -1,13 +1,13 @@
 from lube.report import SUMMARISED
 from lube.pipeline.command_line import PAPER, same_study
 
-# Chapter of the report that holds its pages.
+# Chapter of the report that holds these pages.
 ABOUT_THE_STUDY = "About the study"
 PAGES = {
-    "configuration": "every number, as written and as understood",
+    "configuration": "every value, as written and as understood",
     "assumptions": "what the paper leaves open, and what is used instead",
 }
-# Parts of its start page.
+# Parts of the report's start page.
 PARTS = ("facts", "findings", "limits", "files", "pipeline")
 
 
@@ -45,7 +45,7 @@ rule pages:
 rule times:
     """Run times of all jobs, a page of the report."""
     input:
-        # When all else is done.
+        # All other jobs come first.
         [result(f"{kind}.nc") for kind in STUDY.datasets],
         products(ALWAYS),
         result("explorer.html"),

@@ -11,7 +11,7 @@ for stage in STAGES.values():
                 **FILES.stage_files(stage.name),
                 batches=FILES.batches_of(stage.name) if stage.in_batches else [],
                 written=FILES.written_files(stage.name),
-                # Their values are parameters; another title, which is none, makes nothing again.
+                # Their values are parameters. A title is not a parameter, so a new one makes nothing again.
                 records=ancient(FILES.record_files()),
                 sources=stage_sources(stage.name),
             output:
@@ -55,7 +55,7 @@ for stage in STAGES.values():
             shell:
                 "{params.python:q} {input.script} {input.study:q} {output} 2>&1 | tee {log}"
 
-    # As a module of another workflow, its name may have a prefix.
+    # In a module of another workflow the rule's name has a prefix.
     list(workflow.rules)[-1].docstring = stage.message
 
 

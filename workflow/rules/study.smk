@@ -1,5 +1,5 @@
 rule resolved_study:
-    """The study with all that it is based on, as one file."""
+    """The study as one file, with the values that it takes from others."""
     input:
         FILES.study_files(),
     output:
@@ -11,6 +11,6 @@ rule resolved_study:
     params:
         changes=config["study"]["changes"],
     message:
-        "Study: {output}, with all that it is based on"
+        "Study: {output}, with the values that it takes from others"
     script:
         "../scripts/resolved_study.py"

@@ -1,6 +1,6 @@
 """Draw one batch of roughness lines and run the contact model on them.
 
-One job for both results: the lines never leave its memory, and Python starts once.
+One job makes both results, so the lines stay in memory and Python starts once.
 """
 
 from lube.contact.rough_pair import roughness_batch
