@@ -211,7 +211,7 @@ def _line_effects(model, study, slips, turns, realisations):
     if one_alignment or not (turns > 1.0).any() or realisations < 2:
         return (np.zeros if one_alignment else np.ones)(ratio.size), None
     most = SHAPED_PAIRS if study.gap.has_shape else MOST_PAIRS
-    levels, windows = _alignment_windows(model, study)
+    levels, windows = alignment_windows(model, study)
     in_first, in_second = _crosswise(study, windows, min(realisations, most))
     persistent = persistent_share(in_first, in_second)
     known = np.isfinite(persistent)
@@ -222,11 +222,26 @@ def _line_effects(model, study, slips, turns, realisations):
     return rows[-1], np.array(rows[:-1])
 
 
-def _alignment_windows(model, study):
-    """Windows in which lines are paired crosswise, and their lambda ratios, rising.
+def alignment_windows(model: Data, study: Study) -> tuple[Array, ContactWindows]:
+    """Find the contact windows in which lines are paired crosswise.
 
-    They are flat, as wide as the mean contact. If films have a shape, they are those of the records
-    with the nearest lambda ratios: there the effects of single lines are twice as large.
+    They are flat, and as wide as the mean contact. If films have a shape, they are those of the
+    records with the nearest lambda ratios, on lines as drawn: there single lines have about twice
+    the effect.
+
+    Parameters
+    ----------
+    model : xarray.Dataset
+        Films at the records.
+    study : Study
+        Its roughness lines, boundary layer and gap.
+
+    Returns
+    -------
+    ratios : numpy.ndarray
+        Their lambda ratios, shape (P,), rising.
+    windows : ContactWindows
+        The P windows.
     """
     if not study.gap.has_shape:
         thickness = ALIGNMENT_RATIOS * model["composite_rms_roughness"].item()

@@ -9,9 +9,11 @@ from experiments import experiment_at, experiment_of, model_of_records
 from literal_scan import scan_statistics
 from studies import OIL
 
-from lube.contact.rough_pair import roughness_batch
+from lube.contact.rough_pair import drawn, roughness_batch
+from lube.contact.windows import study_windows
 from lube.grid.discretise import layer_factor_of, line_pair, speed_ratios, whole_numbers
-from lube.inference.record_scatter import combined_deviations
+from lube.inference.at_records import film_at_records
+from lube.inference.record_scatter import alignment_windows, combined_deviations
 from lube.stages import contact_statistics, film_table
 from lube.statistics.one_pair import repeat_factor
 from lube.statistics.sample_size import effective_sample_size
@@ -38,6 +40,14 @@ def few(busy):
 def off_grid(few):
     study, film, contact = few
     return model_of_records(experiment_off_the_grid(), film, contact, study)
+
+
+def film_of_records(experiment, study):
+    """Films at records, by the study's choices."""
+    oil = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+    return film_at_records(
+        experiment, oil, study.rough_rollers, study.film_formulas, **study.film_model
+    )
 
 
 def literal_run(study, force, speed, temperature, realisations=3, slips=(0.0,)):
@@ -121,6 +131,22 @@ def test_records_under_films_with_a_shape_are_those_of_contact_statistics(
     np.testing.assert_array_equal(model[PROBABILITY], expected.values)
     assert (model["scatter_ratio"] > 0.0).all()
     assert 0.0 < expected.min() < expected.max() < 1.0
+
+
+def test_lines_are_paired_crosswise_under_the_films_of_records_with_a_shape(few, shaped_film):
+    """As drawn, at the known films with the nearest lambda ratios."""
+    formulas = tuple(shaped_film["film_formula"].values.tolist())
+    study = few[0].model_copy(update={"film_shape": "computed", "film_formulas": formulas})
+    model = film_of_records(experiment_at(shaped_film, np.zeros(4)), study)
+    model["film_profile"] = model["film_profile"].where(model["record"] != 0)
+    levels, windows = alignment_windows(model, study)
+    known = model.isel(record=slice(1, None))
+    ratios = known["lambda_ratio"].values.ravel()
+    assert set(levels) <= set(ratios) and 1 < levels.size <= ratios.size
+    assert np.all(np.diff(levels) > 0.0)
+    pair = drawn(study, 0)
+    expected = dict(zip(ratios, study_windows(study, known).count(pair)[:, 1], strict=True))
+    np.testing.assert_array_equal(windows.count(pair)[:, 1], [expected[level] for level in levels])
 
 
 def test_neither_order_nor_number_nor_slip_of_records_changes_a_probability(off_grid, few):
