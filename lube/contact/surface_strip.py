@@ -29,7 +29,7 @@ import xarray as xr
 from lube.contact.window_films import shaped_films
 from lube.errors import DataError, StudyError
 from lube.grid.gap import PLAIN, Gap
-from lube.kernels.areal import BLOCK, touching_strips
+from lube.kernels.areal import BLOCK, contacts_per_row, touching_strips
 from lube.physics.excursions import (
     breaking_curvature,
     expected_contacts,
@@ -49,9 +49,12 @@ SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""
 STRIPS = 400
 """Strips on each surface."""
-FEWER_STRIPS = 40
-"""Strips on each surface where theory expects more contacts than `MANY`: contact is certain."""
 MANY = 30.0
+"""Expected number of contacts above which contact is certain, and contacts are counted."""
+FEWER_STRIPS = 20
+"""Strips on each surface where contact is certain."""
+COUNTED_STRIPS = 10
+"""The first of these, in which contacts are counted."""
 AROUND = 100
 """Rows beyond a known point in which its contact is followed; a first contact begins within as many
 before it."""
@@ -289,7 +292,12 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
             fields, tops, covariances, places, touching, film, sharp, around
         )
         first.append(weight * np.stack(each))
-        numbers.append(weight * contacts)
+        if count == FEWER_STRIPS:
+            some = tuple(place[:COUNTED_STRIPS] for place in places)
+            contacts = contacts_per_row(fields, covariances, some, film, sharp, around)
+        else:
+            contacts = weight * contacts
+        numbers.append(contacts)
     return np.stack(first), np.stack(numbers)
 
 

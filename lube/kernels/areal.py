@@ -123,6 +123,42 @@ def touching_strips(
 
 
 @kernel
+def contacts_per_row(
+    fields: Pair, covariances: Pair, places: Pair, film: Array, sharp: Array, around: int
+) -> Array:
+    """Count the contacts that begin in a row of a strip, where no point is known to touch.
+
+    Parameters
+    ----------
+    fields, covariances, film, sharp, around
+        As in `touching_strips`; of the covariances only the shape is used.
+    places : tuple of numpy.ndarray
+        As in `touching_strips`: of each strip R rows before this row, and `around` rows after it,
+        are searched.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (2,): mean number of contacts, and of those whose boundary layer breaks.
+    """
+    reach = covariances[0].shape[0] - 1
+    seen = np.zeros((reach + 1 + around, film.size), np.int32)
+    stack = np.empty((seen.size, 2), np.int32)
+    heights = np.empty(film.size, np.float32)
+    counts = np.zeros(2)
+    origin, unmoved, first = np.int64(0), np.float32(0.0), np.int64(-reach)
+    for k in range(places[0].size):
+        moved = fields, covariances, places[0][k], places[1][k], origin, unmoved
+        search = film, sharp, seen, np.int32(k + 1), stack
+        for row in range(first, around + 1):
+            _, contacts, broken, _ = _row(moved, search, heights, row)
+            if row > first:  # those of the first row may begin before it
+                counts[0] += contacts
+                counts[1] += broken
+    return counts / (places[0].size * (reach + around))
+
+
+@kernel
 def _row(moved, search, heights, row):
     """Follow the contacts of a row that were not followed before.
 

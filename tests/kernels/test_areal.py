@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.ndimage
 
-from lube.kernels.areal import BLOCK, touching_strips
+from lube.kernels.areal import BLOCK, contacts_per_row, touching_strips
 
 REACH, AROUND, WIDTH = 60, 20, 24
 ACROSS = np.linspace(-1.0, 1.0, WIDTH)
@@ -74,3 +74,24 @@ def test_strips_are_weighed_as_by_a_naive_implementation(least, shape):
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)
     assert 0.0 < found[1][1] < found[0][1] and 0.0 < found[2][1] < found[2][0]
+
+
+@pytest.mark.parametrize("shape", [0.0, 0.8])
+def test_contacts_are_counted_in_the_row_in_which_they_begin(shape):
+    film, sharp = 0.5 + shape * ACROSS**2, 0.9 + shape * ACROSS
+    rng = np.random.default_rng(6)
+    fields = smooth_surface(rng, 300)
+    places = rng.integers(REACH, 300 - AROUND, 20), rng.integers(0, 300 - WIDTH, 20)
+    expected = np.zeros(2)
+    for row, column in zip(*places, strict=True):
+        part = np.s_[row - REACH : row + AROUND + 1, column : column + WIDTH]
+        overlap = fields[0][part] - film
+        labels, count = scipy.ndimage.label(overlap > 0.0)
+        begun = [number for number in range(1, count + 1) if not (labels[0] == number).any()]
+        summits = scipy.ndimage.maximum_position(overlap, labels, begun)
+        breaks = [fields[1][part][summit] > sharp[summit[1]] for summit in summits]
+        expected += len(begun), sum(breaks)
+    covariances = (np.zeros((REACH + 1, 2 * WIDTH - 1), np.float32),) * 2
+    found = contacts_per_row(fields, covariances, places, film, sharp, AROUND)
+    np.testing.assert_allclose(found * 20 * (REACH + AROUND), expected)
+    assert 0 < expected[1] < 0.9 * expected[0]

@@ -175,18 +175,20 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("key", "value", "lost"),
     [
-        ("film_shape", "computed"),
-        ("roughness_deformation", "venner-1997"),
-        ("roughness_deformation", "computed"),
+        ("film_shape", "computed", set()),
+        ("roughness_deformation", "venner-1997", {"areal"}),
+        ("roughness_deformation", "computed", {"areal"}),
     ],
 )
-def test_the_master_map_and_the_surface_need_flat_films_and_lines_as_drawn(paper_with, change):
-    paper, study = load_study(PAPER), load_study(paper_with(change))
-    mapped = {"master", "areal", "areal_gauge"}
-    assert all(paper.has(stage) for stage in mapped)
-    assert {stage for stage in STAGES if paper.has(stage) and not study.has(stage)} == mapped
+def test_the_master_map_needs_flat_films_and_the_surface_roughness_as_drawn(
+    paper_with, key, value, lost
+):
+    paper, study = load_study(PAPER), load_study(paper_with((key, value)))
+    lost = lost | {"master", "areal_gauge"}
+    assert all(paper.has(stage) for stage in lost)
+    assert {stage for stage in STAGES if paper.has(stage) and not study.has(stage)} == lost
 
 
 def test_the_same_value_in_another_unit_changes_nothing(changed_stages):
