@@ -51,9 +51,9 @@ STRIPS = 400
 """Strips on each surface."""
 MANY = 30.0
 """Expected number of contacts above which contact is certain, and contacts are counted."""
-FEWER_STRIPS = 20
+FEWER_STRIPS = 40
 """Strips on each surface where contact is certain."""
-COUNTED_STRIPS = 10
+COUNTED_STRIPS = 5
 """The first of these, in which contacts are counted."""
 AROUND = 100
 """Rows beyond a known point in which its contact is followed; a first contact begins within as many
