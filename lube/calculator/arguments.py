@@ -152,12 +152,12 @@ def gap_of(film_shape: str, roughness_deformation: str) -> Gap:
 
 
 def contact_models(names: str | Sequence[str]) -> list[str]:
-    """Return the contact models, of which one or several are named.
+    """Return the names of one or several contact models as a list.
 
     Raises
     ------
     StudyError
-        If one of them is none.
+        If a name is not that of a contact model.
     """
     models = np.ravel(names).tolist()
     for model in models:
@@ -168,7 +168,7 @@ def contact_models(names: str | Sequence[str]) -> list[str]:
 
 
 def one_model(name: str) -> str:
-    """Return the contact model, of which there must be one; raises as `contact_models`."""
+    """Return the name of a contact model; refuse several names and what `contact_models` does."""
     if not isinstance(name, str):
         raise StudyError(f"contact_model: got {shown(name)}, need one name")
     return contact_models(name)[0]

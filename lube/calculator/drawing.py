@@ -128,9 +128,12 @@ def _label_points(axes, found, y):
     if texts:
         axes.set_xlabel(texts[0])
         axes.tick_params(axis="x", labelrotation=20)
-    if y in (_SHOWN[0], _SURFACE):
-        whole = found["whole_surface_probability" if y == _SURFACE else "whole_tail_probability"]
-        whole = whole if y == _SURFACE else whole.fillna(found["whole_probability"])
+    whole = None
+    if y == _SHOWN[0]:
+        whole = found["whole_tail_probability"].fillna(found["whole_probability"])
+    elif y == _SURFACE:
+        whole = found["whole_surface_probability"]
+    if whole is not None:
         axes.axhline(whole.item(), color=plots.COLOURS["grey"], linestyle="--", label="whole cycle")
 
 

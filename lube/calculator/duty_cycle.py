@@ -15,6 +15,7 @@ from lube.calculator.arguments import (
     REALISATIONS,
     SEED,
     amount,
+    check_realisations,
     contact_models,
     gap_of,
     one_formula,
@@ -122,7 +123,9 @@ def duty(
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
     gap, models = gap_of(film_shape, roughness_deformation), contact_models(contact_model)
-    table, slip = _film(columns, rollers, oil, film_formula, gap), _slip(columns)
+    check_realisations(realisations, seed)
+    slip = _slip(columns)
+    table = _film(columns, rollers, oil, film_formula, gap, slip)
     share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
     if "line" in models:
         contact = ensemble(table, rollers, realisations, seed, gap=gap)
@@ -162,7 +165,7 @@ def _whole(contact, on_pairs, share, windows):
     return whole
 
 
-def _film(columns, rollers, oil, film_formula, gap):
+def _film(columns, rollers, oil, film_formula, gap, slip):
     """Film table over ``point``, with the radii of each point."""
     pair = rollers.pair
     radius = columns.get("radius", pair.first.radius)
@@ -175,7 +178,7 @@ def _film(columns, rollers, oil, film_formula, gap):
             entrainment = 0.5 * (columns["surface_speed"] + columns["second_surface_speed"])
         rotation = entrainment * 60.0 / (2.0 * np.pi * radius)
     formulas = [one_formula(film_formula)]
-    choices = film_choices(rollers, gap, _slip(columns))
+    choices = film_choices(rollers, gap, slip)
     point = columns["force"], rotation, columns["temperature"]
     table = film_of_oil(oil, own, *point, formulas, **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")

@@ -76,7 +76,8 @@ class StripFilm:
     Attributes
     ----------
     thickness : callable
-        Film (m) at positions across the strip (m), a cubic spline; or a derivative of it.
+        Film (m) at positions across the strip (m), by a cubic spline. With a second argument n, its
+        n-th derivative.
     begin, width : float
         Where the strip begins, and its width, m.
     has_edges : bool
@@ -106,9 +107,10 @@ class StripFilm:
         return self.thickness(self._columns(spacing))
 
     def breaking_curvatures(self, spacing: float, sharp: float) -> Array:
-        """Mean curvature at which a summit breaks its layer, at the columns of a grid, 1/m.
+        """Mean curvature of the surface at which a summit breaks its layer, at each column, 1/m.
 
-        That of the overlap is `sharp` there; half of the film's curvature is in it.
+        The mean curvature of the overlap is then `sharp`. Half of the film's second derivative
+        contributes to it.
         """
         return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
 
@@ -217,8 +219,8 @@ def _contacts(spec, strips, sharp, length, seed, threads):
     thickest = max(strip.films(strip.width / THEORY_COLUMNS).min() for strip in strips)
     smallest = math.sqrt(8.0 / moments[1]) * moments[0] / thickest
     surface = isotropic_surface(spec, max(strip.width for strip in strips), smallest)
-    counts = np.where(expected[0] > MANY, FEWER_STRIPS, STRIPS)
-    found = _sampled(spec, surface, strips, counts, sharp, length, seed, threads)
+    certain = expected[0] > MANY
+    found = _sampled(spec, surface, strips, certain, sharp, length, seed, threads)
     return dict(zip(_EXPECTED, expected, strict=True)) | found
 
 
@@ -237,10 +239,10 @@ def _expected(strip, moments, sharp, length):
     return contacts.sum(), broken.sum()
 
 
-def _sampled(spec, surface, strips, counts, sharp, length, seed, threads=1):
+def _sampled(spec, surface, strips, certain, sharp, length, seed, threads=1):
     """Probabilities and numbers of contacts, with their intervals, shape (strips,) each.
 
-    Of each strip so many are placed on every surface as `counts` says.
+    `certain` says of each strip whether contact is certain there.
     """
     longest = math.ceil(spec.longest_wavelength / surface.spacing)
     reach = longest, min(AROUND, longest)
@@ -249,7 +251,7 @@ def _sampled(spec, surface, strips, counts, sharp, length, seed, threads=1):
         strip.breaking_curvatures(surface.spacing, own) / spec.height_step
         for strip, own in zip(strips, sharp, strict=True)
     ]
-    strips = list(zip(films, limits, counts, strict=True))
+    strips = list(zip(films, limits, certain.tolist(), strict=True))
     covariances = tuple(surface.covariances(sum(reach) + 1, max(film.size for film in films)))
 
     def on_one_surface(number):
@@ -276,7 +278,8 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points, BLOCK), axis=1)
     longest, around = reach
     first, numbers = [], []
-    for film, sharp, count in strips:
+    for film, sharp, is_certain in strips:
+        count = FEWER_STRIPS if is_certain else STRIPS
         # Known points of strips, and the weight of each strip, as in `lube.surfaces.rare_contact`.
         log_tails = scipy.special.log_ndtr(-film / surface.rms)
         likely = np.cumsum(np.exp(log_tails - log_tails.max()))
@@ -292,7 +295,7 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
             fields, tops, covariances, places, touching, film, sharp, around
         )
         first.append(weight * np.stack(each))
-        if count == FEWER_STRIPS:
+        if is_certain:
             some = tuple(place[:COUNTED_STRIPS] for place in places)
             contacts = contacts_per_row(fields, covariances, some, film, sharp, around)
         else:

@@ -4,9 +4,9 @@ import numpy as np
 import xarray as xr
 
 LARGEST_DEFORMATION = 0.1
-"""Largest rms change of the roughness by the oil, over the film, up to which the linear response
-counts as valid. Three times this rms is 0.3 of the film, from which on single waves deviate from
-the linear response (Figure 35)."""
+"""Largest ratio of the rms change of the roughness by the oil to the film at which the linear
+response counts as valid. High summits change by three times the rms, 0.3 of the film. Single waves
+that change by more deviate from the linear response (Figure 35)."""
 
 
 def overloaded(contact: xr.Dataset) -> xr.DataArray:

@@ -35,7 +35,7 @@ BEYOND = 0.3, 1.5
 PAIRS = 8
 """Number of pairs of lines on which contact is counted or sampled."""
 FREQUENT = 0.03
-"""Probability from which on contact is counted, since sampling scatters more there."""
+"""Lowest probability at which contact is counted, because sampling scatters more than counting."""
 LAYER_FACTORS = np.array([1 / 8, 1 / 3, 1.0, 3.0, 8.0])
 """Strengths of the boundary layer, relative to the study's."""
 LAYER_FILMS, LAYER_PAIRS = 5, 4

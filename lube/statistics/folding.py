@@ -20,7 +20,7 @@ ALIKE = 0.98
 """Peaks of the autocorrelation above this fraction of the highest count as equally high; of these
 the one nearest to the nominal period is taken."""
 CLEAR = 0.5
-"""Repeatability from which on the period found in the record replaces the nominal one."""
+"""Lowest repeatability at which the period found in the record replaces the nominal period."""
 
 
 @dataclass(frozen=True)

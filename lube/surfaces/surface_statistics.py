@@ -264,7 +264,7 @@ def _moments(sums):
 def _logarithms(spectrum, waves):
     """Wave vectors, logarithms of the unfiltered density without bias, and their errors.
 
-    The density is that of the surface if it is isotropic, else that of the profile.
+    For an isotropic map it is the density of the surface, otherwise the density of the profile.
     """
     wavelength = 2.0 * np.pi / spectrum.wave_vector
     used = (wavelength <= waves.longest * (1 + 1e-9)) & (wavelength >= waves.shortest * (1 - 1e-9))

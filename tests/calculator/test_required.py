@@ -8,7 +8,7 @@ import xarray as xr
 
 import lube
 from lube import LubeError, Rollers
-from lube.calculator import required
+from lube.calculator import film_search
 from lube.calculator.operating_points import ensemble
 
 RUNS = {"realisations": 32, "seed": 2}
@@ -208,7 +208,7 @@ def test_counting_and_sampling_agree_where_both_see(rollers, oil, monkeypatch):
     for share in (0.003, 0.05, 0.3):
         ends = {}
         for name, often in (("counted", 0.0), ("sampled", np.inf)):
-            monkeypatch.setattr(required, "OFTEN", often)
+            monkeypatch.setattr(film_search, "OFTEN", often)
             film = lube.required_film(rollers, "400 N", share=share, **RUNS)
             rough = lube.required_roughness(rollers, oil, **POINT, share=share, **RUNS)
             ends[name] = [

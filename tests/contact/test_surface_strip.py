@@ -93,7 +93,7 @@ def test_strips_touch_and_break_as_often_as_on_whole_surfaces(spec, strip):
     rng = np.random.default_rng(8)
     counted = np.array([searched(surface, films, sharp, rng) for _ in range(SURFACES)])
     length = (ROWS + 0.5) * surface.spacing
-    strips = [film], [surface_strip.STRIPS]
+    strips = [film], np.array([False])
     found = surface_strip._sampled(spec, surface, *strips, [curvature], length, SEED)
     names = ["geometric_contact_probability", "breakthrough_probability"]
     names += ["contacts", "breakthroughs"]
