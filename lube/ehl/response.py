@@ -15,6 +15,16 @@ its squeeze term,
 with the change :math:`\hat q` of the mass flux. The pressure does not change where the oil begins,
 nor from the end of the film on, as the motion of that end is of second order. The load is fixed:
 the rollers give way by :math:`\hat h_0`.
+
+The crests of a wave on a rough surface may lie at an angle, and the wave is
+:math:`\exp(i (k_x X + k_y Y))`. Then oil also flows along the rollers, with the conductance
+:math:`\kappa = \bar\rho H^3 / (\bar\eta \lambda)`, and the load does not change:
+
+.. math::
+
+    \frac{d\hat q}{dX} + \kappa k_y^2 \hat p = i k_x c\, (\bar\rho \hat h + \bar\rho' H \hat p),
+    \qquad
+    \hat h = \frac{1}{\pi} \int \hat p\, K_0(|k_y| |X - X'|)\, dX' + e^{i k_x X}
 """
 
 from dataclasses import dataclass
@@ -50,13 +60,19 @@ class WaveResponse:
         The steady film, on nodes that resolve the wave.
     wavelength : float
         Wavelength over the half-width.
+    angle : float
+        Angle between rolling and the direction in which the wave runs, degrees, from 0 for crests
+        along the rollers to 90 for ridges along rolling.
     """
 
     profile: FilmProfile
     wavelength: float
+    angle: float = 0.0
 
     @classmethod
-    def of(cls, profile: FilmProfile, wavelength: float, fineness: float = 1.0) -> "WaveResponse":
+    def of(
+        cls, profile: FilmProfile, wavelength: float, fineness: float = 1.0, angle: float = 0.0
+    ) -> "WaveResponse":
         """Form the response of a film, which is solved for again, on nodes that resolve the wave.
 
         Parameters
@@ -67,6 +83,8 @@ class WaveResponse:
             Wavelength over the half-width.
         fineness : float, optional
             The number of nodes per wavelength grows in proportion.
+        angle : float, optional
+            Angle between rolling and the direction of the wave, degrees.
 
         Returns
         -------
@@ -79,7 +97,7 @@ class WaveResponse:
             If the film does not converge on these nodes.
         """
         step = wavelength / (POINTS_A_WAVE * fineness)
-        return cls(on_nodes(profile, _resolving_nodes(profile, step)), wavelength)
+        return cls(on_nodes(profile, _resolving_nodes(profile, step)), wavelength, angle)
 
     def transfer(self, surface_speed: float, position: Array, fixed_load: bool = True) -> Array:
         r"""Transfer function of the wave.
@@ -92,12 +110,13 @@ class WaveResponse:
             Positions X over the half-width, in the contact or outside.
         fixed_load : bool, optional
             Whether the rollers give way so that the load stays constant. Otherwise their distance
-            stays constant, as with rollers too heavy to follow the wave.
+            stays constant, as with rollers too heavy to follow the wave. A wave at an angle does
+            not change the load, so the rollers stay where they are.
 
         Returns
         -------
         numpy.ndarray of complex, shape (n,)
-            :math:`T_k(X) = \hat h(X) \exp(-i k X)`: the wave in the gap over the wave of the
+            :math:`T_k(X) = \hat h(X) \exp(-i k_x X)`: the wave in the gap over the wave of the
             undeformed surface; 1 where the oil does not change it.
 
         Notes
@@ -107,7 +126,8 @@ class WaveResponse:
         keeps its height and phase on any mesh, and only the effect of pressure is approximated.
         """
         discrete, flow, film, by_pressure = self._linearised
-        wavenumber, middle = 2.0 * np.pi / self.wavelength, discrete.middle
+        (wavenumber, across), middle = self._wavenumbers, discrete.middle
+        follows = fixed_load and not across
         phase = 1j * wavenumber * surface_speed * np.diff(self.profile.nodes) / 2.0
         # Oil stored on either side of a node, in half a cell each, times i k c.
         ahead, behind = 1.0 - np.exp(-phase[1:]), np.exp(phase[:-1]) - 1.0
@@ -118,27 +138,39 @@ class WaveResponse:
 
         matrix = np.zeros((film.size + 1, film.size + 1), complex)
         matrix[:-1, :-1] = balance(*by_pressure)
+        through = across**2 * flow.conductance * discrete.step**2
+        matrix[:-1, :-1] += np.diag(0.5 * (through[1:] + through[:-1])[film])
         matrix[:-1, -1] = balance(flow.by_gap, flow.drag_by_gap)
-        matrix[-1] = np.append(discrete.weight[film + 1], 0.0) if fixed_load else 0.0
-        matrix[-1, -1] = 0.0 if fixed_load else 1.0
+        matrix[-1] = np.append(discrete.weight[film + 1], 0.0) if follows else 0.0
+        matrix[-1, -1] = 0.0 if follows else 1.0
         wave = resolved_part(self.wavelength / discrete.step) * np.exp(1j * wavenumber * middle)
         right = np.append(-balance(flow.by_gap * wave, flow.drag_by_gap * wave), 0.0)
         with one_blas_thread():
             change = np.linalg.solve(matrix, right)
-            deflection = deflection_matrix(position, self.profile.nodes)[:, film + 1] @ change[:-1]
+            deflected = deflection_matrix(position, self.profile.nodes, across)
+            deflection = deflected[:, film + 1] @ change[:-1]
         return 1.0 + (change[-1] + deflection) * np.exp(-1j * wavenumber * position)
+
+    @property
+    def _wavenumbers(self):
+        """Wavenumbers along rolling and along the rollers, over the half-width."""
+        wavenumber, angle = 2.0 * np.pi / self.wavelength, np.radians(self.angle)
+        return wavenumber * np.cos(angle), wavenumber * np.sin(angle)
 
     @cached_property
     def _linearised(self):
         """Mesh, flow, inner nodes in the film, and derivatives of flux and drag by pressure."""
-        discrete = DiscreteContact(self.profile.contact, self.profile.nodes)
-        flow = discrete.flow(self.profile.pressure, self.profile.offset)
+        across = self._wavenumbers[1]
+        discrete = DiscreteContact(self.profile.contact, self.profile.nodes, across)
+        flow = self.profile.flow
         film = np.flatnonzero(self.profile.pressure[1:-1] > 0.0)
         by_pressure = discrete.flux_by_pressure(flow), discrete.drag_by_pressure(flow)
         return discrete, flow, film, [each[:, film + 1] for each in by_pressure]
 
 
-def at_wavelengths(wanted: Array, wavelengths: Array, transfer: Array, position: Array) -> Array:
+def at_wavelengths(
+    wanted: Array, wavelengths: Array, transfer: Array, position: Array, angle: float = 0.0
+) -> Array:
     """Interpolate a transfer function to other wavelengths.
 
     Its difference from 1 is interpolated by cubic splines over the logarithm of the wavelength.
@@ -155,6 +187,8 @@ def at_wavelengths(wanted: Array, wavelengths: Array, transfer: Array, position:
         Transfer function at these wavelengths and some positions.
     position : numpy.ndarray, shape (x,)
         Positions over the half-width.
+    angle : float, optional
+        Angle between rolling and the direction of the waves, degrees.
 
     Returns
     -------
@@ -162,7 +196,7 @@ def at_wavelengths(wanted: Array, wavelengths: Array, transfer: Array, position:
         Transfer function. Beyond the longest wave it is that of the longest, and beyond the
         shortest it is 1.
     """
-    outside = 2j * np.pi * (position - np.clip(position, -1.0, 1.0))
+    outside = 2j * np.pi * (position - np.clip(position, -1.0, 1.0)) * np.cos(np.radians(angle))
     change = (transfer - 1.0) * np.exp(outside / wavelengths[:, None])
     spline = scipy.interpolate.CubicSpline(np.log(wavelengths[::-1]), change[..., ::-1, :], axis=-2)
     inside = np.clip(wanted, wavelengths[-1], wavelengths[0])

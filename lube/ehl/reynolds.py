@@ -35,6 +35,8 @@ class Flow:
         H midway between the nodes.
     flux, pressure_flow : numpy.ndarray, shape (n - 1,)
         Mass flux Q, and the flow driven by pressure, which is subtracted in Q.
+    conductance : numpy.ndarray, shape (n - 1,)
+        Flow driven by pressure over the difference of pressure.
     by_gap : numpy.ndarray, shape (n - 1,)
         Derivative of Q with respect to H.
     by_left, by_right : numpy.ndarray, shape (n - 1,)
@@ -46,6 +48,7 @@ class Flow:
     gap: Array
     flux: Array
     pressure_flow: Array
+    conductance: Array
     by_gap: Array
     by_left: Array
     by_right: Array
@@ -62,13 +65,15 @@ class DiscreteContact:
         The contact.
     nodes : numpy.ndarray, shape (n,)
         Positions X of the nodes, rising.
+    across : float, optional
+        As in `lube.ehl.deflection.deflection_matrix`, for the deflection.
     """
 
-    def __init__(self, contact, nodes):
+    def __init__(self, contact, nodes, across=0.0):
         self.contact, self.nodes = contact, nodes
         self.step = np.diff(nodes)
         self.middle = 0.5 * (nodes[1:] + nodes[:-1])
-        self.deflection = deflection_matrix(self.middle, nodes)
+        self.deflection = deflection_matrix(self.middle, nodes, across)
         # Weights of the trapezoidal rule.
         self.weight = 0.5 * (np.append(self.step, 0.0) + np.append(0.0, self.step))
 
@@ -93,6 +98,7 @@ class DiscreteContact:
             gap=gap,
             flux=density * gap - driven,
             pressure_flow=driven,
+            conductance=conductance,
             by_gap=density - 3.0 * driven / gap,
             by_left=by_density + conductance + 0.5 * driven * (1 + factor_slope) * log_slope[:-1],
             by_right=by_density - conductance + 0.5 * driven * (1 - factor_slope) * log_slope[1:],

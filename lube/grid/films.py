@@ -11,7 +11,7 @@ import xarray as xr
 from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile, profiles_of
 from lube.grid.film_profiles import over_positions, six_digits
-from lube.grid.film_responses import wave_responses
+from lube.grid.film_responses import surface_responses, wave_responses
 from lube.physics import dimensionless, hertz
 from lube.physics.inlet_heating import heating_factor, thermal_loading
 from lube.physics.regimes import asymptotic_gap, regime
@@ -34,6 +34,7 @@ def film_at(
     inlet_shear_heating: str = "none",
     inlet_meniscus: float | None = None,
     answered_lines=None,
+    answered_surfaces=None,
     threads: int | None = None,
 ) -> xr.Dataset:
     """Film thickness over the dimensions that the lubricant, force and speed have.
@@ -52,6 +53,8 @@ def film_at(
         Slide-to-roll ratio.
     with_shape, inlet_shear_heating, inlet_meniscus, answered_lines
         As in `lube.stages.film.film_table`.
+    answered_surfaces : LineSpec, optional
+        Roughness lines of surfaces that the oil answers; adds `surface_responses`.
     threads : int, optional
         Threads that share the responses' work; they do not change the results.
 
@@ -80,13 +83,16 @@ def film_at(
         if with_shape:
             profile = over_positions(groups.profiles, FilmProfile.film_at, contact)
             table["film_profile"] = profile * rollers.reduced_radius
-        if answered_lines is not None:
+        if answered_lines is not None or answered_surfaces is not None:
             solved = groups.thinned(factor).profiles if is_heated else groups.profiles
-            responses = contact, xr.DataArray(slide_to_roll_ratio), answered_lines, threads
-            table = table.merge(wave_responses(solved, *responses), compat="override", join="exact")
+            slip = xr.DataArray(slide_to_roll_ratio)
+            answers = (wave_responses, answered_lines), (surface_responses, answered_surfaces)
+            for responses, spec in answers:
+                if spec is not None:
+                    found = responses(solved, contact, slip, spec, threads)
+                    table = table.merge(found, compat="override", join="exact")
             # The response depends on slip, so the film is stored for each slip.
-            each = table["interpolation_error"].isel(roller=0, drop=True)
-            table.update(table[_THINNED].broadcast_like(each))
+            table.update(table[_THINNED].broadcast_like(slip))
     return table
 
 

@@ -51,7 +51,7 @@ def film_responses(
     if "response_real" not in film:
         levels = film["force"], film["speed"], ["computed"], False, film["slide_to_roll_ratio"]
         corrections = inlet_shear_heating, inlet_meniscus
-        film = film_at(lubricant, rollers, *levels, *corrections, spec, threads)
+        film = film_at(lubricant, rollers, *levels, *corrections, spec, threads=threads)
     table = film[[*VARIABLES, "contact_half_width"]].rename(response_position="film_position")
     central = table.sel(film_position=0.0, drop=True)
     table["amplitude_ratio"] = np.abs(central["response_real"] + 1j * central["response_imaginary"])

@@ -1,8 +1,9 @@
-"""Deflection of the rollers: Hertz' contact, exact integrals, symmetry."""
+"""Deflection of the rollers: Hertz' contact, exact integrals, limits, symmetry."""
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.special import k0
 
 from lube.ehl.deflection import deflection_matrix
 
@@ -30,20 +31,39 @@ def test_far_away_the_pressure_acts_as_a_point_load():
     np.testing.assert_allclose(deflection, -0.5 * np.log(np.abs(far)), rtol=2e-4)
 
 
-def test_each_column_is_the_integral_of_a_hat():
+@pytest.mark.parametrize("across", [0.0, 0.05, 3.0, 30.0])
+def test_each_column_is_the_integral_of_a_hat(across):
     nodes = np.array([-3.0, -1.0, -0.5, 0.7, 1.1])
-    matrix = deflection_matrix(np.array([-2.0, 0.7, 0.9]), nodes)
+    matrix = deflection_matrix(np.array([-2.0, 0.7, 0.9]), nodes, across)
+    kernel = (lambda x: k0(across * x)) if across else (lambda x: -np.log(x))
     assert np.all(matrix[:, [0, -1]] == 0.0)
     for row, position in enumerate((-2.0, 0.7, 0.9)):
         for column in (1, 2, 3):
             hat = np.eye(nodes.size)[column]
 
             def density(x, hat=hat, position=position):
-                return -np.interp(x, nodes, hat) * np.log(abs(x - position)) / np.pi
+                return np.interp(x, nodes, hat) * kernel(abs(x - position)) / np.pi
 
             kinks = sorted({*nodes[1:-1], position})
             integral, _ = quad(density, -3.0, 1.1, points=kinks, epsabs=1e-12, epsrel=1e-10)
-            assert matrix[row, column] == pytest.approx(integral, abs=1e-9)
+            assert matrix[row, column] == pytest.approx(integral, abs=2e-9)
+
+
+def test_a_pressure_that_hardly_changes_along_the_rollers_deflects_as_one_that_does_not():
+    """For a small wavenumber k, K0(k X) is -ln X and a constant."""
+    at, small = np.linspace(-2.0, 2.0, 9), 1e-5
+    constant = -np.log(small / 2.0) - np.euler_gamma
+    expected = deflection_matrix(at, NODES) @ HERTZ + 0.5 * constant
+    found = deflection_matrix(at, NODES, small) @ HERTZ
+    np.testing.assert_allclose(found, expected, atol=1e-5)
+
+
+def test_a_fast_wave_along_the_rollers_deflects_as_its_own_pressure():
+    """A half-space under a wave of pressure deflects by the pressure over the wavenumber."""
+    inside = np.linspace(-0.5, 0.5, 9)
+    fast = 200.0
+    found = deflection_matrix(inside, NODES, fast) @ HERTZ
+    np.testing.assert_allclose(found, np.sqrt(1.0 - inside**2) / fast, rtol=1e-4)
 
 
 def test_mirrored_pressure_deflects_in_the_mirror():

@@ -162,6 +162,55 @@ def test_another_code_finds_the_same_across_the_contact_and_at_a_fixed_gap():
         assert found == pytest.approx(expected, abs=0.001)
 
 
+# Waves at an angle
+
+
+def at_angle(point, wavelength, angle, speed=1.0, fineness=1.0):
+    wave = WaveResponse.of(profile_at(point), wavelength, fineness, angle)
+    return wave.transfer(speed, MIDDLE).item()
+
+
+@pytest.mark.parametrize(
+    ("point", "wavelength", "expected"),
+    [
+        (HEAVY, 2.0, [0.501, 0.472, 0.379, 0.330, 0.323]),
+        (HEAVY, 1.0, [0.845, 0.813, 0.733, 0.696, 0.691]),
+        (HEAVY, 0.5, [1.018, 1.007, 0.980, 0.968, 0.966]),
+        ((800, 100, 60), 1.0, [1.021, 1.016, 0.987, 0.969, 0.966]),
+    ],
+)
+def test_another_code_finds_the_same_at_an_angle(point, wavelength, expected):
+    """The same source as above."""
+    found = [abs(at_angle(point, wavelength, angle)) for angle in (0.0, 30.0, 60.0, 80.0, 90.0)]
+    np.testing.assert_allclose(found, expected, atol=0.0015)
+
+
+@pytest.mark.parametrize(
+    ("point", "expected"),
+    [(HEAVY, [0.323, 0.133, 0.060, 0.033]), ((800, 100, 60), [0.776, 0.450, 0.231, 0.133])],
+)
+def test_ridges_along_rolling_flatten_the_more_the_farther_they_are_apart(point, expected):
+    """The same source, at 90 degrees; such waves do not move, so the response is real."""
+    found = np.array([at_angle(point, wavelength, 90.0) for wavelength in (2.0, 4.0, 8.0, 16.0)])
+    np.testing.assert_allclose(np.abs(found), expected, atol=0.0015)
+    np.testing.assert_allclose(found.imag, 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("speed", [1.0, 1.3])
+def test_the_response_at_an_angle_is_the_same_on_finer_nodes_and_one_for_short_waves(speed):
+    for angle in (30.0, 75.0):
+        coarse, fine = (at_angle(HEAVY, 0.5, angle, speed, each) for each in (1.0, 2.0))
+        assert abs(coarse - fine) < 0.01
+        assert abs(at_angle(HEAVY, 0.05, angle, speed) - 1.0) < 0.03
+
+
+def test_a_small_angle_changes_little():
+    """The limit is that of a fixed load, and is approached as the logarithm of the angle."""
+    straight, *near = (at_angle(HEAVY, 2.0, angle) for angle in (0.0, 1e-3, 1e-6, 1e-9))
+    away = np.abs(np.array(near) - straight)
+    assert 0.01 > away[0] > away[1] > away[2]
+
+
 # Between the wavelengths
 
 
