@@ -130,9 +130,9 @@ def test_heating_thins_the_film_that_answers(busy_study, monkeypatch):
     files = made(study, ("lubricant", "film"))
     central, solve = [], WaveResponse.of.__func__
 
-    def noted(cls, profile, *arguments):
+    def noted(cls, profile, *arguments, **options):
         central.append(profile.central_film * study.rollers.reduced_radius)
-        return solve(cls, profile, *arguments)
+        return solve(cls, profile, *arguments, **options)
 
     monkeypatch.setattr(WaveResponse, "of", classmethod(noted))
     heated = make(study, files)
