@@ -125,7 +125,7 @@ def duty(
     gap, models = gap_of(film_shape, roughness_deformation), contact_models(contact_model)
     check_realisations(realisations, seed)
     slip = _slip(columns)
-    table = _film(columns, rollers, oil, film_formula, gap, slip)
+    table = _film(columns, rollers, oil, film_formula, film_choices(rollers, gap, slip, models))
     share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
     if "line" in models:
         contact = ensemble(table, rollers, realisations, seed, gap=gap)
@@ -165,7 +165,7 @@ def _whole(contact, on_pairs, share, windows):
     return whole
 
 
-def _film(columns, rollers, oil, film_formula, gap, slip):
+def _film(columns, rollers, oil, film_formula, choices):
     """Film table over ``point``, with the radii of each point."""
     pair = rollers.pair
     radius = columns.get("radius", pair.first.radius)
@@ -178,7 +178,6 @@ def _film(columns, rollers, oil, film_formula, gap, slip):
             entrainment = 0.5 * (columns["surface_speed"] + columns["second_surface_speed"])
         rotation = entrainment * 60.0 / (2.0 * np.pi * radius)
     formulas = [one_formula(film_formula)]
-    choices = film_choices(rollers, gap, slip)
     point = columns["force"], rotation, columns["temperature"]
     table = film_of_oil(oil, own, *point, formulas, **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")

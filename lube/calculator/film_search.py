@@ -155,7 +155,7 @@ class FilmSearch:
         contacts = expected_contacts(films, moments, length, 2.0 * half_width)
         found = _crossing(ratios, -np.expm1(-contacts), self._share)
         ratios = np.unique(np.clip(max(found, ratios[0]) * AROUND, *ends))
-        table = table_at(ratios) if self.gap.has_shape else self._flat(ratios, half_width)
+        table = self._flat(ratios, half_width) if self.gap.is_plain else table_at(ratios)
         weaker = self._weaker(table, own)
         layer, seed = self._rollers.layer, self._seed
         found = surface_contact(spec, length, table, layer, seed, self.gap, weaker=weaker)

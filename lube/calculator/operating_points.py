@@ -110,16 +110,17 @@ def film_in_si(
     film_formula: str | Sequence[str],
     gap: Gap = PLAIN,
     slip: float = 0.0,
+    contact_model: str | Sequence[str] = "line",
 ) -> xr.Dataset:
     """All variables of the film table in SI units, and the oil's viscosity.
 
-    The arguments are those of `film` and `ensemble`.
+    The arguments are those of `film`, `contact_probability` and `ensemble`.
     """
     force, speed, temperature = conditions(force, speed, temperature, rollers.pair.first.radius)
     formulas = np.ravel(film_formula).tolist()
     if not formulas or not isinstance(formulas[0], str):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    choices = film_choices(rollers, gap, slip)
+    choices = film_choices(rollers, gap, slip, contact_models(contact_model))
     table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, **choices)
     dims = ("film_formula", "temperature", "speed", "force")
     table = table.assign_coords(force=force, speed=speed)
@@ -127,13 +128,11 @@ def film_in_si(
     return table if np.ndim(film_formula) else table.isel(film_formula=0)
 
 
-def film_choices(rollers, gap, slip) -> dict[str, Any]:
-    """Arguments of `film_of_oil` for a gap and a slide-to-roll ratio."""
-    return {
-        "with_shape": gap.has_shape,
-        "slide_to_roll_ratio": slip,
-        "answered_lines": rollers.lines if gap.is_answered else None,
-    }
+def film_choices(rollers, gap, slip, models) -> dict[str, Any]:
+    """Arguments of `film_of_oil` for a gap, a slide-to-roll ratio and some contact models."""
+    answered = {"line": "answered_lines", "surface": "answered_surfaces"}
+    lines = {answered[model]: rollers.lines for model in models if gap.is_answered}
+    return {"with_shape": gap.has_shape, "slide_to_roll_ratio": slip} | lines
 
 
 def film_of_oil(oil, pair, force, speed, temperature, formulas, **choices) -> xr.Dataset:
@@ -201,14 +200,14 @@ def contact_probability(
     roughness_deformation : str, optional
         ``"none"``; ``"computed"``: the oil deforms each wave of the roughness by Reynolds'
         equation, which takes some seconds for each operating point; or ``"venner-1997"``: it
-        flattens long waves by a formula.
+        flattens long waves of lines by a formula.
     slide_to_roll_ratio : float, optional
         Difference of the surface speeds over their mean. It changes the computing time and the
         scatter, and with ``roughness_deformation="computed"`` also the expected probability.
     contact_model : str or sequence of str, optional
         ``"line"``; ``"surface"``, the isotropic rough surface that the line stands for, over the
         length of the rollers, which takes half a minute; or a list of both. The surface needs
-        Gaussian heights and ``roughness_deformation="none"``.
+        Gaussian heights that no formula flattens.
     realisations : int, optional
         Number of pairs of roughness lines.
     seed : int, optional
@@ -228,7 +227,8 @@ def contact_probability(
         For the surface, by importance sampling: ``surface_breakthrough_probability`` and
         ``surface_geometric_contact_probability``, anywhere along the rollers, and the mean numbers
         ``surface_breakthroughs`` and ``surface_contacts`` at any moment, each with ``_lower`` and
-        ``_upper``; by theory, ``surface_expected_breakthroughs`` and ``surface_expected_contacts``.
+        ``_upper``; by theory, if the oil does not deform the roughness,
+        ``surface_expected_breakthroughs`` and ``surface_expected_contacts``.
 
     Raises
     ------
@@ -251,7 +251,8 @@ def contact_probability(
     gap = gap_of(film_shape, roughness_deformation)
     models = contact_models(contact_model)
     check_realisations(realisations, seed)
-    table = film_in_si(rollers, oil, force, speed, temperature, film_formula, gap, slip)
+    point = force, speed, temperature, film_formula
+    table = film_in_si(rollers, oil, *point, gap, slip, models)
     found = table[FILM_VARIABLES]
     if "line" in models:
         contact = ensemble(table, rollers, realisations, seed, slip, gap)

@@ -123,7 +123,7 @@ def required_viscosity(
     def table(factors, gap=PLAIN):
         # The film depends on the product of viscosity and speed, so the speed is varied for both.
         speeds = rotation * factors, "rpm"
-        return film_in_si(rollers, oil, force, speeds, temperature, one, gap)
+        return film_in_si(rollers, oil, force, speeds, temperature, one, gap, 0.0, contact_model)
 
     gap = gap_of(film_shape, roughness_deformation)
     search = FilmSearch(rollers, share, realisations, seed, gap, contact_model)
@@ -173,7 +173,9 @@ def required_speed(
     one = one_formula(film_formula)
 
     def table(speeds, gap=PLAIN):
-        return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, gap)
+        return film_in_si(
+            rollers, oil, force, (speeds, "m/s"), temperature, one, gap, 0.0, contact_model
+        )
 
     gap = gap_of(film_shape, roughness_deformation)
     search = FilmSearch(rollers, share, realisations, seed, gap, contact_model)
@@ -220,7 +222,9 @@ def required_temperature(
     one = one_formula(film_formula)
 
     def table(temperatures, gap=PLAIN):
-        return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, gap)
+        return film_in_si(
+            rollers, oil, force, speed, (temperatures, "degC"), one, gap, 0.0, contact_model
+        )
 
     gap = gap_of(film_shape, roughness_deformation)
     search = FilmSearch(rollers, share, realisations, seed, gap, contact_model)
@@ -272,7 +276,8 @@ def required_roughness(
     gap = gap_of(film_shape, roughness_deformation)
     search = FilmSearch(rollers, share, realisations, seed, gap, contact_model)
     one = one_formula(film_formula)
-    film = film_in_si(rollers, oil, force, speed, temperature, one, search.gap)
+    point = force, speed, temperature, one
+    film = film_in_si(rollers, oil, *point, search.gap, 0.0, contact_model)
     own = single(film["lambda_ratio"])
 
     def table_at(ratios):

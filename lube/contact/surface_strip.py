@@ -14,11 +14,14 @@ A contact breaks its boundary layer if the mean curvature of the overlap at its 
 exceeds :math:`\pi \tau_0/(2 E^* h_c)`. The line's criterion is twice that, because the mapping
 doubles the curvature of a summit. Under a film of the shape h(x), half of h'' adds to the mean
 curvature of the surface.
+
+Where the oil answers the surface, heights and their covariances are those in the gap, which differ
+across the strip.
 """
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -26,10 +29,12 @@ import scipy
 import scipy.special
 import xarray as xr
 
+from lube.contact.surface_answers import COARSEST, AnsweredStrip, surface_answers
 from lube.contact.window_films import shaped_films
+from lube.ehl.line_contact import one_blas_thread
 from lube.errors import DataError, StudyError
 from lube.grid.gap import PLAIN, Gap
-from lube.kernels.areal import BLOCK, contacts_per_row, touching_strips
+from lube.kernels.areal import BLOCK, NO_ANSWER, contacts_per_row, touching_strips
 from lube.physics.excursions import (
     breaking_curvature,
     expected_contacts,
@@ -38,12 +43,12 @@ from lube.physics.excursions import (
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.confidence import jackknife_interval, mean_interval
 from lube.study.rollers import BoundaryLayer
-from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.isotropic import Surface, isotropic_surface
 from lube.surfaces.rare_contact import check_isotropic, likely_part
 from lube.surfaces.spectra import pair_moments
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
-from lube.types import Array, Values
+from lube.types import Array, Pair, Values
 
 SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""
@@ -82,12 +87,15 @@ class StripFilm:
         Where the strip begins, and its width, m.
     has_edges : bool
         Whether contacts are cut where the strip ends.
+    answers : tuple of lube.contact.surface_answers.SurfaceAnswer, optional
+        How the oil answers both surfaces; by default it does not change them.
     """
 
     thickness: Callable
     begin: float
     width: float
     has_edges: bool
+    answers: Pair | None = None
 
     @classmethod
     def flat(cls, thickness: float, half_width: float) -> "StripFilm":
@@ -114,6 +122,13 @@ class StripFilm:
         """
         return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
 
+    def answered(self, surface: Surface, rows: int) -> AnsweredStrip | None:
+        """Find what the oil adds to a surface, for covariances over some rows."""
+        if self.answers is None:
+            return None
+        columns = self._columns(surface.spacing)
+        return AnsweredStrip(self.answers, surface, columns[0], columns.size, rows)
+
     def _columns(self, spacing):
         return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
 
@@ -138,7 +153,8 @@ def surface_contact(
         Length L' of the rollers, m.
     film : xarray.Dataset
         ``film_thickness`` and ``contact_half_width`` (m) over any dimensions, and
-        ``reduced_modulus`` (Pa); for a film with a shape also ``film_profile``.
+        ``reduced_modulus`` (Pa); for a film with a shape also ``film_profile``, for surfaces that
+        the oil answers also its responses, from `lube.grid.film_responses.surface_responses`.
     boundary_layer : BoundaryLayer
         The boundary layer.
     seed : int
@@ -157,22 +173,22 @@ def surface_contact(
         and ``breakthroughs`` in the strip, each with ``_lower`` and ``_upper``, and the numbers
         that theory expects, ``expected_contacts`` and ``expected_breakthroughs``; over the
         dimensions of the films, NaN where the film is not known. Theory neglects the slope of a
-        film with a shape.
+        film with a shape; where the oil answers the surfaces there is none, and the two are NaN.
 
     Raises
     ------
     StudyError
-        If the heights of a line are not Gaussian, a line was measured along rolling, or the oil
-        changes the roughness.
+        If the heights of a line are not Gaussian, a line was measured along rolling, or a formula
+        flattens the roughness.
     DataError
         If the rollers are shorter than the contact is wide, or the band of wavelengths is too wide
         for a surface.
     """
     check_isotropic(spec)
-    if not gap.is_drawn:
+    if gap.is_flattened:
         raise StudyError(
-            f"roughness_deformation: got {gap.roughness_deformation}, need none for contact of the "
-            "surface: how the oil changes waves at an angle to rolling is not computed"
+            f"roughness_deformation: got {gap.roughness_deformation}, need none or computed for "
+            "contact of the surface: the formula is for waves that run along rolling"
         )
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     widest = 2.0 * half_width.max().item()
@@ -191,6 +207,8 @@ def surface_contact(
         some = [strips[point] for point in known]
         for name, of_known in _contacts(spec, some, sharp, length, seed, threads).items():
             values[name][known] = of_known
+    if gap.is_answered:
+        values |= {name: np.full(thickness.size, np.nan) for name in _EXPECTED}
     dims, shape = thickness.dims, thickness.shape
     values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
     return xr.Dataset(values, thickness.coords)
@@ -198,6 +216,19 @@ def surface_contact(
 
 def _strip_films(film, thickness, half_width, gap, rms):
     """Film across the strip of every operating point, None where it is not known."""
+    strips = _drawn_strips(film, thickness, half_width, gap, rms)
+    if not gap.is_answered:
+        return strips
+    answers = xr.broadcast(surface_answers(film, gap.has_shape), thickness)[0]
+    answers = answers.transpose(*thickness.dims, "roller").values.reshape(-1, 2)
+    return [
+        replace(strip, answers=tuple(both)) if strip and both[0] else None
+        for strip, both in zip(strips, answers, strict=True)
+    ]
+
+
+def _drawn_strips(film, thickness, half_width, gap, rms):
+    """Films across the strips, for surfaces as drawn."""
     thickness, half_width = thickness.values.ravel(), half_width.values.ravel()
     if not gap.has_shape:
         points = zip(thickness.tolist(), half_width.tolist(), strict=True)
@@ -218,7 +249,9 @@ def _contacts(spec, strips, sharp, length, seed, threads):
     # Size of the smallest contact: a parabola as high as the mean summit above the film.
     thickest = max(strip.films(strip.width / THEORY_COLUMNS).min() for strip in strips)
     smallest = math.sqrt(8.0 / moments[1]) * moments[0] / thickest
-    surface = isotropic_surface(spec, max(strip.width for strip in strips), smallest)
+    widest, is_answered = max(strip.width for strip in strips), strips[0].answers is not None
+    multiple = 2**COARSEST if is_answered else 1
+    surface = isotropic_surface(spec, widest, smallest, multiple=multiple)
     certain = expected[0] > MANY
     found = _sampled(spec, surface, strips, certain, sharp, length, seed, threads)
     return dict(zip(_EXPECTED, expected, strict=True)) | found
@@ -251,7 +284,10 @@ def _sampled(spec, surface, strips, certain, sharp, length, seed, threads=1):
         strip.breaking_curvatures(surface.spacing, own) / spec.height_step
         for strip, own in zip(strips, sharp, strict=True)
     ]
-    strips = list(zip(films, limits, certain.tolist(), strict=True))
+    with one_blas_thread():
+        rows = sum(reach) + 1
+        answered = on_threads(lambda strip: strip.answered(surface, rows), strips, threads)
+    strips = list(zip(films, limits, certain.tolist(), answered, strict=True))
     covariances = tuple(surface.covariances(sum(reach) + 1, max(film.size for film in films)))
 
     def on_one_surface(number):
@@ -274,30 +310,41 @@ def _sampled(spec, surface, strips, certain, sharp, length, seed, threads=1):
 def _on_one_surface(seeds, surface, covariances, strips, reach):
     """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 2)."""
     drawing, choosing = map(np.random.default_rng, seeds)
-    fields, chosen = surface.draw(drawing), choosing.random((4, STRIPS))
+    answered = [one for *_, one in strips if one]
+    coarser = max((one.points for one in answered), default=1)
+    *fields, long_waves = surface.draw(drawing, coarser)
+    fields, chosen, both = tuple(fields), choosing.random((4, STRIPS)), []
+    if any(len(one.answers) > 1 for one in answered):
+        both = surface.of_each(long_waves, drawing)
     tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points, BLOCK), axis=1)
     longest, around = reach
     first, numbers = [], []
-    for film, sharp, is_certain in strips:
+    for film, sharp, is_certain, answer in strips:
+        rms, shift, by_oil = surface.rms, 0, NO_ANSWER
+        if answer:
+            rms, shift = rms * answer.rms, answer.shift
+            by_oil = answer.of_waves(both if len(answer.answers) > 1 else [long_waves])
         count = FEWER_STRIPS if is_certain else STRIPS
         # Known points of strips, and the weight of each strip, as in `lube.surfaces.rare_contact`.
-        log_tails = scipy.special.log_ndtr(-film / surface.rms)
+        log_tails = scipy.special.log_ndtr(-film / rms)
         likely = np.cumsum(np.exp(log_tails - log_tails.max()))
         known = np.searchsorted(likely, chosen[3, :count] * likely[-1])
         heights = np.log(chosen[2, :count]) + log_tails[known]
-        heights = -surface.rms * scipy.special.ndtri_exp(heights)
+        heights = -np.broadcast_to(rms, film.shape)[known] * scipy.special.ndtri_exp(heights)
         touching = known, heights.astype(np.float32)
         weight = likely[-1] * np.exp(log_tails.max()) / count
-        room = surface.points - longest - 2 * around, surface.points - film.size + 1
+        first_row, size = longest + around, surface.points + 1 - (1 << shift)
+        room = size - first_row - around, size - film.size + 1
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
-        places = longest + around + row, column
+        # Strips begin at nodes.
+        places = tuple(-(-place >> shift << shift) for place in (first_row + row, column))
         *each, contacts = touching_strips(
-            fields, tops, covariances, places, touching, film, sharp, around
+            fields, tops, covariances, places, touching, film, sharp, around, by_oil
         )
         first.append(weight * np.stack(each))
         if is_certain:
             some = tuple(place[:COUNTED_STRIPS] for place in places)
-            contacts = contacts_per_row(fields, covariances, some, film, sharp, around)
+            contacts = contacts_per_row(fields, covariances, some, film, sharp, around, by_oil)
         else:
             contacts = weight * contacts
         numbers.append(contacts)

@@ -96,17 +96,8 @@ class Answer:
         finer = np.geomspace(wavelength[0], wavelength[last], FINER * last + 1)
         scaled = finer / half_width, wavelength / half_width
         change = at_wavelengths(*scaled, response, position) - 1.0
-        weight = finer[:, None] ** STEEPNESS
-        weighted = np.concatenate([change.real, change.imag]) * np.tile(weight, (2, 1))
-        left, values, right = np.linalg.svd(weighted * importance, full_matrices=False)
-        # Largest square error of all positions if the first 0, 1, ... functions are kept.
-        parts = (values[:, None] * right) ** 2
-        errors = np.cumsum(parts[::-1], axis=0)[::-1].max(axis=1)
-        count = np.count_nonzero(errors > PRECISION**2 * np.sum(weight**2))
-        shapes = np.einsum("km,kx->xm", left[:, :count], weighted)
-        filters = np.einsum("kx,mx->km", change * importance, right[:count]) / values[:count]
-        filters = six_digits(filters.real) + 1j * six_digits(filters.imag)
-        return cls(half_width, position, six_digits(shapes), 2.0 * np.pi / finer, filters)
+        shapes, filters = expanded(change, finer**STEEPNESS, importance)
+        return cls(half_width, position, shapes, 2.0 * np.pi / finer, filters)
 
     def shift(self, spacing: float) -> int:
         """Binary logarithm of the number of points of a line from node to node."""
@@ -116,6 +107,36 @@ class Answer:
         """Functions :math:`u_m` at points counted from the centre with the motion, (points, M)."""
         position = np.clip(points * (spacing / self.half_width), *self.position[[0, -1]])
         return scipy.interpolate.CubicSpline(self.position, self.shapes)(position)
+
+
+def expanded(change: Array, weight: Array, importance: Array) -> Pair:
+    """Expand the change of waves by the oil in functions of the position and of the wave.
+
+    Parameters
+    ----------
+    change : numpy.ndarray of complex, shape (K, n)
+        Response less 1, for K waves at n positions.
+    weight : numpy.ndarray, shape (K,)
+        Height of the waves.
+    importance : numpy.ndarray, shape (n,)
+        Weight of an error at each position, 1 at most.
+
+    Returns
+    -------
+    shapes : numpy.ndarray, shape (n, M)
+        Functions of the position, to six digits.
+    filters : numpy.ndarray of complex, shape (K, M)
+        Functions of the wave, to six digits: as many as `PRECISION` needs.
+    """
+    weighted = np.concatenate([change.real, change.imag]) * np.tile(weight[:, None], (2, 1))
+    left, values, right = np.linalg.svd(weighted * importance, full_matrices=False)
+    # Largest square error of all positions if the first 0, 1, ... functions are kept.
+    parts = (values[:, None] * right) ** 2
+    errors = np.cumsum(parts[::-1], axis=0)[::-1].max(axis=1)
+    count = np.count_nonzero(errors > PRECISION**2 * np.sum(weight[:, None] ** 2))
+    shapes = np.einsum("km,kx->xm", left[:, :count], weighted)
+    filters = np.einsum("kx,mx->km", change * importance, right[:count]) / values[:count]
+    return six_digits(shapes), six_digits(filters.real) + 1j * six_digits(filters.imag)
 
 
 def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:

@@ -3,7 +3,12 @@
 Heights are height steps in single precision, as in `lube.kernels.tail`. The strip is the contact
 area: its rows lie across it, in the direction of rolling, and follow one another along the rollers.
 A *contact* is a group of touching points that are neighbours in a row or a column.
+
+The oil may answer the surface: its pressure flattens the waves in the contact. What it adds to the
+heights is smooth, so it is computed at some points, the nodes, and taken as linear between them.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +17,36 @@ from lube.types import Array, Pair
 
 BLOCK = 32
 """Number of points of a row that are searched, or skipped, together."""
+
+
+class Answered(NamedTuple):
+    """What the oil adds to a surface in a strip.
+
+    Attributes
+    ----------
+    fields : numpy.ndarray
+        M filtered surfaces at every 2^`shift`-th point, the first row and column repeated at the
+        end, shape (nodes, nodes, M), float32 height steps.
+    shapes : numpy.ndarray
+        Functions of the position across the strip that multiply the filtered surfaces, at the n
+        nodes of the strip, shape (n, M), float32.
+    covariances : numpy.ndarray
+        Shape (n, R', n), float32: what the oil adds to the covariance of the height at a node of
+        the strip with heights at distances of 0 .. R' - 1 rows of nodes and at each node across the
+        strip, over the variance of the heights as drawn.
+    shift : int
+        Binary logarithm of the number of points from node to node.
+    """
+
+    fields: Array
+    shapes: Array
+    covariances: Array
+    shift: int
+
+
+_NOTHING = np.zeros((2, 2, 0), np.float32)
+NO_ANSWER = Answered(_NOTHING, np.zeros((0, 0), np.float32), _NOTHING, 30)
+"""The oil does not change the surface."""
 
 
 @kernel
@@ -24,16 +59,18 @@ def touching_strips(
     film: Array,
     sharp: Array,
     around: int,
+    answered: Answered,
 ) -> tuple[Array, Array, Array]:
     r"""Weigh rows of a strip in which one point is known to touch.
 
-    The surface is moved so that it passes through a given height at the known point,
+    The surface in the gap is moved so that it passes through a given height at the known point,
 
     .. math:: z = z' + \rho \, (z_\tau - z'_\tau) ,
 
-    and its curvature with it. The boundary layer of a contact breaks if the surface is sharp
-    enough where it is highest above the film. A row of n touching points could have been chosen by
-    any of them, so it counts 1/n.
+    and its curvature with it. The curvature is that of the surface as drawn: the oil hardly changes
+    the short waves, which make summits sharp. The boundary layer of a contact breaks if the
+    surface is sharp enough where it is highest above the film. A row of n touching points could
+    have been chosen by any of them, so it counts 1/n.
 
     Parameters
     ----------
@@ -49,7 +86,7 @@ def touching_strips(
     places : tuple of numpy.ndarray
         Shape (K,) each: row of the surface in which each strip's known point lies, at least R from
         the first row and `around` from the last, and column of the surface in which the strip
-        begins.
+        begins; both at nodes if the oil answers.
     touching : tuple of numpy.ndarray
         Shape (K,) each: column of the strip in which the known point lies, and its height,
         float32 height steps.
@@ -61,6 +98,8 @@ def touching_strips(
         Number of rows ahead of the known one in which its contact is followed; it is followed back
         through all R rows. A contact that begins as many rows back, or more, is too long for the
         sums over first contacts.
+    answered : Answered
+        What the oil adds to the surface; `NO_ANSWER` if it does not change it.
 
     Returns
     -------
@@ -85,10 +124,19 @@ def touching_strips(
     least = film.min()
     nearly = least - 1e-5 * abs(least)
     known_row = np.int64(0)  # for the literal 0, Numba would compile `_row` and `_contact` again
+    one, unmoved, strip_nodes = np.float32(1.0), np.float32(0.0), answered.shapes.shape[0]
+    by_known = np.empty((answered.covariances.shape[1], strip_nodes), np.float32)
+    nodes = np.empty(strip_nodes, np.float32)
     for k in range(places[0].size):
         origin = touching[0][k]
-        rise = touching[1][k] - fields[0][places[0][k], places[1][k] + origin]
-        moved = fields, covariances, places[0][k], places[1][k], origin, rise
+        node, part = _node(origin, answered.shift)
+        by_known[:] = answered.covariances[node]
+        by_known += part * (answered.covariances[node + 1] - by_known)
+        oil = answered, by_known, nodes
+        drawn = fields, covariances, places[0][k], places[1][k], origin, unmoved, oil
+        variance = one + _along(by_known[0], origin, answered.shift)
+        rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
+        moved = fields, covariances, places[0][k], places[1][k], origin, rise, oil
         search = film, sharp, seen, np.int32(2 * k + 1), stack
         touched, _, broken, _ = _row(moved, search, heights, known_row)
         contact[0] += 1.0 / max(touched, 1)
@@ -124,13 +172,19 @@ def touching_strips(
 
 @kernel
 def contacts_per_row(
-    fields: Pair, covariances: Pair, places: Pair, film: Array, sharp: Array, around: int
+    fields: Pair,
+    covariances: Pair,
+    places: Pair,
+    film: Array,
+    sharp: Array,
+    around: int,
+    answered: Answered,
 ) -> Array:
     """Count the contacts that begin in a row of a strip, where no point is known to touch.
 
     Parameters
     ----------
-    fields, covariances, film, sharp, around
+    fields, covariances, film, sharp, around, answered
         As in `touching_strips`; of the covariances only the shape is used.
     places : tuple of numpy.ndarray
         As in `touching_strips`: of each strip R rows before this row, and `around` rows after it,
@@ -147,8 +201,11 @@ def contacts_per_row(
     heights = np.empty(film.size, np.float32)
     counts = np.zeros(2)
     origin, unmoved, first = np.int64(0), np.float32(0.0), np.int64(-reach)
+    strip_nodes = answered.shapes.shape[0]
+    by_known = np.zeros((answered.covariances.shape[1], strip_nodes), np.float32)
+    oil = answered, by_known, np.empty(strip_nodes, np.float32)
     for k in range(places[0].size):
-        moved = fields, covariances, places[0][k], places[1][k], origin, unmoved
+        moved = fields, covariances, places[0][k], places[1][k], origin, unmoved, oil
         search = film, sharp, seen, np.int32(k + 1), stack
         for row in range(first, around + 1):
             _, contacts, broken, _ = _row(moved, search, heights, row)
@@ -184,7 +241,7 @@ def _row(moved, search, heights, row):
 @inlined
 def _fill_row(moved, row, heights):
     """Fill in the heights of a row, counted from the known one, and return the highest."""
-    fields, covariances, first_row, first_column, origin, rise = moved
+    fields, covariances, first_row, first_column, origin, rise, oil = moved
     width = heights.size
     drawn = fields[0][first_row + row, first_column : first_column + width]
     middle = covariances[0].shape[1] // 2
@@ -193,26 +250,81 @@ def _fill_row(moved, row, heights):
     for column in range(width):  # without a branch, so the compiler vectorises it
         heights[column] = drawn[column] + known[column] * rise
         highest = max(highest, heights[column])
+    if oil[2].size > 0:
+        _fill_nodes(moved, row)
+        highest = np.float32(-np.inf)
+        for column in range(width):
+            heights[column] += _along(oil[2], column, oil[0].shift)
+            highest = max(highest, heights[column])
     return highest
 
 
 @inlined
 def _ceiling(moved, tops, known, row, width):
     """Upper limit of the heights in a row, up to rounding."""
-    _, _, first_row, first_column, _, rise = moved
+    _, _, first_row, first_column, _, rise, oil = moved
     highest = np.float32(-np.inf)
     for block in range(first_column // BLOCK, (first_column + width - 1) // BLOCK + 1):
         highest = max(highest, tops[first_row + row, block])
-    return highest + max(known[0, abs(row)] * rise, known[1, abs(row)] * rise)
+    highest += max(known[0, abs(row)] * rise, known[1, abs(row)] * rise)
+    if oil[2].size > 0:
+        _fill_nodes(moved, row)
+        highest += oil[2].max()
+    return highest
 
 
 @inlined
 def _moved(surface, moved, row, column):
     """Height (0) or curvature (1) at a point of the strip, rows counted from the known one."""
-    fields, covariances, first_row, first_column, origin, rise = moved
+    fields, covariances, first_row, first_column, origin, rise, oil = moved
     drawn = fields[surface][first_row + row, first_column + column]
     middle = covariances[surface].shape[1] // 2
-    return drawn + covariances[surface][abs(row), middle + column - origin] * rise
+    height = drawn + covariances[surface][abs(row), middle + column - origin] * rise
+    if surface == 0 and oil[2].size > 0:
+        node, part = _node(column, oil[0].shift)
+        left = _at_node(moved, row, node)
+        height += left + part * (_at_node(moved, row, node + 1) - left)
+    return height
+
+
+@inlined
+def _fill_nodes(moved, row):
+    """Fill in what the oil adds to a row at the nodes."""
+    nodes = moved[6][2]
+    for node in range(nodes.size):
+        nodes[node] = _at_node(moved, row, node)
+
+
+@inlined
+def _at_node(moved, row, node):
+    """Find what the oil adds at a node of the strip, in a row counted from the known one."""
+    _, _, first_row, first_column, _, rise, (answered, by_known, _) = moved
+    fields, shapes, shift = answered.fields, answered.shapes, answered.shift
+    column = (first_column >> shift) + node
+    upper, part = _node(first_row + row, shift)
+    added = np.float32(0.0)
+    for m in range(shapes.shape[1]):
+        here = fields[upper, column, m]
+        added += shapes[node, m] * (here + part * (fields[upper + 1, column, m] - here))
+    lag, part = _node(abs(row), shift)
+    here = by_known[lag, node]
+    return added + rise * (here + part * (by_known[lag + 1, node] - here))
+
+
+@inlined
+def _along(nodes, column, shift):
+    """Value at a column of the strip, between nodes; 0 without nodes."""
+    if nodes.size == 0:
+        return np.float32(0.0)
+    node, part = _node(column, shift)
+    return nodes[node] + part * (nodes[node + 1] - nodes[node])
+
+
+@inlined
+def _node(point, shift):
+    """Node before a point, and the part of the distance to the next node."""
+    node = point >> shift
+    return node, np.float32(point - (node << shift)) / np.float32(1 << shift)
 
 
 @kernel

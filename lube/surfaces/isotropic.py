@@ -19,7 +19,7 @@ import scipy.fft
 
 from lube.errors import DataError
 from lube.surfaces.synthetic import ROLLER_NUMBERS, LineSpecLike, wave_amplitudes
-from lube.types import Array, Pair
+from lube.types import Array
 
 POINTS_PER_WAVE = 5
 """Grid points in the shortest wavelength."""
@@ -43,6 +43,9 @@ class Surface:
         Points M along a side.
     rms : float
         Rms height, height steps.
+    first_part : numpy.ndarray
+        Part of the variance that is the first roller's, by the number of waves along a side,
+        rounded to 0, 1, 2, ...
     variances : numpy.ndarray
         Shape (M, M // 2 + 1), variance of the heights by each wave, squared height steps.
     curvatures : numpy.ndarray
@@ -52,30 +55,66 @@ class Surface:
     spacing: float
     points: int
     rms: float
+    first_part: Array
     variances: Array
     curvatures: Array
 
-    def draw(self, generator: np.random.Generator) -> Pair:
+    @property
+    def side(self) -> float:
+        """Length of a side, m."""
+        return self.points * self.spacing
+
+    def draw(self, generator: np.random.Generator, coarser: int = 1) -> tuple[Array, Array, Array]:
         """Draw a realisation.
 
         Parameters
         ----------
         generator : numpy.random.Generator
             Source of randomness.
+        coarser : int, optional
+            Points along a side of a coarser grid, on which the long waves are wanted too.
 
         Returns
         -------
         heights, curvatures : numpy.ndarray
             Shape (M, M) each, float32, height steps and height steps per square metre. The
             curvature is the mean of those in two directions, positive at summits.
+        long_waves : numpy.ndarray
+            Fourier coefficients of the heights on the coarser grid, as from `scipy.fft.rfft2`.
         """
         noise = generator.standard_normal((self.points, self.points), dtype=np.float32)
         waves = scipy.fft.rfft2(noise)
         waves *= self.points * np.sqrt(self.variances).astype(np.float32)
         shape = noise.shape
-        heights = scipy.fft.irfft2(waves, shape)
+        heights, long_waves = scipy.fft.irfft2(waves, shape), on_coarser_grid(waves, coarser)
         waves *= self.curvatures.astype(np.float32)
-        return heights, scipy.fft.irfft2(waves, shape, overwrite_x=True)
+        return heights, scipy.fft.irfft2(waves, shape, overwrite_x=True), long_waves
+
+    def of_each(self, waves: Array, generator: np.random.Generator) -> list[Array]:
+        """Divide drawn waves among the surfaces of both rollers.
+
+        Parameters
+        ----------
+        waves : numpy.ndarray
+            Long waves from `draw`.
+        generator : numpy.random.Generator
+            Source of randomness.
+
+        Returns
+        -------
+        list of numpy.ndarray
+            Waves of the first and of the second surface, which are independent. Their sum is
+            `waves`.
+        """
+        points = waves.shape[0]
+        variances = on_coarser_grid(self.variances, points) * (self.points / points) ** 2
+        numbers = np.fft.fftfreq(points, 1.0 / points)[:, None], np.arange(points // 2 + 1)
+        part = self.first_part[np.rint(np.hypot(*numbers)).astype(np.int64)]
+        # The first is the mean that the sum leaves to expect, and a part independent of the sum.
+        noise = scipy.fft.rfft2(generator.standard_normal((points, points), dtype=np.float32))
+        noise *= points * np.sqrt(part * (1.0 - part) * variances).astype(np.float32)
+        first = part.astype(np.float32) * waves + noise
+        return [first, waves - first]
 
     def covariances(self, rows: int, columns: int) -> Iterator[Array]:
         """Covariance of a height with heights and with curvatures around it.
@@ -99,12 +138,36 @@ class Surface:
             yield np.hstack([quarter[:, :0:-1], quarter]).astype(np.float32)
 
 
+def on_coarser_grid(waves: Array, points: int) -> Array:
+    """Fourier coefficients of the same surface on a coarser grid, without waves too short for it.
+
+    Parameters
+    ----------
+    waves : numpy.ndarray
+        Coefficients as from `scipy.fft.rfft2`, shape (M, M // 2 + 1).
+    points : int
+        Points along a side of the coarser grid, at most M.
+
+    Returns
+    -------
+    numpy.ndarray
+        Coefficients, shape (points, points // 2 + 1).
+    """
+    coarser = np.zeros((points, points // 2 + 1), waves.dtype)
+    half = (points - 1) // 2
+    scale = (points / waves.shape[0]) ** 2
+    rows = np.arange(-half, half + 1)
+    coarser[rows, : half + 1] = scale * waves[rows, : half + 1]
+    return coarser
+
+
 @functools.lru_cache(maxsize=1)
 def isotropic_surface(
     spec: LineSpecLike,
     width: float = 0.0,
     contact: float = math.inf,
     waves: int = LONGEST_WAVES,
+    multiple: int = 1,
 ) -> Surface:
     """Find the isotropic surface that a pair of lines stands for.
 
@@ -118,6 +181,8 @@ def isotropic_surface(
         Length of the smallest contacts, m.
     waves : int, optional
         Least number of longest wavelengths along a side.
+    multiple : int, optional
+        The number of points along a side is a multiple of this.
 
     Returns
     -------
@@ -139,21 +204,22 @@ def isotropic_surface(
             f"roughness: got a shortest wavelength of {2.0 * np.pi / spec.q_max:.3g} m, too short "
             f"for a surface of {side:.3g} m, need one {least / LARGEST:.3g} times as long"
         )
-    points = scipy.fft.next_fast_len(math.ceil(least), real=True)
+    points = multiple * scipy.fft.next_fast_len(math.ceil(least / multiple), real=True)
     waves = np.hypot(np.fft.fftfreq(points, 1.0 / points)[:, None], np.arange(points // 2 + 1))
     step = 2.0 * np.pi / (points * spacing)
     # The variance of the lines' waves is divided among the surface's waves of the same length.
     shell = np.rint(waves).astype(np.int64)
-    power = sum(
-        _power(spec, roller, step, shell.max() + 1) for roller in range(len(ROLLER_NUMBERS))
-    )
+    powers = [_power(spec, roller, step, shell.max() + 1) for roller in range(len(ROLLER_NUMBERS))]
+    power = powers[0] + powers[1]
     # The first column, and the last of an even number, hold a wave and its mirror image.
     number = np.full(waves.shape, 2)
     number[:, 0] = 1
     number[:, -1] -= 1 - points % 2
     number = np.bincount(shell.ravel(), number.ravel())
     variances = (power / number)[shell]
-    return Surface(spacing, points, np.sqrt(power.sum()), variances, 0.5 * (step * waves) ** 2)
+    first_part = powers[0] / np.where(power > 0.0, power, 1.0)
+    curvatures = 0.5 * (step * waves) ** 2
+    return Surface(spacing, points, np.sqrt(power.sum()), first_part, variances, curvatures)
 
 
 def _power(spec, roller, step, shells):

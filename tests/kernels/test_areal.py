@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 import scipy.ndimage
+from scipy.interpolate import RegularGridInterpolator
 
-from lube.kernels.areal import BLOCK, contacts_per_row, touching_strips
+from lube.kernels.areal import BLOCK, NO_ANSWER, Answered, contacts_per_row, touching_strips
 
 REACH, AROUND, WIDTH = 60, 20, 24
 ACROSS = np.linspace(-1.0, 1.0, WIDTH)
+SHIFT, NODES = 2, (WIDTH - 1 >> 2) + 2
 
 
 def smooth_surface(rng, size):
@@ -21,16 +23,48 @@ def bump(width, rows, columns):
     return np.exp(-0.5 * (down**2 + across**2) / width**2).astype(np.float32)
 
 
-def naive(fields, covariances, row, column, origin, height, film, sharp):
+def random_answer(rng, size):
+    """Two smooth surfaces that the oil adds, and smooth covariances of what it adds."""
+    fields = rng.standard_normal((2, size >> SHIFT, size >> SHIFT))
+    fields = np.pad(scipy.ndimage.gaussian_filter(fields, (0, 1, 1)), ((0, 0), (0, 1), (0, 1)))
+    shapes = np.linspace([0.5, -1.0], [2.0, 1.0], NODES)
+    node = np.arange(NODES)
+    across, rows = (node[:, None] - node)[:, None], np.arange((REACH >> SHIFT) + 2)[:, None]
+    covariances = (0.1 * node[:, None, None] - 0.3) * np.exp(-0.1 * (across**2 + rows**2))
+    values = np.moveaxis(fields, 0, -1), shapes, covariances
+    return Answered(*(each.astype(np.float32) for each in values), SHIFT)
+
+
+def interpolated(values, *places):
+    """Linear interpolation between nodes, over the last axes of some values."""
+    nodes = [np.arange(size) << SHIFT for size in values.shape]
+    return RegularGridInterpolator(nodes, values)(tuple(np.meshgrid(*places, indexing="ij")))
+
+
+def added(answered, row, column, origin):
+    """What the oil adds to the heights of a strip, and to the covariance with its known point."""
+    if answered is NO_ANSWER:
+        return 0.0, 0.0
+    rows, columns = np.arange(-REACH, AROUND + 1), np.arange(WIDTH)
+    first = column >> SHIFT
+    part = answered.fields[:, first : first + NODES]
+    heights = interpolated(np.sum(part * answered.shapes, axis=-1), row + rows, columns)
+    known = interpolated(answered.covariances, np.array([origin]), np.abs(rows), columns)
+    return heights, known[0]
+
+
+def naive(fields, covariances, row, column, origin, height, film, sharp, answered):
     """First touching row and contacts of one strip, with all contacts labelled at once."""
     rows = np.arange(-REACH, AROUND + 1)
     columns = np.arange(WIDTH)
-    rise = height - fields[0][row, column + origin]
+    part = np.ix_(row + rows, column + columns)
     lags = covariances[0].shape[1] // 2 + columns - origin
-    heights, curvatures = (
-        field[np.ix_(row + rows, column + columns)] + known[np.abs(rows)][:, lags] * rise
-        for field, known in zip(fields, covariances, strict=True)
-    )
+    by_oil, known_by_oil = added(answered, row, column, origin)
+    known = covariances[0][np.abs(rows)][:, lags] + known_by_oil
+    heights = fields[0][part] + by_oil
+    rise = (height - heights[REACH, origin]) / known[REACH, origin]
+    heights = heights + known * rise
+    curvatures = fields[1][part] + covariances[1][np.abs(rows)][:, lags] * rise
     labels, count = scipy.ndimage.label(heights > film)
     breaks = {0: False}
     for number in range(1, count + 1):
@@ -54,44 +88,55 @@ def naive(fields, covariances, row, column, origin, height, film, sharp):
     return *results, numbers
 
 
+@pytest.mark.parametrize("is_answered", [False, True])
 @pytest.mark.parametrize("shape", [0.0, 0.8])
 @pytest.mark.parametrize("least", [1.0, 1.6, 2.4])
-def test_strips_are_weighed_as_by_a_naive_implementation(least, shape):
+def test_strips_are_weighed_as_by_a_naive_implementation(least, shape, is_answered):
     film, sharp = least + shape * ACROSS**2, 0.9 + shape * ACROSS
     rng = np.random.default_rng(5)
     fields = smooth_surface(rng, 200)
     covariances = bump(2.0, REACH + 1, WIDTH), 0.5 * bump(1.5, REACH + 1, WIDTH)
     count = 150
     places = rng.integers(REACH, 200 - AROUND, count), rng.integers(0, 200 - WIDTH, count)
+    answered = NO_ANSWER
+    if is_answered:
+        answered = random_answer(rng, 200)
+        places = tuple(each >> SHIFT << SHIFT for each in places)
     known = rng.integers(0, WIDTH, count)
     touching = known, (film[known] + rng.exponential(0.3, count)).astype(np.float32)
     expected = [0.0, 0.0, 0.0]
     for each in zip(*places, *touching, strict=True):
-        parts = naive(fields, covariances, *each, film, sharp)
+        parts = naive(fields, covariances, *each, film, sharp, answered)
         expected = [total + part for total, part in zip(expected, parts, strict=True)]
     tops = np.maximum.reduceat(fields[0], np.arange(0, 200, BLOCK), axis=1)
-    found = touching_strips(fields, tops, covariances, places, touching, film, sharp, AROUND)
+    strips = places, touching, film, sharp, AROUND
+    found = touching_strips(fields, tops, covariances, *strips, answered)
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)
     assert 0.0 < found[1][1] < found[0][1] and 0.0 < found[2][1] < found[2][0]
 
 
+@pytest.mark.parametrize("is_answered", [False, True])
 @pytest.mark.parametrize("shape", [0.0, 0.8])
-def test_contacts_are_counted_in_the_row_in_which_they_begin(shape):
+def test_contacts_are_counted_in_the_row_in_which_they_begin(shape, is_answered):
     film, sharp = 0.5 + shape * ACROSS**2, 0.9 + shape * ACROSS
     rng = np.random.default_rng(6)
     fields = smooth_surface(rng, 300)
     places = rng.integers(REACH, 300 - AROUND, 20), rng.integers(0, 300 - WIDTH, 20)
+    answered = NO_ANSWER
+    if is_answered:
+        answered = random_answer(rng, 300)
+        places = tuple(each >> SHIFT << SHIFT for each in places)
     expected = np.zeros(2)
     for row, column in zip(*places, strict=True):
         part = np.s_[row - REACH : row + AROUND + 1, column : column + WIDTH]
-        overlap = fields[0][part] - film
+        overlap = fields[0][part] + added(answered, row, column, 0)[0] - film
         labels, count = scipy.ndimage.label(overlap > 0.0)
         begun = [number for number in range(1, count + 1) if not (labels[0] == number).any()]
         summits = scipy.ndimage.maximum_position(overlap, labels, begun)
         breaks = [fields[1][part][summit] > sharp[summit[1]] for summit in summits]
         expected += len(begun), sum(breaks)
     covariances = (np.zeros((REACH + 1, 2 * WIDTH - 1), np.float32),) * 2
-    found = contacts_per_row(fields, covariances, places, film, sharp, AROUND)
+    found = contacts_per_row(fields, covariances, places, film, sharp, AROUND, answered)
     np.testing.assert_allclose(found * 20 * (REACH + AROUND), expected)
     assert 0 < expected[1] < 0.9 * expected[0]

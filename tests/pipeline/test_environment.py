@@ -16,6 +16,7 @@ BLAS |= {"corrcoef", "cov", "spearmanr", "pearsonr"}
 FITS = {"abel.py", "surface_statistics.py", "topography.py"}
 # They solve for the film and its response, of which six digits are kept.
 FITS |= {"line_contact.py", "reynolds.py", "response.py", "transient.py", "waves.py"}
+FITS |= {"surface_answers.py"}
 # It adds up waves for a passage, of whose gaps four digits are kept.
 FITS |= {"rough_piece.py"}
 

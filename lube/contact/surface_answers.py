@@ -1,0 +1,256 @@
+"""What the oil adds to rough surfaces across a strip: the response of the film to their waves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+import scipy.fft
+import xarray as xr
+
+from lube.contact.waves import FINER, NODES, STEEPNESS, expanded
+from lube.ehl.line_contact import one_blas_thread
+from lube.ehl.response import at_wavelengths
+from lube.kernels.areal import Answered
+from lube.physics.hertz import hertz_gap
+from lube.surfaces.isotropic import Surface, on_coarser_grid
+from lube.types import Array, Pair
+
+FINER_ANGLES = 3
+"""Number of angles at which answers are expanded, for each of the stored angles."""
+COARSEST = 5
+"""Binary logarithm of the largest number of points from node to node."""
+
+
+@dataclass(frozen=True)
+class SurfaceAnswer:
+    r"""What the oil adds to the waves of a surface at an operating point.
+
+    The response of the film to waves at the angle :math:`\theta` to rolling is expanded as that to
+    the waves of lines is in `lube.contact.waves.Answer`,
+
+    .. math:: T_k(X, \theta) - 1 = \sum_m u_m(X)\, f_m(k, \theta)
+
+    Attributes
+    ----------
+    half_width : float
+        Half-width of the contact, m.
+    position : numpy.ndarray, shape (n,)
+        Positions over the half-width, rising.
+    shapes : numpy.ndarray, shape (n, M)
+        :math:`u_m` at these positions.
+    wavenumber : numpy.ndarray, shape (K,)
+        Wavenumbers, rad/m, rising. The oil does not change shorter waves.
+    angle : numpy.ndarray, shape (A,)
+        Angles from 0 to 90, degrees.
+    filters : numpy.ndarray of complex, shape (K, A, M)
+        :math:`f_m` at these wavenumbers and angles.
+    """
+
+    half_width: float
+    position: Array
+    shapes: Array
+    wavenumber: Array
+    angle: Array
+    filters: Array
+
+    @classmethod
+    def of(
+        cls,
+        response: Array,
+        levels: tuple[Array, Array, Array],
+        half_width: float,
+        importance: Array,
+    ) -> "SurfaceAnswer":
+        """Expand a response of the film.
+
+        Parameters
+        ----------
+        response : numpy.ndarray of complex, shape (a, w, n)
+            The response.
+        levels : tuple of numpy.ndarray
+            Angles from 0 to 90 degrees, shape (a,), wavelengths in m, falling, shape (w,), and
+            positions over the half-width, rising, shape (n,).
+        half_width : float
+            Half-width of the contact, m.
+        importance : numpy.ndarray, shape (n,)
+            Weight of an error at each position, 1 at most.
+
+        Returns
+        -------
+        SurfaceAnswer
+            The expansion.
+        """
+        angles, wavelength, position = levels
+        changed = np.flatnonzero(np.abs(response - 1.0).max(axis=(0, 2)))
+        last = changed[-1] if changed.size else 1
+        finer = np.geomspace(wavelength[0], wavelength[last], FINER * last + 1)
+        scaled = finer / half_width, wavelength / half_width
+        at_angles = [
+            at_wavelengths(*scaled, one, position, angle) - 1.0
+            for one, angle in zip(response, angles, strict=True)
+        ]
+        # As over the wavelengths, the phase outside the contact is that at the contact's edge.
+        outside = 2j * np.pi * (position - np.clip(position, -1.0, 1.0)) / scaled[0][:, None]
+        more = np.linspace(angles[0], angles[-1], FINER_ANGLES * (angles.size - 1) + 1)
+        along, along_more = (np.cos(np.radians(each))[:, None, None] for each in (angles, more))
+        spline = scipy.interpolate.CubicSpline(angles, at_angles * np.exp(outside * along))
+        change = np.swapaxes(spline(more) * np.exp(-outside * along_more), 0, 1)
+        # Half as many waves run at the first and the last angle as at one between.
+        waves = finer[:, None] ** STEEPNESS * np.sqrt(np.where(more % angles[-1], 1.0, 0.5))
+        shapes, filters = expanded(change.reshape(-1, position.size), waves.ravel(), importance)
+        filters = filters.reshape(finer.size, more.size, -1)
+        return cls(half_width, position, shapes, 2.0 * np.pi / finer, more, filters)
+
+    def shift(self, spacing: float) -> int:
+        """Binary logarithm of the number of points of a surface from node to node."""
+        return int(np.log2(np.clip(self.half_width / (NODES * spacing), 1, 2**COARSEST)))
+
+    def at(self, position: Array) -> Array:
+        """Functions :math:`u_m` at positions in m, shape (positions, M)."""
+        scaled = np.clip(position / self.half_width, *self.position[[0, -1]])
+        return scipy.interpolate.CubicSpline(self.position, self.shapes)(scaled)
+
+    def filters_at(self, along: Array, across: Array) -> Array:
+        """Functions :math:`f_m` of waves with wavenumbers along rolling and across, (waves, M)."""
+        wavenumber, angle = np.hypot(along, across), np.degrees(np.arctan2(np.abs(across), along))
+        # Beyond the longest wave the response is that of the longest.
+        longest = np.maximum(np.log(wavenumber), np.log(self.wavenumber[0]))
+        grid, options = (np.log(self.wavenumber), self.angle), {"bounds_error": False}
+        filters = scipy.interpolate.RegularGridInterpolator(
+            grid, self.filters, fill_value=0.0, **options
+        )
+        return filters((longest, angle))
+
+
+def surface_answers(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
+    """Answers of the oil to the surfaces of both rollers.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset, or rows of one, with `lube.grid.film_responses.surface_responses`.
+    has_shape : bool
+        Whether the surfaces may touch outside the contact too.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over roller and the dimensions of the response: a `SurfaceAnswer`, or None where the
+        response is not known. Both rollers have the same object where the film responds to both
+        alike.
+    """
+    response = film["surface_response_real"] + 1j * film["surface_response_imaginary"]
+    names = "wave_angle", "wavelength", "response_position"
+    levels = tuple(response[name].values for name in names)
+    radius, roughness = film["reduced_radius"].item(), film["composite_rms_roughness"].item()
+
+    def of_both(response, half_width):
+        gap = hertz_gap(levels[2]) * (half_width**2 / radius)
+        importance = np.exp(-gap / roughness) if has_shape else np.abs(levels[2]) <= 1.0
+        answers = np.full(2, None)
+        for roller, one in enumerate(response):
+            if roller and np.array_equal(one, response[0]):
+                answers[1] = answers[0]
+            elif np.isfinite(one).all():
+                with one_blas_thread():
+                    answers[roller] = SurfaceAnswer.of(one, levels, half_width, importance)
+        return answers
+
+    core = [["roller", *names], []]
+    options = {"output_core_dims": [["roller"]], "vectorize": True, "output_dtypes": [object]}
+    widths = film["contact_half_width"]
+    return xr.apply_ufunc(of_both, response, widths, input_core_dims=core, **options)
+
+
+class AnsweredStrip:
+    """Both surfaces across a strip, with what the oil adds to them.
+
+    Parameters
+    ----------
+    answers : tuple of SurfaceAnswer
+        The answers to both rollers' surfaces; the same object if they are alike.
+    surface : Surface
+        The sum of both surfaces. The number of points along a side is a multiple of
+        2^`COARSEST`.
+    begin : float
+        Position of the strip's first column, m from the line of centres.
+    columns : int
+        Columns of the strip.
+    rows : int
+        Rows over which heights are correlated.
+
+    Attributes
+    ----------
+    rms : numpy.ndarray, shape (columns,)
+        Rms height in the gap at each column, over that of the surfaces as drawn.
+    shift : int
+        Binary logarithm of the number of points of the surface from node to node.
+    points : int
+        Nodes along a side of the surface.
+    """
+
+    def __init__(self, answers: Pair, surface: Surface, begin: float, columns: int, rows: int):
+        are_alike = answers[0] is answers[1]
+        self.answers = answers[:1] if are_alike else answers
+        self.shift = self.answers[0].shift(surface.spacing)
+        self.points = surface.points >> self.shift
+        nodes = np.arange(((columns - 1) >> self.shift) + 2) << self.shift
+        self._shapes = [one.at(begin + nodes * surface.spacing) for one in self.answers]
+        # The waves that the oil changes: their places among those of the coarser grid.
+        half, unit = (self.points - 1) // 2, 2.0 * np.pi / surface.side
+        down, along = np.meshgrid(np.arange(-half, half + 1), np.arange(half + 1), indexing="ij")
+        most = max(one.wavenumber[-1] for one in self.answers) / unit
+        length = np.hypot(down, along)
+        changed = (length > 0.5) & (length < most)
+        self._down, self._along = down[changed], along[changed]
+        self._filters = [
+            one.filters_at(unit * self._along, unit * self._down) for one in self.answers
+        ]
+        variances = surface.variances[self._down, self._along] / surface.rms**2
+        first_part = surface.first_part[np.rint(length[changed]).astype(np.int64)]
+        parts = [1.0] if are_alike else [first_part, 1.0 - first_part]
+        added = [
+            self._added(part * variances, *each, nodes, rows, unit * surface.spacing)
+            for part, *each in zip(parts, self._filters, self._shapes, strict=True)
+        ]
+        self._covariances = sum(added).astype(np.float32)
+        own = np.diagonal(self._covariances[:, 0])
+        self.rms = np.sqrt(1.0 + np.interp(np.arange(columns), nodes, own))
+
+    def _added(self, variances, filters, shapes, nodes, rows, unit):
+        """Sum what the oil adds to the covariances of one surface."""
+        lags = np.arange((rows >> self.shift) + 2) << self.shift
+        added = np.zeros((nodes.size, lags.size, nodes.size))
+        for down in range(self._down.max() + 1):
+            here = np.flatnonzero(np.abs(self._down) == down)
+            drawn = np.exp(1j * unit * nodes[:, None] * self._along[here])
+            changed = (1.0 + shapes @ filters[here].T) * drawn
+            # Waves along rolling stand for their mirror images too.
+            power = variances[here] * np.where(self._along[here], 2.0, 1.0)
+            found = (changed * power) @ changed.conj().T - (drawn * power) @ drawn.conj().T
+            added += np.cos(unit * down * lags)[:, None] * found.real.T[:, None]
+        return added
+
+    def of_waves(self, waves: list[Array]) -> Answered:
+        """Filter the long waves of drawn surfaces, on the coarser grid of the nodes.
+
+        Parameters
+        ----------
+        waves : list of numpy.ndarray
+            Long waves as from `Surface.draw`, of the sum of both surfaces if the answers are alike,
+            else of each surface.
+
+        Returns
+        -------
+        Answered
+            For `lube.kernels.areal`.
+        """
+        shape, fields = (self.points, self.points), []
+        for own, filters in zip(waves, self._filters, strict=True):
+            coarser = on_coarser_grid(own, self.points)
+            for each in filters.T.astype(np.complex64):
+                changed = np.zeros_like(coarser)
+                changed[self._down, self._along] = coarser[self._down, self._along] * each
+                fields.append(np.pad(scipy.fft.irfft2(changed, shape), (0, 1), mode="wrap"))
+        shapes = np.hstack(self._shapes).astype(np.float32)
+        return Answered(np.stack(fields, axis=-1), shapes, self._covariances, self.shift)
