@@ -207,6 +207,7 @@ class AnsweredStrip:
             one.filters_at(unit * self._along, unit * self._down) for one in self.answers
         ]
         variances = surface.variances[self._down, self._along] / surface.rms**2
+        self._curvatures = surface.curvatures[self._down, self._along]
         first_part = surface.first_part[np.rint(length[changed]).astype(np.int64)]
         parts = [1.0] if are_alike else [first_part, 1.0 - first_part]
         added = [
@@ -214,21 +215,23 @@ class AnsweredStrip:
             for part, *each in zip(parts, self._filters, self._shapes, strict=True)
         ]
         self._covariances = sum(added).astype(np.float32)
-        own = np.diagonal(self._covariances[:, 0])
+        own = np.diagonal(self._covariances[0, :, 0])
         self.rms = np.sqrt(1.0 + np.interp(np.arange(columns), nodes, own))
 
     def _added(self, variances, filters, shapes, nodes, rows, unit):
-        """Sum what the oil adds to the covariances of one surface."""
+        """Sum what the oil adds to the covariances of one surface, with heights and curvatures."""
         lags = np.arange((rows >> self.shift) + 2) << self.shift
-        added = np.zeros((nodes.size, lags.size, nodes.size))
+        added = np.zeros((2, nodes.size, lags.size, nodes.size))
         for down in range(self._down.max() + 1):
             here = np.flatnonzero(np.abs(self._down) == down)
             drawn = np.exp(1j * unit * nodes[:, None] * self._along[here])
             changed = (1.0 + shapes @ filters[here].T) * drawn
             # Waves along rolling stand for their mirror images too.
             power = variances[here] * np.where(self._along[here], 2.0, 1.0)
-            found = (changed * power) @ changed.conj().T - (drawn * power) @ drawn.conj().T
-            added += np.cos(unit * down * lags)[:, None] * found.real.T[:, None]
+            curved, by_oil = drawn * (power * self._curvatures[here]), changed - drawn
+            heights = changed.conj() @ (changed * power).T - drawn.conj() @ (drawn * power).T
+            found = np.stack([heights.real, (by_oil.conj() @ curved.T).real])
+            added += np.cos(unit * down * lags)[:, None] * found[:, :, None]
         return added
 
     def of_waves(self, waves: list[Array]) -> Answered:

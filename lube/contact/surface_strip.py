@@ -21,7 +21,7 @@ across the strip.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -95,7 +95,7 @@ class StripFilm:
     begin: float
     width: float
     has_edges: bool
-    answers: Pair | None = None
+    answers: Pair | None = field(default=None, repr=False)
 
     @classmethod
     def flat(cls, thickness: float, half_width: float) -> "StripFilm":

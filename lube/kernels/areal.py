@@ -31,9 +31,9 @@ class Answered(NamedTuple):
         Functions of the position across the strip that multiply the filtered surfaces, at the n
         nodes of the strip, shape (n, M), float32.
     covariances : numpy.ndarray
-        Shape (n, R', n), float32: what the oil adds to the covariance of the height at a node of
-        the strip with heights at distances of 0 .. R' - 1 rows of nodes and at each node across the
-        strip, over the variance of the heights as drawn.
+        Shape (2, n, R', n), float32: what the oil adds to the covariance of the height at a node
+        of the strip with heights, and with curvatures as drawn, at distances of 0 .. R' - 1 rows of
+        nodes and at each node across the strip; over the variance of the heights as drawn.
     shift : int
         Binary logarithm of the number of points from node to node.
     """
@@ -45,7 +45,7 @@ class Answered(NamedTuple):
 
 
 _NOTHING = np.zeros((2, 2, 0), np.float32)
-NO_ANSWER = Answered(_NOTHING, np.zeros((0, 0), np.float32), _NOTHING, 30)
+NO_ANSWER = Answered(_NOTHING, _NOTHING[0, :0], np.zeros((2, 2, 2, 0), np.float32), 30)
 """The oil does not change the surface."""
 
 
@@ -125,16 +125,16 @@ def touching_strips(
     nearly = least - 1e-5 * abs(least)
     known_row = np.int64(0)  # for the literal 0, Numba would compile `_row` and `_contact` again
     one, unmoved, strip_nodes = np.float32(1.0), np.float32(0.0), answered.shapes.shape[0]
-    by_known = np.empty((answered.covariances.shape[1], strip_nodes), np.float32)
+    by_known = np.empty((2, answered.covariances.shape[2], strip_nodes), np.float32)
     nodes = np.empty(strip_nodes, np.float32)
     for k in range(places[0].size):
         origin = touching[0][k]
         node, part = _node(origin, answered.shift)
-        by_known[:] = answered.covariances[node]
-        by_known += part * (answered.covariances[node + 1] - by_known)
+        by_known[:] = answered.covariances[:, node]
+        by_known += part * (answered.covariances[:, node + 1] - by_known)
         oil = answered, by_known, nodes
         drawn = fields, covariances, places[0][k], places[1][k], origin, unmoved, oil
-        variance = one + _along(by_known[0], origin, answered.shift)
+        variance = one + _along(by_known[0, 0], origin, answered.shift)
         rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
         moved = fields, covariances, places[0][k], places[1][k], origin, rise, oil
         search = film, sharp, seen, np.int32(2 * k + 1), stack
@@ -202,7 +202,7 @@ def contacts_per_row(
     counts = np.zeros(2)
     origin, unmoved, first = np.int64(0), np.float32(0.0), np.int64(-reach)
     strip_nodes = answered.shapes.shape[0]
-    by_known = np.zeros((answered.covariances.shape[1], strip_nodes), np.float32)
+    by_known = np.zeros((2, answered.covariances.shape[2], strip_nodes), np.float32)
     oil = answered, by_known, np.empty(strip_nodes, np.float32)
     for k in range(places[0].size):
         moved = fields, covariances, places[0][k], places[1][k], origin, unmoved, oil
@@ -279,12 +279,12 @@ def _moved(surface, moved, row, column):
     fields, covariances, first_row, first_column, origin, rise, oil = moved
     drawn = fields[surface][first_row + row, first_column + column]
     middle = covariances[surface].shape[1] // 2
-    height = drawn + covariances[surface][abs(row), middle + column - origin] * rise
-    if surface == 0 and oil[2].size > 0:
+    found = drawn + covariances[surface][abs(row), middle + column - origin] * rise
+    if oil[2].size > 0:
         node, part = _node(column, oil[0].shift)
-        left = _at_node(moved, row, node)
-        height += left + part * (_at_node(moved, row, node + 1) - left)
-    return height
+        left = _at_node(surface, moved, row, node)
+        found += left + part * (_at_node(surface, moved, row, node + 1) - left)
+    return found
 
 
 @inlined
@@ -292,23 +292,24 @@ def _fill_nodes(moved, row):
     """Fill in what the oil adds to a row at the nodes."""
     nodes = moved[6][2]
     for node in range(nodes.size):
-        nodes[node] = _at_node(moved, row, node)
+        nodes[node] = _at_node(0, moved, row, node)
 
 
 @inlined
-def _at_node(moved, row, node):
-    """Find what the oil adds at a node of the strip, in a row counted from the known one."""
+def _at_node(surface, moved, row, node):
+    """Find what the oil adds to `_moved` at a node of the strip."""
     _, _, first_row, first_column, _, rise, (answered, by_known, _) = moved
     fields, shapes, shift = answered.fields, answered.shapes, answered.shift
-    column = (first_column >> shift) + node
-    upper, part = _node(first_row + row, shift)
     added = np.float32(0.0)
-    for m in range(shapes.shape[1]):
-        here = fields[upper, column, m]
-        added += shapes[node, m] * (here + part * (fields[upper + 1, column, m] - here))
+    if surface == 0:
+        column = (first_column >> shift) + node
+        upper, part = _node(first_row + row, shift)
+        for m in range(shapes.shape[1]):
+            here = fields[upper, column, m]
+            added += shapes[node, m] * (here + part * (fields[upper + 1, column, m] - here))
     lag, part = _node(abs(row), shift)
-    here = by_known[lag, node]
-    return added + rise * (here + part * (by_known[lag + 1, node] - here))
+    here = by_known[surface, lag, node]
+    return added + rise * (here + part * (by_known[surface, lag + 1, node] - here))
 
 
 @inlined

@@ -31,6 +31,7 @@ def random_answer(rng, size):
     node = np.arange(NODES)
     across, rows = (node[:, None] - node)[:, None], np.arange((REACH >> SHIFT) + 2)[:, None]
     covariances = (0.1 * node[:, None, None] - 0.3) * np.exp(-0.1 * (across**2 + rows**2))
+    covariances = np.stack([covariances, 0.4 * covariances[::-1]])
     values = np.moveaxis(fields, 0, -1), shapes, covariances
     return Answered(*(each.astype(np.float32) for each in values), SHIFT)
 
@@ -44,13 +45,13 @@ def interpolated(values, *places):
 def added(answered, row, column, origin):
     """What the oil adds to the heights of a strip, and to the covariance with its known point."""
     if answered is NO_ANSWER:
-        return 0.0, 0.0
+        return 0.0, (0.0, 0.0)
     rows, columns = np.arange(-REACH, AROUND + 1), np.arange(WIDTH)
     first = column >> SHIFT
     part = answered.fields[:, first : first + NODES]
     heights = interpolated(np.sum(part * answered.shapes, axis=-1), row + rows, columns)
-    known = interpolated(answered.covariances, np.array([origin]), np.abs(rows), columns)
-    return heights, known[0]
+    lags = np.array([origin]), np.abs(rows), columns
+    return heights, [interpolated(each, *lags)[0] for each in answered.covariances]
 
 
 def naive(fields, covariances, row, column, origin, height, film, sharp, answered):
@@ -60,11 +61,13 @@ def naive(fields, covariances, row, column, origin, height, film, sharp, answere
     part = np.ix_(row + rows, column + columns)
     lags = covariances[0].shape[1] // 2 + columns - origin
     by_oil, known_by_oil = added(answered, row, column, origin)
-    known = covariances[0][np.abs(rows)][:, lags] + known_by_oil
+    known, known_curvature = (
+        drawn[np.abs(rows)][:, lags] + by_oil
+        for drawn, by_oil in zip(covariances, known_by_oil, strict=True)
+    )
     heights = fields[0][part] + by_oil
     rise = (height - heights[REACH, origin]) / known[REACH, origin]
-    heights = heights + known * rise
-    curvatures = fields[1][part] + covariances[1][np.abs(rows)][:, lags] * rise
+    heights, curvatures = heights + known * rise, fields[1][part] + known_curvature * rise
     labels, count = scipy.ndimage.label(heights > film)
     breaks = {0: False}
     for number in range(1, count + 1):

@@ -71,6 +71,40 @@ def test_the_surface_is_isotropic(surface):
         assert heights[rows, columns] == pytest.approx(heights[0, distance], abs=0.05)
 
 
+def test_long_waves_are_those_of_the_surface_on_a_coarser_grid(surface):
+    assert surface.points % 3 == 0
+    heights, _, waves = surface.draw(np.random.default_rng(7), surface.points // 3)
+    all_waves = np.fft.fft2(heights.astype(float))
+    number = np.hypot(*np.meshgrid(*2 * [np.fft.fftfreq(surface.points, 1.0 / surface.points)]))
+    long = np.fft.ifft2(np.where(number < 10.0, all_waves, 0.0)).real[::3, ::3]
+    down = np.fft.fftfreq(len(waves), 1.0 / len(waves))[:, None]
+    number = np.hypot(down, np.arange(waves.shape[1]))
+    found = np.fft.irfft2(np.where(number < 10.0, waves, 0.0), long.shape)
+    np.testing.assert_allclose(found, long, atol=1e-4 * surface.rms)
+
+
+def test_drawn_waves_are_divided_among_the_rollers_by_their_spectra(make_spec):
+    surface = isotropic_surface(make_spec(50_000, second_own={"hurst_exponent": 0.3}))
+    points, squares = surface.points // 3, []
+    for seed in range(40):
+        generator = np.random.default_rng(seed)
+        waves = surface.draw(generator, points)[2]
+        both = surface.of_each(waves, generator)
+        np.testing.assert_allclose(both[0] + both[1], waves, atol=1e-5 * np.abs(waves).max())
+        first, second = (np.fft.irfft2(each, (points, points)) for each in both)
+        squares.append([np.mean(first**2), np.mean(second**2), np.mean(first * second)])
+    number = np.abs(np.fft.fftfreq(surface.points, 1.0 / surface.points)).astype(int)
+    along = np.arange(surface.points // 2 + 1)
+    half = (points - 1) // 2
+    part = surface.first_part[np.rint(np.hypot(number[:, None], along)).astype(int)]
+    kept = np.where(along, 2.0, 1.0) * ((number[:, None] <= half) & (along <= half))
+    power = kept * surface.variances
+    expected = [np.sum(power * part), np.sum(power * (1.0 - part)), 0.0]
+    error = np.std(squares, axis=0, ddof=1) / 40**0.5
+    assert np.all(np.abs(np.mean(squares, axis=0) - expected) < 4.0 * error)
+    assert error.max() < 0.1 * min(expected[:2])
+
+
 def test_a_band_too_wide_for_a_grid_is_refused(make_spec):
     wide = make_spec(1_000_000, shortest_wavelength=1e-6)
     with pytest.raises(DataError, match=r"roughness: got a shortest wavelength of 1e-06 m"):
