@@ -2,6 +2,7 @@
 
 from lube.archive.explain import explain as explain
 from lube.calculator.answers import Answer as Answer
+from lube.calculator.arguments import COMPLETE as COMPLETE
 from lube.calculator.duty_cycle import duty as duty
 from lube.calculator.operating_points import contact_probability as contact_probability
 from lube.calculator.operating_points import film as film

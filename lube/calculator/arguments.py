@@ -1,7 +1,7 @@
 """Check the arguments of the calculator: numbers with units, choices and counts."""
 
 from collections.abc import Sequence
-from typing import Any, get_args
+from typing import Any, TypedDict, get_args
 
 import numpy as np
 import xarray as xr
@@ -16,6 +16,25 @@ from lube.units import convert, parse_number, parse_quantity
 FORMULA = "pan-hamrock"
 """Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
 CONTACT_MODELS = "line", "surface"
+
+
+class Model(TypedDict):
+    """Arguments that choose the model of an answer."""
+
+    film_formula: str
+    film_shape: str
+    roughness_deformation: str
+    contact_model: str
+
+
+COMPLETE: Model = {
+    "film_formula": "computed",
+    "film_shape": "computed",
+    "roughness_deformation": "computed",
+    "contact_model": "surface",
+}
+"""The most complete model of this package: film, its shape and its response to the roughness by
+Reynolds' equation, and contact of the rollers' surfaces over their length."""
 REALISATIONS = 64
 SEED = 1
 

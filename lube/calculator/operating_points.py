@@ -183,7 +183,8 @@ def contact_probability(
 
     It is a mean over pairs of rollers; a single pair touches more or less often. By default it is
     the probability for a line. The surfaces of rollers, which have a length, touch far more often:
-    that is the probability for the surface.
+    that is the probability for the surface. The arguments in `lube.COMPLETE` choose the most
+    complete model of this package, such as ``contact_probability(..., **lube.COMPLETE)``.
 
     The probability for the line is found in two ways. Contact in realisations is counted, as in
     ``contact.nc`` of a study; where they show no contact, the upper limit says how rare it is at
@@ -324,7 +325,7 @@ def ensemble(
     def of_realisation(number):
         return windows.count(draw_realisation(spec, seed, number), slip)[:, :2]
 
-    counts = on_threads(of_realisation, range(realisations))
+    counts = on_threads(of_realisation, range(realisations), name="contact of lines")
     shares = np.reshape(np.moveaxis(counts, -1, 0), (2, -1, *thickness.shape))
     dims = "realisation", *thickness.dims
     contact = {name: (dims, each) for name, each in zip(_PROBABILITIES, shares, strict=True)}

@@ -31,6 +31,7 @@ from lube.study.rollers import (
 )
 from lube.study.viscosity_checks import check_points
 from lube.study.viscosity_points import read_viscosity_csv
+from lube.threads import progress_bars
 from lube.types import File
 from lube.units import parse_quantity
 
@@ -55,7 +56,10 @@ _Function = TypeVar("_Function", bound=Callable)
 
 
 def with_parts(function: _Function) -> _Function:
-    """Make a function refuse unknown arguments, and `rollers` and `oil` of other types."""
+    """Make a function refuse unknown arguments, and `rollers` and `oil` of other types.
+
+    If it takes long, it shows its progress.
+    """
     signature, owner = inspect.signature(function), function.__qualname__.split(".")[0]
 
     @functools.wraps(function)
@@ -70,7 +74,8 @@ def with_parts(function: _Function) -> _Function:
             if name in given and not isinstance(given[name], kind):
                 needed = f"need lube.{kind.__name__}(...)"
                 raise StudyError(f"{name}: got {shown(given[name])}, {needed}")
-        return function(*args, **kwargs)
+        with progress_bars():
+            return function(*args, **kwargs)
 
     return checked
 

@@ -7,7 +7,7 @@ import scipy
 import scipy.fft
 import xarray as xr
 
-from lube.contact.waves import FINER, NODES, STEEPNESS, expanded
+from lube.contact.waves import FINER, NODES, PRECISION, STEEPNESS, expanded
 from lube.ehl.line_contact import one_blas_thread
 from lube.ehl.response import at_wavelengths
 from lube.kernels.areal import Answered
@@ -81,8 +81,8 @@ class SurfaceAnswer:
             The expansion.
         """
         angles, wavelength, position = levels
-        changed = np.flatnonzero(np.abs(response - 1.0).max(axis=(0, 2)))
-        last = changed[-1] if changed.size else 1
+        changed = np.flatnonzero(np.abs(response - 1.0).max(axis=(0, 2)) > PRECISION)
+        last = max([1, *changed])
         finer = np.geomspace(wavelength[0], wavelength[last], FINER * last + 1)
         scaled = finer / half_width, wavelength / half_width
         at_angles = [
@@ -203,36 +203,38 @@ class AnsweredStrip:
         length = np.hypot(down, along)
         changed = (length > 0.5) & (length < most)
         self._down, self._along = down[changed], along[changed]
-        self._filters = [
-            one.filters_at(unit * self._along, unit * self._down) for one in self.answers
-        ]
+        filters = [one.filters_at(unit * self._along, unit * self._down) for one in self.answers]
+        self._filters = [each.astype(np.complex64) for each in filters]
         variances = surface.variances[self._down, self._along] / surface.rms**2
-        self._curvatures = surface.curvatures[self._down, self._along]
+        curvatures = surface.curvatures[self._down, self._along]
         first_part = surface.first_part[np.rint(length[changed]).astype(np.int64)]
         parts = [1.0] if are_alike else [first_part, 1.0 - first_part]
         added = [
-            self._added(part * variances, *each, nodes, rows, unit * surface.spacing)
-            for part, *each in zip(parts, self._filters, self._shapes, strict=True)
+            self._added(part * variances, curvatures, *each, nodes, rows, unit * surface.spacing)
+            for part, *each in zip(parts, filters, self._shapes, strict=True)
         ]
         self._covariances = sum(added).astype(np.float32)
         own = np.diagonal(self._covariances[0, :, 0])
         self.rms = np.sqrt(1.0 + np.interp(np.arange(columns), nodes, own))
 
-    def _added(self, variances, filters, shapes, nodes, rows, unit):
+    def _added(self, variances, curvatures, filters, shapes, nodes, rows, unit):
         """Sum what the oil adds to the covariances of one surface, with heights and curvatures."""
-        lags = np.arange((rows >> self.shift) + 2) << self.shift
-        added = np.zeros((2, nodes.size, lags.size, nodes.size))
-        for down in range(self._down.max() + 1):
+        lags, downs = (
+            np.arange((rows >> self.shift) + 2) << self.shift,
+            np.arange(self._down.max() + 1),
+        )
+        of_waves = np.empty((downs.size, 2, nodes.size, nodes.size))
+        for down in downs:
             here = np.flatnonzero(np.abs(self._down) == down)
             drawn = np.exp(1j * unit * nodes[:, None] * self._along[here])
             changed = (1.0 + shapes @ filters[here].T) * drawn
             # Waves along rolling stand for their mirror images too.
             power = variances[here] * np.where(self._along[here], 2.0, 1.0)
-            curved, by_oil = drawn * (power * self._curvatures[here]), changed - drawn
+            curved, by_oil = drawn * (power * curvatures[here]), changed - drawn
             heights = changed.conj() @ (changed * power).T - drawn.conj() @ (drawn * power).T
-            found = np.stack([heights.real, (by_oil.conj() @ curved.T).real])
-            added += np.cos(unit * down * lags)[:, None] * found[:, :, None]
-        return added
+            of_waves[down] = heights.real, (by_oil.conj() @ curved.T).real
+        along = np.cos(unit * lags[:, None] * downs)
+        return np.einsum("rd,dktc->ktrc", along, of_waves, optimize=True)
 
     def of_waves(self, waves: list[Array]) -> Answered:
         """Filter the long waves of drawn surfaces, on the coarser grid of the nodes.
@@ -251,7 +253,7 @@ class AnsweredStrip:
         shape, fields = (self.points, self.points), []
         for own, filters in zip(waves, self._filters, strict=True):
             coarser = on_coarser_grid(own, self.points)
-            for each in filters.T.astype(np.complex64):
+            for each in filters.T:
                 changed = np.zeros_like(coarser)
                 changed[self._down, self._along] = coarser[self._down, self._along] * each
                 fields.append(np.pad(scipy.fft.irfft2(changed, shape), (0, 1), mode="wrap"))

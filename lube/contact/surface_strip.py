@@ -56,13 +56,16 @@ STRIPS = 400
 """Strips on each surface."""
 MANY = 30.0
 """Expected number of contacts above which contact is certain, and contacts are counted."""
-FEWER_STRIPS = 40
+FEWER_STRIPS = 10
 """Strips on each surface where contact is certain."""
 COUNTED_STRIPS = 5
 """The first of these, in which contacts are counted."""
 AROUND = 100
 """Rows beyond a known point in which its contact is followed; a first contact begins within as many
 before it."""
+AT_ONCE = 16
+"""Operating points at which the oil answers that are sampled together, for which surfaces are drawn
+again: what the oil adds to the covariances takes some 10 MB a point."""
 THEORY_COLUMNS = 200
 """Columns of a film with a shape, for the contacts that theory expects."""
 _NUMBERS = {
@@ -124,7 +127,7 @@ class StripFilm:
 
     def answered(self, surface: Surface, rows: int) -> AnsweredStrip | None:
         """Find what the oil adds to a surface, for covariances over some rows."""
-        if self.answers is None:
+        if self.answers is None or not any(one.shapes.size for one in self.answers):
             return None
         columns = self._columns(surface.spacing)
         return AnsweredStrip(self.answers, surface, columns[0], columns.size, rows)
@@ -253,7 +256,13 @@ def _contacts(spec, strips, sharp, length, seed, threads):
     multiple = 2**COARSEST if is_answered else 1
     surface = isotropic_surface(spec, widest, smallest, multiple=multiple)
     certain = expected[0] > MANY
-    found = _sampled(spec, surface, strips, certain, sharp, length, seed, threads)
+    at_once = AT_ONCE if is_answered else len(strips)
+    groups = [slice(first, first + at_once) for first in range(0, len(strips), at_once)]
+    found = [
+        _sampled(spec, surface, strips[some], certain[some], sharp[some], length, seed, threads)
+        for some in groups
+    ]
+    found = {name: np.concatenate([one[name] for one in found]) for name in found[0]}
     return dict(zip(_EXPECTED, expected, strict=True)) | found
 
 
@@ -296,7 +305,7 @@ def _sampled(spec, surface, strips, certain, sharp, length, seed, threads=1):
         seeds = np.random.SeedSequence((seed, number)).spawn(7)[5:]
         return _on_one_surface(seeds, surface, covariances, strips, reach)
 
-    found = on_threads(on_one_surface, range(SURFACES), threads)
+    found = on_threads(on_one_surface, range(SURFACES), threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
     rows = max(int(length / surface.spacing), 1)
     results = {}

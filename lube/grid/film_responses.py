@@ -117,7 +117,7 @@ def _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads):
         return [np.stack(each, axis=speeds[at].ndim) for each in zip(*found, strict=True)]
 
     with one_blas_thread():
-        found = on_threads(of_film, np.ndindex(films.shape), threads)
+        found = on_threads(of_film, np.ndindex(films.shape), threads, "response of the film")
     shape = *speeds.shape, angles.size
     response = np.reshape([each for each, _ in found], (*shape, waves.size, positions.size))
     error = np.reshape([each for _, each in found], shape)

@@ -27,9 +27,9 @@ class Gap:
         return self.film_shape != "flat"
 
     @property
-    def is_drawn(self) -> bool:
-        """Whether the roughness reaches the gap as drawn."""
-        return self.roughness_deformation == "none"
+    def is_on_surfaces(self) -> bool:
+        """Whether surfaces can enter the gap; the formula is for lines only."""
+        return not self.is_flattened
 
     @property
     def is_flattened(self) -> bool:

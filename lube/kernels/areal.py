@@ -127,12 +127,14 @@ def touching_strips(
     one, unmoved, strip_nodes = np.float32(1.0), np.float32(0.0), answered.shapes.shape[0]
     by_known = np.empty((2, answered.covariances.shape[2], strip_nodes), np.float32)
     nodes = np.empty(strip_nodes, np.float32)
+    highest = np.empty(by_known.shape[1], np.float32)  # what the oil adds at most, rows of nodes
     for k in range(places[0].size):
         origin = touching[0][k]
         node, part = _node(origin, answered.shift)
         by_known[:] = answered.covariances[:, node]
         by_known += part * (answered.covariances[:, node + 1] - by_known)
-        oil = answered, by_known, nodes
+        highest[:] = np.nan
+        oil = answered, by_known, nodes, highest
         drawn = fields, covariances, places[0][k], places[1][k], origin, unmoved, oil
         variance = one + _along(by_known[0, 0], origin, answered.shift)
         rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
@@ -203,7 +205,8 @@ def contacts_per_row(
     origin, unmoved, first = np.int64(0), np.float32(0.0), np.int64(-reach)
     strip_nodes = answered.shapes.shape[0]
     by_known = np.zeros((2, answered.covariances.shape[2], strip_nodes), np.float32)
-    oil = answered, by_known, np.empty(strip_nodes, np.float32)
+    nodes = np.empty(strip_nodes, np.float32)
+    oil = answered, by_known, nodes, np.empty(0, np.float32)
     for k in range(places[0].size):
         moved = fields, covariances, places[0][k], places[1][k], origin, unmoved, oil
         search = film, sharp, seen, np.int32(k + 1), stack
@@ -268,8 +271,9 @@ def _ceiling(moved, tops, known, row, width):
         highest = max(highest, tops[first_row + row, block])
     highest += max(known[0, abs(row)] * rise, known[1, abs(row)] * rise)
     if oil[2].size > 0:
-        _fill_nodes(moved, row)
-        highest += oil[2].max()
+        # Between rows of nodes, what the oil adds is linear.
+        before = abs(row) >> oil[0].shift
+        highest += max(_most_added(moved, before), _most_added(moved, before + 1))
     return highest
 
 
@@ -288,6 +292,16 @@ def _moved(surface, moved, row, column):
 
 
 @inlined
+def _most_added(moved, before):
+    """Find the most that the oil adds in a row of nodes, counted back from the known row."""
+    answered, _, nodes, highest = moved[6]
+    if np.isnan(highest[before]):
+        _fill_nodes(moved, -(before << answered.shift))
+        highest[before] = nodes.max()
+    return highest[before]
+
+
+@inlined
 def _fill_nodes(moved, row):
     """Fill in what the oil adds to a row at the nodes."""
     nodes = moved[6][2]
@@ -298,7 +312,7 @@ def _fill_nodes(moved, row):
 @inlined
 def _at_node(surface, moved, row, node):
     """Find what the oil adds to `_moved` at a node of the strip."""
-    _, _, first_row, first_column, _, rise, (answered, by_known, _) = moved
+    _, _, first_row, first_column, _, rise, (answered, by_known, _, _) = moved
     fields, shapes, shift = answered.fields, answered.shapes, answered.shift
     added = np.float32(0.0)
     if surface == 0:

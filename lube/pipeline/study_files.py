@@ -87,7 +87,7 @@ _NEEDED = {
     "line_spec.is_isotropic": "isotropic surfaces",
     "conducts": "rollers that conduct, a `resistivity` that is not `insulator`",
     "line_spec.is_drawn": "lines that are drawn from a spectrum",
-    "gap.is_drawn": "`roughness_deformation: none`",
+    "gap.is_on_surfaces": "`roughness_deformation: none` or `computed`",
     "gap.is_plain": "`film_shape: flat` and `roughness_deformation: none`",
 }
 """What a study needs for the stages that are `only_with` it, in words."""

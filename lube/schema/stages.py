@@ -23,6 +23,8 @@ class Stage:
         What it makes, in a few words, for the messages of Snakemake.
     inputs : tuple of str
         Stages whose files it reads, as far as the study has them.
+    inputs_with : dict
+        Further stages whose files it reads, each with the attribute of the study that asks for it.
     values : dict
         Values of the study that it uses: from the name of each value in the file's attribute
         ``config`` to the dotted attribute of `lube.study.study.Study`, or to a nested mapping.
@@ -49,6 +51,7 @@ class Stage:
     name: str
     says: str
     inputs: tuple[str, ...] = ()
+    inputs_with: dict[str, str] = field(default_factory=dict)
     values: dict = field(default_factory=dict)
     same_values: tuple[str, ...] = ()
     target: str = "all"
@@ -200,12 +203,22 @@ _ROWS = (
         only_with=("conducts",),
     ),
     Stage(
+        "surface_response",
+        "response of the film to waves of a surface, at any angle, several minutes",
+        inputs=("lubricant", "film"),
+        values={"lines": "line_spec"} | _named("operating_grid.slide_to_roll_ratio"),
+        target="computed",
+        only_with=_SURFACE,
+        parallel=True,
+    ),
+    Stage(
         "areal",
         "contact of the surfaces that the lines stand for, several minutes",
         inputs=("film",),
+        inputs_with={"surface_response": "gap.is_answered"},
         values=_LINES | _CONTACT | _named("rollers.length"),
         target="areal_contact",
-        only_with=(*_SURFACE, "gap.is_drawn"),
+        only_with=(*_SURFACE, "gap.is_on_surfaces"),
         parallel=True,
     ),
     Stage(
@@ -239,9 +252,9 @@ _ROWS = (
     ),
     Stage(
         "variants",
-        "contact with one choice of the model changed, some minutes",
-        inputs=("lubricant", "film", "film_profile", "film_response"),
-        values=_LINES | _LAYER | _named("realisations roughness_deformation"),
+        "contact with choices of the model changed, several minutes",
+        inputs=("lubricant", "film", "film_profile", "film_response", "surface_response"),
+        values=_LINES | _LAYER | _named("realisations roughness_deformation rollers.length"),
         target="computed",
         parallel=True,
     ),
@@ -318,6 +331,7 @@ def forerunners(stage: str) -> tuple[str, ...]:
     >>> forerunners("trace")
     ('lubricant', 'film', 'roughness')
     """
-    direct = {*STAGES[stage].inputs, *STAGES[stage].same_values}
+    row = STAGES[stage]
+    direct = {*row.inputs, *row.inputs_with, *row.same_values}
     found = direct.union(*(forerunners(name) for name in direct))
     return tuple(name for name in STAGES if name in found)

@@ -3,6 +3,7 @@
 import xarray as xr
 
 from lube.contact.surface_strip import surface_contact
+from lube.grid.film_responses import SURFACE_VARIABLES
 from lube.schema import CONTACT_DIMS, label
 from lube.study.study import Study
 from lube.types import Datasets
@@ -29,6 +30,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         As from `lube.contact.surface_strip.surface_contact`.
     """
     film, length = inputs["film"].isel(film_formula=[0]), study.rollers.length
+    if "surface_response" in inputs:
+        responses = inputs["surface_response"][list(SURFACE_VARIABLES)]
+        film = film.assign(responses.rename(film_position="response_position"))
     film = film.transpose(*CONTACT_DIMS, ..., missing_dims="ignore")
     choices = study.boundary_layer, study.seed, study.gap, threads
     found = surface_contact(study.line_spec, length, film, *choices).drop_attrs()

@@ -267,7 +267,7 @@ def _sampled(spec, film, windows, seed, pairs, threads=None):
     def on_one_pair(number):
         return windows.sample(spec, seed, number)
 
-    found = on_threads(on_one_pair, range(pairs), threads)
+    found = on_threads(on_one_pair, range(pairs), threads, "rare contact of lines")
     windows, runs = (
         xr.DataArray(np.reshape(each, (pairs, -1, *thickness.shape)), thickness.coords, dims)
         for each in zip(*found, strict=True)

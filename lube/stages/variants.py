@@ -1,24 +1,25 @@
-"""The variants stage: how contact changes if a choice of the study is made otherwise.
+"""The variants stage: how contact changes if choices of the study are made otherwise.
 
-All variants are computed on the same lines, so their ratios are better known than the probabilities
-themselves.
+All variants of lines are computed on the same lines, so their ratios are better known than the
+probabilities themselves.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
+from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.ehl.response import at_wavelengths
-from lube.grid.film_responses import VARIABLES
+from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
-from lube.schema import POINT_DIMS, label, values_with_limits
+from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval, probability_interval, ratio_interval
 from lube.study.study import Study
 from lube.surfaces.synthetic import draw_realisation, wave_amplitudes
@@ -46,26 +47,35 @@ class Variant:
     is_uncut : bool, optional
         Whether the boundary layer is judged on uncut segments, of which any part lies in the
         window; otherwise on the parts that the edges of the window leave.
+    contact_model : str, optional
+        ``line``, or ``surface``: the isotropic surface that the line stands for, over the length of
+        the rollers.
     """
 
     film: str | None = None
     film_shape: str | None = None
     roughness_deformation: str | None = None
     is_uncut: bool = False
+    contact_model: str = "line"
 
     def of(self, study: Study) -> "Variant":
         """Return the variant with the study's own choices in place of None."""
-        return Variant(
-            self.film or study.film_formulas[0],
-            self.film_shape or study.film_shape,
-            self.roughness_deformation or study.roughness_deformation,
-            self.is_uncut,
+        return replace(
+            self,
+            film=self.film or study.film_formulas[0],
+            film_shape=self.film_shape or study.film_shape,
+            roughness_deformation=self.roughness_deformation or study.roughness_deformation,
         )
 
     @property
     def gap(self) -> Gap:
         """How film and roughness make up the gap."""
         return Gap("flat" if self.film_shape == "flat" else "computed", self.roughness_deformation)
+
+    @property
+    def is_on_surface(self) -> bool:
+        """Whether contact is that of the surface."""
+        return self.contact_model == "surface"
 
 
 STUDY = "study"
@@ -81,6 +91,12 @@ VARIANTS = {
     "computed, answered": Variant("computed", "computed", "computed"),
     "flattened": Variant(roughness_deformation="venner-1997"),
     "uncut": Variant(film_shape="flat", roughness_deformation="none", is_uncut=True),
+    "plain": Variant(None, "flat", "none"),
+    "plain, computed film": Variant("computed", "flat", "none"),
+    "plain, computed shape": Variant("computed", "computed", "none"),
+    "plain, surface": Variant(None, "flat", "none", contact_model="surface"),
+    "computed shape, surface": Variant("computed", "computed", "none", contact_model="surface"),
+    "complete": Variant("computed", "computed", "computed", contact_model="surface"),
 }
 """All variants by name, the study's own first; the others are compared with it."""
 
@@ -90,6 +106,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     Contact is sampled at any rarity if the study's lines are Gaussian and no formula flattens them.
     Otherwise, and for variants that cannot be sampled, it is counted on the study's realisations.
+    Contact of the surface is always sampled; it is NaN where the lines stand for no isotropic
+    surface, or a formula flattens them.
     """
     chosen = {name: variant.of(study) for name, variant in VARIANTS.items()}
     own, spec = chosen[STUDY], study.line_spec
@@ -97,15 +115,18 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     windows = {
         each: ContactWindows(spec, film, study.boundary_layer, each.gap)
         for each, film in films.items()
+        if not each.is_on_surface
     }
     is_sampled = study.is_sampled
     sampled = [
-        each for each in films if is_sampled and not (each.gap.is_flattened or each.is_uncut)
+        each for each in windows if is_sampled and not (each.gap.is_flattened or each.is_uncut)
     ]
-    counted = [own, *(each for each in films if each not in sampled and each != own)]
+    counted = [own, *(each for each in windows if each not in sampled and each != own)]
     found = _counted(counted, windows, study, threads)
     if sampled:
         found |= _sampled(sampled, windows, study, threads)
+    for each in films.keys() - windows.keys():
+        found[each] = _on_surface(each, films[each], found[own], study, threads)
     film = films[own]
     shape, dims = film["film_thickness"].shape, ("variant", *POINT_DIMS)
     table = {
@@ -118,7 +139,10 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         "film_thickness": (dims, thickness),
         "lambda_ratio": (dims, thickness / film["composite_rms_roughness"].item()),
         "roughness_ratio": (dims, ratios),
-        "is_sampled": ("variant", [int(each in sampled) for each in chosen.values()]),
+        "is_sampled": (
+            "variant",
+            [int(each in sampled or each.is_on_surface) for each in chosen.values()],
+        ),
         "film_formula": ((), study.film_formulas[0]),
     }
     coordinates = {name: film[name] for name in POINT_DIMS} | {"variant": list(VARIANTS)}
@@ -143,6 +167,9 @@ def _film(variant, study, inputs):
     film["film_thickness"] = film["film_thickness"].transpose(*POINT_DIMS)
     response = inputs["film_response"][list(VARIABLES)].rename(film_position="response_position")
     slip = rolling(response["slide_to_roll_ratio"].values)
+    if variant.is_on_surface and "surface_response" in inputs:
+        response = inputs["surface_response"][list(SURFACE_VARIABLES)]
+        response = response.rename(film_position="response_position")
     film = film.assign(response.sel(slide_to_roll_ratio=slip, drop=True))
     if variant.film_shape == "flat":
         return film.drop_vars("film_profile", errors="ignore")
@@ -177,6 +204,30 @@ def _counted(variants, windows, study, threads):
     return _with_limits(variants, values, probability_interval(values, independent))
 
 
+def _on_surface(variant, film, own, study, threads):
+    """Probabilities on surfaces, and their ratios to the study's own, which are independent."""
+    names = "breakthrough_probability", "geometric_contact_probability"
+    points = film["film_thickness"].size
+    if study.has("surface_response") and variant.gap.is_on_surfaces:
+        choices = study.boundary_layer, study.seed, variant.gap, threads
+        contact = surface_contact(study.line_spec, study.rollers.length, film, *choices)
+        found = {f"{name}{end}": contact[f"{name}{end}"] for name in names for end in LIMITS}
+        found = {
+            name: values.transpose(*POINT_DIMS).values.ravel() for name, values in found.items()
+        }
+    else:
+        found = {f"{name}{end}": np.full(points, np.nan) for name in names for end in LIMITS}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratio = found[names[0]] / own[names[0]]
+        half_widths = [
+            (each[f"{names[0]}_upper"] - each[f"{names[0]}_lower"]) / (2.0 * each[names[0]])
+            for each in (found, own)
+        ]
+        error = np.hypot(*half_widths)
+        limits = ratio, ratio * np.exp(-error), ratio * np.exp(error)
+    return found | values_with_limits("probability_ratio", limits)
+
+
 def _count(variant, windows, pair):
     if not variant.is_uncut:
         return windows.count(pair)[:, :2].T
@@ -200,6 +251,8 @@ def _roughness_ratio(variant, spec, film):
     """Rms height of both lines together at the line of centres, over that as drawn."""
     if variant.roughness_deformation == "none":
         return np.ones(film["film_thickness"].shape)
+    if variant.is_on_surface:
+        return np.full(film["film_thickness"].shape, np.nan)
     waves = [wave_amplitudes(spec, roller) for roller in range(len(spec.lines))]
     power = np.concatenate([amplitudes**2 for _, amplitudes in waves])
     wavelengths = [

@@ -203,7 +203,9 @@ class Study(StrictModel):
 
     def inputs_of(self, stage: str) -> tuple[str, ...]:
         """Names of the stages whose files a stage reads, of those that the study has."""
-        return tuple(name for name in STAGES[stage].inputs if self.has(name))
+        row = STAGES[stage]
+        asked = (name for name, what in row.inputs_with.items() if attrgetter(what)(self))
+        return (*(name for name in row.inputs if self.has(name)), *asked)
 
     def has(self, stage: str) -> bool:
         """Whether the study has all that a stage needs (`only_with`)."""

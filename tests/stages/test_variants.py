@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from made import made
 
-from lube.grid.film_responses import VARIABLES
+from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES
 from lube.physics.flattening import amplitude_ratio
 from lube.schema import POINT_DIMS
 from lube.stages.film import film_table
@@ -13,7 +13,9 @@ from lube.surfaces.synthetic import draw_realisation
 
 GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (60.0, 80.0)}
 FORMULAS = ("paper", "pan-hamrock", "computed")
-KINDS = ("lubricant", "film", "film_profile", "film_response", "contact", "tail", "variants")
+KINDS = ["lubricant", "film", "film_profile", "film_response", "surface_response", "contact"]
+KINDS += ["tail", "areal", "variants"]
+ON_LINES = [name for name, one in VARIANTS.items() if not one.is_on_surface]
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +48,19 @@ def test_the_studys_own_choices_are_sampled_as_in_the_tail(found, files):
     assert (own["probability_ratio"] == 1.0).all()
     same = found.sel(variant=["paper", "as drawn"])  # as the study has them
     assert (same["breakthrough_probability"] == own["breakthrough_probability"]).all()
+
+
+def test_the_surface_is_that_of_the_areal_stage_on_another_grid(found, files):
+    own, areal = found.sel(variant="plain, surface"), files["areal"].squeeze()
+    name = "breakthrough_probability"
+    for one in (own, areal):
+        one["error"] = (one[f"{name}_upper"] - one[f"{name}_lower"]) / 4.0
+    difference = own[name] - areal[name].transpose(*own[name].dims)
+    error = np.hypot(own["error"], areal["error"].transpose(*own[name].dims))
+    assert (np.abs(difference) <= 4.0 * error).all() and (error < 0.1 * own[name]).all()
+    line = found[name].sel(variant=STUDY)
+    assert (own[name] > line).all()
+    np.testing.assert_allclose(own["probability_ratio"], own[name] / line, rtol=1e-12)
 
 
 def test_films_are_those_of_the_film_stage(found, files, few):
@@ -95,17 +110,20 @@ def test_where_the_lines_are_not_gaussian_all_is_counted(few):
     assert not found["is_sampled"].any()
     own = found["breakthrough_probability"].sel(variant=STUDY)
     close(own, contact["breakthrough_probability_mean"], rtol=1e-12)
-    assert found["breakthrough_probability"].notnull().all()
+    known = found["breakthrough_probability"].notnull()
+    assert known.sel(variant=ON_LINES).all() and known.sum("variant").max() == len(ON_LINES)
 
 
 def test_a_film_that_did_not_converge_is_unknown_in_its_variants_alone(few, files, found):
     profile = files["film_profile"].transpose(*POINT_DIMS, ...).copy(deep=True)
     for name in ("film", "central_film"):
         profile[name][0, 0, 0, 1] = np.nan
-    response = files["film_response"].copy(deep=True)
-    for name in VARIABLES:
-        response[name].transpose(*POINT_DIMS, ...)[0, 0, 0, 1] = np.nan
-    holed = make(few, files | {"film_profile": profile, "film_response": response}).squeeze()
+    holed = files | {"film_profile": profile}
+    for kind, names in (("film_response", VARIABLES), ("surface_response", SURFACE_VARIABLES)):
+        holed[kind] = files[kind].copy(deep=True)
+        for name in names:
+            holed[kind][name].transpose(*POINT_DIMS, ...)[0, 0, 0, 1] = np.nan
+    holed = make(few, holed).squeeze()
     for name in ("breakthrough_probability", "roughness_ratio"):
         needs = [
             one.gap.is_answered or (one.film == "computed" and name != "roughness_ratio")

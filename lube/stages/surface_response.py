@@ -1,0 +1,34 @@
+"""The surface response stage: how the oil changes waves that run at any angle to rolling."""
+
+import xarray as xr
+
+from lube.grid.films import film_at
+from lube.schema import FILES, label
+from lube.study.study import Study
+from lube.types import Datasets
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``surface_response.nc``: the linear response of the film to waves of rough surfaces.
+
+    Parameters
+    ----------
+    study, inputs, threads
+        As in `lube.stages`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``surface_response`` file of `lube.schema`, by
+        `lube.grid.film_responses.surface_responses`. Where the film did not converge, the response
+        is NaN and the log says so.
+    """
+    film, model = inputs["film"], study.film_model
+    levels = film["force"], film["speed"], ["computed"], False, film["slide_to_roll_ratio"]
+    heat, meniscus = model["inlet_shear_heating"], model["inlet_meniscus"]
+    surfaces = {"answered_surfaces": study.line_spec, "threads": threads}
+    table = film_at(inputs["lubricant"], study.rough_rollers, *levels, heat, meniscus, **surfaces)
+    table = table.rename(response_position="film_position")
+    variables = FILES["surface_response"]
+    dims = variables["surface_response_real"].dims
+    return label(table[list(variables)].drop_attrs().transpose(*dims), "surface_response")
