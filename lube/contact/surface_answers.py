@@ -213,7 +213,7 @@ class AnsweredStrip:
             self._added(part * variances, curvatures, *each, nodes, rows, unit * surface.spacing)
             for part, *each in zip(parts, filters, self._shapes, strict=True)
         ]
-        self._covariances = sum(added).astype(np.float32)
+        self._covariances = np.ascontiguousarray(sum(added))
         own = np.diagonal(self._covariances[0, :, 0])
         self.rms = np.sqrt(1.0 + np.interp(np.arange(columns), nodes, own))
 
@@ -223,7 +223,7 @@ class AnsweredStrip:
             np.arange((rows >> self.shift) + 2) << self.shift,
             np.arange(self._down.max() + 1),
         )
-        of_waves = np.empty((downs.size, 2, nodes.size, nodes.size))
+        of_waves = np.empty((downs.size, 2, nodes.size, nodes.size), np.float32)
         for down in downs:
             here = np.flatnonzero(np.abs(self._down) == down)
             drawn = np.exp(1j * unit * nodes[:, None] * self._along[here])
@@ -233,7 +233,7 @@ class AnsweredStrip:
             curved, by_oil = drawn * (power * curvatures[here]), changed - drawn
             heights = changed.conj() @ (changed * power).T - drawn.conj() @ (drawn * power).T
             of_waves[down] = heights.real, (by_oil.conj() @ curved.T).real
-        along = np.cos(unit * lags[:, None] * downs)
+        along = np.cos(unit * lags[:, None] * downs).astype(np.float32)
         return np.einsum("rd,dktc->ktrc", along, of_waves, optimize=True)
 
     def of_waves(self, waves: list[Array]) -> Answered:

@@ -63,9 +63,9 @@ COUNTED_STRIPS = 5
 AROUND = 100
 """Rows beyond a known point in which its contact is followed; a first contact begins within as many
 before it."""
-AT_ONCE = 16
+AT_ONCE = 10
 """Operating points at which the oil answers that are sampled together, for which surfaces are drawn
-again: what the oil adds to the covariances takes some 10 MB a point."""
+again: what the oil adds to the covariances takes 5 to 40 MB a point."""
 THEORY_COLUMNS = 200
 """Columns of a film with a shape, for the contacts that theory expects."""
 _NUMBERS = {

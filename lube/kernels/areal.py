@@ -121,8 +121,7 @@ def touching_strips(
     known = np.empty((2, reach + 1), np.float32)
     for row in range(reach + 1):
         known[0, row], known[1, row] = covariances[0][row].min(), covariances[0][row].max()
-    least = film.min()
-    nearly = least - 1e-5 * abs(least)
+    least = np.empty((width - 2) // BLOCK + 2, np.float32)
     known_row = np.int64(0)  # for the literal 0, Numba would compile `_row` and `_contact` again
     one, unmoved, strip_nodes = np.float32(1.0), np.float32(0.0), answered.shapes.shape[0]
     by_known = np.empty((2, answered.covariances.shape[2], strip_nodes), np.float32)
@@ -149,6 +148,7 @@ def touching_strips(
         contacts[1] += breaks / points
         if first <= -around:
             continue  # too long a contact to be a first one
+        _least_by_block(places[1][k], film, least)
         _, others, broken, earliest = _row(moved, search, heights, first)
         # Several contacts that begin in the same row count as one first contact.
         alone, alone_broken = 1 + others, 1 + broken
@@ -156,8 +156,7 @@ def touching_strips(
             alone_broken = 0
         for before in range(1, rows + 1):
             row = first - before
-            may_touch = _ceiling(moved, tops, known, row, width) > nearly
-            if may_touch and _fill_row(moved, row, heights) > least and np.any(heights > film):
+            if _touches(moved, tops, known, film, least, row):
                 alone = 0
                 if alone_broken > 0:
                     _, _, broken, _ = _row(moved, search, heights, row)
@@ -263,18 +262,41 @@ def _fill_row(moved, row, heights):
 
 
 @inlined
-def _ceiling(moved, tops, known, row, width):
-    """Upper limit of the heights in a row, up to rounding."""
-    _, _, first_row, first_column, _, rise, oil = moved
-    highest = np.float32(-np.inf)
-    for block in range(first_column // BLOCK, (first_column + width - 1) // BLOCK + 1):
-        highest = max(highest, tops[first_row + row, block])
-    highest += max(known[0, abs(row)] * rise, known[1, abs(row)] * rise)
+def _least_by_block(first_column, film, least):
+    """Find the thinnest film, less some rounding, in each block of the surface's columns."""
+    least[:] = np.inf
+    for column in range(film.size):
+        block = (first_column + column) // BLOCK - first_column // BLOCK
+        least[block] = min(least[block], film[column] - 1e-5 * abs(film[column]))
+
+
+@kernel
+def _touches(moved, tops, known, film, least, row):
+    """Whether any point of a row touches; blocks that lie too low are skipped."""
+    fields, covariances, first_row, first_column, origin, rise, oil = moved
+    most = max(known[0, abs(row)] * rise, known[1, abs(row)] * rise)
     if oil[2].size > 0:
         # Between rows of nodes, what the oil adds is linear.
         before = abs(row) >> oil[0].shift
-        highest += max(_most_added(moved, before), _most_added(moved, before + 1))
-    return highest
+        most += max(_most_added(moved, before), _most_added(moved, before + 1))
+    first, middle, filled = first_column // BLOCK, covariances[0].shape[1] // 2, False
+    for block in range(least.size):
+        if not tops[first_row + row, min(first + block, tops.shape[1] - 1)] + most > least[block]:
+            continue
+        begin = max((first + block) * BLOCK - first_column, 0)
+        end = min((first + block + 1) * BLOCK - first_column, film.size)
+        if oil[2].size > 0 and not filled:
+            _fill_nodes(moved, row)
+            filled = True
+        touched = False
+        for column in range(begin, end):
+            height = fields[0][first_row + row, first_column + column]
+            height += covariances[0][abs(row), middle - origin + column] * rise
+            height += _along(oil[2], column, oil[0].shift)
+            touched |= height > film[column]
+        if touched:
+            return True
+    return False
 
 
 @inlined
@@ -353,25 +375,23 @@ def _contact(moved, search, row, column):
     ahead = seen.shape[0] - reach - 1
     seen[reach + row, column] = mark
     stack[0, 0], stack[0, 1] = row, column
-    waiting, points, earliest = 1, 0, row
-    highest, summit_row, summit_column = -np.inf, row, column
+    waiting, points, earliest = 1, 1, row
+    highest, summit_row, summit_column = _moved(0, moved, row, column) - film[column], row, column
     while waiting > 0:
         waiting -= 1
         here_row, here_column = stack[waiting, 0], stack[waiting, 1]
-        points += 1
-        earliest = min(earliest, here_row)
-        overlap = _moved(0, moved, here_row, here_column) - film[here_column]
-        if overlap > highest:
-            highest, summit_row, summit_column = overlap, here_row, here_column
         for side in range(4):
             next_row = here_row + (side == 0) - (side == 1)
             next_column = here_column + (side == 2) - (side == 3)
             inside = -reach <= next_row <= ahead and 0 <= next_column < seen.shape[1]
             if not inside or seen[reach + next_row, next_column] == mark:
                 continue
-            if _moved(0, moved, next_row, next_column) > film[next_column]:
+            overlap = _moved(0, moved, next_row, next_column) - film[next_column]
+            if overlap > 0.0:
                 seen[reach + next_row, next_column] = mark
                 stack[waiting, 0], stack[waiting, 1] = next_row, next_column
-                waiting += 1
+                waiting, points, earliest = waiting + 1, points + 1, min(earliest, next_row)
+                if overlap > highest:
+                    highest, summit_row, summit_column = overlap, next_row, next_column
     breaks = _moved(1, moved, summit_row, summit_column) > sharp[summit_column]
     return points, breaks, earliest
