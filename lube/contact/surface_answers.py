@@ -7,11 +7,9 @@ import scipy
 import scipy.fft
 import xarray as xr
 
-from lube.contact.waves import FINER, NODES, PRECISION, STEEPNESS, expanded
-from lube.ehl.line_contact import one_blas_thread
+from lube.contact.waves import FINER, NODES, PRECISION, STEEPNESS, expanded, of_both_rollers
 from lube.ehl.response import at_wavelengths
 from lube.kernels.areal import Answered
-from lube.physics.hertz import hertz_gap
 from lube.surfaces.isotropic import Surface, on_coarser_grid
 from lube.types import Array, Pair
 
@@ -140,26 +138,13 @@ def surface_answers(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
         alike.
     """
     response = film["surface_response_real"] + 1j * film["surface_response_imaginary"]
-    names = "wave_angle", "wavelength", "response_position"
-    levels = tuple(response[name].values for name in names)
-    radius, roughness = film["reduced_radius"].item(), film["composite_rms_roughness"].item()
+    waves = ["wave_angle", "wavelength"]
+    levels = tuple(response[name].values for name in (*waves, "response_position"))
 
-    def of_both(response, half_width):
-        gap = hertz_gap(levels[2]) * (half_width**2 / radius)
-        importance = np.exp(-gap / roughness) if has_shape else np.abs(levels[2]) <= 1.0
-        answers = np.full(2, None)
-        for roller, one in enumerate(response):
-            if roller and np.array_equal(one, response[0]):
-                answers[1] = answers[0]
-            elif np.isfinite(one).all():
-                with one_blas_thread():
-                    answers[roller] = SurfaceAnswer.of(one, levels, half_width, importance)
-        return answers
+    def answer(response, half_width, importance):
+        return SurfaceAnswer.of(response, levels, half_width, importance)
 
-    core = [["roller", *names], []]
-    options = {"output_core_dims": [["roller"]], "vectorize": True, "output_dtypes": [object]}
-    widths = film["contact_half_width"]
-    return xr.apply_ufunc(of_both, response, widths, input_core_dims=core, **options)
+    return of_both_rollers(film, response, waves, answer, has_shape)
 
 
 class AnsweredStrip:

@@ -1,5 +1,6 @@
 """Waves of rough lines in the gap: a formula flattens them, or the computed film answers them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -176,7 +177,41 @@ def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
         not known. Both rollers have the same object where the film responds to both alike.
     """
     response = film["response_real"] + 1j * film["response_imaginary"]
-    wavelength, position = response["wavelength"].values, response["response_position"].values
+    levels = response["wavelength"].values, response["response_position"].values
+
+    def answer(response, half_width, importance):
+        return Answer.of(response, *levels, half_width, importance)
+
+    return of_both_rollers(film, response, ["wavelength"], answer, has_shape)
+
+
+def of_both_rollers(
+    film: xr.Dataset,
+    response: xr.DataArray,
+    waves: list[str],
+    answer: Callable,
+    has_shape: bool,
+) -> xr.DataArray:
+    """Expand the responses of the film to the roughness of both rollers.
+
+    Parameters
+    ----------
+    film, has_shape
+        As in `answers_at`.
+    response : xarray.DataArray
+        Complex response, over roller, the dimensions of the waves, response_position and others.
+    waves : list of str
+        Dimensions of the waves.
+    answer : callable
+        Expansion of one response, over the waves and the position: a function of it, of the
+        contact's half-width, m, and of the weight of an error at each position.
+
+    Returns
+    -------
+    xarray.DataArray
+        As from `answers_at`.
+    """
+    position, names = response["response_position"].values, ["roller", *waves, "response_position"]
     radius, roughness = film["reduced_radius"].item(), film["composite_rms_roughness"].item()
 
     def of_both(response, half_width):
@@ -188,13 +223,14 @@ def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
                 answers[1] = answers[0]
             elif np.isfinite(one).all():
                 with one_blas_thread():
-                    answers[roller] = Answer.of(one, wavelength, position, half_width, importance)
+                    answers[roller] = answer(one, half_width, importance)
         return answers
 
-    core = [["roller", "wavelength", "response_position"], []]
-    options = {"output_core_dims": [["roller"]], "vectorize": True, "output_dtypes": [object]}
+    core, options = [names, []], {"output_core_dims": [["roller"]], "output_dtypes": [object]}
     widths = film["contact_half_width"]
-    return xr.apply_ufunc(of_both, response, widths, input_core_dims=core, **options)
+    return xr.apply_ufunc(
+        of_both, response, widths, input_core_dims=core, vectorize=True, **options
+    )
 
 
 def lifted(

@@ -91,6 +91,15 @@ def test_surface_and_line_are_answered_together(rollers, oil):
     assert {"tail_" + name, name + "_mean"} <= set(found)
 
 
+def test_the_most_complete_model_is_asked_for_by_name(rollers, oil):
+    found = lube.contact_probability(rollers, oil, **POINT, **lube.COMPLETE)
+    drawn = lube.COMPLETE | {"roughness_deformation": "none"}
+    other = lube.contact_probability(rollers, oil, **POINT, **drawn)
+    assert found["film_thickness"] == other["film_thickness"]
+    assert found["surface_contacts_upper"] < other["surface_contacts_lower"]
+    assert np.isnan(found["surface_expected_contacts"])
+
+
 def test_contact_that_no_realisation_sees_has_a_probability(rollers, oil):
     cold = POINT | {"force": "100 N", "speed": "300 rpm", "temperature": "40 degC"}
     found = lube.contact_probability(rollers, oil, **cold, realisations=2)

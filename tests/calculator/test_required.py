@@ -180,9 +180,17 @@ def assert_has_the_share(found, share):
     assert abs(lower + upper - 2.0 * share) < 1.5 * (upper - lower) < 0.5 * share
 
 
-@pytest.mark.parametrize("film_shape", ["flat", pytest.param("computed", marks=pytest.mark.slow)])
-def test_a_share_on_the_surface_needs_more_speed_than_on_the_line(rollers, oil, film_shape):
-    choices = SURFACE | {"film_shape": film_shape}
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        pytest.param({"film_shape": "computed"}, marks=pytest.mark.slow),
+        pytest.param(lube.COMPLETE, marks=pytest.mark.slow),
+    ],
+    ids=["flat", "shaped", "complete"],
+)
+def test_a_share_on_the_surface_needs_more_speed_than_on_the_line(rollers, oil, more):
+    choices = SURFACE | more
     found = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **choices)
     line = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **ONE)
     assert found["speed_lower"] > 1.3 * line["speed"]
