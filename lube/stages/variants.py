@@ -112,21 +112,15 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     chosen = {name: variant.of(study) for name, variant in VARIANTS.items()}
     own, spec = chosen[STUDY], study.line_spec
     films = {each: _film(each, study, inputs) for each in dict.fromkeys(chosen.values())}
-    windows = {
-        each: ContactWindows(spec, film, study.boundary_layer, each.gap)
-        for each, film in films.items()
-        if not each.is_on_surface
-    }
-    is_sampled = study.is_sampled
     sampled = [
-        each for each in windows if is_sampled and not (each.gap.is_flattened or each.is_uncut)
+        each
+        for each in films
+        if each.is_on_surface or (study.is_sampled and not (each.gap.is_flattened or each.is_uncut))
     ]
-    counted = [own, *(each for each in windows if each not in sampled and each != own)]
-    found = _counted(counted, windows, study, threads)
-    if sampled:
-        found |= _sampled(sampled, windows, study, threads)
-    for each in films.keys() - windows.keys():
-        found[each] = _on_surface(each, films[each], found[own], study, threads)
+    found = _on_lines(own, films, sampled, study, threads)
+    for each, film in films.items():
+        if each.is_on_surface:
+            found[each] = _on_surface(each, film, found[own], study, threads)
     film = films[own]
     shape, dims = film["film_thickness"].shape, ("variant", *POINT_DIMS)
     table = {
@@ -139,10 +133,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         "film_thickness": (dims, thickness),
         "lambda_ratio": (dims, thickness / film["composite_rms_roughness"].item()),
         "roughness_ratio": (dims, ratios),
-        "is_sampled": (
-            "variant",
-            [int(each in sampled or each.is_on_surface) for each in chosen.values()],
-        ),
+        "is_sampled": ("variant", [int(each in sampled) for each in chosen.values()]),
         "film_formula": ((), study.film_formulas[0]),
     }
     coordinates = {name: film[name] for name in POINT_DIMS} | {"variant": list(VARIANTS)}
@@ -178,6 +169,20 @@ def _film(variant, study, inputs):
     gap = profile["film_position"].copy(data=hertz_gap(profile["film_position"].values))
     gap = gap.drop_attrs() * film["contact_half_width"] ** 2 / film["reduced_radius"]
     return film.assign(film_profile=film["film_thickness"] + gap)
+
+
+def _on_lines(own, films, sampled, study, threads):
+    """Probabilities of the variants of lines, the study's own among them."""
+    windows = {
+        each: ContactWindows(study.line_spec, film, study.boundary_layer, each.gap)
+        for each, film in films.items()
+        if not each.is_on_surface
+    }
+    counted = [own, *(each for each in windows if each not in sampled and each != own)]
+    found = _counted(counted, windows, study, threads)
+    if on_lines := [each for each in windows if each in sampled]:
+        found |= _sampled(on_lines, windows, study, threads)
+    return found
 
 
 def _sampled(variants, windows, study, threads):
