@@ -225,7 +225,7 @@ def test_the_trace_of_an_insulator_has_no_resistance(oil):
         ({"contact_model": "strip"}, "contact_model: got 'strip', need one of line, surface"),
         (
             {"contact_model": "surface", "roughness_deformation": "venner-1997"},
-            "roughness_deformation: got venner-1997, need none for contact of the surface",
+            "roughness_deformation: got venner-1997, need none or computed for contact",
         ),
         ({"slide_to_roll_ratio": 3}, "slide_to_roll_ratio: got 3, need a value"),
     ],

@@ -25,7 +25,7 @@ def test_a_target_that_the_study_lacks_is_refused_in_one_line(paper_with):
             files.check_targets(["--cores", "2", target])
     with pytest.raises(SystemExit, match="need a measured topography of a roller"):
         files.check_targets(["results/mine/surface.nc"])
-    path = paper_with(("roughness_deformation", "computed"), ("name", "mine"))
+    path = paper_with(("roughness_deformation", "venner-1997"), ("name", "mine"))
     files = StudyFiles(load_study(path), path, {})
     for target in ("areal_contact", "./results/mine/areal.nc"):
         with pytest.raises(SystemExit, match=f"got the target {target}, need .*tion: none"):

@@ -6,8 +6,9 @@ from made import made
 
 from lube.grid.film_responses import SURFACE_VARIABLES
 from lube.schema import CONTACT_DIMS
+from lube.stages import areal
 
-GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (80.0,)}
+GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (40.0,)}
 KINDS = ("lubricant", "film", "surface_response", "areal")
 
 
@@ -33,18 +34,17 @@ def test_waves_across_rolling_have_the_response_that_the_film_file_has(files):
 
 
 def test_the_oil_makes_contact_of_surfaces_rarer_and_the_more_with_slip(few, files):
-    areal = files["areal"]
+    found = files["areal"]
     drawn = few.model_copy(update={"roughness_deformation": "none"})
     other = made(drawn, KINDS)["areal"]
-    probability = areal["geometric_contact_probability"]
+    probability = found["geometric_contact_probability"]
     assert probability.dims == CONTACT_DIMS
     assert (probability.squeeze() < other["geometric_contact_probability"].squeeze()).all()
     rolling, sliding = (probability.sel(slide_to_roll_ratio=slip) for slip in (0.0, 0.5))
-    assert (sliding < rolling).all()
-    assert areal["expected_contacts"].isnull().all()
+    assert (sliding < 0.9 * rolling).isel(force=-1).all()
+    assert found["expected_contacts"].isnull().all()
     assert other["expected_contacts"].notnull().all()
 
 
 def test_threads_do_not_change_a_bit(few, files):
-    again = made(few, ("lubricant", "film", "surface_response", "areal"), threads=1)
-    assert again["areal"].identical(files["areal"])
+    assert areal.make(few, files, threads=1).identical(files["areal"])
