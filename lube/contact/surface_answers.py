@@ -113,10 +113,9 @@ class SurfaceAnswer:
         wavenumber, angle = np.hypot(along, across), np.degrees(np.arctan2(np.abs(across), along))
         # Beyond the longest wave the response is that of the longest.
         longest = np.maximum(np.log(wavenumber), np.log(self.wavenumber[0]))
-        grid, options = (np.log(self.wavenumber), self.angle), {"bounds_error": False}
-        filters = scipy.interpolate.RegularGridInterpolator(
-            grid, self.filters, fill_value=0.0, **options
-        )
+        grid = np.log(self.wavenumber), self.angle
+        beyond = {"bounds_error": False, "fill_value": 0.0}  # the oil does not change shorter waves
+        filters = scipy.interpolate.RegularGridInterpolator(grid, self.filters, **beyond)
         return filters((longest, angle))
 
 
@@ -204,10 +203,8 @@ class AnsweredStrip:
 
     def _added(self, variances, curvatures, filters, shapes, nodes, rows, unit):
         """Sum what the oil adds to the covariances of one surface, with heights and curvatures."""
-        lags, downs = (
-            np.arange((rows >> self.shift) + 2) << self.shift,
-            np.arange(self._down.max() + 1),
-        )
+        lags = np.arange((rows >> self.shift) + 2) << self.shift
+        downs = np.arange(self._down.max() + 1)
         of_waves = np.empty((downs.size, 2, nodes.size, nodes.size), np.float32)
         for down in downs:
             here = np.flatnonzero(np.abs(self._down) == down)

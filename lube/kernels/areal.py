@@ -242,23 +242,18 @@ def _row(moved, search, heights, row):
 
 @inlined
 def _fill_row(moved, row, heights):
-    """Fill in the heights of a row, counted from the known one, and return the highest."""
+    """Fill in the heights of a row, counted from the known one."""
     fields, covariances, first_row, first_column, origin, rise, oil = moved
     width = heights.size
     drawn = fields[0][first_row + row, first_column : first_column + width]
     middle = covariances[0].shape[1] // 2
     known = covariances[0][abs(row), middle - origin : middle - origin + width]
-    highest = np.float32(-np.inf)
     for column in range(width):  # without a branch, so the compiler vectorises it
         heights[column] = drawn[column] + known[column] * rise
-        highest = max(highest, heights[column])
     if oil[2].size > 0:
         _fill_nodes(moved, row)
-        highest = np.float32(-np.inf)
         for column in range(width):
             heights[column] += _along(oil[2], column, oil[0].shift)
-            highest = max(highest, heights[column])
-    return highest
 
 
 @inlined

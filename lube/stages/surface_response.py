@@ -9,20 +9,7 @@ from lube.types import Datasets
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
-    """Make ``surface_response.nc``: the linear response of the film to waves of rough surfaces.
-
-    Parameters
-    ----------
-    study, inputs, threads
-        As in `lube.stages`.
-
-    Returns
-    -------
-    xarray.Dataset
-        The ``surface_response`` file of `lube.schema`, by
-        `lube.grid.film_responses.surface_responses`. Where the film did not converge, the response
-        is NaN and the log says so.
-    """
+    """Make ``surface_response.nc``; see `lube.stages`."""
     film, model = inputs["film"], study.film_model
     levels = film["force"], film["speed"], ["computed"], False, film["slide_to_roll_ratio"]
     heat, meniscus = model["inlet_shear_heating"], model["inlet_meniscus"]
