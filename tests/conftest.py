@@ -9,6 +9,7 @@ import pytest
 import yaml
 from every_kind import datasets_of_every_kind
 from hypothesis import settings
+from made import on_few_surfaces
 from studies import PAPER_CONTENT, SMOKE, with_value
 
 from lube.contact.ensemble import gather, gather_map
@@ -177,6 +178,13 @@ def busy(busy_study):
         contact=gather([contact_statistics(lines, film, layer)], film),
         master=gather_map([contact_map(lines, film, layer)]),
     )
+
+
+@pytest.fixture(scope="module")
+def few_surfaces():
+    """As `made.on_few_surfaces`, for a whole module."""
+    with on_few_surfaces():
+        yield
 
 
 @pytest.fixture

@@ -1,8 +1,23 @@
 """All datasets of a study in memory, made as the workflow makes them."""
 
+import contextlib
+
+import numpy as np
+import pytest
+
 from lube.contact.rough_pair import roughness_batch
 from lube.schema import STAGES
 from lube.stages import maker
+
+
+@contextlib.contextmanager
+def on_few_surfaces(number=6):
+    """Sample contact of surfaces on few of them, whose waves run at few angles to rolling: where
+    the size of an error is not judged."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("lube.contact.surface_strip.SURFACES", number)
+        patch.setattr("lube.grid.film_responses.ANGLES", np.arange(0.0, 91.0, 45.0))
+        yield
 
 
 def made(study, kinds=tuple(STAGES), threads=2):

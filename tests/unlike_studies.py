@@ -2,7 +2,7 @@
 
 import numpy as np
 import yaml
-from made import made
+from made import made, on_few_surfaces
 from studies import CONFIG, PAPER_CONTENT
 
 from lube.contact.rough_pair import roughness_batch
@@ -211,7 +211,9 @@ def write_datasets(content, folder):
         From the kind of each dataset to its path.
     """
     study, paths = load_study(write_study(content, folder)), {}
-    for kind, dataset in made(study).items():
+    with on_few_surfaces():
+        datasets = made(study)
+    for kind, dataset in datasets.items():
         paths[kind] = folder / f"{kind}.nc"
         save(dataset, paths[kind], kind, study)
     return paths

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
+from made import on_few_surfaces
 
 import lube
 from lube import LubeError, Rollers
@@ -159,8 +160,9 @@ def test_a_rare_share_under_a_shape_is_sampled_and_on_flattened_lines_refused(ro
         lube.required_speed(rollers, oil, **given, roughness_deformation="venner-1997", **ONE)
 
 
-def test_a_rare_share_of_lines_that_the_oil_answers(rollers, oil):
+def test_a_rare_share_of_lines_that_the_oil_answers(rollers, oil, monkeypatch):
     """Put in again, and with slip, which the answer depends on."""
+    monkeypatch.setattr(film_search, "AROUND", film_search.AROUND[::2])
     gap = {"film_shape": "computed", "roughness_deformation": "computed"}
     found = lube.required_speed(rollers, oil, **without("speed"), share=1e-4, **gap, **ONE)
     point = POINT | {"speed": (found["speed"].item(), "rpm")}
@@ -191,19 +193,21 @@ def assert_has_the_share(found, share):
 )
 def test_a_share_on_the_surface_needs_more_speed_than_on_the_line(rollers, oil, more):
     choices = SURFACE | more
-    found = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **choices)
+    with on_few_surfaces(10):
+        found = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **choices)
+        point = POINT | {"speed": (found["speed"].item(), "rpm")}
+        assert_has_the_share(lube.contact_probability(rollers, oil, **point, **choices), 0.2)
     line = lube.required_speed(rollers, oil, **without("speed"), share=0.2, **ONE)
     assert found["speed_lower"] > 1.3 * line["speed"]
-    point = POINT | {"speed": (found["speed"].item(), "rpm")}
-    assert_has_the_share(lube.contact_probability(rollers, oil, **point, **choices), 0.2)
 
 
 def test_on_the_surface_the_roughness_has_the_share(rollers, oil, busy):
     """Rollers of that roughness, drawn anew."""
-    found = lube.required_roughness(rollers, oil, **POINT, share=0.2, **SURFACE)
-    rms = f"{0.2 * found['roughness_factor'].item()!r} um"
-    smoother = of_roughness(rms, busy.study.line_spec)
-    assert_has_the_share(lube.contact_probability(smoother, oil, **POINT, **SURFACE), 0.2)
+    with on_few_surfaces(10):
+        found = lube.required_roughness(rollers, oil, **POINT, share=0.2, **SURFACE)
+        rms = f"{0.2 * found['roughness_factor'].item()!r} um"
+        smoother = of_roughness(rms, busy.study.line_spec)
+        assert_has_the_share(lube.contact_probability(smoother, oil, **POINT, **SURFACE), 0.2)
 
 
 def test_a_choice_that_no_study_has_is_refused(rollers, oil):

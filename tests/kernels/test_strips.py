@@ -43,7 +43,7 @@ def assert_equals_the_scan(*arguments):
     return fast
 
 
-@settings(max_examples=1500)
+@settings(max_examples=700)
 @given(rough_lines, rough_lines, operating_points, factors, st.integers(1, 150), speed_ratios)
 def test_statistics_equal_the_scan(line_1, line_2, points, factor, steps, ratios):
     assert_equals_the_scan(line_1, line_2, points, factor, steps, ratios)

@@ -139,11 +139,11 @@ def test_a_failing_cell_is_named_in_one_line(write, output):
         CAUSED: "at line 5: ValueError: no such film",
         "x = 1\ny = = 2": "at line 2: SyntaxError: invalid syntax",
     }
-    for code, reason in cases.items():
+    every_other = 2 * [{}, {"film": "film.nc"}]
+    for (code, reason), parameters in zip(cases.items(), every_other, strict=True):
         notebook = write("def reciprocal(x):\n    return 1 / x", code)
-        for parameters in ({}, {"film": "film.nc"}):
-            message = refusal(notebook, output, parameters)
-            assert message.startswith(f"{notebook}: cell 4 fails {reason}")
+        message = refusal(notebook, output, parameters)
+        assert message.startswith(f"{notebook}: cell 4 fails {reason}")
 
 
 def test_an_error_is_found_in_whichever_cell_it_is_and_even_where_none_is_shown(write, output):

@@ -8,6 +8,8 @@ from lube.grid.film_responses import SURFACE_VARIABLES
 from lube.schema import CONTACT_DIMS
 from lube.stages import areal
 
+pytestmark = pytest.mark.usefixtures("few_surfaces")
+
 GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (40.0,)}
 KINDS = ("lubricant", "film", "surface_response", "areal")
 

@@ -27,7 +27,7 @@ def few(busy_study):
 
 
 @pytest.fixture(scope="module")
-def files(few):
+def files(few, few_surfaces):
     return made(few, KINDS)
 
 
@@ -114,7 +114,9 @@ def test_where_the_lines_are_not_gaussian_all_is_counted(few):
     assert known.sel(variant=ON_LINES).all() and known.sum("variant").max() == len(ON_LINES)
 
 
-def test_a_film_that_did_not_converge_is_unknown_in_its_variants_alone(few, files, found):
+def test_a_film_that_did_not_converge_is_unknown_in_its_variants_alone(
+    few, files, found, few_surfaces
+):
     profile = files["film_profile"].transpose(*POINT_DIMS, ...).copy(deep=True)
     for name in ("film", "central_film"):
         profile[name][0, 0, 0, 1] = np.nan
