@@ -118,6 +118,7 @@ STUDIES = {
         roughness_deformation="computed",
         rollers=PAPER_CONTENT["rollers"]
         | {"second": _STEEL | {"radius": "40 mm", "rms_roughness": "0.15 um"}},
+        contact_model=["line", "surface"],
         film_formulas=["computed", "paper"],
         operating_grid=_grid([400, 1600], [100], [60, 80], [0, 1]),
         traces=[_trace(1600, 100, 80, slide_to_roll_ratio=1)],
@@ -126,6 +127,7 @@ STUDIES = {
     "corrections": _small(
         "corrections",
         film_formulas=["paper", "dowson-higginson-minimum"],
+        contact_model=["surface"],
         inlet_shear_heating="zhu-cheng-1988",
         inlet_meniscus="0.4 mm",
         operating_grid=_grid([400, 1600], [100, 200], [60, 80], [0, 1]),

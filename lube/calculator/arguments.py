@@ -10,12 +10,11 @@ from lube.errors import LubeError, StudyError, located, right_one, shown
 from lube.grid.gap import Gap
 from lube.study.field_types import bounded
 from lube.study.rig_settings import RIG_REALISATIONS
-from lube.study.study import Study
+from lube.study.study import CONTACT_MODELS, Study
 from lube.units import convert, parse_number, parse_quantity
 
 FORMULA = "pan-hamrock"
 """Film formula if none is named: the source of the paper's Eq. 3, without its misprint."""
-CONTACT_MODELS = "line", "surface"
 
 
 class Model(TypedDict):

@@ -32,7 +32,6 @@ import xarray as xr
 from lube.contact.surface_answers import COARSEST, AnsweredStrip, surface_answers
 from lube.contact.window_films import shaped_films
 from lube.ehl.line_contact import one_blas_thread
-from lube.errors import DataError, StudyError
 from lube.grid.gap import PLAIN, Gap
 from lube.kernels.areal import BLOCK, NO_ANSWER, contacts_per_row, touching_strips
 from lube.physics.excursions import (
@@ -43,8 +42,9 @@ from lube.physics.excursions import (
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.confidence import jackknife_interval, mean_interval
 from lube.study.rollers import BoundaryLayer
+from lube.study.surface_checks import check_surfaces
 from lube.surfaces.isotropic import Surface, isotropic_surface
-from lube.surfaces.rare_contact import check_isotropic, likely_part
+from lube.surfaces.rare_contact import likely_part
 from lube.surfaces.spectra import pair_moments
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
@@ -180,25 +180,11 @@ def surface_contact(
 
     Raises
     ------
-    StudyError
-        If the heights of a line are not Gaussian, a line was measured along rolling, or a formula
-        flattens the roughness.
-    DataError
-        If the rollers are shorter than the contact is wide, or the band of wavelengths is too wide
-        for a surface.
+    StudyError, DataError
+        As from `lube.study.surface_checks.check_surfaces`.
     """
-    check_isotropic(spec)
-    if gap.is_flattened:
-        raise StudyError(
-            f"roughness_deformation: got {gap.roughness_deformation}, need none or computed for "
-            "contact of the surface: the formula is for waves that run along rolling"
-        )
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    widest = 2.0 * half_width.max().item()
-    if length < widest:
-        raise DataError(
-            f"rollers.length: got {length:g} m, need the contact width of {widest:g} m or more"
-        )
+    check_surfaces(spec, length, 2.0 * half_width.max().item(), gap)
     moments = pair_moments(spec)
     strips = _strip_films(film, thickness, half_width, gap, math.sqrt(moments[0]))
     known = [point for point, strip in enumerate(strips) if strip is not None]

@@ -15,6 +15,8 @@ from lube.units import with_unit
 
 CHOICES = tuple("lubricant film_formula force speed temperature slide_to_roll_ratio".split())
 """Coordinates that a reader chooses; together they make one operating point."""
+MODEL = "contact_model"
+"""A further one, of studies that ask for contact of surfaces."""
 SHOWN = {
     "lubricant": ("dynamic_viscosity", "pressure_viscosity_coefficient"),
     "film": (
@@ -51,7 +53,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     dict
         Fit for JSON, with None for NaN and infinity:
 
-        - ``levels``: for each of `CHOICES` its values, and their names for a reader;
+        - ``levels``: for each of `CHOICES`, and for `MODEL` if ``tail`` has it, its values, and
+          their names for a reader;
         - ``variables``: for each of `SHOWN`, by `page_name`, its dimensions, unit, meaning, and
           values in the order of the dimensions, the last one fastest;
         - ``marks``: points outside the model, those with less contact than at a thicker film, and
@@ -67,6 +70,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     contact, trace = datasets["contact"], datasets["trace"]
     kept = trace.sizes["operating_point"]
     levels = {name: contact[name].values.tolist() for name in CHOICES}
+    if MODEL in datasets["tail"].dims:
+        levels[MODEL] = datasets["tail"][MODEL].values.tolist()
     film = datasets["film"]
     marks = {
         "overloaded": overloaded(contact),
@@ -117,7 +122,7 @@ def level_names(name: str, values: list) -> list[str]:
     Parameters
     ----------
     name : str
-        One of `CHOICES`.
+        One of `CHOICES`, or `MODEL`.
     values : list
         Its levels.
 
@@ -126,7 +131,7 @@ def level_names(name: str, values: list) -> list[str]:
     list of str
         Different names, such as ``85.71 r/min``.
     """
-    if name in ("lubricant", "film_formula"):
+    if name in ("lubricant", "film_formula", MODEL):
         return values
     unit = COORDINATES[name].units
     rounded = [value if value == round(value) else float(f"{value:.4g}") for value in values]
@@ -176,8 +181,11 @@ def _trace(point, levels):
     reach = round(CLOSE_UP * crossing / (time[1] - time[0]))
     peak = int(length.argmax())
     close = slice(max(peak - reach, 0), peak + reach + 1)
+    at = {name: levels[name].index(point[name].item()) for name in CHOICES}
+    if MODEL in levels:  # the trace of a line
+        at[MODEL] = levels[MODEL].index("line") if "line" in levels[MODEL] else 0
     return {
-        "at": {name: levels[name].index(point[name].item()) for name in CHOICES},
+        "at": at,
         "share": float(np.mean(length > 0.0)),
         "crossing": crossing,
         "whole": _thinned(point, slice(None)),

@@ -20,7 +20,7 @@ from bokeh.palettes import Cividis256
 from bokeh.plotting import figure
 from bokeh.themes import Theme
 
-from lube.explorer.content import CHOICES
+from lube.explorer.content import CHOICES, MODEL
 from lube.physics.regimes import regime
 from lube.plots import COLOURS
 
@@ -61,6 +61,7 @@ THEME = Theme(
 _POINT = (
     *"x film mean lower upper limit lambda width M L name outside falling deformed".split(),
     *CHOICES,
+    MODEL,
 )
 COLUMNS = {
     "chosen": _POINT,

@@ -20,7 +20,7 @@ from bokeh.models import (
 from bokeh.resources import Resources
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from lube.explorer.content import CHOICES, page_content
+from lube.explorer.content import CHOICES, MODEL, page_content
 from lube.explorer.figures import COLUMNS, THEME, TINTS, draw
 from lube.pipeline.stamps import stamp
 
@@ -32,6 +32,7 @@ _NAMES = {
     "speed": "Speed",
     "temperature": "Temperature",
     "slide_to_roll_ratio": "Slide-to-roll ratio",
+    MODEL: "Contact of",
 }
 """Names of the choices on the page."""
 
@@ -80,7 +81,7 @@ def _controls(levels, start):
         if len(names) == 1:
             continue
         options = {"title": _NAMES[name], "value": names[start[name]], **common}
-        if name in ("lubricant", "film_formula"):
+        if name in ("lubricant", "film_formula", MODEL):
             controls[name] = Select(options=names, **options)
         else:
             controls[name] = CategoricalSlider(categories=names, **options)

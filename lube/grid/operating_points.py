@@ -72,6 +72,24 @@ def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Da
     return film.sel({name: slide_to_roll_ratio}, drop=True)
 
 
+def by_contact_model(dataset: xr.Dataset) -> xr.Dataset:
+    """Give a dataset the dimension contact_model, which it lacks if only lines are asked for.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A ``tail`` dataset.
+
+    Returns
+    -------
+    xarray.Dataset
+        The dataset, with ``line`` as the only level if it had none.
+    """
+    if "contact_model" in dataset.dims:
+        return dataset
+    return dataset.expand_dims(contact_model=["line"])
+
+
 def known_films(film: xr.Dataset, gap: Gap) -> xr.DataArray:
     """Find where the film is known, with its shape and response as far as contact needs them.
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from lube.errors import LubeError
-from lube.schema import STAGES, forerunners
+from lube.schema import STAGES
 from lube.study.resolve import study_files
 from lube.study.study import Study
 from lube.types import File, Files
@@ -143,7 +143,7 @@ class StudyFiles:
         names = set(stages)
         for name in (name for stage in stages for name in STAGES[stage].same_values):
             # The job does not read these stages' files, so their forerunners' values count too.
-            names |= {*forerunners(name), name}
+            names |= {*self.study.forerunners(name), name}
         values = [self.study.stage_inputs(name) for name in STAGES if name in names]
         own = (name for stage in stages for name in STAGES[stage].parameters)
         values += [getattr(self.study, name) for name in own]

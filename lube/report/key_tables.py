@@ -117,10 +117,12 @@ def _resolve(field, definitions):
 
 
 def _value(field, inner):
+    is_list = field.get("type") == "array" and inner is not field
     if "enum" in inner and "format" not in inner:
-        return " or ".join(f"`{choice}`" for choice in inner["enum"])
+        choices = [f"`{choice}`" for choice in inner["enum"]]
+        return f"list of {' and '.join(choices)}" if is_list else " or ".join(choices)
     value = inner.get("format") or {"integer": "whole number", "string": "text"}[inner["type"]]
-    return f"list of {value}s" if field.get("type") == "array" and inner is not field else value
+    return f"list of {value}s" if is_list else value
 
 
 def _default(field):

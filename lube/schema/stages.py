@@ -8,6 +8,7 @@ To add a stage `name`, add a row here, its file in ``files.csv`` and the variabl
 ``variables.csv``, and the function `make` in ``lube/stages/name.py``.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 
@@ -136,10 +137,30 @@ _ROWS = (
         in_batches=True,
     ),
     Stage(
+        "surface_response",
+        "response of the film to waves of a surface, at any angle, several minutes",
+        inputs=("lubricant", "film"),
+        values={"lines": "line_spec"} | _named("operating_grid.slide_to_roll_ratio"),
+        target="computed",
+        only_with=_SURFACE,
+        parallel=True,
+    ),
+    Stage(
+        "areal",
+        "contact of the surfaces that the lines stand for, several minutes",
+        inputs=("film",),
+        inputs_with={"surface_response": "gap.is_answered"},
+        values=_LINES | _CONTACT | _named("rollers.length"),
+        target="areal_contact",
+        only_with=(*_SURFACE, "gap.is_on_surfaces"),
+        parallel=True,
+    ),
+    Stage(
         "tail",
         "probability and rate of contact, however rare",
         inputs=("film",),
-        values=_LINES | _CONTACT,
+        inputs_with={"areal": "has_surfaces"},
+        values=_LINES | _CONTACT | _named("contact_model"),
         priority=2,
     ),
     Stage(
@@ -201,25 +222,6 @@ _ROWS = (
         "films, pressure-viscosity coefficient and boundary layer from the records",
         inputs=("master", "contact", "comparison"),
         only_with=("conducts",),
-    ),
-    Stage(
-        "surface_response",
-        "response of the film to waves of a surface, at any angle, several minutes",
-        inputs=("lubricant", "film"),
-        values={"lines": "line_spec"} | _named("operating_grid.slide_to_roll_ratio"),
-        target="computed",
-        only_with=_SURFACE,
-        parallel=True,
-    ),
-    Stage(
-        "areal",
-        "contact of the surfaces that the lines stand for, several minutes",
-        inputs=("film",),
-        inputs_with={"surface_response": "gap.is_answered"},
-        values=_LINES | _CONTACT | _named("rollers.length"),
-        target="areal_contact",
-        only_with=(*_SURFACE, "gap.is_on_surfaces"),
-        parallel=True,
     ),
     Stage(
         "areal_gauge",
@@ -313,13 +315,16 @@ ON_REQUEST = {row.name: row.target for row in _ROWS if row.target != "all"}
 """Files that are made on request only, each with the target of Snakemake that makes it."""
 
 
-def forerunners(stage: str) -> tuple[str, ...]:
+def forerunners(stage: str, asks: Callable[[str], bool] = lambda _: True) -> tuple[str, ...]:
     """Return all stages whose values a stage depends on, directly or through others.
 
     Parameters
     ----------
     stage : str
         Name of the stage.
+    asks : callable, optional
+        Whether a study has an attribute that asks for further inputs (`Stage.inputs_with`). By
+        default it has all of them.
 
     Returns
     -------
@@ -332,6 +337,7 @@ def forerunners(stage: str) -> tuple[str, ...]:
     ('lubricant', 'film', 'roughness')
     """
     row = STAGES[stage]
-    direct = {*row.inputs, *row.inputs_with, *row.same_values}
-    found = direct.union(*(forerunners(name) for name in direct))
+    asked = (name for name, attribute in row.inputs_with.items() if asks(attribute))
+    direct = {*row.inputs, *row.same_values, *asked}
+    found = direct.union(*(forerunners(name, asks) for name in direct))
     return tuple(name for name in STAGES if name in found)

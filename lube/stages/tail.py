@@ -81,9 +81,17 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     share of pairs with any is :math:`1 - e^{-\mu}`.
     """
     film = inputs["film"].transpose("film_formula", *POINT_DIMS, ...)
+    if remark := _why_not(study.line_spec, study.gap):
+        return _unknown(film, np.asarray(study.slips, float), remark)
+    table = _on_lines(study, film, threads)
+    if study.has_surfaces:
+        table = _by_model(table, inputs["areal"], list(study.contact_model))
+    return label(table.assign_attrs(remarks=""), "tail")
+
+
+def _on_lines(study, film, threads):
+    """Variables of lines, unlabelled."""
     spec, gap, levels = study.line_spec, study.gap, np.asarray(study.slips, float)
-    if remark := _why_not(spec, gap):
-        return _unknown(film, levels, remark)
     if _SLIP in film["film_thickness"].dims:
         film = film.sel({_SLIP: levels})
     windows, tables = study_windows(study, film), []
@@ -96,8 +104,23 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
             tables.append(_table(spec, some, study.boundary_layer, found, levels, gap))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
-    table = table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
-    return label(table.assign_attrs(remarks=""), "tail")
+    return table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
+
+
+def _by_model(lines, areal, models):
+    """Variables of lines and of surfaces over contact_model.
+
+    Only the probabilities of surfaces are known, for the first film formula. The theory for high
+    films is for lines.
+    """
+    theory, lines = lines[list(_ASYMPTOTES)], lines.drop_vars(_ASYMPTOTES)
+    names = [f"{name}{end}" for name in _PROBABILITIES for end in LIMITS]
+    formulas = lines["film_formula"]
+    known = areal[names].reindex(film_formula=formulas).transpose(*CONTACT_DIMS)
+    tables = {"line": lines, "surface": xr.full_like(lines, np.nan).assign(known.drop_attrs())}
+    levels = xr.DataArray(models, dims="contact_model", name="contact_model")
+    found = xr.concat([tables[name] for name in models], levels, join="exact")
+    return found.assign(theory)
 
 
 def pair_probabilities(

@@ -56,6 +56,10 @@ _Meniscus = Annotated[float | str, quantity_or_words("m", "none", "^none$")]
 _Resistivity = Annotated[float | str, quantity_or_words("ohm*m", INSULATOR, f"^{INSULATOR}$")]
 
 
+CONTACT_MODELS = "line", "surface"
+"""What touches: two roughness lines, or the surfaces that they stand for."""
+
+
 class Study(StrictModel):
     """A whole study, checked, in SI units (except rpm and degC)."""
 
@@ -104,6 +108,10 @@ class Study(StrictModel):
     response of Reynolds' equation about the computed film; or venner-1997, the oil flattens long
     waves by the formula of Venner et al., for pure rolling and high loads
     """
+    contact_model: tuple[Literal[CONTACT_MODELS], ...] = Field(("line",), min_length=1)
+    """line, as in the paper; surface, the isotropic rough surface that the line stands for, over
+    the length of the rollers; or a list of both
+    """
     boundary_layer: BoundaryLayer
     resistivity: _Resistivity
     """resistivity of the rollers' material (Eq. 1); insulator, if either does not conduct, so that
@@ -116,7 +124,7 @@ class Study(StrictModel):
     experiment: Experiment = Field(default_factory=Experiment)
     """records of the rig and their evaluation"""
 
-    _each_once = field_validator("kept_realisations", "film_formulas")(each_once)
+    _each_once = field_validator("kept_realisations", "film_formulas", "contact_model")(each_once)
 
     @property
     def title(self) -> str:
@@ -180,6 +188,16 @@ class Study(StrictModel):
         return self.line_spec if self.gap.is_answered else None
 
     @property
+    def has_lines(self) -> bool:
+        """Whether contact of lines is asked for."""
+        return "line" in self.contact_model
+
+    @property
+    def has_surfaces(self) -> bool:
+        """Whether contact of surfaces is asked for."""
+        return "surface" in self.contact_model
+
+    @property
     def is_sampled(self) -> bool:
         """Whether rare contact can be sampled: lines that are Gaussian, and not flattened."""
         return self.line_spec.is_gaussian and not self.gap.is_flattened
@@ -206,6 +224,10 @@ class Study(StrictModel):
         row = STAGES[stage]
         asked = (name for name, what in row.inputs_with.items() if attrgetter(what)(self))
         return (*(name for name in row.inputs if self.has(name)), *asked)
+
+    def forerunners(self, stage: str) -> tuple[str, ...]:
+        """Names of all stages whose values a stage depends on in this study."""
+        return forerunners(stage, lambda attribute: attrgetter(attribute)(self))
 
     def has(self, stage: str) -> bool:
         """Whether the study has all that a stage needs (`only_with`)."""
@@ -317,7 +339,7 @@ class Study(StrictModel):
         dict
             From stage to its values: the attribute ``config`` of the stage's file.
         """
-        return {name: self.stage_inputs(name) for name in (*forerunners(stage), stage)}
+        return {name: self.stage_inputs(name) for name in (*self.forerunners(stage), stage)}
 
     @model_validator(mode="after")
     def _check_levels(self):
@@ -333,7 +355,16 @@ class Study(StrictModel):
             check_sizes(self)
             for ratio in self.slips:
                 self.check_slip(ratio)
+        if self.has_surfaces:
+            self._check_surfaces()
         return self
+
+    def _check_surfaces(self):
+        from lube.study.surface_checks import check_surfaces  # which loads scipy
+
+        width = 2.0 * self.rollers.contact_half_width(max(self.operating_grid.force))
+        with located("contact_model: surface", ValueError):
+            check_surfaces(self.line_spec, self.rollers.length, width, self.gap)
 
     def _check_conductivity(self):
         for record in self.lubricants:

@@ -161,6 +161,38 @@ def on_coarser_grid(waves: Array, points: int) -> Array:
     return coarser
 
 
+def surface_grid(
+    spec: LineSpecLike, width: float, contact: float = math.inf, waves: int = LONGEST_WAVES
+) -> tuple[float, float]:
+    """Choose the grid of a surface.
+
+    Parameters
+    ----------
+    spec, width, contact, waves
+        As in `isotropic_surface`.
+
+    Returns
+    -------
+    side, spacing : float
+        Least length of a side, and distance of neighbouring points, m.
+
+    Raises
+    ------
+    DataError
+        If the band of wavelengths is too wide for a square grid.
+    """
+    longest, shortest = spec.longest_wavelength, 2.0 * np.pi / spec.q_max
+    side, spacing = max(waves * longest, width + longest), shortest / POINTS_PER_WAVE
+    spacing = min(spacing, max(contact / POINTS_PER_CONTACT, side / LARGE))
+    times = side / spacing / LARGEST
+    if times > 1.0:
+        raise DataError(
+            f"roughness: got a shortest wavelength of {shortest:.3g} m, too short for a surface of "
+            f"{side:.3g} m, need one {times:.3g} times as long"
+        )
+    return side, spacing
+
+
 @functools.lru_cache(maxsize=1)
 def isotropic_surface(
     spec: LineSpecLike,
@@ -194,16 +226,8 @@ def isotropic_surface(
     DataError
         If the band of wavelengths is too wide for a square grid.
     """
-    longest = spec.longest_wavelength
-    side = max(waves * longest, width + longest)
-    spacing = 2.0 * np.pi / spec.q_max / POINTS_PER_WAVE
-    spacing = min(spacing, max(contact / POINTS_PER_CONTACT, side / LARGE))
+    side, spacing = surface_grid(spec, width, contact, waves)
     least = side / spacing
-    if least > LARGEST:
-        raise DataError(
-            f"roughness: got a shortest wavelength of {2.0 * np.pi / spec.q_max:.3g} m, too short "
-            f"for a surface of {side:.3g} m, need one {least / LARGEST:.3g} times as long"
-        )
     points = multiple * scipy.fft.next_fast_len(math.ceil(least / multiple), real=True)
     waves = np.hypot(np.fft.fftfreq(points, 1.0 / points)[:, None], np.arange(points // 2 + 1))
     step = 2.0 * np.pi / (points * spacing)

@@ -4,13 +4,14 @@ import json
 import re
 
 import pytest
-from repository import ROOT, figures_in, products_of
+from repository import ROOT, SMOKE, figures_in, products_of
 from studies import SMOKE_DATASETS
 
 from lube.inference.study_shares import over_grid
 from lube.pipeline.figures import draw_figure
-from lube.schema import STAGES, check, forerunners
+from lube.schema import STAGES, check
 from lube.storage.netcdf import load
+from lube.study.study import load_study
 
 
 def test_all_datasets_figures_notebooks_and_the_explorer_are_made_and_nothing_unfinished_is_left(
@@ -25,11 +26,12 @@ def test_all_datasets_figures_notebooks_and_the_explorer_are_made_and_nothing_un
 
 
 def test_every_dataset_fits_the_schema_and_says_what_it_was_made_from(smoke):
+    study = load_study(smoke / SMOKE)
     for kind in SMOKE_DATASETS:
         attributes = check(load(smoke.results / f"{kind}.nc", kind), kind).attrs
         assert attributes["study"] == "smoke"
         assert attributes["source"].startswith("simulation by lube ")
-        assert set(json.loads(attributes["config"])) == {*forerunners(kind), kind}
+        assert set(json.loads(attributes["config"])) == {*study.forerunners(kind), kind}
         read = {f"{name}.nc" for name in STAGES[kind].inputs}
         made_from = set(json.loads(attributes["inputs_sha256"]))
         assert {name for name in made_from if name.endswith(".nc")} == read

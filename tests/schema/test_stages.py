@@ -4,7 +4,6 @@ import inspect
 import json
 
 import pytest
-import xarray as xr
 from studies import ROOT, SMOKE
 from unlike_studies import STUDIES, write_study
 
@@ -13,6 +12,7 @@ from lube.schema import DATASETS, FILES, ON_REQUEST, STAGES, SUMMARIES, forerunn
 from lube.stages import maker
 from lube.stages.patch import patch_contact
 from lube.study.study import load_study
+from lube.study.surface_checks import check_surfaces
 
 
 def test_every_kept_file_of_the_schema_has_its_row():
@@ -40,7 +40,7 @@ def test_every_value_of_a_row_is_one_of_the_study_and_plain():
     for name, stage in STAGES.items():
         inputs = study.stage_inputs(name)
         assert list(inputs) == list(stage.values)
-        assert set(study.origin(name)) == {*forerunners(name), name}
+        assert set(study.origin(name)) == {*study.forerunners(name), name}
         json.dumps(inputs, allow_nan=False)
 
 
@@ -58,8 +58,8 @@ def refuses(stage, *arguments):
 @pytest.mark.parametrize("name", STUDIES)
 def test_what_the_registry_promises_is_what_the_stages_can_make(name, tmp_path):
     study = load_study(write_study(STUDIES[name], tmp_path / name))
-    films = {"film": xr.Dataset(coords={"film_formula": ["paper"]})}
-    assert study.has("areal") == (not refuses(maker("areal"), study, films))
+    surfaces = study.line_spec, study.rollers.length, 0.0, study.gap
+    assert study.has("areal") == (not refuses(check_surfaces, *surfaces))
     on_surface = study.has("areal") and study.has("gauge") and study.gap.is_plain
     assert study.has("areal_gauge") == on_surface
     assert study.has("patch") == (not refuses(patch_contact, study.line_spec, None, None))

@@ -21,6 +21,7 @@ from lube.stages import (
     lubricant_table,
     roughness_lines,
 )
+from lube.stages.areal import make as make_areal
 from lube.stages.tail import make
 from lube.study.rollers import OwnRoughness
 from lube.surfaces.rare_contact import draw_pair
@@ -96,6 +97,26 @@ def test_results_are_over_the_dimensions_of_the_contact_model(tail, few):
     assert tail["slide_to_roll_ratio"].values.tolist() == list(RATIOS)
     for name in OPERATING_DIMS:
         np.testing.assert_array_equal(tail[name], few[name])
+
+
+def test_probabilities_of_surfaces_stand_beside_those_of_lines(coarse, few, few_surfaces):
+    """The first film formula has both; everything else is of lines."""
+    first = {"film_formula": [0]}
+    both = coarse(contact_model=("surface", "line"), shear_strength=3e4)
+    films = {"film": few.isel(force=[0])}
+    films["areal"] = make_areal(both, films)
+    found, lines = make(both, films), make(coarse(shear_strength=3e4), films)
+    assert found["contact_model"].values.tolist() == ["surface", "line"]
+    assert found["breakthrough_rate"].dims == ("contact_model", *CONTACT_DIMS)
+    assert found.sel(contact_model="line", drop=True).equals(lines)
+    surface = found.sel(contact_model="surface", drop=True)
+    for name in PROBABILITIES:
+        assert surface[name].isel(first).equals(films["areal"][name])
+        assert (surface[name].isel(first) > lines[name].isel(first)).all()
+        assert surface[name].isel(film_formula=1).isnull().all()
+    assert surface["touching_pair_share"].isnull().all()
+    only = make(coarse(contact_model=("surface",), shear_strength=3e4), films)
+    assert only.equals(found.sel(contact_model=["surface"]))
 
 
 def test_each_interval_encloses_its_estimate(tail):

@@ -45,6 +45,9 @@ CORRECTIONS = [
     ("inlet_meniscus", "far", "or none"),
     ("inlet_meniscus", "-1 mm", "got -1 mm, need a value above 0 m, or none"),
     ("inlet_shear_heating", "gupta", "'zhu-cheng-1988'"),
+    ("contact_model", ["volume"], "got 'volume', need 'line' or 'surface'"),
+    ("contact_model", ["line", "line"], "got line repeatedly, need it once"),
+    ("contact_model", "surface", "got 'surface', need a list"),
 ]
 
 COUNTS = [
@@ -146,7 +149,7 @@ def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
 
 WITH_DEFAULT = (
     *("about", "rig", "experiment", "film_shape", "inlet_shear_heating", "inlet_meniscus"),
-    "roughness_deformation",
+    *("roughness_deformation", "contact_model"),
 )
 
 
@@ -168,6 +171,17 @@ def test_lines_that_the_oil_flattens_need_pure_rolling(paper_with):
     answered = ("roughness_deformation", "computed")
     load_study(paper_with(answered, ("operating_grid.slide_to_roll_ratio", [0, 0.1])))
     assert "need 'flat' or 'computed'" in refusal(paper_with(("film_shape", "curved")))
+
+
+def test_surfaces_that_cannot_touch_are_refused(paper_with):
+    for *changes, message in [
+        (("roughness_deformation", "venner-1997"), "got venner-1997, need none or computed"),
+        (("roughness.kurtosis", 4), "roughness: got a skewness of 0 and"),
+        (("rollers.length", "0.1 mm"), "rollers.length: got 0.0001 m, need the contact width of"),
+        (("roughness.points", 4_000_000), "need one 1.31 times as long"),
+    ]:
+        said = refusal(paper_with(("contact_model", ["line", "surface"]), *changes))
+        assert "mine.yaml: contact_model: surface: " in said and message in said
 
 
 def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_with):

@@ -50,10 +50,14 @@ function shown(name, point) {
 
 const named = (point, names) => names.map((name) => levels[name].names[point[name]]).join(", ");
 
-// The probability by importance sampling, if the study has it, else counted in its realisations.
+const isSurface = (point) => levels.contact_model?.values[point.contact_model] === "surface";
+
+// The probability by importance sampling, if the study has it, else counted in its realisations,
+// which are pairs of lines.
 function probability(point, kind = "breakthrough") {
     const sampled = limits(`tail.${kind}_probability`, ["", "_lower", "_upper"], point);
-    return sampled.mean === null ? counted(point, kind) : { ...sampled, seen: true, text: percent(sampled.mean) };
+    if (sampled.mean !== null) return { ...sampled, seen: true, text: percent(sampled.mean) };
+    return isSurface(point) ? { ...sampled, seen: false, text: "–" } : counted(point, kind);
 }
 
 function counted(point, kind = "breakthrough") {
@@ -75,7 +79,8 @@ const marks = {
     merged: "less contact than at a thicker film: the layer of merged segments holds",
     deformed: "the oil changes the roughness by too large a part of the film: the linear response is not valid",
 };
-const marked = (point) => Object.keys(marks).filter((name) => at(name, point, content.marks));
+const isMarked = (name, point) => at(name, point, content.marks) && !(name === "merged" && isSurface(point));
+const marked = (point) => Object.keys(marks).filter((name) => isMarked(name, point));
 
 // One row of a source of operating points
 function row(point, along) {
@@ -93,9 +98,9 @@ function row(point, along) {
         width: 2e6 * at("contact_half_width", point),
         M: at("moes_load", point),
         L: at("moes_material", point),
-        outside: at("overloaded", point, content.marks) ? positive(mean) : NaN,
-        falling: at("merged", point, content.marks) ? positive(mean) : NaN,
-        deformed: at("deformed", point, content.marks) ? positive(mean) : NaN,
+        outside: isMarked("overloaded", point) ? positive(mean) : NaN,
+        falling: isMarked("merged", point) ? positive(mean) : NaN,
+        deformed: isMarked("deformed", point) ? positive(mean) : NaN,
         name: [`${named(point, grid)}: ${withInterval(found)}`, ...marked(point).map((name) => marks[name])].join("; "),
     };
 }
@@ -151,9 +156,10 @@ function toAddress(controls, point) {
 function showAnswers(point) {
     const { lower, upper, seen, text } = probability(point);
     element("probability").textContent = text;
-    element("interval").textContent = seen
-        ? `of the time; 95 % interval ${percent(lower)} to ${percent(upper)}`
+    const unseen = isSurface(point)
+        ? "computed for the first film formula only, where the film is known"
         : "of the time: no contact was seen; 95 % upper limit";
+    element("interval").textContent = seen ? `of the time; 95 % interval ${percent(lower)} to ${percent(upper)}` : unseen;
     element("marks").textContent = marked(point).map((name) => marks[name]).join("; ");
     if (content.sampled) {
         const rate = limits("tail.breakthrough_rate", ["", "_lower", "_upper"], point);
@@ -185,7 +191,7 @@ function recordText(record, formula) {
     const predicted = [record.predicted_share_lower[formula], record.predicted_share_upper[formula]].map(percent);
     return (
         `${origin} record ${record.record}: in contact ${percent(share)} of the time (${percent(lower)} to ${percent(upper)}); ` +
-        `predicted for one pair of rollers: ${predicted.join(" to ")}`
+        `predicted for one pair of ${levels.contact_model ? "lines" : "rollers"}: ${predicted.join(" to ")}`
     );
 }
 
@@ -216,6 +222,11 @@ function showRecords(point, along, source) {
 
 function showMaster(point, source) {
     if (content.master === null) return; // contact depends on more than the film thickness and the width
+    element("master-key").hidden = isSurface(point); // the map is of lines
+    if (isSurface(point)) {
+        fill(source, []);
+        return;
+    }
     const { lambda_ratio, contact_width, mean, lower, upper } = content.master;
     const width = 2 * at("contact_half_width", point);
     const away = contact_width.map((one) => Math.abs(one - width));
@@ -298,7 +309,9 @@ function showValues(point) {
     const heating = at("inlet_shear_heating_factor", point);
     const applied = variables.film_thickness.dims.includes("slide_to_roll_ratio") ? "" : ", not applied";
     rows.push([`film reduction by inlet shear heating${applied}`, percent(heating === null ? null : 1 - heating)]);
-    if (content.sampled) rows.push(["breakthroughs counted in the realisations", withInterval(counted(point))]);
+    if (content.sampled && !isSurface(point)) {
+        rows.push(["breakthroughs counted in the realisations", withInterval(counted(point))]);
+    }
     rows.push([variables.contact_load_share.long_name, shown("contact_load_share", point)]);
     rows.push(["geometric contact probability", probability(point, "geometric_contact").text]);
     showTable("values", rows.map(([name, value]) => [name[0].toUpperCase() + name.slice(1), value]));
