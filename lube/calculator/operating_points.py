@@ -228,7 +228,9 @@ def contact_probability(
         For the surface, by importance sampling: ``surface_breakthrough_probability`` and
         ``surface_geometric_contact_probability``, anywhere along the rollers, and the mean numbers
         ``surface_breakthroughs`` and ``surface_contacts`` at any moment, each with ``_lower`` and
-        ``_upper``; by theory, if the oil does not deform the roughness,
+        ``_upper``. By theory: ``surface_pair_deviation``, the standard deviation of the share of
+        one pair of rollers in a revolution; ``surface_passage_width``, over which a contact moves
+        while it is in the strip; and, if the oil does not deform the roughness,
         ``surface_expected_breakthroughs`` and ``surface_expected_contacts``.
 
     Raises

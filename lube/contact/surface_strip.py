@@ -20,8 +20,7 @@ across the strip.
 """
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -29,26 +28,22 @@ import scipy
 import scipy.special
 import xarray as xr
 
-from lube.contact.surface_answers import COARSEST, AnsweredStrip, surface_answers
+from lube.contact.strip_film import COLUMNS, StripFilm, pair_deviation
+from lube.contact.surface_answers import COARSEST, surface_answers
 from lube.contact.window_films import shaped_films
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.gap import PLAIN, Gap
 from lube.kernels.areal import BLOCK, NO_ANSWER, contacts_per_row, touching_strips
-from lube.physics.excursions import (
-    breaking_curvature,
-    expected_contacts,
-    sharp_surface_summit_share,
-)
+from lube.physics.excursions import breaking_curvature
 from lube.schema import LIMITS, values_with_limits
 from lube.statistics.confidence import jackknife_interval, mean_interval
 from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
-from lube.surfaces.isotropic import Surface, isotropic_surface
-from lube.surfaces.rare_contact import likely_part
+from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.spectra import pair_moments
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
-from lube.types import Array, Pair, Values
+from lube.types import Values
 
 SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""
@@ -66,74 +61,13 @@ before it."""
 AT_ONCE = 10
 """Operating points at which the oil answers that are sampled together, for which surfaces are drawn
 again: what the oil adds to the covariances takes 5 to 40 MB a point."""
-THEORY_COLUMNS = 200
-"""Columns of a film with a shape, for the contacts that theory expects."""
 _NUMBERS = {
     "geometric_contact_probability": "contacts",
     "breakthrough_probability": "breakthroughs",
 }
 _EXPECTED = "expected_contacts", "expected_breakthroughs"
 _SAMPLED = (f"{name}{end}" for pair in _NUMBERS.items() for name in pair for end in LIMITS)
-_VARIABLES = (*_EXPECTED, *_SAMPLED)
-
-
-@dataclass(frozen=True)
-class StripFilm:
-    """Film across the strip, where contact is likely.
-
-    Attributes
-    ----------
-    thickness : callable
-        Film (m) at positions across the strip (m), by a cubic spline. With a second argument n, its
-        n-th derivative.
-    begin, width : float
-        Where the strip begins, and its width, m.
-    has_edges : bool
-        Whether contacts are cut where the strip ends.
-    answers : tuple of lube.contact.surface_answers.SurfaceAnswer, optional
-        How the oil answers both surfaces; by default it does not change them.
-    """
-
-    thickness: Callable
-    begin: float
-    width: float
-    has_edges: bool
-    answers: Pair | None = field(default=None, repr=False)
-
-    @classmethod
-    def flat(cls, thickness: float, half_width: float) -> "StripFilm":
-        """Film of one thickness, as wide as the contact."""
-        film = scipy.interpolate.CubicSpline([-half_width, half_width], [thickness, thickness])
-        return cls(film, -half_width, 2.0 * half_width, True)
-
-    @classmethod
-    def shaped(cls, position: Array, film: Array, rms: float) -> "StripFilm":
-        """Film with a shape, given at positions in m, on a surface of an rms height in m."""
-        part = likely_part(film, np.broadcast_to(rms, film.shape))[1]
-        begin, end = position[max(part.start - 1, 0)], position[min(part.stop, film.size - 1)]
-        return cls(scipy.interpolate.CubicSpline(position, film), begin, end - begin, False)
-
-    def films(self, spacing: float) -> Array:
-        """Film at the columns of a grid, m."""
-        return self.thickness(self._columns(spacing))
-
-    def breaking_curvatures(self, spacing: float, sharp: float) -> Array:
-        """Mean curvature of the surface at which a summit breaks its layer, at each column, 1/m.
-
-        The mean curvature of the overlap is then `sharp`. Half of the film's second derivative
-        contributes to it.
-        """
-        return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
-
-    def answered(self, surface: Surface, rows: int) -> AnsweredStrip | None:
-        """Find what the oil adds to a surface, for covariances over some rows."""
-        if self.answers is None or not any(one.shapes.size for one in self.answers):
-            return None
-        columns = self._columns(surface.spacing)
-        return AnsweredStrip(self.answers, surface, columns[0], columns.size, rows)
-
-    def _columns(self, spacing):
-        return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
+_VARIABLES = (*_EXPECTED, *_SAMPLED, "passage_width", "pair_deviation")
 
 
 def surface_contact(
@@ -174,9 +108,12 @@ def surface_contact(
     xarray.Dataset
         ``geometric_contact_probability`` and ``breakthrough_probability``, the numbers ``contacts``
         and ``breakthroughs`` in the strip, each with ``_lower`` and ``_upper``, and the numbers
-        that theory expects, ``expected_contacts`` and ``expected_breakthroughs``; over the
-        dimensions of the films, NaN where the film is not known. Theory neglects the slope of a
-        film with a shape; where the oil answers the surfaces there is none, and the two are NaN.
+        that theory expects, ``expected_contacts`` and ``expected_breakthroughs``; the way of a
+        contact through the strip, ``passage_width`` (m), and the scatter of a pair's share of
+        breakthrough in a revolution of pure rolling, ``pair_deviation``, as
+        `lube.contact.strip_film` explains; over the dimensions of the films, NaN where the film is
+        not known. Theory neglects the slope of a film with a shape. Where the oil answers the
+        surfaces, the expected numbers are NaN, and way and scatter those of the surfaces as drawn.
 
     Raises
     ------
@@ -234,9 +171,9 @@ def _contacts(spec, strips, sharp, length, seed, threads):
     """Variables of `surface_contact` at some strips, shape (strips,) each."""
     moments = pair_moments(spec)
     known = zip(strips, sharp, strict=True)
-    expected = np.array([_expected(strip, moments, own, length) for strip, own in known]).T
+    expected = np.array([strip.expected(moments, length, own) for strip, own in known]).T
     # Size of the smallest contact: a parabola as high as the mean summit above the film.
-    thickest = max(strip.films(strip.width / THEORY_COLUMNS).min() for strip in strips)
+    thickest = max(strip.films(strip.width / COLUMNS).min() for strip in strips)
     smallest = math.sqrt(8.0 / moments[1]) * moments[0] / thickest
     widest, is_answered = max(strip.width for strip in strips), strips[0].answers is not None
     multiple = 2**COARSEST if is_answered else 1
@@ -249,22 +186,12 @@ def _contacts(spec, strips, sharp, length, seed, threads):
         for some in groups
     ]
     found = {name: np.concatenate([one[name] for one in found]) for name in found[0]}
+    passages = [strip.passage(moments, length) for strip in strips]
+    perimeter = spec.points[0] * spec.spacing
+    shares = zip(found["breakthrough_probability"], passages, strict=True)
+    found["passage_width"] = [width for width, *_ in passages]
+    found["pair_deviation"] = [pair_deviation(share, *one[1:], perimeter) for share, one in shares]
     return dict(zip(_EXPECTED, expected, strict=True)) | found
-
-
-def _expected(strip, moments, sharp, length):
-    """Numbers of contacts, and of breakthroughs, by theory."""
-    if strip.has_edges:
-        films = strip.thickness([strip.begin])
-        contacts = expected_contacts(films, moments, length, strip.width)
-    else:
-        spacing = strip.width / THEORY_COLUMNS
-        films = strip.films(spacing)
-        # Without edges along the rollers, contacts are in proportion to the width.
-        of_widths = expected_contacts(films, moments, length, np.array([[spacing], [0.0]]))
-        contacts, sharp = of_widths[0] - of_widths[1], strip.breaking_curvatures(spacing, sharp)
-    broken = contacts * sharp_surface_summit_share(films, moments, sharp)
-    return contacts.sum(), broken.sum()
 
 
 def _sampled(spec, surface, strips, certain, sharp, length, seed, threads=1):

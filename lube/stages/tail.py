@@ -85,7 +85,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         return _unknown(film, np.asarray(study.slips, float), remark)
     table = _on_lines(study, film, threads)
     if study.has_surfaces:
-        table = _by_model(table, inputs["areal"], list(study.contact_model))
+        table = _by_model(study, film, table, inputs["areal"])
     return label(table.assign_attrs(remarks=""), "tail")
 
 
@@ -107,20 +107,42 @@ def _on_lines(study, film, threads):
     return table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
 
 
-def _by_model(lines, areal, models):
-    """Variables of lines and of surfaces over contact_model.
-
-    Only the probabilities of surfaces are known, for the first film formula. The theory for high
-    films is for lines.
-    """
+def _by_model(study, film, lines, areal):
+    """Variables of lines and of surfaces over contact_model; the theory is for lines."""
     theory, lines = lines[list(_ASYMPTOTES)], lines.drop_vars(_ASYMPTOTES)
-    names = [f"{name}{end}" for name in _PROBABILITIES for end in LIMITS]
-    formulas = lines["film_formula"]
-    known = areal[names].reindex(film_formula=formulas).transpose(*CONTACT_DIMS)
-    tables = {"line": lines, "surface": xr.full_like(lines, np.nan).assign(known.drop_attrs())}
+    known = _on_surfaces(study, film["entrainment_speed"], areal.drop_attrs())
+    known = known.reindex(film_formula=lines["film_formula"])
+    surfaces = {name: known[name].transpose(*lines[name].dims) for name in lines}
+    tables = {"line": lines, "surface": lines.assign(surfaces)}
+    models = list(study.contact_model)
     levels = xr.DataArray(models, dims="contact_model", name="contact_model")
     found = xr.concat([tables[name] for name in models], levels, join="exact")
     return found.assign(theory)
+
+
+def _on_surfaces(study, speed, areal):
+    """Variables of surfaces, for the first film formula.
+
+    Rates and durations are known in pure rolling: then a contact stays the same while it passes
+    through the strip.
+    """
+    perimeter = study.line_spec.points[0] * study.line_spec.spacing
+    rolls, passage = areal[_SLIP] == 0.0, areal["passage_width"]
+    table = {f"{name}{end}": areal[f"{name}{end}"] for name in _PROBABILITIES for end in LIMITS}
+    for end in LIMITS:
+        rate = areal[f"breakthroughs{end}"] * speed / passage
+        table[f"breakthrough_rate{end}"] = rate.where(rolls)
+    table["breakthroughs_per_revolution"] = table["breakthrough_rate"] * perimeter / speed
+    table["breakthrough_duration"] = (passage / speed).where(rolls)
+    areal = _in_pure_rolling(areal)
+    passages, never = perimeter / areal["passage_width"], 1.0 - areal["breakthrough_probability"]
+    with np.errstate(divide="ignore"):  # where contact is always seen
+        groups = {
+            end: -passages * np.log1p(-areal[f"breakthrough_probability{end}"]) for end in LIMITS
+        }
+    table |= {f"touching_pair_share{end}": -np.expm1(-each) for end, each in groups.items()}
+    table["first_breakthrough_time"] = perimeter / speed * never * _wait(groups[""])
+    return xr.Dataset(table)
 
 
 def pair_probabilities(
@@ -338,10 +360,18 @@ def _first_breakthrough(runs, points, revolution):
         free = free + left * (gap + excess)
         steps = steps + left * (0.5 * gap**2 + gap * excess + excess**2)
         turns = revolution * free / steps
-    # Where few breakthroughs are expected, `exact` is the difference of two large numbers.
+    return revolution * free * _wait(turns)
+
+
+def _wait(expected):
+    """Mean wait for the first of events that are expected in a revolution, if there is one.
+
+    In revolutions; from a moment at which none is under way, where they come independently.
+    """
+    # Where few are expected, `exact` is the difference of two large numbers.
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-        exact = 1.0 / turns - 1.0 / np.expm1(turns)
-    return revolution * free * xr.where(turns < 1e-4, 0.5 - turns / 12.0, exact)
+        exact = 1.0 / expected - 1.0 / np.expm1(expected)
+    return xr.where(expected < 1e-4, 0.5 - expected / 12.0, exact)
 
 
 def _asymptotes(spec, film, boundary_layer, gap):

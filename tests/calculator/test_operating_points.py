@@ -76,8 +76,10 @@ def test_contact_of_the_surface_is_that_of_the_areal_stage(rollers, oil, busy):
     found = lube.contact_probability(rollers, oil, **one, **choices)
     film = busy.film.isel(force=[-1], speed=[-1], temperature=[-1])
     expected = areal.make(busy.study, {"film": film}).isel(lubricant=0, slide_to_roll_ratio=0)
+    expected["passage_width"] *= 1e6
     for name, values in expected.drop_vars("length").items():
         np.testing.assert_array_equal(found[f"surface_{name}"], values)
+    assert found["surface_passage_width"].attrs["units"] == "um"
     assert found["surface_contacts"].attrs["long_name"].endswith("on the surface")
     assert "breakthrough_probability" not in found
 

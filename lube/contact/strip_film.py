@@ -1,0 +1,175 @@
+r"""The film across the strip 2a x L', and what theory says of contact under it.
+
+Contacts of surfaces are small and far apart where they do not merge. So a contact is in the strip
+while it passes the contact width, and a little longer, as it has an extent of its own: on the way
+w, the *passage width*. Two strips a distance s apart along the circumference have the fraction
+:math:`\rho(s)` of their contacts in common. If groups of contacts come independently of one
+another, :math:`M = -\ln(1 - P)` of them are in the strip on average, and contact of both strips has
+the covariance
+
+.. math:: c(s) = (1 - P)^2 \left( e^{M \rho(s)} - 1 \right)
+
+From it follows how far the share of time of one pair of rollers lies from the mean P over all.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy
+
+from lube.contact.surface_answers import AnsweredStrip
+from lube.physics.excursions import expected_contacts, sharp_surface_summit_share
+from lube.surfaces.isotropic import Surface
+from lube.surfaces.rare_contact import likely_part
+from lube.types import Array, Pair
+
+COLUMNS = 200
+"""Columns of a film with a shape, for the contacts that theory expects."""
+
+
+@dataclass(frozen=True)
+class StripFilm:
+    """Film across the strip, where contact is likely.
+
+    Attributes
+    ----------
+    thickness : callable
+        Film (m) at positions across the strip (m), by a cubic spline. With a second argument n, its
+        n-th derivative.
+    begin, width : float
+        Where the strip begins, and its width, m.
+    has_edges : bool
+        Whether contacts are cut where the strip ends.
+    answers : tuple of lube.contact.surface_answers.SurfaceAnswer, optional
+        How the oil answers both surfaces; by default it does not change them.
+    """
+
+    thickness: Callable
+    begin: float
+    width: float
+    has_edges: bool
+    answers: Pair | None = field(default=None, repr=False)
+
+    @classmethod
+    def flat(cls, thickness: float, half_width: float) -> "StripFilm":
+        """Film of one thickness, as wide as the contact."""
+        film = scipy.interpolate.CubicSpline([-half_width, half_width], [thickness, thickness])
+        return cls(film, -half_width, 2.0 * half_width, True)
+
+    @classmethod
+    def shaped(cls, position: Array, film: Array, rms: float) -> "StripFilm":
+        """Film with a shape, given at positions in m, on a surface of an rms height in m."""
+        part = likely_part(film, np.broadcast_to(rms, film.shape))[1]
+        begin, end = position[max(part.start - 1, 0)], position[min(part.stop, film.size - 1)]
+        return cls(scipy.interpolate.CubicSpline(position, film), begin, end - begin, False)
+
+    def films(self, spacing: float) -> Array:
+        """Film at the columns of a grid, m."""
+        return self.thickness(self._columns(spacing))
+
+    def breaking_curvatures(self, spacing: float, sharp: float) -> Array:
+        """Mean curvature of the surface at which a summit breaks its layer, at each column, 1/m.
+
+        The mean curvature of the overlap is then `sharp`. Half of the film's second derivative
+        contributes to it.
+        """
+        return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
+
+    def answered(self, surface: Surface, rows: int) -> AnsweredStrip | None:
+        """Find what the oil adds to a surface, for covariances over some rows."""
+        if self.answers is None or not any(one.shapes.size for one in self.answers):
+            return None
+        columns = self._columns(surface.spacing)
+        return AnsweredStrip(self.answers, surface, columns[0], columns.size, rows)
+
+    def expected(self, moments: Sequence[float], length: float, sharp: float) -> Pair:
+        """Find the numbers of contacts, and of breakthroughs, that theory expects in the strip.
+
+        Parameters
+        ----------
+        moments : sequence of float
+            As in `lube.physics.excursions.expected_contacts`.
+        length : float
+            Length of the strip along the rollers, m.
+        sharp : float
+            Mean curvature of the overlap at which the boundary layer breaks, 1/m.
+        """
+        if self.has_edges:
+            films = self.thickness([self.begin])
+            contacts = expected_contacts(films, moments, length, self.width)
+        else:
+            spacing = self.width / COLUMNS
+            films, sharp = self.films(spacing), self.breaking_curvatures(spacing, sharp)
+            contacts = _without_edges(films, moments, length, spacing)
+        broken = contacts * sharp_surface_summit_share(films, moments, sharp)
+        return contacts.sum(), broken.sum()
+
+    def passage(self, moments: Sequence[float], length: float) -> tuple[float, Array, Array]:
+        """Find how far a contact moves while it is in the strip.
+
+        Parameters
+        ----------
+        moments, length
+            As in `expected`.
+
+        Returns
+        -------
+        width : float
+            Mean way of a contact through the strip, m.
+        lags, common : numpy.ndarray
+            Distances of two strips along the circumference, m, and the fraction of their contacts
+            that they have in common.
+        """
+        if self.has_edges:
+            contacts = expected_contacts(self.thickness([0.0]), moments, length, self.width)
+            passing = _without_edges(self.thickness([0.0]), moments, length, 1.0)
+            width = (contacts / passing).item()
+            common = np.linspace(1.0, 0.0, COLUMNS + 1)
+            return width, width * (1.0 - common), common
+        spacing = self.width / COLUMNS
+        films = self.films(spacing)
+        columns = _without_edges(films, moments, length, spacing)
+        # A contact of both strips reaches above the film at both places.
+        common = np.zeros(films.size + 1)
+        for lag in range(films.size):
+            higher = np.maximum(films[lag:], films[: films.size - lag])
+            common[lag] = _without_edges(higher, moments, length, spacing).sum()
+        width = spacing * columns.sum() / columns.max()
+        return width, spacing * np.arange(common.size), common / common[0]
+
+    def _columns(self, spacing):
+        return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
+
+
+def _without_edges(films, moments, length, spacing):
+    """Contacts that theory expects in columns of a strip whose films go on beyond them."""
+    # Without edges along the rollers, contacts are in proportion to the width.
+    widths = expected_contacts(films, moments, length, spacing)
+    return widths - expected_contacts(films, moments, length, 0.0)
+
+
+def pair_deviation(probability: Array, lags: Array, common: Array, perimeter: float) -> Array:
+    """Compute how far the share of a revolution scatters between pairs of rollers.
+
+    The rollers are equal and roll without slip, so that a revolution shows all of their alignment.
+
+    Parameters
+    ----------
+    probability : float
+        Mean probability P over pairs of rollers.
+    lags, common : numpy.ndarray
+        From `StripFilm.passage`.
+    perimeter : float
+        Way of a revolution, m.
+
+    Returns
+    -------
+    float
+        Standard deviation of the share.
+    """
+    known = np.clip(probability, 1e-300, 1.0 - 1e-12)
+    correlation = (1.0 - known) / known * np.expm1(-np.log1p(-known) * common)
+    # Both ways along the circumference.
+    windows = perimeter / (2.0 * np.trapezoid(correlation, lags))
+    return np.sqrt(probability * (1.0 - probability) / max(windows, 1.0))

@@ -1,0 +1,94 @@
+"""One pair of rough surfaces over a revolution: closed forms, and rollers drawn whole."""
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from lube.contact.strip_film import StripFilm, pair_deviation
+from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.spectra import pair_moments
+
+WIDTH, LENGTH = 3e-4, 5e-4
+SURFACES, PAIRS = 8, 10
+"""Surfaces drawn, and pairs of rollers from each: their circumference is the side."""
+
+
+@pytest.fixture(scope="module")
+def spec(make_spec):
+    return make_spec(50_000, longest_wavelength=4e-4, shortest_wavelength="3.2 points")
+
+
+@pytest.fixture(scope="module")
+def surface(spec):
+    return isotropic_surface(spec, waves=24)
+
+
+@pytest.fixture(scope="module")
+def rollers(spec, surface):
+    """Heights of pairs of rollers, metres, shape (pairs, along the rollers, around them)."""
+    rows, apart = int(LENGTH / surface.spacing), surface.points // PAIRS
+    assert (apart - rows) * surface.spacing > spec.longest_wavelength
+    found = []
+    for number in range(SURFACES):
+        heights = surface.draw(np.random.default_rng(number))[0]
+        found += [heights[pair * apart : pair * apart + rows] for pair in range(PAIRS)]
+    return spec.height_step * np.stack(found)
+
+
+def films_of(spec):
+    rms = np.sqrt(pair_moments(spec)[0])
+    across = np.linspace(-2 * WIDTH, 2 * WIDTH, 401)
+    bent = 1.0 + 0.6 * (across / WIDTH) ** 2 + 0.3 * (across / WIDTH) ** 3
+    for ratio in (2.7, 3.1, 3.5):
+        yield StripFilm.flat(ratio * rms, 0.5 * WIDTH)
+        yield StripFilm.shaped(across, ratio * rms * bent, rms)
+
+
+def shares(rollers, film):
+    """Share of a revolution in which each pair touches."""
+    tops = rollers.max(axis=1)
+    touching = np.zeros(tops.shape, bool)
+    for column, height in enumerate(film):
+        touching |= np.roll(tops, -column, axis=1) > height
+    return touching.mean(axis=1)
+
+
+def test_the_share_of_a_revolution_scatters_between_pairs_as_expected(spec, surface, rollers):
+    side, ratios = surface.points * surface.spacing, []
+    for film in films_of(spec):
+        found = shares(rollers, film.films(surface.spacing))
+        _, *common = film.passage(pair_moments(spec), LENGTH)
+        ratios.append(found.std(ddof=1) / pair_deviation(found.mean(), *common, side))
+    # Of 80 pairs a standard deviation is known to 8 %.
+    assert np.all(np.abs(np.log(ratios)) < 0.2)
+    assert abs(np.mean(np.log(ratios))) < 0.1
+
+
+def test_contacts_are_in_the_strip_as_long_as_expected(spec, surface, rollers):
+    moments, side = pair_moments(spec), surface.points * surface.spacing
+    for film in films_of(spec):
+        width, *_ = film.passage(moments, LENGTH)
+        films = film.films(surface.spacing)
+        extents, numbers = 0.0, 0
+        for heights in rollers[::4]:
+            contacts, count = ndimage.label(heights > films.min())
+            numbers += count
+            if film.has_edges:
+                sides = ndimage.find_objects(contacts)
+                extents += sum(each[1].stop - each[1].start for each in sides) * surface.spacing
+        per_turn = numbers / len(rollers[::4])
+        contacts, _ = film.expected(moments, LENGTH, 0.0)
+        assert contacts * side / width == pytest.approx(per_turn, rel=0.1)
+        if film.has_edges:
+            assert width == pytest.approx(WIDTH + extents / numbers, rel=0.03)
+
+
+def test_few_pairs_ever_touch_under_thick_films(spec, surface, rollers):
+    """Groups of contacts come independently of one another."""
+    rms, side = np.sqrt(pair_moments(spec)[0]), surface.points * surface.spacing
+    for ratio in (4.0, 4.4):
+        film = StripFilm.flat(ratio * rms, 0.5 * WIDTH)
+        found = shares(rollers, film.films(surface.spacing))
+        width, *_ = film.passage(pair_moments(spec), LENGTH)
+        expected = -np.expm1(np.log1p(-found.mean()) * side / width)
+        assert np.mean(found > 0.0) == pytest.approx(expected, abs=0.08)
