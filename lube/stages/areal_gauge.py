@@ -10,7 +10,6 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
-from lube.contact.ensemble import windows_in
 from lube.grid.operating_points import at_slip
 from lube.inference.record_curves import gauged_ratios
 from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
@@ -39,11 +38,11 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     xarray.Dataset
         The ``areal_gauge`` file of `lube.schema`. Values and limits are NaN, zero and infinity as
         in `lube.stages.gauge.gauge_film`. The 95 % intervals include the noise of the record, the
-        error of the curve, and the scatter between pairs of rollers, for which strips without
-        common roughness count as independent trials.
+        error of the curve, and the scatter between pairs of rollers: that of ``areal.nc`` for a
+        revolution of pure rolling, which other records change as they do for lines.
     """
     film, areal, comparison = (inputs[kind] for kind in ("film", "areal", "comparison"))
-    curve = cache(lambda width: _curve(film, areal, comparison, width))
+    curve = cache(lambda width: _curve(film, areal, width))
     widths, shares = (comparison[name].values for name in ("contact_half_width", "measured_share"))
     curves, levels, errors = zip(*(curve(2.0 * width) for width in widths), strict=True)
     of_curves = [np.interp(*one) for one in zip(shares, levels, errors, strict=True)]
@@ -60,7 +59,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     return label(kept.assign(with_dims("areal_gauge", values)), "areal_gauge")
 
 
-def _curve(film, areal, comparison, width):
+def _curve(film, areal, width):
     """Curve of the strip's probability at a contact width, its values, rising, and their errors."""
     widths = 2.0 * film["contact_half_width"].values
     nearest = np.argmin(np.abs(np.log(widths / width)))
@@ -72,7 +71,10 @@ def _curve(film, areal, comparison, width):
     # Logarithm of the probability of no contact, in a strip of this width.
     untouched = np.log1p(-np.minimum(limits, 1.0 - 1e-12)) * width / widths[nearest]
     mean, lower, upper = -np.expm1(untouched[:, np.argsort(ratios)])
-    windows = np.full(mean.size, windows_in(comparison, width))
-    curve = falling_curve(np.log(np.sort(ratios)), mean, windows, RESOLUTION)
+    # Strips that count as independent trials, in a revolution.
+    trials = strip["breakthrough_probability"] * (1.0 - strip["breakthrough_probability"])
+    trials = trials.where(trials > 0.0) / strip["pair_deviation"] ** 2 * widths[nearest] / width
+    trials = np.nan_to_num(trials.values.ravel()[np.argsort(ratios)])
+    curve = falling_curve(np.log(np.sort(ratios)), mean, trials, RESOLUTION)
     rising = np.argsort(mean)
     return curve, mean[rising], ((upper - lower) / 4.0)[rising]
