@@ -4,6 +4,7 @@ from lube.archive.explain import explain as explain
 from lube.calculator.answers import Answer as Answer
 from lube.calculator.arguments import COMPLETE as COMPLETE
 from lube.calculator.duty_cycle import duty as duty
+from lube.calculator.indicators import indicators as indicators
 from lube.calculator.operating_points import contact_probability as contact_probability
 from lube.calculator.operating_points import film as film
 from lube.calculator.operating_points import profile as profile

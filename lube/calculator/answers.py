@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from lube.physics.indicators import LOAD_SHARES, RESISTANCE_FORMULAS
 from lube.schema import COORDINATES, FILES, REGIMES
 
 _CUSTOMARY = {
@@ -25,6 +26,7 @@ _OF_NO_FILE = {
     "surface_speed": ("surface speed of the first roller", "m s-1"),
     "second_surface_speed": ("surface speed of the second roller", "m s-1"),
     "share": ("share of the duty cycle", "1"),
+    "viscosity_ratio": ("viscosity ratio of a rolling bearing, kappa", "1"),
     "roughness_factor": ("factor on the roughness of both rollers", "1"),
     "position": ("position from the line of centres", "m"),
     "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
@@ -33,7 +35,7 @@ _OF_NO_FILE = {
     "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
 }
 """Long name and SI unit of the variables that no file has."""
-_KINDS = ("film_profile", "lubricant", "trace", "film", "contact")
+_KINDS = ("film_profile", "lubricant", "trace", "film", "contact", "indicators")
 _ROWS = (COORDINATES, *(FILES[kind] for kind in _KINDS))
 _WORDS = {name: (row.long_name, row.units) for rows in _ROWS for name, row in rows.items()}
 _WORDS |= _OF_NO_FILE
@@ -45,6 +47,23 @@ _WORDS |= {
 _WORDS |= {
     f"surface_{name}": (f"{row.long_name}, on the surface", row.units)
     for name, row in FILES["areal"].items()
+}
+_FORMULAS = {
+    "asperity_load_share": LOAD_SHARES,
+    "rolling_resistance": ("computed", *RESISTANCE_FORMULAS),
+}
+"""Variables of `indicators.nc` that an answer has once for each formula."""
+
+
+def variable_of(name: str, formula: str) -> str:
+    """Name of the variable that holds another one by a published formula."""
+    return f"{name}_{formula.replace('-', '_')}"
+
+
+_WORDS |= {
+    variable_of(name, one): (f"{_WORDS[name][0]}, {one}", _WORDS[name][1])
+    for name, formulas in _FORMULAS.items()
+    for one in formulas
 }
 
 

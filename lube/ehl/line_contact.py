@@ -203,6 +203,22 @@ class FilmProfile:
         return float(self.film_at(points) @ weights / 2.0)
 
     @cached_property
+    def rolling_resistance(self) -> float:
+        r"""Resistance to rolling of either surface, per length over E' R*.
+
+        The pressure is greater before the line of centres than behind it. Its moment about that
+        line is balanced by the tractions of the oil on the two surfaces, T each in pure rolling:
+
+        .. math:: 2 T = -\int p \frac{x}{R^*} dx = \int h \frac{dp}{dx} dx
+        """
+        x, p = self.nodes, self.pressure
+        # Exact for pressures that are linear between the nodes.
+        ends, middles = p[1:] * x[1:] + p[:-1] * x[:-1], (p[1:] + p[:-1]) * (x[1:] + x[:-1])
+        moment = np.sum((ends + middles) * np.diff(x)) / 6.0
+        scale = self.contact.hertz_pressure / self.contact.film_modulus
+        return float(-0.5 * scale * self.contact.half_width**2 * moment)
+
+    @cached_property
     def mass_flux_defect(self) -> float:
         """Largest difference of the mass flux from the flux at the centre, over the latter."""
         central = np.interp(0.0, self.middle, self.flow.flux)

@@ -269,6 +269,13 @@ _ROWS = (
         parallel=True,
     ),
     Stage(
+        "indicators",
+        "published indicators of lubrication, beside the computed film",
+        inputs=("lubricant", "film", "film_profile"),
+        values=_named("rollers.length rough_rollers.mean_ra_roughness"),
+        target="computed",
+    ),
+    Stage(
         "heating_plane",
         "thinning of the film by inlet heating, by every model",
         inputs=("lubricant", "film"),

@@ -12,7 +12,8 @@ from lube.study.rollers import RollerPair
 from lube.study.study import Study
 from lube.types import Datasets
 
-_DIGITS = {"central_film": 6, "minimum_film": 6, "film_end": 6, "mass_flux_defect": 1}
+_DIGITS = {"central_film": 6, "minimum_film": 6, "film_end": 6, "rolling_resistance": 5}
+_DIGITS["mass_flux_defect"] = 1
 """Numbers of a film profile that become variables, and how many of their digits are kept."""
 
 
@@ -61,4 +62,5 @@ def film_profile_table(
         table[name] = solved.copy(data=np.reshape(found, solved.shape))
     for name in ("central_film", "minimum_film"):
         table[name] = table[name] * rollers.reduced_radius
+    table["rolling_resistance"] *= 2.0 * rollers.reduced_modulus * rollers.reduced_radius
     return label(table.transpose(*POINT_DIMS, "film_position"), "film_profile")

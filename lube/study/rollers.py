@@ -209,6 +209,11 @@ class RollerPair(StrictModel):
         r"""Composite roughness :math:`(\sigma_1^2 + \sigma_2^2)^{1/2}` of independent lines, m."""
         return math.hypot(*self.rms_heights)
 
+    @property
+    def mean_ra_roughness(self) -> float:
+        """Mean of the two Ra of the lines, m, as if their heights were Gaussian."""
+        return sum(self.rms_heights) / 2.0 / RA_TO_RMS
+
     def contact_half_width(self, force: float | np.ndarray) -> float | np.ndarray:
         """Hertzian half-width a, m, at a normal force, N (the paper's Eq. 2)."""
         return contact_half_width(force, self.length, self.reduced_radius, self.reduced_modulus)

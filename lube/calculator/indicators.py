@@ -1,0 +1,90 @@
+"""Indicators that engineers know, at operating points."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from lube.calculator.answers import Answer, variable_of
+from lube.calculator.arguments import FORMULA, Amount, amount, conditions, single
+from lube.calculator.operating_points import film_in_si, with_remarks
+from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.grid.films import FilmGroups
+from lube.grid.indicators import indicators as published
+from lube.physics.indicators import viscosity_ratio
+
+
+@with_parts
+def indicators(
+    rollers: Rollers,
+    oil: Oil,
+    force: Amount,
+    speed: Amount,
+    temperature: Amount,
+    *,
+    film_formula: str | Sequence[str] = FORMULA,
+    pitch_diameter: Amount | None = None,
+) -> Answer:
+    """Find indicators of lubrication by their published formulas, and the rolling resistance.
+
+    They stand beside the probability of contact, and none of them is one. The load share of
+    asperities is a share of load, not of time.
+
+    Parameters
+    ----------
+    rollers, oil, force, speed, temperature, film_formula
+        As in `film`.
+    pitch_diameter : str, optional
+        Pitch diameter of a rolling bearing that turns at this speed, such as ``"65 mm"``; its
+        viscosity ratio is found, too.
+
+    Returns
+    -------
+    Answer
+        ``lambda_ratio``; ``micropitting_film_ratio``, lambda_GF of ISO/TR 15144-1 without flash
+        temperature; ``viscosity_ratio``, kappa of ISO 281, if the pitch diameter is given. The
+        names of the others end with that of their formula: ``asperity_load_share_``, by published
+        curves, each with its own lambda ratio and NaN beyond the pressures it is meant for; and
+        ``rolling_resistance_`` (N) of either roller, computed and by published formulas.
+
+    Raises
+    ------
+    LubeError
+        Which argument, what came, what is needed.
+
+    Examples
+    --------
+    >>> rollers = Rollers(radius="50 mm", rms_roughness="0.2 um")
+    >>> oil = Oil("mobilgear-shc-xmp-320")
+    >>> found = indicators(rollers, oil, "800 N", "100 rpm", "80 degC", pitch_diameter="65 mm")
+    >>> f"{found.micropitting_film_ratio.item():.2f}, kappa {found.viscosity_ratio.item():.2f}"
+    '1.63, kappa 0.56'
+    >>> resistance = found.rolling_resistance_computed
+    >>> f"{resistance.item():.2f} {resistance.attrs['units']}"
+    '0.56 N'
+    """
+    table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
+    pair, profiles = rollers.pair, FilmGroups.of(table).profiles
+    of_each = np.vectorize(lambda one: one.rolling_resistance if one else np.nan, otypes=[float])
+    scale = 2.0 * pair.reduced_modulus * pair.reduced_radius
+    resistance = scale * xr.apply_ufunc(of_each, profiles)
+    found = table[["lambda_ratio"]].assign(_each_by_name(published(table, resistance, pair)))
+    if pitch_diameter is not None:
+        diameter = single(amount("pitch_diameter", pitch_diameter, "m", above=0.0))
+        _, rotation, warmth = conditions(force, speed, temperature, pair.first.radius)
+        viscosity = oil.at(warmth)["kinematic_viscosity"]
+        found["viscosity_ratio"] = xr.apply_ufunc(viscosity_ratio, viscosity, rotation, diameter)
+    return with_remarks(found, table, rollers)
+
+
+def _each_by_name(found):
+    """Variables without the dimensions of curves and formulas: one for each of them."""
+    flat = {}
+    for name, values in found.items():
+        by = {"load_share_curve", "resistance_formula"}.intersection(values.dims)
+        for dim in by:
+            for one in values[dim].values:
+                flat[variable_of(name, one)] = values.sel({dim: one}, drop=True)
+        if not by:
+            flat[name] = values
+    return flat

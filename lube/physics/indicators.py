@@ -1,0 +1,187 @@
+r"""Indicators of lubrication that engineers know, by their published formulas.
+
+They are kept for comparison: no result of a study uses them. W, U and G are the groups of
+`lube.physics.dimensionless`. Each formula is used with its own lambda ratio, and only where it was
+meant to hold.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lube.types import Values
+
+AIHARA_PRESSURE = 0.4e9
+"""Largest Hertzian pressure of Aihara's formula, Pa."""
+
+
+def micropitting_film(load: Values, speed: Values, material: Values) -> Values:
+    r"""Film of the micropitting calculation of gears, over R*.
+
+    .. math:: 1.6\, G^{0.6}\, U^{0.7}\, W^{-0.13}
+
+    The film is one at a single point of the contact path, at the temperature of the teeth: the
+    factor for the flash temperature, :math:`S_{GF}^{0.22}`, is 1 without sliding.
+
+    Parameters
+    ----------
+    load, speed, material : float or numpy.ndarray
+        W, U and G.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        Film over R*.
+
+    References
+    ----------
+    ISO/TR 15144-1, Calculation of micropitting load capacity of cylindrical spur and helical gears,
+    part 1, method B. In its units the factor is 1600.
+
+    Examples
+    --------
+    >>> f"{micropitting_film(1.39e-5, 2.52e-11, 3696.0):.3g}"
+    '3.61e-05'
+    """
+    return 1.6 * material**0.6 * speed**0.7 * load**-0.13
+
+
+def viscosity_ratio(kinematic_viscosity: Values, speed: Values, pitch_diameter: float) -> Values:
+    r"""Viscosity ratio of a rolling bearing.
+
+    .. math:: \kappa = \frac{\nu}{\nu_1}, \qquad
+        \nu_1 = 45000\, n^{-0.83} D_{pw}^{-0.5}, \quad n < 1000; \qquad
+        \nu_1 = 4500\, n^{-0.5} D_{pw}^{-0.5}, \quad n \ge 1000
+
+    with :math:`\nu_1` in mm^2/s, the speed n in r/min and the diameter in mm.
+
+    Parameters
+    ----------
+    kinematic_viscosity : float or numpy.ndarray
+        Of the oil at the bearing's temperature, m^2/s.
+    speed : float or numpy.ndarray
+        Rotation speed of the bearing, rpm.
+    pitch_diameter : float
+        Pitch diameter of its rolling elements, m.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        Viscosity ratio.
+
+    References
+    ----------
+    ISO 281, Rolling bearings: dynamic load ratings and rating life.
+
+    Examples
+    --------
+    >>> f"{viscosity_ratio(32e-6, 1500.0, 0.065):.2f}"
+    '2.22'
+    """
+    slow, fast = 45000.0 * speed**-0.83, 4500.0 * speed**-0.5
+    needed = np.where(speed < 1000.0, slow, fast) * (1e3 * pitch_diameter) ** -0.5
+    return 1e6 * kinematic_viscosity / needed
+
+
+@dataclass(frozen=True)
+class LoadShare:
+    """A published curve of the share of the load that asperities carry.
+
+    Attributes
+    ----------
+    share : callable
+        Share from the lambda ratio.
+    roughness : str
+        What the film is divided by: ``composite rms``, or ``mean Ra`` of both surfaces.
+    pressure : float
+        Largest Hertzian pressure for which the curve is meant, Pa.
+    source : str
+        Where it is from.
+    """
+
+    share: Callable[[Values], Values]
+    roughness: str
+    pressure: float
+    source: str
+
+
+_COMPOSITE, _MEAN_RA, _ANY = "composite rms", "mean Ra", np.inf
+_ZHOU = (
+    "R. S. Zhou, M. R. Hoeprich, J. Tribol. 113 (1991) 590, Eq. 29, constants of Lubricants 11 "
+    "(2023) 369, Table 4"
+)
+LOAD_SHARES = {
+    "zhou-hoeprich-1991": LoadShare(
+        lambda ratio: np.exp(-2.32 * ratio**0.97), _COMPOSITE, _ANY, f"{_ZHOU}, first pair"
+    ),
+    "zhou-hoeprich-1991-second": LoadShare(
+        lambda ratio: np.exp(-1.90 * ratio**0.99), _COMPOSITE, _ANY, f"{_ZHOU}, second pair"
+    ),
+    "aihara-1987": LoadShare(
+        lambda ratio: np.exp(-1.8 * ratio**1.2),
+        _COMPOSITE,
+        AIHARA_PRESSURE,
+        "S. Aihara, J. Tribol. 109 (1987) 471, after Patir and Cheng",
+    ),
+    "doleschel": LoadShare(
+        lambda ratio: np.clip(1.0 - 0.5 * ratio, 0.0, None) ** 2,
+        _MEAN_RA,
+        _ANY,
+        "A. Doleschel, thesis, TU Munich, as in A. Arana et al., Proc. IMechE J 233 (2019) 303",
+    ),
+}
+"""Published curves of the load that asperities carry, by name."""
+
+
+def _biboulet(load, speed, material):
+    moes_load = load / np.sqrt(speed)
+    joined = (1.0 + (1.4 / 1.45 * np.sqrt(moes_load)) ** 10) ** 0.1
+    return load**1.5 * 1.4 / (moes_load * joined)
+
+
+_DOUBLED = {
+    "biboulet-houpert-2010": _biboulet,
+    "pan-hamrock": lambda load, speed, material: (
+        1.16 * speed**0.638 * load**0.019 * material**-0.358
+    ),
+    "goksem-hargreaves": lambda load, speed, material: (
+        2.74 * speed**0.658 * load**0.0126 * material**-0.342
+    ),
+    "zhou-hoeprich-1991": lambda load, speed, material: (
+        18.62 * speed**0.648 * load**0.246 * material**-0.352
+    ),
+}
+RESISTANCE_FORMULAS = tuple(_DOUBLED)
+"""Published formulas of the rolling resistance, by name."""
+
+
+def rolling_resistance(name: str, load: Values, speed: Values, material: Values) -> Values:
+    """Compute the rolling resistance of either surface by a published formula, over E' R*.
+
+    The formulas are printed with a speed parameter twice our U. That of Biboulet and Houpert joins
+    the limits of rigid and of elastic rollers.
+
+    Parameters
+    ----------
+    name : str
+        One of `RESISTANCE_FORMULAS`.
+    load, speed, material : float or numpy.ndarray
+        W, U and G.
+
+    Returns
+    -------
+    float or numpy.ndarray
+        Force per length over E' R*.
+
+    References
+    ----------
+    N. Biboulet and L. Houpert, Hydrodynamic force and moment in pure rolling lubricated contacts,
+    part 1: line contacts, Proc. IMechE J 224 (2010) 765-775, with the other three in its units.
+
+    Examples
+    --------
+    >>> [f"{rolling_resistance(one, 1.39e-5, 2.52e-11, 3696.0):.3g}" for one in RESISTANCE_FORMULAS]
+    ['2.73e-08', '1.33e-08', '2.4e-08', '1.4e-08']
+    """
+    return _DOUBLED[name](load, 2.0 * speed, material)
