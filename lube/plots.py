@@ -389,6 +389,31 @@ def legend_above(
         legend.remove()
 
 
+def legend_over(panel: Axes, title: str | None = None) -> None:
+    """Write the legend of one panel above it, beside its letter, where it covers nothing.
+
+    Parameters
+    ----------
+    panel : matplotlib.axes.Axes
+        The panel, in a figure in constrained layout.
+    title : str, optional
+        Title of the legend.
+    """
+    entries = len(panel.get_legend_handles_labels()[1])
+    panel.legend(
+        title=title,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        ncols=entries if entries < 4 else -(-entries // 2),
+        fontsize="small",
+        title_fontsize="small",
+        borderaxespad=0.2,
+        columnspacing=0.9,
+        handlelength=1.2,
+        handletextpad=0.4,
+    )
+
+
 def panel_letters(axes: Iterable[Axes]) -> None:
     """Write (a), (b), ... in front of the titles of a figure's panels.
 
