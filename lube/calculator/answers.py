@@ -35,6 +35,13 @@ _OF_NO_FILE = {
     "whole_tail_rate": (f"breakthroughs per time {_WHOLE}, {_TAIL}", "s-1"),
 }
 """Long name and SI unit of the variables that no file has."""
+
+
+def variable_of(name: str, formula: str) -> str:
+    """Name of the variable that holds another one by a published formula."""
+    return f"{name}_{formula.replace('-', '_')}"
+
+
 _KINDS = ("film_profile", "lubricant", "trace", "film", "contact", "indicators")
 _ROWS = (COORDINATES, *(FILES[kind] for kind in _KINDS))
 _WORDS = {name: (row.long_name, row.units) for rows in _ROWS for name, row in rows.items()}
@@ -53,12 +60,6 @@ _FORMULAS = {
     "rolling_resistance": ("computed", *RESISTANCE_FORMULAS),
 }
 """Variables of `indicators.nc` that an answer has once for each formula."""
-
-
-def variable_of(name: str, formula: str) -> str:
-    """Name of the variable that holds another one by a published formula."""
-    return f"{name}_{formula.replace('-', '_')}"
-
 
 _WORDS |= {
     variable_of(name, one): (f"{_WORDS[name][0]}, {one}", _WORDS[name][1])

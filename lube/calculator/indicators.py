@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 import xarray as xr
 
 from lube.calculator.answers import Answer, variable_of
@@ -64,10 +63,9 @@ def indicators(
     '0.56 N'
     """
     table = film_in_si(rollers, oil, force, speed, temperature, film_formula)
-    pair, profiles = rollers.pair, FilmGroups.of(table).profiles
-    of_each = np.vectorize(lambda one: one.rolling_resistance if one else np.nan, otypes=[float])
+    pair, groups = rollers.pair, FilmGroups.of(table)
     scale = 2.0 * pair.reduced_modulus * pair.reduced_radius
-    resistance = scale * xr.apply_ufunc(of_each, profiles)
+    resistance = scale * groups.of_profiles("rolling_resistance")
     found = table[["lambda_ratio"]].assign(_each_by_name(published(table, resistance, pair)))
     if pitch_diameter is not None:
         diameter = single(amount("pitch_diameter", pitch_diameter, "m", above=0.0))

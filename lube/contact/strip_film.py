@@ -149,7 +149,7 @@ def _without_edges(films, moments, length, spacing):
     return widths - expected_contacts(films, moments, length, 0.0)
 
 
-def pair_deviation(probability: Array, lags: Array, common: Array, perimeter: float) -> Array:
+def pair_deviation(probability: float, lags: Array, common: Array, perimeter: float) -> float:
     """Compute how far the share of a revolution scatters between pairs of rollers.
 
     The rollers are equal and roll without slip, so that a revolution shows all of their alignment.

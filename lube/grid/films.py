@@ -217,7 +217,11 @@ class FilmGroups:
     @cached_property
     def central_film(self) -> xr.DataArray:
         """Film over R* at the line of centres of each profile; NaN where there is none."""
-        of_each = np.vectorize(lambda one: one.central_film if one else np.nan, otypes=[float])
+        return self.of_profiles("central_film")
+
+    def of_profiles(self, name: str) -> xr.DataArray:
+        """Read a number of each profile, by its name; NaN where there is no profile."""
+        of_each = np.vectorize(lambda one: getattr(one, name) if one else np.nan, otypes=[float])
         return xr.apply_ufunc(of_each, self.profiles)
 
     def film(self, row: Formula) -> xr.DataArray:
