@@ -1,5 +1,6 @@
 """Waves of rough lines in the gap: a formula flattens them, or the computed film answers them."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -316,15 +317,26 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
         ratio = np.sqrt(1.0 + np.interp(np.arange(film.size), nodes, added) / rms**2)
         _, part = likely_part(film, rms * ratio)
         nodes, shapes = nodes_of(part.start, part.stop - part.start)
-        covariances = np.empty((2, 2, nodes.size, nodes.size), np.float32)
-        for roller, (at, (power, by_point, filters)) in enumerate(zip(shapes, bands, strict=True)):
+        at_once = np.zeros((nodes.size, nodes.size), np.float32)
+        for at, (power, by_point, filters) in zip(shapes, bands, strict=True):
             drawn = np.exp(1j * nodes[:, None] * by_point)
             changed = (1.0 + at @ filters) * drawn
-            for back in (0, 1):
-                behind = power * np.exp(-1j * back * by_point)
-                found = (changed * behind) @ changed.conj().T - (drawn * behind) @ drawn.conj().T
-                covariances[roller, back] = found.real / rms**2
-    return UnevenWindow(film[part], ratio[part], tuple(shapes), covariances, shift)
+            found = (changed * power) @ changed.conj().T - (drawn * power) @ drawn.conj().T
+            at_once += (found.real / rms**2).astype(np.float32)
+        reach = math.ceil(spec.longest_wavelength / spec.spacing)
+        last = (max(film.size, reach) >> shift) + 2
+        lags = np.arange(-last, last + 1) << shift
+        most = 1 + max(len(filters) for _, _, filters in bands)
+        covariances = np.zeros((2, lags.size, most, most))
+        for roller, (power, by_point, filters) in enumerate(bands):
+            moved = power * np.exp(1j * lags[:, None] * by_point)
+            both = np.concatenate([np.ones((1, power.size)), filters])
+            products = both[:, None] * both.conj()
+            found = moved @ products.reshape(-1, power.size).T
+            here = covariances[roller, :, : len(both), : len(both)]
+            here[:] = found.real.reshape(here.shape) / rms**2
+        covariances[:, :, 0, 0] = 0.0
+    return UnevenWindow(film[part], ratio[part], tuple(shapes), at_once, covariances, shift)
 
 
 def _bands(spec, roller, answer, points):

@@ -27,6 +27,7 @@ from lube.types import Array, Pair, Values
 WINDOWS_PER_WIDTH = 10
 """Windows per contact width if the window is not uniform. More windows hardly reduce the scatter
 between realisations, since neighbouring windows see nearly the same points."""
+NO_SLIPS = np.empty((1, 0))
 
 
 class ContactWindows:
@@ -210,20 +211,22 @@ class ContactWindows:
             shares[here] = whole_run_steps(one, *films) / line.size
         return np.where(self.unknown, np.nan, shares)
 
-    def sample(self, spec: LineSpecLike, seed: int, number: int) -> Pair:
+    def sample(self, spec: LineSpecLike, seed: int, number: int, slips: Array = NO_SLIPS) -> Pair:
         """Estimate probabilities and rates at any rarity, on one pair of Gaussian lines.
 
         Parameters
         ----------
         spec, seed, number
             As in `lube.surfaces.rare_contact.draw_pair`.
+        slips : numpy.ndarray, optional
+            Slide-to-roll ratios at which breakthroughs are counted in uneven windows, shape (P, S).
 
         Returns
         -------
         windows, runs : numpy.ndarray
             As from `lube.surfaces.rare_contact.rare_contact`, shapes (2, P) and (10, P). In uneven
             windows as from `lube.surfaces.rare_contact.rare_contact_under`, shapes (2, P) and
-            (4, P), NaN where the film is not known.
+            (1 + S, P), NaN where the film is not known.
         """
         if self._gap.is_uniform:
             widths = 2 * self.half_windows + 1
@@ -233,7 +236,9 @@ class ContactWindows:
         pair = RarePair(spec, seed, number, max((one.film.size for one in places), default=1))
         waves = [Waves(line, self._grid) for line in pair.lines]
         filtered = (_filtered(waves, self._answers[point]) for point in known)
-        found = rare_contact_under(pair, places, filtered, self._factors[known])
+        ratios = np.reshape([speed_ratios(slip) for slip in slips.flat], (*slips.shape, 2))
+        ratios = np.broadcast_to(ratios, (self.size, *ratios.shape[1:]))[known]
+        found = rare_contact_under(pair, places, filtered, self._factors[known], ratios)
         windows, runs = (np.full((len(each), self.size), np.nan) for each in found)
         windows[:, known], runs[:, known] = found
         return windows, runs

@@ -75,6 +75,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     .. math:: \frac{v}{\Delta x} (\nu + |S|\, \beta)
 
+    In uneven windows a run may break and hold several times on its way through the window. All of
+    this is one breakthrough, as long as the points of the run touch without a pause.
+
     The mean number in the window, divided by this rate, is the mean duration.
 
     In pure rolling, equal rollers repeat themselves. Groups of breakthroughs a longest wavelength
@@ -101,7 +104,7 @@ def _on_lines(study, film, threads):
     for (formulas, points), pairs in (first, PAIRS), (others, FEWER_PAIRS):
         some = film.isel(film_formula=formulas)
         if some["film_formula"].size:
-            found = _sampled(spec, some, windows[points], study.seed, pairs, threads)
+            found = _sampled(spec, some, windows[points], levels, study.seed, pairs, threads)
             tables.append(_table(spec, some, study.boundary_layer, found, levels, gap))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
@@ -198,7 +201,7 @@ def pair_probabilities(
             attrs={"remarks": remark},
         )
     windows = ContactWindows(spec, film, boundary_layer, gap)
-    table, runs = _sampled(spec, film, windows, seed, PAIRS)
+    table, runs = _sampled(spec, film, windows, slide_to_roll_ratio, seed, PAIRS)
     table["breakthrough_rate"] = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
     return table.assign_attrs(remarks="").transpose("pair", *film["film_thickness"].dims)
 
@@ -278,16 +281,14 @@ def _in_time(spec, film, runs, slip, gap):
 
 
 def _in_uneven_windows(spec, film, runs, slip):
-    """As `_in_time`, in uneven windows: from time step to time step.
-
-    In each step the faster surface moves by a point. The other surface moves in a fraction of the
-    steps only.
-    """
-    in_window, with_both, with_first, with_second = runs.transpose("outcome", ...)
-    alone = xr.where(slip >= 0.0, with_first, with_second)
-    slower = 1.0 - 0.5 * abs(slip)
-    in_steps = slower * with_both + abs(slip) * alone  # per step of the entrainment speed
-    return in_window, film["entrainment_speed"] / spec.spacing * in_steps
+    """As `_in_time`, in uneven windows, where the faster surface moves by a point in a step."""
+    in_window, in_steps = runs.isel(outcome=0), runs.isel(outcome=slice(1, None))
+    if in_steps.sizes["outcome"] == 1:
+        in_steps = in_steps.isel(outcome=0)
+    else:
+        in_steps = in_steps.rename(outcome=_SLIP).assign_coords({_SLIP: slip})
+    faster = film["entrainment_speed"] * (1.0 + 0.5 * abs(slip))
+    return in_window, faster / spec.spacing * in_steps
 
 
 def _in_pure_rolling(values):
@@ -316,13 +317,17 @@ def _window_points(spec, film):
     return 2.0 * np.floor(film["contact_half_width"] / spec.spacing) + 1.0
 
 
-def _sampled(spec, film, windows, seed, pairs, threads=None):
+def _sampled(spec, film, windows, slips, seed, pairs, threads=None):
     """Probabilities over pair and the film's dimensions, and numbers of runs, over outcome too."""
     thickness, _ = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     dims = ("pair", "outcome", *thickness.dims)
+    if _SLIP in film["film_thickness"].dims:
+        slips = film[_SLIP]
+    if isinstance(slips, xr.DataArray):  # one at each point
+        slips = slips.broadcast_like(thickness).transpose(*thickness.dims).values.reshape(-1, 1)
 
     def on_one_pair(number):
-        return windows.sample(spec, seed, number)
+        return windows.sample(spec, seed, number, np.atleast_2d(slips))
 
     found = on_threads(on_one_pair, range(pairs), threads, "rare contact of lines")
     windows, runs = (

@@ -46,10 +46,12 @@ WINDOWS = 800
 """Windows along each pair of lines."""
 RUNS = 400
 """Runs along each pair of lines."""
+FOLLOWED = 4
+"""Of so many runs one is followed on its way through an uneven window."""
+LOOKS = 64
+"""Looks at each of these runs on its way, in pure rolling."""
 RUN_NUMBERS = 10
 """Number of sums over runs that `rare_contact` returns."""
-STEPS = np.array([(1, 1), (1, 0), (0, 1)])
-"""Kinds of time steps, in points by which each surface moves: both, the first or the second."""
 NEGLIGIBLE = 1e-9
 """Points are left out where contact is less likely than this, relative to the likeliest point."""
 _NO_ANSWERS = np.zeros((0, 0))
@@ -209,8 +211,10 @@ class UnevenWindow:
         drawn.
     shapes : tuple of numpy.ndarray
         The `shapes` of `lube.kernels.shaped.Surface`, of both surfaces.
+    at_once : numpy.ndarray
+        The `covariances` of `lube.kernels.tail.answered_windows`.
     covariances : numpy.ndarray
-        As in `lube.kernels.tail.answered_windows`.
+        As in `lube.kernels.tail.touching_runs_under`.
     shift : int
         The `shift` of `lube.kernels.shaped.Window`.
     """
@@ -218,12 +222,17 @@ class UnevenWindow:
     film: Array
     rms: Values = 1.0
     shapes: Pair = (_NO_ANSWERS, _NO_ANSWERS)
-    covariances: Array = field(default_factory=lambda: np.zeros((2, 2, 2, 2), np.float32))
+    at_once: Array = field(default_factory=lambda: np.zeros((2, 2), np.float32))
+    covariances: Array = field(default_factory=lambda: np.zeros((2, 5, 1, 1)))
     shift: int = 30
 
 
 def rare_contact_under(
-    pair: "RarePair", windows: Sequence[UnevenWindow], filtered: Sequence[Pair], factor: Values
+    pair: "RarePair",
+    windows: Sequence[UnevenWindow],
+    filtered: Sequence[Pair],
+    factor: Values,
+    speed_ratios: Array,
 ) -> Pair:
     """Estimate probabilities and rates in uneven windows, from one pair of lines.
 
@@ -237,16 +246,21 @@ def rare_contact_under(
         The filtered lines at each point, as in `lube.kernels.shaped.Surface`.
     factor : float or numpy.ndarray
         As in `rare_contact`.
+    speed_ratios : numpy.ndarray
+        Surface speeds over that of the faster surface, at S slide-to-roll ratios of each point,
+        shape (P, S, 2). Without any, probabilities alone are found.
 
     Returns
     -------
     windows : numpy.ndarray
         Shape (2, P): probabilities of geometric contact and of breakthrough in a window.
     runs : numpy.ndarray
-        Shape (4, P): expected number of runs in a window whose boundary layer breaks, and of the
-        new ones among them, for each kind of time step in `STEPS`.
+        Shape (1 + S, P): expected number of runs in a window whose boundary layer breaks, and of
+        breakthroughs per time step at each slide-to-roll ratio, as
+        `lube.kernels.tail.touching_runs_under` counts them.
     """
-    shares, runs = np.empty((2, len(windows))), np.empty((1 + len(STEPS), len(windows)))
+    levels = speed_ratios.shape[1]
+    shares, runs = np.empty((2, len(windows))), np.full((1 + levels, len(windows)), np.nan)
     factors = np.broadcast_to(factor, len(windows))
     for i, (window, own, lines) in enumerate(zip(windows, factors, filtered, strict=True)):
         rms = np.broadcast_to(pair.rms * window.rms, window.film.shape)
@@ -258,13 +272,19 @@ def rare_contact_under(
         expected = share[-1] * np.exp(log_tails.max())
         each = zip(pair.lines, lines, window.shapes, strict=True)
         answered = tuple(Surface(line, line, *answers) for line, *answers in each)
-        film, answers = window.film.astype(np.float32), (window.covariances, window.shift)
+        film, answers = window.film.astype(np.float32), (window.at_once, window.shift)
         shares[:, i] = pair.windows(film[part], touching, own, answered, answers) * expected
-        above = part.start + known[:RUNS], touching[1][:RUNS]
-        found = touching_runs_under(
-            answered, pair.places, pair.covariances, above, film, *answers, STEPS, own
-        )
-        runs[:, i] = found * (expected / RUNS)
+        if not levels:
+            continue
+        above = part.start + known[:RUNS:FOLLOWED], touching[1][:RUNS:FOLLOWED]
+        around = answered, pair.places[::FOLLOWED], pair.covariances, above, film
+        around += window.covariances, window.shift
+        # From one look to the next the surfaces shift against each other by a point at most.
+        shift = np.abs(np.diff(speed_ratios[i])[:, 0])
+        most = film.size // LOOKS
+        strides = np.maximum(most / np.maximum(most * shift, 1.0), 1.0).astype(np.int64)
+        found = touching_runs_under(*around, speed_ratios[i], strides, own)
+        runs[:, i] = found * (expected / above[0].size)
     return shares, runs
 
 

@@ -131,16 +131,22 @@ def test_rms_heights_along_the_window_are_those_of_the_waves(window, point, spec
     assert np.ptp(found.rms) > 0.05
 
 
-@pytest.mark.parametrize("back", [0, 1])
-def test_added_covariances_are_those_of_the_waves(back, window, point, spec):
+@pytest.mark.parametrize("is_moving", [False, True])
+def test_added_covariances_are_those_of_the_waves(is_moving, window, point, spec):
+    """At one moment, and of the same point of the line on its way."""
     found, before = window
     nodes = np.arange(0, found.film.size, 1 << found.shift)[::9]
     for roller in range(2):
         power, by_point, response = changed_waves(spec, roller, point, nodes - before)
-        behind = np.exp(1j * by_point * (nodes[:, None] - back))
-        here = np.exp(1j * by_point * nodes[:, None])
-        expected = (response * behind * power) @ (response * here).conj().T
-        expected = (expected - (behind * power) @ here.conj().T).real / composite(spec) ** 2
-        some = found.covariances[roller, back][::9, ::9][: nodes.size, : nodes.size]
+        at = np.zeros((nodes.size, 1)) if is_moving else nodes[:, None]
+        here = np.exp(1j * by_point * at)
+        expected = (response * here * power) @ (response * here).conj().T
+        expected = (expected - (here * power) @ here.conj().T).real / composite(spec) ** 2
+        shapes = found.shapes[roller][::9][: nodes.size]
+        both = np.hstack([np.ones((nodes.size, 1)), shapes])
+        table = found.covariances[roller, :, : both.shape[1], : both.shape[1]]
+        lags = (at - at.T).astype(int) >> found.shift
+        table = table[lags + len(table) // 2]
+        some = np.einsum("pa,ptab,tb->pt", both, table, both)
         np.testing.assert_allclose(some, expected, atol=0.01)
         assert np.abs(expected).max() > 0.03
