@@ -22,7 +22,7 @@ from lube.calculator.arguments import (
 from lube.calculator.film_search import FilmSearch
 from lube.calculator.operating_points import film_in_si
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.contact.window_films import shaped_films
+from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN
 from lube.schema import values_with_limits
 

@@ -30,8 +30,8 @@ import xarray as xr
 
 from lube.contact.strip_film import COLUMNS, StripFilm, pair_deviation
 from lube.contact.surface_answers import COARSEST, surface_answers
-from lube.contact.window_films import shaped_films
 from lube.ehl.line_contact import one_blas_thread
+from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
 from lube.kernels.areal import BLOCK, NO_ANSWER, contacts_per_row, touching_strips
 from lube.physics.excursions import breaking_curvature

@@ -8,7 +8,7 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.grid.discretise import LineGrid
-from lube.physics.hertz import hertz_gap
+from lube.grid.film_profiles import shaped_films
 from lube.types import Array
 
 
@@ -57,52 +57,6 @@ class WindowFilm:
                 f"more than the height of the lines, {height:.3g}, from a longer profile"
             )
         return WindowFilm(self.film[..., first : last + 1], int(self.before - first))
-
-
-def shaped_films(film: xr.Dataset) -> xr.DataArray:
-    """Films with the computed shape and the thickness of each film formula.
-
-    The shape is scaled so that it has the thickness of the formula at the line of centres, at the
-    thinnest point, or on average over Hertz' contact, whichever the formula gives. The gap of the
-    dry contact is not scaled. It is zero in the contact, and far outside it is most of the film.
-
-    Parameters
-    ----------
-    film : xarray.Dataset
-        A ``film`` dataset with ``film_profile``, or rows of one.
-
-    Returns
-    -------
-    xarray.DataArray
-        Over the dimensions of ``film_thickness`` and film_position, m.
-    """
-    profile = film["film_profile"]
-    with xr.set_options(arithmetic_join="exact", keep_attrs=False):
-        gap = xr.apply_ufunc(hertz_gap, profile["film_position"])
-        gap = gap * film["contact_half_width"] ** 2 / film["reduced_radius"]
-        shaped = film["film_thickness"] / film_at_places(film) * (profile - gap) + gap
-    return shaped.transpose(*film["film_thickness"].dims, "film_position")
-
-
-def film_at_places(film: xr.Dataset) -> xr.DataArray:
-    """Find the thickness of the computed film that each film formula refers to.
-
-    Parameters
-    ----------
-    film : xarray.Dataset
-        With ``film_profile``, and ``formula_place`` over film_formula.
-
-    Returns
-    -------
-    xarray.DataArray
-        At the line of centres, at the thinnest point, or on average over Hertz' contact, m; over
-        film_formula and the dimensions of the profile without film_position.
-    """
-    profile, place = film["film_profile"], film["formula_place"]
-    central = profile.sel(film_position=0.0, drop=True)
-    minimum = profile.min("film_position", skipna=False)
-    mean = profile.sel(film_position=slice(-1.0, 1.0)).integrate("film_position") / 2.0
-    return xr.where(place == "central", central, xr.where(place == "minimum", minimum, mean))
 
 
 def window_films(film: xr.Dataset, grid: LineGrid) -> Array:

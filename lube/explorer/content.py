@@ -9,7 +9,7 @@ import xarray as xr
 
 from lube.contact.ensemble import PROBABILITIES
 from lube.ehl.film_formulas import FORMULAS
-from lube.grid.model_limits import deformed, merged, overloaded
+from lube.grid.model_limits import deformed, merged, overloaded, rubbing
 from lube.schema import COORDINATES, FILES, LIMITS, MEAN_LIMITS
 from lube.units import with_unit
 
@@ -57,8 +57,9 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
           their names for a reader;
         - ``variables``: for each of `SHOWN`, by `page_name`, its dimensions, unit, meaning, and
           values in the order of the dimensions, the last one fastest;
-        - ``marks``: points outside the model, those with less contact than at a thicker film, and
-          those where the linear response to roughness is not valid;
+        - ``marks``: points outside the model, those with less contact than at a thicker film,
+          those where the linear response to roughness is not valid, and those where asperities of
+          the surfaces carry much of the load;
         - ``sampled``: whether the study has probabilities by importance sampling;
         - ``regimes``: names of the regimes of lubrication;
         - ``validity``: limits of the Moes numbers within which each film formula was validated;
@@ -77,6 +78,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         "overloaded": overloaded(contact),
         "merged": merged(contact, film),
         "deformed": deformed(film),
+        "rubbing": rubbing(film),
     }
     load_share = contact["contact_load_share"].mean("realisation", keep_attrs=True)
     return {

@@ -59,7 +59,7 @@ THEME = Theme(
 )
 """Look of all figures, legible on a phone."""
 _POINT = (
-    *"x film mean lower upper limit lambda width M L name outside falling deformed".split(),
+    *"x film mean lower upper limit lambda width M L name outside falling deformed rubbing".split(),
     *CHOICES,
     MODEL,
 )
@@ -75,8 +75,9 @@ COLUMNS = {
     "close": ("time", "length", "resistance"),
 }
 """Columns of each source of the figures. ``limit`` is an upper limit where no contact was seen;
-``outside``, ``falling`` and ``deformed`` are means where the model cannot hold, where contact is
-less than at a thicker film, or where the linear response to roughness is not valid."""
+``outside``, ``falling``, ``deformed`` and ``rubbing`` are means where the model cannot hold, where
+contact is less than at a thicker film, where the linear response to roughness is not valid, or
+where asperities of the surfaces carry much of the load."""
 
 
 def draw(
@@ -215,6 +216,7 @@ def _probabilities(plot, sources, x, around):
     around_it = {"size": 15, "fill_color": None, "line_color": "black"}
     _points(plot, sources[around], x, "falling", **around_it)
     _points(plot, sources[around], x, "deformed", marker="square", **around_it)
+    _points(plot, sources[around], x, "rubbing", marker="diamond", **around_it)
     look = {"marker": "inverted_triangle", "fill_color": "white"}
     limits = _points(plot, sources[around], x, "limit", **look)
     for tool in (HoverTool, TapTool):

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.physics.hertz import hertz_gap
 from lube.types import Array
 
 _STEP, _EVEN, _GROWTH = 0.01, 1.5, 1.03
@@ -93,3 +94,49 @@ def over_positions(solved: xr.DataArray, sample, contact: xr.Dataset) -> xr.Data
     options = {"output_core_dims": [["film_position"]], "vectorize": True}
     found = xr.apply_ufunc(values, solved, output_dtypes=[float], **options)
     return found.assign_coords(film_position=positions)
+
+
+def shaped_films(film: xr.Dataset) -> xr.DataArray:
+    """Films with the computed shape and the thickness of each film formula.
+
+    The shape is scaled so that it has the thickness of the formula at the line of centres, at the
+    thinnest point, or on average over Hertz' contact, whichever the formula gives. The gap of the
+    dry contact is not scaled. It is zero in the contact, and far outside it is most of the film.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset with ``film_profile``, or rows of one.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over the dimensions of ``film_thickness`` and film_position, m.
+    """
+    profile = film["film_profile"]
+    with xr.set_options(arithmetic_join="exact", keep_attrs=False):
+        gap = xr.apply_ufunc(hertz_gap, profile["film_position"])
+        gap = gap * film["contact_half_width"] ** 2 / film["reduced_radius"]
+        shaped = film["film_thickness"] / film_at_places(film) * (profile - gap) + gap
+    return shaped.transpose(*film["film_thickness"].dims, "film_position")
+
+
+def film_at_places(film: xr.Dataset) -> xr.DataArray:
+    """Find the thickness of the computed film that each film formula refers to.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        With ``film_profile``, and ``formula_place`` over film_formula.
+
+    Returns
+    -------
+    xarray.DataArray
+        At the line of centres, at the thinnest point, or on average over Hertz' contact, m; over
+        film_formula and the dimensions of the profile without film_position.
+    """
+    profile, place = film["film_profile"], film["formula_place"]
+    central = profile.sel(film_position=0.0, drop=True)
+    minimum = profile.min("film_position", skipna=False)
+    mean = profile.sel(film_position=slice(-1.0, 1.0)).integrate("film_position") / 2.0
+    return xr.where(place == "central", central, xr.where(place == "minimum", minimum, mean))

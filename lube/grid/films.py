@@ -12,6 +12,7 @@ from lube.ehl.film_formulas import Formula, formula
 from lube.ehl.line_contact import FilmProfile, profiles_of
 from lube.grid.film_profiles import over_positions, six_digits
 from lube.grid.film_responses import surface_responses, wave_responses
+from lube.grid.load_sharing import share_load, surface_load_share
 from lube.physics import dimensionless, hertz
 from lube.physics.inlet_heating import heating_factor, thermal_loading
 from lube.physics.regimes import asymptotic_gap, regime
@@ -35,6 +36,8 @@ def film_at(
     inlet_meniscus: float | None = None,
     answered_lines=None,
     answered_surfaces=None,
+    rough_surfaces=None,
+    load_sharing: str = "none",
     threads: int | None = None,
 ) -> xr.Dataset:
     """Film thickness over the dimensions that the lubricant, force and speed have.
@@ -55,6 +58,8 @@ def film_at(
         As in `lube.stages.film.film_table`.
     answered_surfaces : LineSpec, optional
         Roughness lines of surfaces that the oil answers; adds `surface_responses`.
+    rough_surfaces, load_sharing
+        As in `lube.stages.film.film_table`.
     threads : int, optional
         Threads that share the responses' work; they do not change the results.
 
@@ -75,7 +80,8 @@ def film_at(
     with xr.set_options(arithmetic_join="exact", keep_attrs=False):
         contact = hertz_contact(rollers, force, speed)
         groups = FilmGroups.at(lubricant, rollers, force, contact, inlet_meniscus)
-        table = _films([formula(name) for name in formulas], groups, contact)
+        rows = [formula(name) for name in formulas]
+        table = _films(rows, groups, contact)
         heat = inlet_shear_heating, lubricant, contact, groups, slide_to_roll_ratio
         table["inlet_shear_heating_factor"] = factor = _heating_factor(*heat)
         if is_heated:
@@ -83,6 +89,14 @@ def film_at(
         if with_shape:
             profile = over_positions(groups.profiles, FilmProfile.film_at, contact)
             table["film_profile"] = profile * rollers.reduced_radius
+        if load_sharing == "iterated":
+            thinner = factor if is_heated else 1.0
+            films_at = partial(_films_at, rows, groups, rollers.reduced_radius, thinner)
+            shared = share_load(table, films_at, rough_surfaces, with_shape)
+            table["film_thickness"], table["surface_load_share"] = shared
+            table["lambda_ratio"] = table["film_thickness"] / contact["composite_rms_roughness"]
+        elif rough_surfaces is not None:
+            table["surface_load_share"] = surface_load_share(table, rough_surfaces, with_shape)
         if answered_lines is not None or answered_surfaces is not None:
             solved = groups.thinned(factor).profiles if is_heated else groups.profiles
             slip = xr.DataArray(slide_to_roll_ratio)
@@ -92,7 +106,8 @@ def film_at(
                     found = responses(solved, contact, slip, spec, threads)
                     table = table.merge(found, compat="override", join="exact")
             # The response depends on slip, so the film is stored for each slip.
-            table.update(table[_THINNED].broadcast_like(slip))
+            stored = [name for name in (*_THINNED, "surface_load_share") if name in table]
+            table.update(table[stored].broadcast_like(slip))
     return table
 
 
@@ -121,6 +136,15 @@ def _films(rows, groups, contact):
         formula_source=("film_formula", [row.source for row in rows]),
         **starved,
     )
+
+
+def _films_at(rows, groups, radius, thinner, part):
+    """Film thickness by some formulas if the oil carries a part of the load, m."""
+    films = []
+    for number, row in enumerate(rows):
+        load = groups.load * part.isel(film_formula=number)
+        films.append(replace(groups, load=load).film(row))
+    return thinner * radius * xr.concat(films, "film_formula", join="exact", coords="minimal")
 
 
 def _heating_factor(model, lubricant, contact, groups, slip):

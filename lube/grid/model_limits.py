@@ -7,6 +7,9 @@ LARGEST_DEFORMATION = 0.1
 """Largest ratio of the rms change of the roughness by the oil to the film at which the linear
 response counts as valid. High summits change by three times the rms, 0.3 of the film. Single waves
 that change by more deviate from the linear response (Figure 35)."""
+LARGEST_SHARE = 0.1
+"""Largest share of the load on the surfaces' asperities at which the film of smooth rollers counts
+as valid."""
 
 
 def overloaded(contact: xr.Dataset) -> xr.DataArray:
@@ -88,3 +91,22 @@ def deformed(film: xr.Dataset) -> xr.DataArray:
     """
     thickness = film["film_thickness"]
     return film.get("rms_deformation", 0.0) > LARGEST_DEFORMATION * thickness
+
+
+def rubbing(film: xr.Dataset) -> xr.DataArray:
+    """Find the points where asperities of the surfaces carry much of the load.
+
+    The film is that of smooth rollers, and less certain there.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset.
+
+    Returns
+    -------
+    xarray.DataArray
+        Whether `surface_load_share` is above `LARGEST_SHARE`; False where it is not known.
+    """
+    unknown = xr.zeros_like(film["film_thickness"])
+    return film.get("surface_load_share", unknown) > LARGEST_SHARE

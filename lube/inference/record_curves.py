@@ -16,8 +16,8 @@ from scipy.special import expit, logit
 
 from lube.contact.ensemble import windows_in
 from lube.contact.rough_pair import drawn
-from lube.contact.window_films import film_at_places
 from lube.contact.windows import study_windows
+from lube.grid.film_profiles import film_at_places
 from lube.statistics.curves import Curve, film_interval, peaked_curve
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.study import Study

@@ -8,7 +8,14 @@ from importlib.metadata import version
 import numpy as np
 import xarray as xr
 
-from lube.grid.model_limits import LARGEST_DEFORMATION, deformed, merged, overloaded
+from lube.grid.model_limits import (
+    LARGEST_DEFORMATION,
+    LARGEST_SHARE,
+    deformed,
+    merged,
+    overloaded,
+    rubbing,
+)
 from lube.report.pages import render
 from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
@@ -225,6 +232,11 @@ def _held(film, contact, first):
         "merged": int(merged(contact, film).sum()),
         "deformed": int(deformed(film).sum()),
         "small": LARGEST_DEFORMATION,
+        "surface_share": (
+            film["surface_load_share"].max().item() if "surface_load_share" in film else None
+        ),
+        "rubbing": int(rubbing(film).sum()),
+        "little": LARGEST_SHARE,
         "points": share.size,
     }
 

@@ -106,7 +106,8 @@ _ROWS = (
                 "rollers.reduced_radius rollers.reduced_modulus "
                 "rough_rollers.composite_rms_roughness film_formulas film_shape "
                 "operating_grid.force operating_grid.speed operating_grid.slide_to_roll_ratio "
-                "inlet_shear_heating inlet_meniscus answered_lines"
+                "inlet_shear_heating inlet_meniscus answered_lines "
+                "rough_surfaces load_sharing"
             ),
         },
         priority=1,

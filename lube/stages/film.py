@@ -39,6 +39,8 @@ def film_table(
     inlet_shear_heating: str = "none",
     inlet_meniscus: float | None = None,
     answered_lines: LineSpec | None = None,
+    rough_surfaces: LineSpec | None = None,
+    load_sharing: str = "none",
 ) -> xr.Dataset:
     """Tabulate the film thickness of a pair of rollers over the operating grid.
 
@@ -70,6 +72,12 @@ def film_table(
     answered_lines : LineSpec, optional
         Roughness lines that the film answers: its response to their waves becomes part of the
         result. By default lines enter the gap as drawn.
+    rough_surfaces : LineSpec, optional
+        Lines that stand for the rollers' rough surfaces: the result has the share of the load that
+        their asperities carry.
+    load_sharing : str, optional
+        With "iterated" the oil carries only what these asperities leave of the load; by default
+        the oil carries all of it.
 
     Returns
     -------
@@ -102,6 +110,8 @@ def film_table(
     axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
     slip = axes["slide_to_roll_ratio"]
     options = with_shape, slip, inlet_shear_heating, inlet_meniscus, answered_lines
-    table = film_at(lubricant, rollers, axes["force"], axes["speed"], formulas, *options)
+    asperities = {"rough_surfaces": rough_surfaces, "load_sharing": load_sharing}
+    forces, speeds = axes["force"], axes["speed"]
+    table = film_at(lubricant, rollers, forces, speeds, formulas, *options, **asperities)
     dims = CONTACT_DIMS[0], "roller", *CONTACT_DIMS[1:]
     return label(table.transpose(*dims, ..., missing_dims="ignore"), "film")

@@ -4,9 +4,9 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.contact.window_films import shaped_films
 from lube.contact.windows import ContactWindows, study_windows
 from lube.errors import StudyError
+from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share

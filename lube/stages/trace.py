@@ -8,10 +8,11 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.waves import Waves, answers_at, lifted
-from lube.contact.window_films import film_on_points, shaped_films
+from lube.contact.window_films import film_on_points
 from lube.contact.windows import ContactWindows
 from lube.errors import DataError
 from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, speed_ratios, whole_numbers
+from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import at_slip, known_films, surface_speeds
 from lube.kernels.layer import layer_breaks

@@ -101,6 +101,10 @@ class Study(StrictModel):
     """distance of the oil's meniscus before the line of centres, more than the half-width of the
     contact; without it the contact is fully flooded
     """
+    load_sharing: Literal["none", "iterated"] = "none"
+    """none, the oil carries the whole load, as in the paper; or iterated, the asperities of the
+    rollers' surfaces carry a share of it, and the film is that of the rest
+    """
     operating_grid: OperatingGrid
     roughness: Roughness
     roughness_deformation: Literal["none", "computed", "venner-1997"] = "none"
@@ -154,7 +158,14 @@ class Study(StrictModel):
             "inlet_shear_heating": self.inlet_shear_heating,
             "inlet_meniscus": None if self.inlet_meniscus == "none" else self.inlet_meniscus,
             "answered_lines": self.answered_lines,
+            "rough_surfaces": self.rough_surfaces,
+            "load_sharing": self.load_sharing,
         }
+
+    @property
+    def rough_surfaces(self) -> LineSpec | None:
+        """Lines that stand for surfaces, where the load on their asperities is asked for."""
+        return self.line_spec if self.has_surfaces or self.load_sharing != "none" else None
 
     @property
     def topographies(self) -> dict[str, RollerTopography]:
@@ -357,7 +368,15 @@ class Study(StrictModel):
                 self.check_slip(ratio)
         if self.has_surfaces:
             self._check_surfaces()
+        elif self.rough_surfaces is not None:
+            self._check_isotropic()
         return self
+
+    def _check_isotropic(self):
+        from lube.surfaces.rare_contact import check_isotropic  # which loads scipy
+
+        with located(f"load_sharing: got {self.load_sharing}, need none", ValueError):
+            check_isotropic(self.line_spec)
 
     def _check_surfaces(self):
         from lube.study.surface_checks import check_surfaces  # which loads scipy

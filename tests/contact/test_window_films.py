@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from lube.contact.window_films import WindowFilm, film_on_points, shaped_films, window_films
+from lube.contact.window_films import WindowFilm, film_on_points, window_films
 from lube.contact.windows import ContactWindows
 from lube.errors import DataError
 from lube.grid.discretise import LineGrid
+from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import Gap
 from lube.physics.hertz import hertz_gap
 from lube.study.rollers import BoundaryLayer

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy.linalg import hadamard
 
-from lube.grid.model_limits import deformed, merged, overloaded
+from lube.grid.model_limits import deformed, merged, overloaded, rubbing
 
 
 def table(mean, geometric, error=0.005, film=(3.0, 2.0, 1.0), realisations=8):
@@ -82,3 +82,10 @@ def test_the_oil_deforms_roughness_strongly_where_it_adds_more_than_a_tenth_of_t
     assert not deformed(film).any()  # lines as drawn
     film["rms_deformation"] = "force", [0.09e-6, 0.11e-6, np.nan]
     assert deformed(film).values.tolist() == [False, True, False]
+
+
+def test_asperities_rub_where_they_carry_more_than_a_tenth_of_the_load():
+    film = xr.Dataset({"film_thickness": ("force", [1e-6, 1e-6, np.nan])})
+    assert not rubbing(film).any()  # not asked for
+    film["surface_load_share"] = "force", [0.09, 0.11, np.nan]
+    assert rubbing(film).values.tolist() == [False, True, False]

@@ -67,7 +67,7 @@ def test_the_force_of_a_record_needs_a_contact_that_the_grid_resolves():
 
 def test_the_papers_film_is_flat_and_not_corrected_and_another_asks_for_what_it_needs(paper_with):
     plain = {"with_shape": False, "inlet_shear_heating": "none", "inlet_meniscus": None}
-    plain["answered_lines"] = None
+    plain |= {"answered_lines": None, "rough_surfaces": None, "load_sharing": "none"}
     assert load_study(PAPER).film_model == plain
     changes = ("inlet_shear_heating", "zhu-cheng-1988"), ("inlet_meniscus", "0.4 mm")
     study = load_study(paper_with(*changes))
@@ -159,7 +159,8 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("roughness_deformation", "computed", MECHANICS | DEFORMED | {"film"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
-        ("contact_model", ["line", "surface"], {"tail"}),
+        ("contact_model", ["line", "surface"], {"tail", "film"}),
+        ("load_sharing", "iterated", {"film"}),
         ("traces.1.temperature", "60 degC", {"trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"experiment"}),
         ("rig.drift", 0.1, {"experiment"}),

@@ -78,6 +78,7 @@ const marks = {
     overloaded: "outside the model: the asperities would carry more than the load",
     merged: "less contact than at a thicker film: the layer of merged segments holds",
     deformed: "the oil changes the roughness by too large a part of the film: the linear response is not valid",
+    rubbing: "asperities of the surfaces carry more than a tenth of the load: the film is less certain",
 };
 const isMarked = (name, point) => at(name, point, content.marks) && !(name === "merged" && isSurface(point));
 const marked = (point) => Object.keys(marks).filter((name) => isMarked(name, point));
@@ -101,6 +102,7 @@ function row(point, along) {
         outside: isMarked("overloaded", point) ? positive(mean) : NaN,
         falling: isMarked("merged", point) ? positive(mean) : NaN,
         deformed: isMarked("deformed", point) ? positive(mean) : NaN,
+        rubbing: isMarked("rubbing", point) ? positive(mean) : NaN,
         name: [`${named(point, grid)}: ${withInterval(found)}`, ...marked(point).map((name) => marks[name])].join("; "),
     };
 }

@@ -1,0 +1,87 @@
+"""Sharing of the load between the oil and the asperities of both surfaces."""
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from lube.grid.film_profiles import shaped_films
+from lube.surfaces.contact_pressure import contact_pressure
+
+MOST = 0.95
+"""Largest share that asperities may take of the load where it is shared with the oil."""
+ROUNDS, HALVINGS = 3, 40
+
+
+def surface_load_share(film: xr.Dataset, spec, has_shape: bool) -> xr.DataArray:
+    r"""Compute the share of the load that the asperities of both rollers' surfaces carry.
+
+    At each place the asperities carry the pressure p at which dry, elastic surfaces with the
+    roughness as drawn have the film as their mean gap. Over Hertz' contact,
+
+    .. math:: \frac{4}{\pi p_0} \, \frac12 \int p(h(\xi))\, d\xi
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        Variables of the ``film`` file, over any dimensions; with ``film_profile`` if the film has a
+        shape.
+    spec : LineSpec
+        The lines that stand for the surfaces.
+    has_shape : bool
+        Whether the film has the computed shape.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over the dimensions of ``film_thickness``. Above 1 where asperities would carry more than
+        the load, NaN where the film is not known.
+    """
+    pressure = partial(contact_pressure, spec, film["reduced_modulus"].item())
+    gap = shaped_films(film) if has_shape else film["film_thickness"]
+    pressures = xr.apply_ufunc(pressure, gap)
+    mean = 0.5 * pressures.integrate("film_position") if has_shape else pressures
+    return 4.0 / np.pi * mean / film["hertz_pressure"]
+
+
+def share_load(
+    film: xr.Dataset, films_at: Callable[[xr.DataArray], xr.DataArray], spec, has_shape: bool
+) -> tuple[xr.DataArray, xr.DataArray]:
+    """Find the films at which oil and asperities together carry the load.
+
+    Parameters
+    ----------
+    film, spec, has_shape
+        As in `surface_load_share`; the oil carries the whole load.
+    films_at : callable
+        Gives the film thickness, m, if the oil carries a part of the load.
+
+    Returns
+    -------
+    films, share : xarray.DataArray
+        Film thickness, m, and the share of the load that asperities carry under it. Above `MOST`
+        no balance was found.
+
+    Notes
+    -----
+    The film is nearly a power of the load on the oil; the power follows from the film at the last
+    share found. The width of the contact stays that of the whole load.
+    """
+    whole = film["film_thickness"]
+
+    def balanced(power):
+        """Share at which the asperities, under the film that it leaves, carry just as much."""
+        low, high = xr.zeros_like(whole), xr.full_like(whole, MOST)
+        for _ in range(HALVINGS):
+            share = 0.5 * (low + high)
+            thicker = film.assign(film_thickness=whole * (1.0 - share) ** -power)
+            is_low = surface_load_share(thicker, spec, has_shape) > share
+            low, high = low.where(~is_low, share), high.where(is_low, share)
+        return low.where(whole.notnull())
+
+    share = surface_load_share(film, spec, has_shape).clip(1e-6, 0.5)
+    for _ in range(ROUNDS):
+        share = balanced(-np.log(films_at(1.0 - share) / whole) / np.log1p(-share)).clip(1e-6)
+    films = films_at(1.0 - share)
+    return films, surface_load_share(film.assign(film_thickness=films), spec, has_shape)

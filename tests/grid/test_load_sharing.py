@@ -1,0 +1,67 @@
+"""Sharing of the load between oil and asperities."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from lube.grid.load_sharing import surface_load_share
+from lube.stages.film import film_table
+from lube.study.oil_properties import lubricant_table
+from lube.surfaces.contact_pressure import contact_pressure
+
+
+@pytest.fixture(scope="module")
+def spec(make_spec):
+    return make_spec(points=200_000)
+
+
+@pytest.fixture(scope="module")
+def films(study, spec):
+    """Films by two formulas, by shape and sharing of the load."""
+    oil = lubricant_table(study.lubricants, [40.0, 80.0])
+    levels = study.rollers, [200.0, 1600.0], [100.0], ["paper", "computed"]
+
+    def made(with_shape, load_sharing):
+        choices = {"rough_surfaces": spec, "load_sharing": load_sharing}
+        return film_table(oil, *levels, with_shape, **choices)
+
+    return {(shape, way): made(shape, way) for shape in (0, 1) for way in ("none", "iterated")}
+
+
+def test_asperities_under_a_flat_film_carry_their_pressure_on_the_hertz_contact(films, study, spec):
+    film = films[0, "none"].isel(film_formula=0, lubricant=0, temperature=1, speed=0, force=1)
+    pressure = contact_pressure(spec, study.rollers.reduced_modulus, film["film_thickness"].values)
+    area = 2.0 * film["contact_half_width"] * study.rollers.length
+    expected = pressure * area / film["force"]
+    assert film["surface_load_share"].item() == pytest.approx(expected.item(), rel=1e-9)
+    assert 0.05 < expected < 0.5
+
+
+def test_a_thinner_outlet_carries_more_than_a_flat_film(films):
+    flat, shaped = (films[shape, "none"].isel(film_formula=1) for shape in (0, 1))
+    ratio = shaped["surface_load_share"] / flat["surface_load_share"]
+    assert ratio.sel(force=1600.0, temperature=40.0).item() > 1.2
+
+
+@pytest.mark.parametrize("shape", [0, 1])
+def test_the_film_is_that_of_the_load_that_the_asperities_leave(films, shape, study, spec):
+    whole, shared = films[shape, "none"], films[shape, "iterated"]
+    share = shared["surface_load_share"]
+    again = surface_load_share(shared.drop_attrs(), spec, bool(shape))
+    np.testing.assert_allclose(again, share, rtol=1e-9)
+    assert share.max() > 0.1
+    oil = lubricant_table(study.lubricants, [80.0])
+    for formula in ("paper", "computed"):
+        here = {"film_formula": formula, "temperature": 80.0, "force": 1600.0}
+        left = 1600.0 * (1.0 - share.sel(here).item())
+        alone = film_table(oil, study.rollers, [left], [100.0], [formula])
+        found = shared["film_thickness"].sel(here).item()
+        assert found == pytest.approx(alone["film_thickness"].item(), rel=1e-3)
+        assert found != pytest.approx(whole["film_thickness"].sel(here).item(), rel=1e-3)
+
+
+def test_without_asperities_that_touch_nothing_changes(films):
+    thick = {"film_formula": "paper", "temperature": 40.0, "force": 200.0}
+    whole, shared = (films[0, way].sel(thick) for way in ("none", "iterated"))
+    assert whole["surface_load_share"] < 1e-3
+    xr.testing.assert_allclose(shared["film_thickness"], whole["film_thickness"], rtol=1e-3)

@@ -1,0 +1,62 @@
+"""Pressure of rough surfaces against their gap: limits, and a numerical solution."""
+
+import numpy as np
+import pytest
+import scipy.special
+
+from lube.errors import StudyError
+from lube.surfaces.contact_pressure import contact_pressure
+from lube.surfaces.elastic_contact import press_surface
+from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.spectra import pair_moments
+
+MODULUS = 115e9
+
+
+@pytest.fixture
+def spec(make_spec):
+    return make_spec(points=20_000, longest_wavelength=4e-4, shortest_wavelength=5e-5)
+
+
+def moments(spec):
+    """Rms height, m, and rms gradient of both surfaces together."""
+    variances, slopes = pair_moments(spec)[:2]
+    return np.sqrt(variances), np.sqrt(slopes)
+
+
+def test_surfaces_far_apart_press_by_half_of_the_area_above_the_gap(spec):
+    rms, gradient = moments(spec)
+    gap = np.array([3.5, 5.0, 20.0])
+    area = 0.5 * scipy.special.ndtr(-gap)
+    expected = MODULUS * gradient / np.sqrt(2.0 * np.pi) * area
+    np.testing.assert_allclose(contact_pressure(spec, MODULUS, gap * rms), expected, rtol=0.1)
+
+
+def test_pressure_rises_without_a_jump_as_the_gap_closes(spec, make_spec):
+    gaps = np.linspace(6.0, 0.05, 2000) * np.hypot(*spec.rms_height)
+    steps = np.diff(np.log(contact_pressure(spec, MODULUS, gaps)))
+    assert np.all((steps > 0.0) & (steps < 0.05))
+    finer = make_spec(points=200_000, longest_wavelength=4e-4, shortest_wavelength=5e-6)
+    steps = np.diff(np.log(contact_pressure(finer, MODULUS, gaps)))
+    assert np.all((steps > 0.0) & (steps < 0.05))
+    assert np.isnan(contact_pressure(spec, MODULUS, np.array([np.nan]))[0])
+
+
+def test_pressure_is_that_of_a_numerical_solution(spec):
+    """On surfaces of eight longest waves, which differ by some 10 % from one another."""
+    rms, gradient = moments(spec)
+    surface = isotropic_surface(spec, contact=2.5e-5, waves=8)
+    pressures = MODULUS * gradient * np.array([0.003, 0.03, 0.1])
+    ratios = []
+    for seed in range(2):
+        heights = surface.draw(np.random.default_rng(seed))[0].astype(float) * spec.height_step
+        pressed = press_surface(heights, surface.side, MODULUS, pressures)
+        gaps = np.array([contact.gap for contact in pressed])
+        ratios.append(contact_pressure(spec, MODULUS, gaps) / pressures)
+    assert 0.4 * rms < gaps[-1] and 1.9 * rms < gaps[0]
+    assert np.all(np.abs(np.log(np.mean(ratios, axis=0))) < np.log(1.2))
+
+
+def test_lines_that_do_not_stand_for_a_gaussian_surface_are_refused(make_spec):
+    with pytest.raises(StudyError, match="need 0 and 3"):
+        contact_pressure(make_spec(20_000, kurtosis=4.0), MODULUS, np.array([1e-6]))
