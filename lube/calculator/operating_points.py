@@ -132,7 +132,9 @@ def film_choices(rollers, gap, slip, models) -> dict[str, Any]:
     """Arguments of `film_of_oil` for a gap, a slide-to-roll ratio and some contact models."""
     answered = {"line": "answered_lines", "surface": "answered_surfaces"}
     lines = {answered[model]: rollers.lines for model in models if gap.is_answered}
-    return {"with_shape": gap.has_shape, "slide_to_roll_ratio": slip} | lines
+    surfaces = rollers.lines if "surface" in models else None
+    choices = {"with_shape": gap.has_shape, "slide_to_roll_ratio": slip}
+    return choices | lines | {"rough_surfaces": surfaces}
 
 
 def film_of_oil(oil, pair, force, speed, temperature, formulas, **choices) -> xr.Dataset:
@@ -228,7 +230,8 @@ def contact_probability(
         For the surface, by importance sampling: ``surface_breakthrough_probability`` and
         ``surface_geometric_contact_probability``, anywhere along the rollers, and the mean numbers
         ``surface_breakthroughs`` and ``surface_contacts`` at any moment, each with ``_lower`` and
-        ``_upper``. By theory: ``surface_pair_deviation``, the standard deviation of the share of
+        ``_upper``. By theory: ``surface_load_share``, the share of the load that their asperities
+        would carry; ``surface_pair_deviation``, the standard deviation of the share of
         one pair of rollers in a revolution; ``surface_passage_width``, over which a contact moves
         while it is in the strip; and, if the oil does not deform the roughness,
         ``surface_expected_breakthroughs`` and ``surface_expected_contacts``.
@@ -263,6 +266,7 @@ def contact_probability(
         found = joined(table, contact, on_pairs)
     if "surface" in models:
         found = found.assign(of_surface(table, rollers, seed, gap))
+        found["surface_load_share"] = table["surface_load_share"]
     return with_remarks(found, table, rollers)
 
 

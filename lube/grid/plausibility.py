@@ -5,6 +5,7 @@ import math
 import numpy as np
 import xarray as xr
 
+from lube.grid.model_limits import rubbing
 from lube.physics.excursions import mean_overlap
 from lube.units import with_unit
 
@@ -54,6 +55,10 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
     width, shortest = 2.0 * film["contact_half_width"], 2.0 * math.pi / lines.q_max
     invalid = ~film["in_validity_range"].astype(bool)
     share = 100.0 * expected_load_share(film, rollers).max().item()
+    by_surface = ""
+    if "surface_load_share" in film:
+        most = 100.0 * film["surface_load_share"].max().item()
+        by_surface = f", {most:.2g} % by those of the surface"
     return {
         "Hertz pressure": _range(film["hertz_pressure"], "Pa"),
         "film": f"{_range(film['film_thickness'], 'm')}, by {film['film_formula'].item()}; "
@@ -63,7 +68,7 @@ def overview(film: xr.Dataset, lines, rollers) -> dict[str, str]:
         f"{_range(width / shortest)} times the shortest wave",
         "grid": f"{shortest / lines.spacing:.3g} points in the shortest wave, "
         f"{_range(width / lines.spacing)} in the contact width",
-        "load share": f"at most {share:.2g} % is carried by asperities of the line",
+        "load share": f"at most {share:.2g} % is carried by asperities of the line{by_surface}",
     }
 
 
@@ -93,6 +98,7 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
     share = expected_load_share(film, rollers)
     loaded, overloaded = (int((share > limit).sum()) for limit in (0.1, 1.0))
     more = f"at {overloaded} more than all of it, " if overloaded else ""
+    rubs = int(rubbing(film).sum())
     found = {
         f"Young's modulus: {_range(moduli, 'Pa')}; plastics have 1 GPa and more, steel 210 GPa": (
             min(moduli) < 1e9 or max(moduli) > 1.2e12
@@ -110,6 +116,8 @@ def remarks(film: xr.Dataset, lines, rollers) -> list[str]:
         f"load share: at {loaded} of {share.size} operating points the line's asperities carry "
         f"more than a tenth of the load, {more}although the film formula assumes that the oil "
         "carries it": loaded,
+        f"load share: at {rubs} of {share.size} operating points the surfaces' asperities carry "
+        "more than a tenth of the load, where the film of smooth rollers is less certain": rubs,
     }
     return [text for text, unlikely in found.items() if unlikely]
 
