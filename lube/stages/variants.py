@@ -146,13 +146,14 @@ def _film(variant, study, inputs):
     profile = inputs["film_profile"].transpose(*POINT_DIMS, "film_position")
     is_heated = study.inlet_shear_heating != "none"
     thinner = film["inlet_shear_heating_factor"] if is_heated else 1.0
-    if variant.film == "computed":
+    if variant.film == "computed" and study.load_sharing == "none":
         film = film.assign(film_thickness=thinner * profile["central_film"])
         film["formula_place"] = "central"
     elif variant.film != study.film_formulas[0]:
         levels = study.rough_rollers, film["force"], film["speed"], [variant.film]
-        meniscus = study.film_model["inlet_meniscus"]
-        other = film_at(inputs["lubricant"], *levels, inlet_meniscus=meniscus).isel(film_formula=0)
+        names = "inlet_meniscus", "rough_surfaces", "load_sharing"
+        choices = {name: study.film_model[name] for name in names}
+        other = film_at(inputs["lubricant"], *levels, **choices).isel(film_formula=0)
         film = film.assign(film_thickness=thinner * other["film_thickness"])
         film["formula_place"] = other["formula_place"]
     film["film_thickness"] = film["film_thickness"].transpose(*POINT_DIMS)

@@ -88,6 +88,7 @@ def test_surface_and_line_are_answered_together(rollers, oil):
     models = {"contact_model": ["line", "surface"], "realisations": 2}
     found = lube.contact_probability(rollers, oil, **POINT, **models)
     assert found["surface_contacts"] > 1.0
+    assert 0.0 < found["surface_load_share"] < 1.0
     name = "breakthrough_probability"
     assert found[f"tail_{name}_upper"] < found[f"surface_{name}_lower"]
     assert {"tail_" + name, name + "_mean"} <= set(found)

@@ -117,3 +117,10 @@ def test_points_whose_roughness_is_not_answered_linearly_are_marked(explored):
     marked = read_back(explored | {"film": changed})["marks"]["deformed"]
     assert any(marked["values"])
     assert not any(read_back(explored)["marks"]["deformed"]["values"])
+
+
+def test_points_whose_surfaces_carry_much_of_the_load_are_marked(explored):
+    film = explored["film"]
+    changed = film.assign(surface_load_share=0.5 * xr.ones_like(film["film_thickness"]))
+    assert all(read_back(explored | {"film": changed})["marks"]["rubbing"]["values"])
+    assert not any(read_back(explored)["marks"]["rubbing"]["values"])

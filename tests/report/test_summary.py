@@ -152,6 +152,15 @@ def test_points_whose_roughness_is_not_answered_linearly_are_counted(study, resu
     assert "At 8 of the 16 operating points the oil changes the roughness by more than 10 %" in text
 
 
+def test_points_whose_surfaces_carry_much_of_the_load_are_counted(study, results):
+    assert "Asperities of the surfaces" not in findings(study, results)
+    film = results["film"]
+    share = (film["temperature"] == 80.0) * 0.3 + 0.0 * film["film_thickness"]
+    text = findings(study, results | {"film": film.assign(surface_load_share=share)})
+    assert "Asperities of the surfaces carry up to 30 % of the load, although the film" in text
+    assert "more than 10 % at 4 of the 16 operating points" in text
+
+
 def test_measured_records_are_not_called_simulated(study, results):
     comparison = results["comparison"].assign_coords(origin="measured")
     text = findings(study, results | {"comparison": comparison})
