@@ -140,11 +140,11 @@ def _films(rows, groups, contact):
 
 def _films_at(rows, groups, radius, thinner, part):
     """Film thickness by some formulas if the oil carries a part of the load, m."""
-    films = []
+    names, films = part["film_formula"], []
     for number, row in enumerate(rows):
-        load = groups.load * part.isel(film_formula=number)
+        load = groups.load * part.isel(film_formula=number, drop=True)
         films.append(replace(groups, load=load).film(row))
-    return thinner * radius * xr.concat(films, "film_formula", join="exact", coords="minimal")
+    return thinner * radius * xr.concat(films, names, join="exact")
 
 
 def _heating_factor(model, lubricant, contact, groups, slip):
