@@ -56,10 +56,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     xarray.Dataset
         The ``tail`` file of `lube.schema`. Its attribute ``remarks`` is empty unless the lines
         are flattened by a formula or not Gaussian; then it says so, and all values are NaN. In
-        uneven windows the share of pairs with a breakthrough and the time to the first one are NaN:
-        they depend on the pauses between breakthroughs, which are sampled in uniform windows only.
-        On surfaces they are estimated from probability and passages. The theory for high films
-        holds for lines as drawn.
+        uneven windows and on surfaces the share of pairs with a breakthrough and the time to the
+        first one are estimated from the probability and the duration of a breakthrough. The theory
+        for high films holds for lines as drawn.
 
     Notes
     -----
@@ -147,9 +146,10 @@ def _by_groups(found, passages, revolution):
     r"""Share of pairs with a breakthrough in a revolution, and time to the first, estimated.
 
     Groups of breakthroughs come independently of one another: of those that a revolution has,
-    :math:`-\ln(1 - P)` are in the window on average, each for the time of one passage. On lines
-    under flat films, where groups are sampled one by one, this gives 2 to 11 % too many of them
-    where P is below 0.001; where it is greater, nearly all pairs have a breakthrough anyway.
+    :math:`-\ln(1 - P)` are in the window on average, each for the time of one passage or, in an
+    uneven window, for the duration of a breakthrough. On lines under flat films, where groups are
+    sampled one by one, this gives 2 to 11 % too many of them where P is below 0.001; where it is
+    greater, nearly all pairs have a breakthrough anyway.
     """
     with np.errstate(divide="ignore"):  # where contact is always seen
         groups = {
@@ -257,11 +257,19 @@ def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
     in_window, rate = _in_time(spec, film, runs, slip, gap)
     of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)
     turn = spec.points[0] * spec.spacing / surface_speeds(film["entrainment_speed"], slip)[0]
+    duration = in_window.mean("pair") / rate.mean("pair")
+    if gap.is_uniform:
+        rolling = map(_in_pure_rolling, (runs, breakthrough))
+        in_a_revolution = _in_a_revolution(spec, film, *rolling)
+    else:
+        turns, lasting, rolling = map(_in_pure_rolling, (turn, duration, breakthrough))
+        limits = pair_limits(xr.Dataset({"breakthrough_probability": rolling}))
+        in_a_revolution = _by_groups(limits, turns / lasting, turns)
     table = {
         **pair_limits(of_pairs),
         "breakthroughs_per_revolution": (rate * turn).mean("pair"),
-        "breakthrough_duration": in_window.mean("pair") / rate.mean("pair"),
-        **_in_a_revolution(spec, film, *map(_in_pure_rolling, (runs, breakthrough)), gap),
+        "breakthrough_duration": duration,
+        **in_a_revolution,
         **_asymptotes(spec, film, boundary_layer, gap),
     }
     return xr.Dataset(table)
@@ -298,13 +306,9 @@ def _in_pure_rolling(values):
     return values.reindex({_SLIP: [0.0]}).isel({_SLIP: 0}, drop=True)
 
 
-def _in_a_revolution(spec, film, runs, breakthrough, gap):
+def _in_a_revolution(spec, film, runs, breakthrough):
     """Share of pairs with a breakthrough in a revolution of pure rolling, and time to the first."""
     points = spec.points[0]
-    if not gap.is_uniform:  # the pauses between breakthroughs are not sampled
-        unknown = xr.full_like(breakthrough.isel(pair=0, drop=True), np.nan)
-        names = (f"touching_pair_share{end}" for end in LIMITS)
-        return dict.fromkeys([*names, "first_breakthrough_time"], unknown)
     width = 2.0 * film["contact_half_width"]
     windows = independent_windows(points * spec.spacing, width, spec.longest_wavelength)
     groups = runs.isel(outcome=2, drop=True) * points

@@ -8,6 +8,7 @@ import xarray as xr
 from plain_answers import PlainAnswer
 
 from lube.contact.window_films import window_films
+from lube.contact.windows import study_windows
 from lube.grid.discretise import speed_ratios
 from lube.grid.gap import Gap
 from lube.grid.operating_points import at_slip
@@ -343,6 +344,30 @@ def test_the_first_breakthrough_comes_when_counting_finds_it(
         counted.append(steps_to_the_next(first + second, film, window, factor))
     time = np.mean(counted) * spec.spacing / point["entrainment_speed"].item()
     assert found["first_breakthrough_time"] == pytest.approx(time, rel=0.15)
+
+
+@pytest.mark.parametrize("deformation", ["none", "computed"])
+def test_in_uneven_windows_as_many_pairs_touch_as_counted_and_as_late(coarse, study, deformation):
+    waves = {"points": 20_000, "longest_wavelength": 0.2e-3, "shortest_wavelength": 40e-6}
+    roughness = study.roughness.model_copy(update=waves)
+    choices = {"film_shape": "computed", "roughness_deformation": deformation}
+    weak = coarse(shear_strength=1e5, roughness=roughness, **choices)
+    oil = lubricant_table(study.lubricants, [40.0])
+    levels = study.rollers, [800.0], [110.0, 125.0, 140.0], ["paper"]
+    film = film_table(oil, *levels, **weak.film_model)
+    found, windows = make(weak, {"film": film}).squeeze(), study_windows(weak, film)
+    pairs, seen, first = 100, [], []
+    for number in range(pairs):
+        lines = draw_pair(weak.line_spec, SEED, 100 + number)[0]
+        broken = windows.trace(tuple(np.rint(line).astype(np.int32) for line in lines)) > 0
+        seen.append(broken.any(axis=1))
+        first.append(np.where(seen[-1], broken.argmax(axis=1) / broken.shape[1], np.nan))
+    share = found["touching_pair_share"].values
+    np.testing.assert_array_less(np.abs(np.mean(seen, axis=0) - share), 3.0 * 0.5 / pairs**0.5)
+    revolution = 60.0 / found["speed"].values
+    wait = found["first_breakthrough_time"].values / revolution
+    np.testing.assert_allclose(np.nanmean(first, axis=0), wait, atol=0.1)
+    assert share.max() > 0.9 and share.min() < 0.6
 
 
 # --- Lines that are not Gaussian ---------------------------------------------------------
