@@ -75,6 +75,7 @@ _OTHER_COORDINATES = {
     "lubricant": "",
     "film_formula": "film formula ",
     "slide_to_roll_ratio": "slide-to-roll ratio ",
+    "contact_model": "contact of the ",
 }
 
 _STAMP_STRIP = 0.12  # height of the stamp below everything else, inches
@@ -295,7 +296,7 @@ def level_groups(
 
 
 def footnote(figure: Figure, *shown: xr.Dataset | xr.DataArray) -> None:
-    """Write below a figure which lubricant, film formula and slide-to-roll ratio it shows.
+    """Write below a figure which lubricant, film formula, slip and contact model it shows.
 
     Parameters
     ----------
