@@ -12,6 +12,7 @@ from lube.surfaces.contact_pressure import contact_pressure
 MOST = 0.95
 """Largest share that asperities may take of the load where it is shared with the oil."""
 ROUNDS, HALVINGS = 3, 40
+"""How often the film is found anew, and halvings of the range of shares each time."""
 
 
 def surface_load_share(film: xr.Dataset, spec, has_shape: bool) -> xr.DataArray:

@@ -8,9 +8,7 @@ import numpy as np
 
 from lube.kernels.compiler import inlined, kernel
 from lube.kernels.layer import layer_breaks
-from lube.kernels.motion import surface_position
 from lube.kernels.runs import BLOCK
-from lube.kernels.shaped import Surface, answer_at
 from lube.types import Array, Pair
 
 
@@ -76,7 +74,7 @@ def touching_windows(
         rise = touching[1][m] - window[origin]
         for j in range(width):  # without a branch, so the compiler vectorises it
             overlap[j] = window[j] + shape[j] * rise - film[j]
-        points, broken, _ = _judged(overlap, factor)
+        points, broken, _ = judged(overlap, factor)
         weight = 1.0 / max(points, 1)  # rounding may put the known point just below the film
         contact += weight
         if broken:
@@ -84,104 +82,8 @@ def touching_windows(
     return contact / starts.size, breakthrough / starts.size
 
 
-@kernel
-def answered_windows(
-    surfaces: tuple[Surface, Surface],
-    starts: Array,
-    correlation: Array,
-    touching: Pair,
-    film: Array,
-    covariances: Array,
-    shift: int,
-    factor: float,
-) -> tuple[float, float]:
-    """Weigh windows in which one point is known to touch, where the oil answers the lines.
-
-    Parameters
-    ----------
-    surfaces : tuple of lube.kernels.shaped.Surface
-        Both surfaces; lines of float32.
-    starts, correlation, touching, film, factor
-        As in `touching_windows`.
-    covariances : numpy.ndarray
-        Shape (C, C), float32: what the oil adds to the covariance of the sum of the lines at two of
-        the C nodes of the window, over its variance as drawn.
-    shift : int
-        As in `lube.kernels.shaped.Window`.
-
-    Returns
-    -------
-    contact, breakthrough : float
-        As from `touching_windows`.
-    """
-    width, nodes = film.size, covariances.shape[0]
-    contact = breakthrough = 0.0
-    overlap = np.empty(width, np.float32)
-    added, lift = np.empty(nodes, np.float32), np.empty(nodes, np.float32)
-    for m in range(starts.size):
-        first, origin = starts[m], touching[0][m]
-        for node in range(nodes):
-            answers = answer_at(surfaces[0], first, 1 << shift, node)
-            lift[node] = answers + answer_at(surfaces[1], first, 1 << shift, node)
-            added[node] = between_nodes(covariances[node], origin, shift)
-        shape = correlation[width - 1 - origin : 2 * width - 1 - origin]
-        one, other = surfaces[0].line[first:], surfaces[1].line[first:]
-        rise = touching[1][m] - one[origin] - other[origin] - between_nodes(lift, origin, shift)
-        rise /= np.float32(1.0) + between_nodes(added, origin, shift)
-        for j in range(width):
-            known = (shape[j] + between_nodes(added, j, shift)) * rise
-            overlap[j] = one[j] + other[j] + between_nodes(lift, j, shift) + known - film[j]
-        points, broken, _ = _judged(overlap, factor)
-        weight = 1.0 / max(points, 1)
-        contact += weight
-        if broken:
-            breakthrough += weight
-    return contact / starts.size, breakthrough / starts.size
-
-
 @inlined
-def _correlate(with_known, surfaces, covariances, known, shift):
-    """Fill in the covariance of the lines and filtered lines with the gap at a known point.
-
-    The indices are: roller, lag, line or filtered line.
-    """
-    for roller in range(2):
-        shapes = surfaces[roller].shapes
-        node = known >> shift
-        part = (known - (node << shift)) / (1 << shift)
-        for lag in range(with_known.shape[1]):
-            for line in range(1 + shapes.shape[1]):
-                total = covariances[roller, lag, line, 0]
-                for m in range(shapes.shape[1]):
-                    here = (1.0 - part) * shapes[node, m] + part * shapes[node + 1, m]
-                    total += here * covariances[roller, lag, line, 1 + m]
-                with_known[roller, lag, line] = total
-
-
-@inlined
-def _added(with_known, surface, node, lag, shift):
-    """Return what the oil adds to the covariance of a line at a node with a point a lag behind."""
-    row = (lag >> shift) + with_known.shape[0] // 2
-    if row < 0 or row + 1 >= with_known.shape[0]:
-        return 0.0
-    part = (lag & ((1 << shift) - 1)) / (1 << shift)
-    total = (1.0 - part) * with_known[row, 0] + part * with_known[row + 1, 0]
-    for m in range(surface.shapes.shape[1]):
-        here = (1.0 - part) * with_known[row, 1 + m] + part * with_known[row + 1, 1 + m]
-        total += surface.shapes[node, m] * here
-    return total
-
-
-@inlined
-def between_nodes(values, point, shift):
-    """Interpolate linearly between nodes, in single precision."""
-    node = point >> shift
-    part = np.float32((point - (node << shift)) / (1 << shift))
-    return values[node] + part * (values[node + 1] - values[node])
-
-
-@inlined
-def _judged(overlap, factor):
+def judged(overlap, factor):
     """Count touching points, and find the first segment whose boundary layer breaks.
 
     Returns the number of touching points, whether there is such a segment, and its first point, or
@@ -280,7 +182,7 @@ def touching_runs(
             known = correlation[reach + stop :]
             for j in range(rest.size):  # without a branch, so the compiler vectorises it
                 rest[j] = first[j] + second[j] + known[j] * rise - film
-            _, broken, between = _judged(rest, factor)
+            _, broken, between = judged(rest, factor)
             if broken:
                 gap = max(between - width + 1, 0)
                 sums[7] += weight * between
@@ -293,164 +195,6 @@ def touching_runs(
                 sums[3] += weight
                 sums[5] += 1.0
     return sums
-
-
-@kernel
-def touching_runs_under(
-    surfaces: tuple[Surface, Surface],
-    places: Array,
-    correlations: Pair,
-    touching: Pair,
-    film: Array,
-    covariances: Array,
-    shift: int,
-    speed_ratios: Array,
-    strides: Array,
-    factor: float,
-) -> Array:
-    r"""Weigh runs of points in an uneven window, each found from one known point.
-
-    A run may break and hold several times on its way through the window. A *breakthrough* is all of
-    this together: the time steps at which the layer of a run breaks, as long as its points touch
-    without a pause. Each of these T time steps counts 1/T. Only each k-th step before and after
-    the present one is looked at, and where n steps are found, each counts 1/(k n). In expectation
-    this makes one for all T steps together, or T/k if T is below k.
-
-    Parameters
-    ----------
-    surfaces, shift
-        As in `answered_windows`.
-    covariances : numpy.ndarray
-        Shape (2, 2 L + 1, M + 1, M + 1): covariance of each line (first index) and its M filtered
-        lines, over the variance of the sum as drawn, at the lags -L .. L in distances between
-        nodes. That of the line with itself, which `correlations` has, is left out as 0.
-    places, correlations, factor
-        As in `touching_runs`.
-    touching : tuple of numpy.ndarray
-        Shape (M,) each: point of the window at which each known point lies, and the sum of the
-        lines there, float32 height steps.
-    film : numpy.ndarray
-        Shape (W,), float32: film thickness at each point of the window, height steps.
-    speed_ratios : numpy.ndarray
-        Shape (S, 2): surface speeds over that of the faster surface, at S slide-to-roll ratios.
-    strides : numpy.ndarray
-        Shape (S,), int64: number k of time steps from one look at a run to the next.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (1 + S,), sums of weights: over the runs whose boundary layer breaks, then, at each
-        slide-to-roll ratio, over the breakthroughs.
-    """
-    sums = np.zeros(1 + len(speed_ratios))
-    reach = correlations[0].size // 2
-    lines = surfaces[0].line, surfaces[1].line
-    answers = np.empty((2, 2, (film.size >> shift) + 2), np.float32)
-    with_known = np.empty(covariances.shape[:3])
-    for m in range(places.size):
-        known = touching[0][m]
-        offset, centre = places[m] - known, reach - known
-        _correlate(with_known, surfaces, covariances, known, shift)
-        _answer(answers, surfaces, with_known, offset, known, 0, 0, shift)
-        own = lines[0][places[m]] + lines[1][places[m]] + _answers_at(answers, 0, known, shift)
-        rise = touching[1][m] - own
-        rise /= np.float32(1.0) + _answers_at(answers, 1, known, shift)
-        around = lines, offset, correlations, centre, rise, film, answers, shift
-        window = surfaces, with_known, known, factor
-        start, stop, total = _run_under(around, known, 0, 0)
-        points = max(stop - start, 1)  # rounding may put the known point just below the film
-        if not layer_breaks(points, total, factor):
-            continue
-        sums[0] += 1.0 / points
-        for s in range(len(speed_ratios)):
-            times = 1
-            for stride in (-strides[s], strides[s]):
-                motion = m, stride, speed_ratios[s]
-                times += _times_broken(around, window, motion, start, stop)
-            sums[1 + s] += 1.0 / (points * strides[s] * times)
-    return sums
-
-
-@inlined
-def _times_broken(around, window, motion, start, stop):
-    """Count the looks, before or after the present time step, at which a run breaks.
-
-    The run is followed as long as any of its points touches, as either surface carries them on.
-    """
-    (surfaces, with_known, known, factor), (now, stride, ratios) = window, motion
-    _, offset, _, _, _, film, answers, shift = around
-    times = first = second = step = 0
-    while stop > start:
-        step += stride
-        moved_1 = surface_position(now, ratios[0]) - surface_position(now + step, ratios[0])
-        moved_2 = surface_position(now, ratios[1]) - surface_position(now + step, ratios[1])
-        point = start + min(moved_1 - first, moved_2 - second)
-        end = stop + max(moved_1 - first, moved_2 - second)
-        first, second = moved_1, moved_2
-        _answer(answers, surfaces, with_known, offset, known, first, second, shift)
-        start, stop = film.size, 0
-        broke = False
-        while point < end:
-            begin, after, total = _run_under(around, point, first, second)
-            if after > begin:
-                broke = broke or layer_breaks(after - begin, total, factor)
-                start, stop = min(start, begin), max(stop, after)
-            point = max(after, point) + 1
-        times += broke
-    return times
-
-
-@inlined
-def _answer(answers, surfaces, with_known, offset, known, first, second, shift):
-    """Fill in the answers to each line, and what they add to its covariance with the known point.
-
-    Before the lines moved on by some points each, or after, if these are negative. The indices are:
-    answer or covariance, roller, node.
-    """
-    for roller, moved in enumerate((first, second)):
-        for node in range(answers.shape[2]):
-            surface, lag = surfaces[roller], (node << shift) - moved - known
-            answers[0, roller, node] = answer_at(surface, offset - moved, 1 << shift, node)
-            answers[1, roller, node] = _added(with_known[roller], surface, node, lag, shift)
-
-
-@inlined
-def _answers_at(answers, kind, point, shift):
-    """Sum the answers to both lines (0), or what they add to the covariance (1), at a point."""
-    first = between_nodes(answers[kind, 0], point, shift)
-    return first + between_nodes(answers[kind, 1], point, shift)
-
-
-@inlined
-def _overlap_under(around, point, first, second):
-    """Overlap at a point of the window before the lines moved; negative where it is unknown."""
-    lines, offset, correlations, centre, rise, film, answers, shift = around
-    ahead, behind = point - max(first, second) + centre, point - min(first, second) + centre
-    if point < 0 or point >= film.size or ahead < 0 or behind >= correlations[0].size:
-        return np.float32(-1.0)
-    sum_of_both = lines[0][offset + point - first] + lines[1][offset + point - second]
-    known = correlations[0][centre + point - first] + correlations[1][centre + point - second]
-    known += _answers_at(answers, 1, point, shift)
-    return sum_of_both + _answers_at(answers, 0, point, shift) + known * rise - film[point]
-
-
-@inlined
-def _run_under(around, point, first, second):
-    """First point, point after the last and sum of the overlaps of the run at a point."""
-    start = stop = point
-    total = 0.0
-    overlap = _overlap_under(around, stop, first, second)
-    if overlap > 0.0:
-        while overlap > 0.0:
-            total += overlap
-            stop += 1
-            overlap = _overlap_under(around, stop, first, second)
-        overlap = _overlap_under(around, start - 1, first, second)
-        while overlap > 0.0:
-            total += overlap
-            start -= 1
-            overlap = _overlap_under(around, start - 1, first, second)
-    return start, stop, total
 
 
 @inlined

@@ -6,20 +6,23 @@ In Persson's theory the mean gap is
           \left[ \gamma + 3 (1 - \gamma)\, \mathrm{erf}^2 \frac{w p'}{E^*} \right]
           e^{-(w p' / E^*)^2}, \qquad w(q)^{-2} = \pi \int_0^q dq'\, q'^3 C(q') ,
 
-with the spectrum C of the isotropic surface. Far apart, surfaces touch at single summits, which
-theory treats too softly. There the real contact area is half of the area that lies above the gap
+with the spectrum C of the isotropic surface. Surfaces far apart touch at single summits, and the
+theory gives too high a pressure. There the real contact area is half of the area above the gap
 (Bush, Gibson and Thomas), and
 
 .. math:: p = \frac{E^* g}{\sqrt{2 \pi}}\, \frac12\, Q(\bar u / \sigma)
 
 with the rms gradient g, the rms height :math:`\sigma` and the Gaussian tail Q. This holds beyond
-the largest gap at which both give the same pressure. With few wavelengths theory gives more at all
-gaps. Then it is scaled so that the two pressures touch.
+the largest gap at which both give the same pressure. With a narrow band of wavelengths the theory
+gives a higher pressure at all gaps. It is then scaled so that the two curves touch.
+
+The sources were not at hand. What decides is the comparison with numerical solutions
+(`tests/surfaces/test_contact_pressure.py`).
 
 References
 ----------
 C. Yang and B. N. J. Persson, Contact mechanics: contact area and interfacial separation from small
-contact to full contact, J. Phys.: Condens. Matter 20 (2008) 215214, Eq. 22.
+contact to full contact, J. Phys.: Condens. Matter 20 (2008) 215214.
 A. W. Bush, R. D. Gibson and T. R. Thomas, The elastic contact of a rough surface, Wear 35 (1975)
 87-111.
 """
@@ -34,9 +37,9 @@ from lube.surfaces.synthetic import LineSpecLike, wave_amplitudes
 from lube.types import Array
 
 STIFFNESS = 0.4
-"""The theory's :math:`\\gamma`. With 0.4, as in Persson's first paper, it differs least from
-numerical solutions."""
+"""The theory's :math:`\\gamma`, chosen so that it differs least from numerical solutions."""
 BANDS = 100
+"""Number of bands of wavenumbers in the integral over the spectrum."""
 PRESSURES = np.geomspace(1e-7, 5.0, 600)
 """Pressures over E* times the rms gradient."""
 
@@ -63,13 +66,9 @@ def contact_pressure(spec: LineSpecLike, modulus: float, gap: Array) -> Array:
     StudyError
         As from `lube.surfaces.rare_contact.check_isotropic`.
     """
-    rms, gradient, gaps = _curve(spec)
-    excess = _by_summits(gaps / rms) - np.log(PRESSURES)
-    scaled = min(excess.max(), 0.0)
-    meeting = gaps[np.argmax(excess >= scaled)]  # the largest such gap
-    by_theory = np.interp(-gap, -gaps, np.log(PRESSURES) + scaled)
-    relative = np.where(gap > meeting, _by_summits(gap / rms), by_theory)
-    return modulus * gradient * np.exp(relative)
+    rms, gradient, gaps, by_theory, meeting = _curve(spec)
+    by_summits, by_theory = _by_summits(gap / rms), np.interp(-gap, -gaps, by_theory)
+    return modulus * gradient * np.exp(np.where(gap > meeting, by_summits, by_theory))
 
 
 def _by_summits(gap):
@@ -79,12 +78,19 @@ def _by_summits(gap):
 
 @functools.lru_cache(maxsize=4)
 def _curve(spec):
-    """Rms height, m, rms gradient, and the mean gap by the theory at `PRESSURES`, m."""
+    """Rms height, m, and gradient; gaps, m, with the pressures by the theory; and where it ends, m.
+
+    The pressures are logarithms, over E* times the gradient.
+    """
     check_isotropic(spec)
     wavenumber, variance = _waves(spec)
     gradient = np.sqrt(np.sum(variance * wavenumber**2))
     gaps = _mean_gaps(wavenumber, variance, PRESSURES * gradient)
-    return np.sqrt(variance.sum()), gradient, gaps
+    rms, by_theory = np.sqrt(variance.sum()), np.log(PRESSURES)
+    excess = _by_summits(gaps / rms) - by_theory
+    scaled = min(excess.max(), 0.0)
+    meeting = gaps[np.argmax(excess >= scaled)]  # the largest such gap
+    return rms, gradient, gaps, by_theory + scaled, meeting
 
 
 def _waves(spec):

@@ -32,12 +32,8 @@ import scipy.special
 
 from lube.errors import StudyError
 from lube.kernels.shaped import Surface
-from lube.kernels.tail import (
-    answered_windows,
-    touching_runs,
-    touching_runs_under,
-    touching_windows,
-)
+from lube.kernels.tail import touching_runs, touching_windows
+from lube.kernels.uneven_tail import answered_windows, touching_runs_under
 from lube.surfaces.spectra import autocovariance
 from lube.surfaces.synthetic import ROLLER_NUMBERS, LineSpecLike, draw_gaussian_line
 from lube.types import Array, Pair, Values
@@ -46,10 +42,10 @@ WINDOWS = 800
 """Windows along each pair of lines."""
 RUNS = 400
 """Runs along each pair of lines."""
-FOLLOWED = 4
-"""Of so many runs one is followed on its way through an uneven window."""
+FOLLOWED = 100
+"""Number of these runs that are followed through an uneven window."""
 LOOKS = 64
-"""Looks at each of these runs on its way, in pure rolling."""
+"""Number of moments at which such a run is looked at, in pure rolling."""
 RUN_NUMBERS = 10
 """Number of sums over runs that `rare_contact` returns."""
 NEGLIGIBLE = 1e-9
@@ -212,9 +208,9 @@ class UnevenWindow:
     shapes : tuple of numpy.ndarray
         The `shapes` of `lube.kernels.shaped.Surface`, of both surfaces.
     at_once : numpy.ndarray
-        The `covariances` of `lube.kernels.tail.answered_windows`.
+        The `covariances` of `lube.kernels.uneven_tail.answered_windows`.
     covariances : numpy.ndarray
-        As in `lube.kernels.tail.touching_runs_under`.
+        As in `lube.kernels.uneven_tail.touching_runs_under`.
     shift : int
         The `shift` of `lube.kernels.shaped.Window`.
     """
@@ -257,7 +253,7 @@ def rare_contact_under(
     runs : numpy.ndarray
         Shape (1 + S, P): expected number of runs in a window whose boundary layer breaks, and of
         breakthroughs per time step at each slide-to-roll ratio, as
-        `lube.kernels.tail.touching_runs_under` counts them.
+        `lube.kernels.uneven_tail.touching_runs_under` counts them.
     """
     levels = speed_ratios.shape[1]
     shares, runs = np.empty((2, len(windows))), np.full((1 + levels, len(windows)), np.nan)
@@ -276,8 +272,9 @@ def rare_contact_under(
         shares[:, i] = pair.windows(film[part], touching, own, answered, answers) * expected
         if not levels:
             continue
-        above = part.start + known[:RUNS:FOLLOWED], touching[1][:RUNS:FOLLOWED]
-        around = answered, pair.places[::FOLLOWED], pair.covariances, above, film
+        some = slice(0, RUNS, RUNS // FOLLOWED)
+        above = part.start + known[some], touching[1][some]
+        around = answered, pair.places[some], pair.covariances, above, film
         around += window.covariances, window.shift
         # From one look to the next the surfaces shift against each other by a point at most.
         shift = np.abs(np.diff(speed_ratios[i])[:, 0])

@@ -257,7 +257,7 @@ def test_breakthroughs_are_as_many_as_counted_step_by_step(
 
     A broken run is new unless it goes on from one that is broken or, in an uneven window, that was.
     """
-    monkeypatch.setattr("lube.surfaces.rare_contact.FOLLOWED", 1)  # for small errors
+    monkeypatch.setattr("lube.surfaces.rare_contact.FOLLOWED", 400)  # for small errors
     weak = coarse([ratio], 20_000, 3e4, **dataclasses.asdict(gap))
     spec, layer = weak.line_spec, weak.boundary_layer
     point = few.isel(film_formula=[0], temperature=[1], force=[2])

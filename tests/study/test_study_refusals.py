@@ -182,6 +182,8 @@ def test_surfaces_that_cannot_touch_are_refused(paper_with):
     ]:
         said = refusal(paper_with(("contact_model", ["line", "surface"]), *changes))
         assert "mine.yaml: contact_model: surface: " in said and message in said
+    said = refusal(paper_with(("load_sharing", "iterated"), ("roughness.kurtosis", 4)))
+    assert "load_sharing: got iterated, need none: roughness: got a skewness of 0 and" in said
 
 
 def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_with):
