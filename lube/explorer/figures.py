@@ -216,7 +216,7 @@ def _probabilities(plot, sources, x, around):
     around_it = {"size": 15, "fill_color": None, "line_color": "black"}
     _points(plot, sources[around], x, "falling", **around_it)
     _points(plot, sources[around], x, "deformed", marker="square", **around_it)
-    _points(plot, sources[around], x, "rubbing", marker="diamond", **around_it)
+    _points(plot, sources[around], x, "rubbing", marker="diamond", **around_it | {"size": 26})
     look = {"marker": "inverted_triangle", "fill_color": "white"}
     limits = _points(plot, sources[around], x, "limit", **look)
     for tool in (HoverTool, TapTool):
