@@ -5,10 +5,14 @@ import xarray as xr
 from studies import OIL
 
 from lube.inference.at_records import model_at_records
-from lube.schema import label
+from lube.schema import label, values_with_limits, with_dims
 from lube.statistics.folding import PHASES
 
 THRESHOLDS = np.array([10.0, 100.0, 1000.0])
+CURVE_RATIOS = np.geomspace(0.3, 4.0, 40)
+"""Lambda ratios of the curves of `made_up_surfaces`."""
+SURFACE_WINDOWS = 400
+"""Independent trials in a revolution of these surfaces."""
 
 
 def experiment_of(shares, force, speed, temperature, **values):
@@ -72,3 +76,23 @@ def experiment_at(levels, shares, **values):
 def model_of_records(experiment, film, contact, study):
     """The model at the conditions of each record, as the workflow makes it."""
     return model_at_records(experiment, film, contact, study)
+
+
+def surface_probability(ratios):
+    """Probability of made-up surfaces, which touch more often than the lines of the busy study."""
+    return -np.expm1(-5.0 * np.exp(-(ratios**2)))
+
+
+def made_up_surfaces(ratios, error=0.0):
+    """Surfaces at records with some lambda ratios, with a relative standard error."""
+    curves = np.repeat(surface_probability(CURVE_RATIOS)[:, None], ratios.size, axis=1)
+    sides = np.array([1.0, 1.0 - 2.0 * error, 1.0 + 2.0 * error])
+    values = {
+        "surface_sample_size": np.full(ratios.size, float(SURFACE_WINDOWS)),
+        "curve_lambda_ratio": CURVE_RATIOS,
+        "curve_sample_size": np.full(curves.shape, float(SURFACE_WINDOWS)),
+        **values_with_limits("curve_probability", sides[:, None, None] * curves),
+    }
+    limits = sides[:, None] * surface_probability(ratios)
+    own = values_with_limits("surface_probability", limits, "record")
+    return xr.Dataset(own | with_dims("comparison", values))

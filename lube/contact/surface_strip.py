@@ -79,6 +79,7 @@ def surface_contact(
     gap: Gap = PLAIN,
     threads: int | None = None,
     weaker: Values = 1.0,
+    fewer: int = 1,
 ) -> xr.Dataset:
     """Find how often, and at how many positions, surfaces touch over the length of the rollers.
 
@@ -102,6 +103,8 @@ def surface_contact(
         Threads that share the work, by default one for each core; they do not change the results.
     weaker : float or numpy.ndarray, optional
         How many times weaker than `boundary_layer` the layer is, at all films or at each.
+    fewer : int, optional
+        How many times fewer surfaces are drawn than `SURFACES`, for a faster, less exact result.
 
     Returns
     -------
@@ -131,13 +134,21 @@ def surface_contact(
     values = {name: np.full(thickness.size, np.nan) for name in _VARIABLES}
     if known:
         some = [strips[point] for point in known]
-        for name, of_known in _contacts(spec, some, sharp, length, seed, threads).items():
+        seeds = surface_seeds(seed, SURFACES // fewer)
+        for name, of_known in _contacts(spec, some, sharp, length, seeds, threads).items():
             values[name][known] = of_known
     if gap.is_answered:
         values |= {name: np.full(thickness.size, np.nan) for name in _EXPECTED}
     dims, shape = thickness.dims, thickness.shape
     values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
     return xr.Dataset(values, thickness.coords)
+
+
+def surface_seeds(seed: int, count: int) -> list:
+    """Seeds of some surfaces: for each one that draws it, and one that chooses strips on it."""
+    # The first two children draw the lines of the realisation of this number, the next three are
+    # those of `lube.surfaces.rare_contact`.
+    return [np.random.SeedSequence((seed, number)).spawn(7)[5:] for number in range(count)]
 
 
 def _strip_films(film, thickness, half_width, gap, rms):
@@ -167,7 +178,7 @@ def _drawn_strips(film, thickness, half_width, gap, rms):
     ]
 
 
-def _contacts(spec, strips, sharp, length, seed, threads):
+def _contacts(spec, strips, sharp, length, seeds, threads):
     """Variables of `surface_contact` at some strips, shape (strips,) each."""
     moments = pair_moments(spec)
     known = zip(strips, sharp, strict=True)
@@ -182,7 +193,7 @@ def _contacts(spec, strips, sharp, length, seed, threads):
     at_once = AT_ONCE if is_answered else len(strips)
     groups = [slice(first, first + at_once) for first in range(0, len(strips), at_once)]
     found = [
-        _sampled(spec, surface, strips[some], certain[some], sharp[some], length, seed, threads)
+        _sampled(spec, surface, strips[some], certain[some], sharp[some], length, seeds, threads)
         for some in groups
     ]
     found = {name: np.concatenate([one[name] for one in found]) for name in found[0]}
@@ -194,7 +205,7 @@ def _contacts(spec, strips, sharp, length, seed, threads):
     return dict(zip(_EXPECTED, expected, strict=True)) | found
 
 
-def _sampled(spec, surface, strips, certain, sharp, length, seed, threads=1):
+def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
     """Probabilities and numbers of contacts, with their intervals, shape (strips,) each.
 
     `certain` says of each strip whether contact is certain there.
@@ -212,13 +223,10 @@ def _sampled(spec, surface, strips, certain, sharp, length, seed, threads=1):
     strips = list(zip(films, limits, certain.tolist(), answered, strict=True))
     covariances = tuple(surface.covariances(sum(reach) + 1, max(film.size for film in films)))
 
-    def on_one_surface(number):
-        # The first two children draw the lines of the realisation of this number, the next three
-        # are those of `lube.surfaces.rare_contact`.
-        seeds = np.random.SeedSequence((seed, number)).spawn(7)[5:]
-        return _on_one_surface(seeds, surface, covariances, strips, reach)
+    def on_one_surface(of_one):
+        return _on_one_surface(of_one, surface, covariances, strips, reach)
 
-    found = on_threads(on_one_surface, range(SURFACES), threads, "contact of surfaces")
+    found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
     rows = max(int(length / surface.spacing), 1)
     results = {}

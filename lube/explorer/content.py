@@ -32,7 +32,7 @@ SHOWN = {
 """Variables of each dataset that the page holds, all of them over some of `CHOICES`."""
 TRACES = {"contact_length": np.maximum, "contact_resistance": np.minimum}
 """Variables of a trace, each with the function that thins out its neighbouring steps."""
-NO_RECORDS = {"origin": "", "rows": []}
+NO_RECORDS = {"origin": "", "by_model": False, "rows": []}
 TRACE_PIECES = 1000
 """Largest number of pieces in a drawn trace: about one for each pixel."""
 CLOSE_UP = 3.0
@@ -163,7 +163,10 @@ def _master(master):
 
 
 def _records(comparison):
-    """List the records that have a contact share; values for each film formula are lists."""
+    """List the records that have a contact share.
+
+    Values for each film formula are lists, for each contact model lists of these.
+    """
     names = (
         "record lubricant slide_to_roll_ratio force speed temperature "
         "force_level speed_level temperature_level "
@@ -173,7 +176,8 @@ def _records(comparison):
     counted = comparison.isel(record=np.isfinite(comparison["measured_share"].values))
     columns = {name: _plain(counted[name].transpose("record", ...)) for name in names}
     rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-    return {"origin": comparison["origin"].item(), "rows": rows}
+    by_model = MODEL in comparison.dims
+    return {"origin": comparison["origin"].item(), "by_model": by_model, "rows": rows}
 
 
 def _trace(point, levels):

@@ -96,6 +96,36 @@ def film_at_records(
         shape, also ``film_profile`` over record and film_position, and ``formula_place``. With
         inlet shear heating also its factor over record, and with a meniscus its distance.
     """
+    table = table_at_records(experiment, lubricant, rollers, formulas, **film_model)
+    unused = [name for name in table if name not in FILES["comparison"]]
+    unused += [] if "film_profile" in table else ["formula_place"]
+    if film_model.get("inlet_shear_heating", "none") == "none":
+        unused.append("inlet_shear_heating_factor")
+    table = table.drop_vars(unused)
+    if film_model.get("inlet_meniscus") is not None:
+        table["inlet_meniscus"] = film_model["inlet_meniscus"]
+    return table.transpose("film_formula", "record", ...)
+
+
+def table_at_records(
+    experiment: xr.Dataset,
+    lubricant: xr.Dataset,
+    rollers: RollerPair,
+    formulas: Sequence[str],
+    **film_model: Any,
+) -> xr.Dataset:
+    """Film table at the conditions of each record, and the viscosity of the oil.
+
+    Parameters
+    ----------
+    experiment, lubricant, rollers, formulas, **film_model
+        As in `film_at_records`.
+
+    Returns
+    -------
+    xarray.Dataset
+        All variables of `lube.grid.films.film_at` over record, and ``dynamic_viscosity``.
+    """
     force, speed, temperature, oil, slip = (
         xr.DataArray(experiment[name].values, dims="record")
         for name in ("force", "speed", "temperature", "lubricant", "slide_to_roll_ratio")
@@ -104,14 +134,7 @@ def film_at_records(
     table = film_at(
         properties, rollers, force, speed, formulas, slide_to_roll_ratio=slip, **film_model
     )
-    unused = [name for name in table if name not in FILES["comparison"]]
-    unused += [] if "film_profile" in table else ["formula_place"]
-    if film_model.get("inlet_shear_heating", "none") == "none":
-        unused.append("inlet_shear_heating_factor")
-    table = table.drop_vars(unused).assign(dynamic_viscosity=properties["dynamic_viscosity"])
-    if film_model.get("inlet_meniscus") is not None:
-        table["inlet_meniscus"] = film_model["inlet_meniscus"]
-    return table.transpose("film_formula", "record", ...)
+    return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
 
 
 def _stored(study, film, contact):

@@ -59,7 +59,8 @@ def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
         and taken as the records; it is the fraction of these cases whose interval contains 1.
     """
     logits = alpha_logits(curves, comparison)
-    return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison)
+    model = curves.contact_model
+    return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison, model)
 
 
 def alpha_logits(curves: RecordCurves, comparison: Data) -> xr.DataArray:
@@ -97,8 +98,11 @@ def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) ->
     xarray.Dataset
         ``fitted_layer_strength`` (Pa/m) with ``_lower`` and ``_upper`` over (fitted_lubricant,
         film_formula). Beyond the strengths of the curves it is NaN, a limit 0 or infinity.
-        ``fitted_layer_strength_coverage`` as in `fit_alpha`.
+        ``fitted_layer_strength_coverage`` as in `fit_alpha`. Contact of the surface does not tell
+        the strength, so by its curves all values are NaN, all limits 0 and infinity.
     """
+    if curves.contact_model == "surface":
+        return _undetermined("fitted_layer_strength", contact, comparison)
     tried, logits = strength_logits(curves, contact, comparison)
     study = study_strength(contact)
     return _fits("fitted_layer_strength", tried, study, logits, contact, comparison)
@@ -199,21 +203,34 @@ def _between_nodes(films, factor):
     return np.exp(curve(np.minimum(np.log(factor), last)) + beyond * curve(last, 1))
 
 
-def _fits(name, tried, truth, logits, contact, comparison):
+def _undetermined(name, contact, comparison):
+    """Fits of a factor that the records do not determine."""
+    oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
+    values = [np.full((oils.size, formulas.size), each) for each in (np.nan, 0.0, np.inf)]
+    variables = values_with_limits(name, values) | {f"{name}_coverage": values[0]}
+    variables |= {"fitted_lubricant": oils, "film_formula": formulas}
+    return xr.Dataset(with_dims("gauge", variables))
+
+
+def _fits(name, tried, truth, logits, contact, comparison, contact_model="line"):
     """Fit a factor, with its limits and coverage, for every lubricant and film formula."""
     oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
     fits = np.empty((len(LIMITS) + 1, oils.size, formulas.size))
     for oil, number in np.ndindex(fits.shape[1:]):
         here = {"film_formula": number, "record": comparison["lubricant"].values == oils[oil]}
         model, records = logits.isel(here).values, comparison.isel(here)
-        fits[:-1, oil, number] = fit_records(np.log(tried), model, records)
-        fits[-1, oil, number] = _coverage(np.log(tried), np.log(truth), model, records)
+        fits[:-1, oil, number] = fit_records(np.log(tried), model, records, contact_model)
+        fits[-1, oil, number] = np.nan
+        if contact_model == "line":
+            fits[-1, oil, number] = _coverage(np.log(tried), np.log(truth), model, records)
     variables = values_with_limits(name, fits[:-1]) | {f"{name}_coverage": fits[-1]}
     variables |= {"fitted_lubricant": oils, "film_formula": formulas}
     return xr.Dataset(with_dims("gauge", variables))
 
 
-def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[float, float, float]:
+def fit_records(
+    log_factors: Array, logits: Array, comparison: Data, contact_model: str = "line"
+) -> tuple[float, float, float]:
     """Fit a factor to the records of one lubricant, with one film formula.
 
     Parameters
@@ -224,6 +241,9 @@ def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[fl
         Logits of the model's probability, shape (F, P).
     comparison : xarray.Dataset
         A ``comparison`` dataset of these P records and one film formula, without its dimension.
+    contact_model : str, optional
+        ``line``; or ``surface``, whose probability is not that of the realisations: records have
+        the sample size that theory gives the surface, and are correlated as those of the line.
 
     Returns
     -------
@@ -231,6 +251,8 @@ def fit_records(log_factors: Array, logits: Array, comparison: Data) -> tuple[fl
         From `lube.statistics.curves.fit_factor`.
     """
     logits, comparison, probabilities, size = _usable(logits, comparison)
+    if contact_model == "surface":
+        size = comparison["surface_sample_size"].values
     logits = logits + _pooled_shift(comparison)
     deviations = comparison["record_deviation"].values
     # Only the first realisations were run as records of several revolutions.

@@ -62,12 +62,15 @@ class RecordCurves:
         Strengths tau0 / h_c of boundary layers, Pa/m, rising.
     of_layers : list of list of Curve
         For each of these strengths the curves of all records, less exact than `of_records`.
+    contact_model : str, optional
+        Whether the contact is that of the ``line`` or of the ``surface``.
     """
 
     of_records: list[Curve]
     offsets: Array
     strengths: Array
     of_layers: list[list[Curve]]
+    contact_model: str = "line"
 
     def logits(self, ratios: xr.DataArray) -> xr.DataArray:
         """Logits of the mean probability at films of the records.
@@ -213,12 +216,12 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
             strengths.append(factor * layer.shear_strength / layer.critical_thickness)
             of_layers.append(row)
     of_records, *of_layers = ([row[number] for number in inverse] for row in (curves, *of_layers))
-    offsets = _offsets(comparison, study.gap.has_shape)
+    offsets = curve_offsets(comparison, study.gap.has_shape)
     return RecordCurves(of_records, offsets, np.array(strengths), of_layers)
 
 
-def _offsets(comparison, has_shape):
-    """Compute the `offsets` of `RecordCurves`."""
+def curve_offsets(comparison: xr.Dataset, has_shape: bool) -> Array:
+    """Compute the `offsets` of `RecordCurves`; ``has_shape`` says whether films have one."""
     if not has_shape:
         return np.zeros(comparison["film_thickness"].shape)
     films = np.log(film_at_places(comparison).transpose("film_formula", "record").values)

@@ -117,8 +117,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
         spread=_spread(film, contact, first),
         held=_held(film, contact, first),
-        agreement=_agreement(comparison, first) if comparison else None,
-        gauged=_gauged(results["gauge"]) if "gauge" in results else None,
+        compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=[_trace(point, film, contact, comparison) for point in study.trace_points],
         notes={
             "Records that were refused, and are in no result": _lines(results, "refused"),
@@ -246,9 +245,23 @@ def _largest_excess(films):
     return (films.max("film_formula") / films.min("film_formula") - 1.0).max().item()
 
 
-def _agreement(comparison, first):
+def _compared(comparison, gauge, first):
+    """Agreement between simulation and rig, and the films gauged, for each contact model."""
+    models = comparison.get("contact_model")
+    rows = []
+    for model in ["line"] if models is None else models.values:
+        chosen = first | {"contact_model": model}
+        row = _agreement(comparison, chosen) | {"simulation": "the simulation"}
+        row["gauged"] = _gauged(_at(gauge, chosen)) if gauge else None
+        if models is not None:
+            row["simulation"] += f" of {model}s"
+        rows.append(row)
+    return rows
+
+
+def _agreement(comparison, chosen):
     """Measures of agreement between simulation and rig; NaN if there is no record."""
-    chosen = first | {"threshold": comparison["comparison_threshold"].item()}
+    chosen = chosen | {"threshold": comparison["comparison_threshold"].item()}
     return {name: _at(comparison[name], chosen).item() for name in _AGREEMENT}
 
 
@@ -264,7 +277,7 @@ def _gauged(gauge):
 
 
 def _at(variable, point):
-    """Select a point along those of its coordinates that are dimensions of the variable."""
+    """Select a point along those of its coordinates that are dimensions of the values."""
     return variable.sel({name: level for name, level in point.items() if name in variable.dims})
 
 

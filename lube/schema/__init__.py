@@ -27,6 +27,7 @@ from lube.schema.tables import (
     REGIMES,
     SUMMARIES,
     Variable,
+    model_dependent,
     values_with_limits,
     with_dims,
 )

@@ -216,6 +216,8 @@ _ROWS = (
         "comparison",
         "breakthrough probability against the contact share of each record",
         inputs=("film", "contact", "experiment"),
+        inputs_with={"areal": "compares_surfaces", "surface_response": "compares_answered"},
+        values=_named("contact_model"),
         only_with=("conducts",),
     ),
     Stage(

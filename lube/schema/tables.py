@@ -193,6 +193,11 @@ def values_with_limits(
     return {f"{name}{end}": value for end, value in zip(names, given, strict=True)}
 
 
+def model_dependent(kind: str) -> list[str]:
+    """Names of the variables of a kind of file that may depend on the contact model."""
+    return [name for name, row in FILES[kind].items() if "contact_model" in row.all_dims]
+
+
 def with_dims(kind: str, values: Mapping[str, Any]) -> dict[str, Any]:
     """Give plain arrays the dimensions that they have in a file.
 

@@ -6,11 +6,15 @@ single pair's record in 95 % of cases if the model is correct. All records of a 
 roughness, so their deviations are correlated. The resulting scatter of the figures of agreement is
 estimated from the ensemble: each realisation in turn is left out and compared with the others as
 if it were the pair in the rig.
+
+Measured records are compared with contact of the surfaces too, if the study asks for it. A
+simulated rig runs with lines, so its records are compared with lines alone.
 """
 
 import itertools
 import logging
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
@@ -18,9 +22,18 @@ import scipy.special
 import xarray as xr
 
 from lube.contact.ensemble import windows_in
+from lube.contact.surface_strip import SURFACES
 from lube.inference.at_records import model_at_records
 from lube.inference.study_shares import levels_named, log_lines
-from lube.schema import AT_RECORDS, LIMITS, label, values_with_limits, with_dims
+from lube.inference.surface_records import surfaces_at_records
+from lube.schema import (
+    AT_RECORDS,
+    LIMITS,
+    label,
+    model_dependent,
+    values_with_limits,
+    with_dims,
+)
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size
@@ -37,20 +50,32 @@ FIGURES = ("bias", "rms_difference", "logit_rms_difference", "overlap_share")
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``comparison.nc``; see `lube.stages`."""
     film, contact, experiment = (inputs[kind] for kind in ("film", "contact", "experiment"))
-    return compare(model_at_records(experiment, film, contact, study), experiment, contact)
+    model = model_at_records(experiment, film, contact, study)
+    if not study.compares_surfaces:
+        return compare(model, experiment, contact)
+    surfaces = surfaces_at_records(study, experiment, model, inputs, threads)
+    return compare(model.merge(surfaces), experiment, contact, study.contact_model)
 
 
-def compare(model: xr.Dataset, experiment: xr.Dataset, levels: xr.Dataset) -> xr.Dataset:
+def compare(
+    model: xr.Dataset,
+    experiment: xr.Dataset,
+    levels: xr.Dataset,
+    contact_models: Sequence[str] = ("line",),
+) -> xr.Dataset:
     """Compare simulated probabilities with measured contact shares, for each record and overall.
 
     Parameters
     ----------
     model : xarray.Dataset
-        From `lube.inference.at_records.model_at_records`.
+        From `lube.inference.at_records.model_at_records`; if records are compared with surfaces,
+        with the variables of `lube.inference.surface_records.surfaces_at_records`.
     experiment : xarray.Dataset
         The ``experiment`` dataset that it was made for.
     levels : xarray.Dataset
         Any dataset of the study with its lubricants, forces, speeds and temperatures.
+    contact_models : sequence of str, optional
+        What records are compared with: the ``line``, the ``surface``, or both.
 
     Returns
     -------
@@ -59,55 +84,98 @@ def compare(model: xr.Dataset, experiment: xr.Dataset, levels: xr.Dataset) -> xr
         its 95 % interval, the prediction interval of the contact share of one pair, and whether
         the measured share lies in it; figures of agreement for every film formula and
         threshold, with their range for a correct model; and the simulated and measured means over
-        the records at every force, speed and temperature. The attribute ``missing`` lists operating
-        points without a record, ``remarks`` records of one point that contradict each other.
+        the records at every force, speed and temperature. With surfaces these are also over
+        contact_model; surfaces are compared by the first film formula, without the range for a
+        correct model. The attribute ``missing`` lists operating points without a record,
+        ``remarks`` records of one point that contradict each other.
     """
-    table = _side_by_side(model, experiment)
-    found = _agreement(table, experiment) | _expected(table) | _level_means(table)
+    table = _table(model, experiment)
+    found = _judged(table, experiment, _of_lines(table)) | _expected(table)
     table = table.assign(with_dims("comparison", found)).set_coords([*AT_RECORDS, "origin"])
     notes = {"missing": _missing(table, levels), "remarks": _contradictions(table)}
     for lines in notes.values():
         log_lines(log, lines)
     table = table.assign_attrs({name: "\n".join(lines) for name, lines in notes.items()})
+    if "surface" in contact_models:
+        table = _by_model(table, experiment, contact_models)
     return label(table, "comparison")
 
 
-def _side_by_side(model, experiment):
-    """Values of both sides at the comparison threshold, and the prediction interval."""
+def _table(model, experiment):
+    """Variables of the model, and of the records at the comparison threshold."""
     names = [*AT_RECORDS, "origin", "pairs", "drift", "comparison_threshold", "share_error"]
     table = experiment[names].drop_attrs()
     model = model.assign_coords(record=experiment["record"])
     table = table.merge(model, join="exact", compat="no_conflicts").assign_attrs(model.attrs)
-    probabilities = model["breakthrough_probability"].values
-    windows = windows_in(model, 2.0 * model["contact_half_width"].values)
-    mean, *limits = probability_interval(probabilities, windows)
-    size, noise = effective_sample_size(probabilities, windows), table["share_error"].values
-    pooled, ratio, error = (
-        model[name].values for name in ("pooled_probability", "scatter_ratio", "pooled_error")
-    )
-    lower, upper = prediction_limits(pooled, size, ratio, len(probabilities), noise, error)
     measured = experiment.sel(threshold=experiment["comparison_threshold"].item())
     measured = [measured[f"contact_share{limit}"].values for limit in LIMITS]
-    values = {
-        **values_with_limits("measured_share", measured),
-        **values_with_limits("simulated_probability", (mean, *limits)),
+    return table.assign(
+        with_dims("comparison", values_with_limits("measured_share", measured))
+    ).assign_coords(threshold=experiment["threshold"].values)
+
+
+def _of_lines(table):
+    """Probability with its limits, and prediction interval, from the realisations of lines."""
+    probabilities = table["breakthrough_probability"].values
+    windows = windows_in(table, 2.0 * table["contact_half_width"].values)
+    limits = probability_interval(probabilities, windows)
+    size, noise = effective_sample_size(probabilities, windows), table["share_error"].values
+    pooled, ratio, error = (
+        table[name].values for name in ("pooled_probability", "scatter_ratio", "pooled_error")
+    )
+    return limits, prediction_limits(pooled, size, ratio, len(probabilities), noise, error)
+
+
+def _of_surfaces(table):
+    """As `_of_lines`, of surfaces by the first film formula; NaN for other formulas.
+
+    The scatter of a record between pairs of rollers is to that of one revolution of pure rolling as
+    it is for lines.
+    """
+    shape = table.sizes["film_formula"] - 1, table.sizes["record"]
+    limits = [table[f"surface_probability{limit}"].values for limit in LIMITS]
+    noise = np.hypot(table["share_error"].values, 0.25 * (limits[2] - limits[1]))
+    size, ratio = table["surface_sample_size"].values, table["scatter_ratio"].values[0]
+    predicted = prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
+    others = np.full(shape, np.nan)
+    return tuple([np.vstack([row, others]) for row in rows] for rows in (limits, predicted))
+
+
+def _by_model(lines, experiment, contact_models):
+    """Comparison over contact_model, with lines as given."""
+    names = model_dependent("comparison")
+    used = [f"surface_probability{limit}" for limit in LIMITS]
+    surfaces = with_dims("comparison", _judged(lines, experiment, _of_surfaces(lines)))
+    unknown = {name: np.nan * lines[name] for name in names if name not in surfaces}
+    both = {"line": lines, "surface": lines.assign(surfaces | unknown)}
+    levels = xr.DataArray(list(contact_models), dims="contact_model", name="contact_model")
+    judged = xr.concat([both[name][names] for name in contact_models], levels, join="exact")
+    return lines.drop_vars([*names, *used]).merge(judged)
+
+
+def _judged(table, experiment, sides):
+    """Values of one contact model at the records, figures of agreement and means at levels."""
+    limits, (lower, upper) = sides
+    measured = table["measured_share"].values
+    return {
+        **values_with_limits("simulated_probability", limits),
         "predicted_share_lower": lower,
         "predicted_share_upper": upper,
-        "within_prediction": (measured[0] >= lower) & (measured[0] <= upper),
+        "within_prediction": (measured >= lower) & (measured <= upper),
+        **_agreement((limits[0], lower, upper), experiment),
+        **_level_means(table, limits[0]),
     }
-    return table.assign(with_dims("comparison", values))
 
 
-def _agreement(table, experiment):
+def _agreement(values, experiment):
     """Figures of agreement for each film formula and threshold."""
-    rows, names = [], ("simulated_probability", "predicted_share_lower", "predicted_share_upper")
-    for sides in zip(*(table[name].values for name in names), strict=True):
+    rows = []
+    for sides in zip(*values, strict=True):
         for shares in experiment["contact_share"].transpose("threshold", "record").values:
             known = np.isfinite(shares) & np.isfinite(sides[0])
             rows.append(agreement(*(each[known] for each in (*sides, shares))))
-    shape = table.sizes["film_formula"], -1
-    found = {name: np.reshape([row[name] for row in rows], shape) for name in rows[0]}
-    return found | {"threshold": experiment["threshold"].values}
+    shape = len(values[0]), -1
+    return {name: np.reshape([row[name] for row in rows], shape) for name in rows[0]}
 
 
 def agreement(
@@ -211,10 +279,9 @@ def _ranges(members, windows):
     return [np.quantile(each, [0.025, 0.975]) if each.size else nothing for each in known]
 
 
-def _level_means(table):
+def _level_means(table, simulated):
     """Means of simulated and measured values at every level of force, speed and temperature."""
-    simulated, measured = table["simulated_probability"].values, table["measured_share"].values
-    means = {}
+    measured, means = table["measured_share"].values, {}
     for name in GROUPS:
         assigned = table[f"{name}_level"].values
         levels = np.unique(assigned[np.isfinite(assigned)])

@@ -6,7 +6,8 @@ film thickness is taken from its formula, all records together determine one unk
 the pressure-viscosity coefficient, or the strength of the boundary layer.
 
 A record comes from one pair of rollers. How far its share may lie from the mean follows from the
-scatter between the realisations; the interval includes it, and the error of the mean.
+scatter between the realisations; the interval includes it, and the error of the mean. Records that
+are compared with surfaces are also read as contact of surfaces, by the first film formula.
 """
 
 import numpy as np
@@ -15,6 +16,7 @@ import xarray as xr
 
 from lube.inference.fits import fit_alpha, fit_layer_strength, study_strength
 from lube.inference.record_curves import RecordCurves, gauged_ratios, map_curves, own_curves
+from lube.inference.surface_records import reading_errors, surface_curves
 from lube.schema import AT_RECORDS, label, values_with_limits, with_dims
 from lube.statistics.one_pair import quantile, standard_error
 from lube.study.study import Study
@@ -26,11 +28,40 @@ _KEPT = ("film_thickness", "lambda_ratio", "contact_half_width", "comparison_thr
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``gauge.nc``; see `lube.stages`."""
     contact, comparison = inputs["contact"], inputs["comparison"]
-    if "master" in inputs:
-        curves = map_curves(inputs["master"], comparison)
-    else:
-        curves = own_curves(study, comparison, threads)
-    return gauge_records(curves, contact, comparison)
+
+    def by_line(comparison):
+        if "master" in inputs:
+            return map_curves(inputs["master"], comparison)
+        return own_curves(study, comparison, threads)
+
+    if not study.compares_surfaces:
+        return gauge_records(by_line(comparison), contact, comparison)
+    inferred = []
+    for model in comparison["contact_model"].values:
+        records = comparison.sel(contact_model=model, drop=True)
+        if model == "line":
+            inferred.append(_inferred(by_line(records), contact, records))
+        else:
+            records = _of_surfaces(records)
+            curves = surface_curves(records, study.gap.has_shape)
+            of_first = _inferred(curves, contact, records)
+            inferred.append(of_first.reindex(film_formula=comparison["film_formula"]))
+    by_model = xr.concat(inferred, comparison["contact_model"], join="exact")
+    return _with_records(by_model, contact, comparison)
+
+
+def _of_surfaces(comparison):
+    """Comparison with surfaces, by the first film formula, as the fits read it.
+
+    Its probability has no error from realisations, but that of its curve adds to the noise.
+    """
+    first = comparison.isel(film_formula=[0])
+    probability, noise = first["simulated_probability"], first["share_error"]
+    return first.assign(
+        pooled_probability=probability,
+        pooled_error=xr.zeros_like(probability),
+        share_error=noise.copy(data=np.hypot(noise.values, reading_errors(comparison))),
+    )
 
 
 def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Dataset) -> xr.Dataset:
@@ -49,14 +80,24 @@ def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Data
         The ``gauge`` file of `lube.schema`, from `gauge_film`, `gauge_coverage`, `fit_alpha` and
         `fit_layer_strength`.
     """
+    return _with_records(_inferred(curves, contact, comparison), contact, comparison)
+
+
+def _inferred(curves, contact, comparison):
+    """Infer films, the pressure-viscosity coefficient and the boundary layer."""
     parts = (
-        comparison[[*_KEPT, *AT_RECORDS, "origin", "pairs", "drift"]],
         gauge_film(curves, comparison),
         gauge_coverage(curves, comparison),
         fit_alpha(curves, contact, comparison),
         fit_layer_strength(curves, contact, comparison),
     )
-    gauged = xr.merge(parts, join="exact", combine_attrs="drop")
+    return xr.merge(parts, join="exact", combine_attrs="drop")
+
+
+def _with_records(inferred, contact, comparison):
+    """Add the records' conditions and films to what was inferred from them."""
+    records = comparison[[*_KEPT, *AT_RECORDS, "origin", "pairs", "drift"]]
+    gauged = xr.merge((records, inferred), join="exact", combine_attrs="drop")
     known = np.isfinite(comparison["measured_share"].values)
     oils = comparison["lubricant"].values[known]
     counts = [np.count_nonzero(oils == oil) for oil in gauged["fitted_lubricant"].values]
@@ -115,11 +156,11 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         Over ``record``: ``interval_coverage`` of all intervals, ``closed_coverage`` of those
         with two limits, ``one_sided_coverage`` of the others, and ``closed_share``, the fraction
         of intervals with two limits; NaN where there are no such intervals, or the ensemble has
-        fewer than three realisations.
+        fewer than three realisations, and for surfaces.
     """
     members = comparison["breakthrough_probability"].values[:, 0]
     coverage = np.full((4, members.shape[1]), np.nan)
-    if len(members) > 2:
+    if len(members) > 2 and curves.contact_model == "line":
         films = np.log(comparison["lambda_ratio"].values[0])
         for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
             held, closed = _leave_one_out(curve, film, members[:, record])

@@ -184,7 +184,8 @@ def compare(spec, surfaces, surface, film, count):
     counted = np.array([searched(surfaces, points, films, sharp, rng) for _ in range(count)])
     length = (ROWS + 0.5) * surface.spacing
     strips = [film], np.array([False])
-    found = surface_strip._sampled(spec, surface, *strips, [curvature], length, SEED)
+    seeds = surface_strip.surface_seeds(SEED, surface_strip.SURFACES)
+    found = surface_strip._sampled(spec, surface, *strips, [curvature], length, seeds)
     names = ["geometric_contact_probability", "breakthrough_probability"]
     names += ["contacts", "breakthroughs"]
     for name, values in zip(names, counted.reshape(count, 4).T, strict=True):

@@ -1,7 +1,7 @@
 """Comparisons of given shares with the busy study, whose contact is neither rare nor certain."""
 
 import pytest
-from experiments import experiment_at, experiment_of, model_of_records
+from experiments import experiment_at, experiment_of, made_up_surfaces, model_of_records
 
 from lube.stages.comparison import compare
 
@@ -41,3 +41,15 @@ def members(busy):
 @pytest.fixture(scope="session")
 def mean(members):
     return members.mean(axis=0)
+
+
+@pytest.fixture(scope="session")
+def on_surfaces(busy):
+    """Compare an experiment with made-up surfaces too, whose probability is known."""
+
+    def run(experiment, models=("line", "surface"), error=0.0):
+        model = model_of_records(experiment, busy.film, busy.contact, busy.study)
+        surfaces = made_up_surfaces(model["lambda_ratio"].values[0], error)
+        return compare(model.merge(surfaces), experiment, busy.contact, models)
+
+    return run

@@ -5,7 +5,13 @@ import logging
 import numpy as np
 import pytest
 import scipy.stats
-from experiments import experiment_at, experiment_of, model_of_records
+from experiments import (
+    SURFACE_WINDOWS,
+    experiment_at,
+    experiment_of,
+    model_of_records,
+    surface_probability,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -254,3 +260,59 @@ def test_the_rank_correlation_is_spearmans_and_needs_different_values():
         found = figures(pairs)
         assert np.isnan(found["rank_correlation"])
         assert np.isnan(found["bias"]) == (len(pairs) == 0)
+
+
+# By surfaces
+
+
+def test_lines_are_compared_as_without_surfaces_and_each_model_can_be_alone(
+    on_surfaces, at_grid, busy, mean
+):
+    experiment = experiment_at(busy.study.operating_grid.model_dump(), mean)
+    both, lines = on_surfaces(experiment), at_grid(mean)
+    assert check(both, "comparison") is both
+    for name in lines.variables:
+        found = both[name]
+        if "contact_model" in found.dims:
+            found = found.sel(contact_model="line", drop=True)
+        assert found.identical(lines[name].drop_vars("contact_model", errors="ignore")), name
+    for models in (("surface",), ("surface", "line")):
+        other = on_surfaces(experiment, models)
+        assert other["contact_model"].values.tolist() == list(models)
+        same = both.sel(contact_model=list(models))
+        assert other.drop_attrs().equals(same.drop_attrs())
+
+
+def test_surfaces_that_are_right_agree_and_hold_the_records_of_their_pairs(on_surfaces, busy):
+    """Shares of pairs scatter as binomial shares of the windows in a revolution."""
+    rng, held = np.random.default_rng(3), []
+    ratios = busy.film["lambda_ratio"].isel(film_formula=0).squeeze()
+    exact = ratios.transpose("temperature", "speed", "force").values.ravel()
+    exact = surface_probability(exact)
+    for _ in range(40):
+        shares = rng.binomial(SURFACE_WINDOWS, exact) / SURFACE_WINDOWS
+        experiment = experiment_at(busy.study.operating_grid.model_dump(), shares)
+        found = on_surfaces(experiment).sel(contact_model="surface").isel(film_formula=0)
+        held.append(found["within_prediction"].values)
+        np.testing.assert_allclose(found["simulated_probability"], exact, rtol=1e-12)
+    assert 0.93 < np.mean(held) < 0.99
+    assert abs(found["bias"].sel(threshold=100.0).item()) < 0.01
+
+
+def test_an_error_of_the_surfaces_widens_the_prediction(on_surfaces, busy, mean):
+    experiment = experiment_at(busy.study.operating_grid.model_dump(), mean)
+    widths = []
+    for error in (0.0, 0.05):
+        found = on_surfaces(experiment, error=error).sel(contact_model="surface")
+        width = found["predicted_share_upper"] - found["predicted_share_lower"]
+        widths.append(width.isel(film_formula=0))
+    assert (widths[1] > 1.1 * widths[0]).any() and (widths[1] >= widths[0]).all()
+
+
+def test_other_film_formulas_are_not_compared_with_surfaces(on_surfaces, busy, mean):
+    experiment = experiment_at(busy.study.operating_grid.model_dump(), mean)
+    found = on_surfaces(experiment).sel(contact_model="surface")
+    others = found.isel(film_formula=slice(1, None))
+    assert others["simulated_probability"].isnull().all()
+    assert not others["within_prediction"].any() and not others["compared_records"].any()
+    assert found["bias_expected_lower"].isnull().all()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from experiments import experiment_at, experiment_of
+from experiments import experiment_at, experiment_of, surface_probability
 from made import made
 
 from lube.contact.rough_pair import drawn
@@ -12,7 +12,7 @@ from lube.inference.fits import fit_alpha, fit_layer_strength
 from lube.inference.record_curves import curve_at, map_curves, own_curves
 from lube.schema import LIMITS, check, label
 from lube.stages import contact_statistics, film_table
-from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records
+from lube.stages.gauge import gauge_coverage, gauge_film, gauge_records, make
 from lube.study.oil_properties import lubricant_table
 
 FORMULA = {"film_formula": "paper"}
@@ -286,3 +286,76 @@ def test_two_realisations_give_no_coverage(busy, own):
     few = own.isel(realisation=slice(2))
     master = busy.master.isel(realisation=slice(2))
     assert gauge_coverage(map_curves(master, few), few)["interval_coverage"].isnull().all()
+
+
+# By surfaces
+
+
+def gauge_on_surfaces(busy, comparison):
+    """Gauge records by the stage, of a study that compares them with surfaces."""
+    experiment = busy.study.experiment.model_copy(update={"manifest": "records.csv"})
+    changes = {"experiment": experiment, "contact_model": ("line", "surface")}
+    study = busy.study.model_copy(update=changes)
+    return make(study, {"master": busy.master, "contact": busy.contact, "comparison": comparison})
+
+
+def surface_experiment(busy, thinner=1.0):
+    """Records whose shares are those of the surfaces, under films thinner by a factor."""
+    grid = busy.study.operating_grid.model_dump()
+    ratios = busy.film["lambda_ratio"].isel(film_formula=0).squeeze()
+    ratios = ratios.transpose("temperature", "speed", "force").values.ravel()
+    return ratios, experiment_at(grid, surface_probability(ratios / thinner))
+
+
+def test_a_share_of_surfaces_is_gauged_back_to_its_film(busy, on_surfaces, compared):
+    ratios, experiment = surface_experiment(busy, thinner=1.2)
+    gauged = gauge_on_surfaces(busy, on_surfaces(experiment))
+    assert check(gauged, "gauge") is gauged
+    found = gauged.sel(contact_model="surface")
+    share = experiment["true_contact_share"].values
+    known = (share > 1e-3) & (share < 0.999)
+    assert known.sum() > 5
+    film, lower, upper = (found[f"gauged_lambda_ratio{limit}"].values[known] for limit in LIMITS)
+    np.testing.assert_allclose(film, ratios[known] / 1.2, rtol=2e-3)
+    assert ((lower < film) & (film < upper)).all()
+    alone = gauge_by_map(busy, compared(experiment))
+    lines = gauged.sel(contact_model="line", drop=True)
+    assert lines.drop_attrs().equals(alone.drop_attrs())
+
+
+def test_the_coefficient_is_fitted_by_surfaces_and_the_layer_is_not(busy, on_surfaces):
+    """Eq. 3 as printed has the film in proportion to the coefficient to the power 0.53."""
+    _, experiment = surface_experiment(busy, thinner=1.1)
+    found = gauge_on_surfaces(busy, on_surfaces(experiment)).sel(contact_model="surface")
+    first = found.isel(film_formula=0, fitted_lubricant=0)
+    value, lower, upper = (first[f"alpha_factor{limit}"].item() for limit in LIMITS)
+    by_formula = film_table_with_alpha(busy, value)
+    assert by_formula == pytest.approx(1.0 / 1.1, rel=2e-3)
+    assert lower < value < upper < 1.0
+    assert np.isnan(first["fitted_layer_strength"])
+    assert first["fitted_layer_strength_lower"] == 0.0
+    assert first["fitted_layer_strength_upper"] == np.inf
+    assert found["alpha_factor"].isel(film_formula=1).isnull().all()
+    assert found["interval_coverage"].isnull().all()
+
+
+def film_table_with_alpha(busy, factor):
+    """Film with another pressure-viscosity coefficient, over the study's."""
+    grid = busy.study.operating_grid
+    oil = lubricant_table(busy.study.lubricants, grid.temperature[:1])
+    choices = busy.study.rollers, grid.force[:1], grid.speed[:1], ["paper"]
+    name = "pressure_viscosity_coefficient"
+    films = [film_table(each, *choices) for each in (oil.assign({name: factor * oil[name]}), oil)]
+    return (films[0]["film_thickness"] / films[1]["film_thickness"]).item()
+
+
+def test_the_error_of_the_surfaces_curve_widens_the_films(busy, on_surfaces):
+    _, experiment = surface_experiment(busy)
+    widths = []
+    for error in (0.0, 0.1):
+        found = gauge_on_surfaces(busy, on_surfaces(experiment, error=error))
+        found = found.sel(contact_model="surface")
+        upper, lower = (found[f"gauged_lambda_ratio{side}"].values for side in ("_upper", "_lower"))
+        widths.append(upper - lower)
+    both = np.isfinite(widths[0]) & np.isfinite(widths[1])
+    assert both.any() and (widths[1][both] > 1.2 * widths[0][both]).any()

@@ -159,7 +159,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("roughness_deformation", "computed", MECHANICS | DEFORMED | {"film"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
-        ("contact_model", ["line", "surface"], {"tail", "film"}),
+        ("contact_model", ["line", "surface"], {"tail", "film", "comparison"}),
         ("load_sharing", "iterated", {"film"}),
         ("traces.1.temperature", "60 degC", {"trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"experiment"}),

@@ -188,22 +188,24 @@ function isNear(record, point, names) {
 
 const origin = content.records.origin.replace(/^./, (first) => first.toUpperCase());
 
-function recordText(record, formula) {
+function recordText(record, point) {
     const { measured_share: share, measured_share_lower: lower, measured_share_upper: upper } = record;
-    const predicted = [record.predicted_share_lower[formula], record.predicted_share_upper[formula]].map(percent);
-    return (
-        `${origin} record ${record.record}: in contact ${percent(share)} of the time (${percent(lower)} to ${percent(upper)}); ` +
-        `predicted for one pair of ${levels.contact_model ? "lines" : "rollers"}: ${predicted.join(" to ")}`
+    const { by_model: byModel } = content.records;
+    const predicted = [record.predicted_share_lower, record.predicted_share_upper].map(
+        (limits) => (byModel ? limits[point.contact_model] : limits)[point.film_formula],
     );
+    const isOfLines = levels.contact_model && !(byModel && isSurface(point));
+    const text = `${origin} record ${record.record}: in contact ${percent(share)} of the time (${percent(lower)} to ${percent(upper)})`;
+    if (predicted.includes(null)) return text;
+    return `${text}; predicted for one pair of ${isOfLines ? "lines" : "rollers"}: ${predicted.map(percent).join(" to ")}`;
 }
 
 function showRecords(point, along, source) {
-    const formula = point.film_formula;
     const here = content.records.rows.filter((record) => isNear(record, point, grid));
     const lines = here.map((record) => {
         const line = document.createElement("p");
         line.className = "note";
-        line.textContent = recordText(record, formula);
+        line.textContent = recordText(record, point);
         return line;
     });
     element("records").replaceChildren(...lines);
@@ -214,10 +216,10 @@ function showRecords(point, along, source) {
         content.records.rows
             .filter((record) => isNear(record, point, []))
             .map((record) => ({
-                name: recordText(record, formula),
+                name: recordText(record, point),
                 share: positive(record.measured_share),
                 x: grid.includes(along) && isNear(record, point, others) ? record[along] : NaN,
-                lambda: isNear(record, point, ["force"]) ? record.lambda_ratio[formula] : NaN,
+                lambda: isNear(record, point, ["force"]) ? record.lambda_ratio[point.film_formula] : NaN,
             })),
     );
 }

@@ -1,0 +1,213 @@
+"""Contact of the surfaces at the conditions of each record, and curves of it against the film.
+
+The resistance of a real rig falls where the rollers touch anywhere along their length. So a record
+is compared with contact of the isotropic surfaces that the lines stand for, at the film of the
+record, and its film is read from their probability at thinner and thicker films.
+"""
+
+import numpy as np
+import scipy
+import xarray as xr
+
+from lube.contact.surface_strip import surface_contact
+from lube.contact.windows import study_windows
+from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES
+from lube.inference.at_records import table_at_records
+from lube.inference.record_curves import FINER, RecordCurves, curve_offsets
+from lube.physics.excursions import expected_contacts
+from lube.schema import LIMITS, values_with_limits, with_dims
+from lube.statistics.curves import Curve, falling_curve
+from lube.study.oil_properties import lubricant_table
+from lube.study.study import Study
+from lube.surfaces.spectra import pair_moments
+from lube.types import Array, Datasets
+
+CURVE_FILMS = 8
+"""Number of films of a curve at which contact is sampled."""
+CURVE_CONTACTS = 20.0, 1e-5
+"""Contacts that theory expects in the strip under the thinnest and the thickest of these films."""
+FEWER = 2
+"""Surfaces drawn for the film of a record, for each one drawn for its curve."""
+RESOLUTION = 1e-6
+"""Probabilities closer than this to 0 or to 1 are not read from a curve."""
+_SLIP = "slide_to_roll_ratio"
+
+
+def surfaces_at_records(
+    study: Study,
+    experiment: xr.Dataset,
+    model: xr.Dataset,
+    inputs: Datasets,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Probability of contact of the surfaces at the film of each record, and at other films.
+
+    Parameters
+    ----------
+    study : Study
+        Its surfaces, boundary layer, films and seed.
+    experiment : xarray.Dataset
+        An ``experiment`` dataset.
+    model : xarray.Dataset
+        Films at its records, from `lube.inference.at_records.film_at_records`; the first film
+        formula is used.
+    inputs : dict of str to xarray.Dataset
+        The study's ``film`` and ``areal``, and its ``surface_response`` if the oil answers the
+        surfaces. Where they contain the film of a record, its probability is taken from them.
+    threads : int, optional
+        Threads that share the work; they do not change the results.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``surface_probability`` with ``_lower`` and ``_upper`` over record, and
+        ``surface_sample_size``, the effective sample size of one revolution of pure rolling. As
+        ``curve_probability`` and ``curve_sample_size`` the same over curve_lambda_ratio and record:
+        for the film of the record, made thinner and thicker. The shape of the film, and how the oil
+        deforms the surfaces, stay those of the record.
+    """
+    first = model.isel(film_formula=0)
+    grid, known = _on_grid(study, inputs)
+    rows = {key: row for row, key in enumerate(study_windows(study, grid).keys)}
+    row_of = np.array([rows.get(key, -1) for key in study_windows(study, first).keys], int)
+    ratios = _curve_ratios(study, first)
+    own, curves = np.empty((4, row_of.size)), np.empty((4, ratios.size, row_of.size))
+    here = row_of >= 0
+    own[:, here] = known[:, row_of[here]]
+    others = _off_grid(study, *(each.isel(record=~here) for each in (experiment, first)))
+    own[:, ~here] = _sampled(study, others, threads)
+    parts = [(np.full(here.size, True), first)]
+    if study.gap.is_answered:  # the responses of the film are over other wavelengths
+        parts = [(here, grid.isel(record=row_of[here])), (~here, others)]
+    thickness = xr.DataArray(ratios, dims="curve_film") * first["composite_rms_roughness"].item()
+    for records, films in parts:
+        films = films.assign(film_thickness=thickness * xr.ones_like(films["film_thickness"]))
+        curves[..., records] = _sampled(study, films, threads, FEWER)
+    found = {"surface_sample_size": own[3], "curve_sample_size": curves[3]}
+    found |= values_with_limits("curve_probability", curves[:3]) | {"curve_lambda_ratio": ratios}
+    shares = values_with_limits("surface_probability", own[:3], "record")
+    return xr.Dataset(shares | with_dims("comparison", found))
+
+
+def _on_grid(study, inputs):
+    """Films of the operating points as of records, and numbers as from `_numbers`."""
+    film, areal = (inputs[kind].isel(film_formula=0) for kind in ("film", "areal"))
+    if "surface_response" in inputs:
+        responses = inputs["surface_response"][list(SURFACE_VARIABLES)]
+        film = film.assign(responses.rename(film_position="response_position"))
+    if _SLIP not in film["film_thickness"].dims:
+        areal = areal.isel({_SLIP: 0})
+    points = {"record": film["film_thickness"].dims}
+    film, areal = (each.stack(points, create_index=False) for each in (film, areal))
+    return film, _numbers(study, areal)
+
+
+def _off_grid(study, experiment, first):
+    """Films of records; where the oil answers the surfaces, with its responses."""
+    if not (study.gap.is_answered and first.sizes["record"]):
+        return first
+    _, inverse = study_windows(study, first).distinct()
+    some = np.unique(inverse, return_index=True)[1]
+    choices = study.film_model | {"answered_surfaces": study.line_spec}
+    experiment = experiment.isel(record=some)
+    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+    formulas = study.film_formulas[:1]
+    table = table_at_records(experiment, oils, study.rough_rollers, formulas, **choices)
+    responses = table[[*VARIABLES, *SURFACE_VARIABLES]].isel(record=inverse)
+    return first.drop_dims(["wavelength", "response_position"]).assign(responses)
+
+
+def _sampled(study, films, threads, fewer=1):
+    """Numbers as from `_numbers`, sampled once for all records that have the same."""
+    if not films.sizes["record"]:
+        return np.empty((4, *films["film_thickness"].shape))
+    one_film = films.isel(curve_film=0, missing_dims="ignore")
+    _, inverse = study_windows(study, one_film).distinct()
+    some = films.isel(record=np.unique(inverse, return_index=True)[1])
+    choices = study.boundary_layer, study.seed, study.gap, threads
+    found = surface_contact(study.line_spec, study.rollers.length, some, *choices, fewer=fewer)
+    return _numbers(study, found.transpose(..., "record"))[..., inverse]
+
+
+def _numbers(study, contact):
+    """Probability, its limits, and effective sample size of a revolution, shape (4, ...)."""
+    share, lower, upper = (contact[f"breakthrough_probability{end}"].values for end in LIMITS)
+    perimeter = study.line_spec.points[0] * study.line_spec.spacing
+    deviation = contact["pair_deviation"].values
+    scatters = deviation > 1e-9  # not where contact is certain
+    size = share * (1.0 - share) / np.where(scatters, deviation, 1.0) ** 2
+    windows = perimeter / contact["passage_width"].values
+    return np.stack([share, lower, upper, np.where(scatters, size, windows)])
+
+
+def _curve_ratios(study, first):
+    """Lambda ratios of the curves, from theory for high, flat films."""
+    moments, ratios = pair_moments(study.line_spec), np.geomspace(1.0, 20.0, 400)
+    size = study.rollers.length, 2.0 * first["contact_half_width"].mean().item()
+    contacts = expected_contacts(ratios * first["composite_rms_roughness"].item(), moments, *size)
+    ends = np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)
+    return np.geomspace(*ends, CURVE_FILMS)
+
+
+def surface_curves(comparison: xr.Dataset, has_shape: bool) -> RecordCurves:
+    """Curves of contact of the surfaces at the records, as `surfaces_at_records` found them.
+
+    Parameters
+    ----------
+    comparison : xarray.Dataset
+        A ``comparison`` dataset with contact of surfaces.
+    has_shape : bool
+        Whether films have the computed shape.
+
+    Returns
+    -------
+    RecordCurves
+        Without curves for other boundary layers: hardly any of the many contacts in the strip holds
+        its layer, so their probability does not tell the layer's strength.
+    """
+    films = np.log(comparison["curve_lambda_ratio"].values)
+    columns = (comparison[f"curve_{name}"].values.T for name in ("probability", "sample_size"))
+    of_records = [_finer_curve(films, *of_record) for of_record in zip(*columns, strict=True)]
+    offsets = curve_offsets(comparison, has_shape)
+    return RecordCurves(of_records, offsets, np.zeros(0), [], "surface")
+
+
+def reading_errors(comparison: xr.Dataset) -> Array:
+    """Find the errors of the curves where they have the shares of the records.
+
+    Parameters
+    ----------
+    comparison : xarray.Dataset
+        As in `surface_curves`.
+
+    Returns
+    -------
+    numpy.ndarray, shape (record,)
+        Standard errors of the probability.
+    """
+    curves = (comparison[f"curve_probability{limit}"].values.T for limit in LIMITS)
+    rows = zip(comparison["measured_share"].values, *curves, strict=True)
+    # The thickest film first: its probability is the least.
+    return np.array(
+        [
+            np.interp(share, mean[::-1], 0.25 * (upper - lower)[::-1])
+            for share, mean, lower, upper in rows
+        ]
+    )
+
+
+def _finer_curve(films, share, sample_size):
+    """Curve of a record, interpolated between its films.
+
+    Contacts come nearly independently: -ln(1 - P) falls as the exponential of the squared film.
+    """
+    known = (share > 0.0) & (share < 1.0)
+    if np.count_nonzero(known) < 2:
+        return Curve(*np.zeros((3, 0)))
+    films, sample_size = films[known], sample_size[known]
+    numbers = np.arange(FINER * (films.size - 1) + 1) / FINER
+    finer = np.interp(numbers, np.arange(films.size), films)
+    contacts = np.log(-np.log1p(-share[known]))
+    between = scipy.interpolate.PchipInterpolator(np.exp(2.0 * films), contacts)
+    share = -np.expm1(-np.exp(between(np.exp(2.0 * finer))))
+    return falling_curve(finer, share, np.interp(finer, films, sample_size), RESOLUTION)

@@ -1,0 +1,153 @@
+"""Surfaces at the records: values of the grid, direct sampling, and the inverse of a curve."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from experiments import experiment_of
+from made import made
+
+from lube.contact.surface_strip import surface_contact
+from lube.inference.at_records import film_at_records
+from lube.inference.surface_records import reading_errors, surface_curves, surfaces_at_records
+from lube.schema import LIMITS, values_with_limits
+from lube.stages import film_table
+from lube.study.oil_properties import lubricant_table
+
+CURVE = "curve_probability"
+GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (40.0,)}
+NUMBERS = [f"surface_probability{limit}" for limit in LIMITS]
+
+
+def of_surfaces(busy_study, **changes):
+    """The busy study on few operating points, with surfaces."""
+    grid = busy_study.operating_grid.model_copy(update=GRID)
+    changes |= {"contact_model": ("line", "surface"), "film_formulas": ("paper", "computed")}
+    return busy_study.model_copy(update={"operating_grid": grid} | changes)
+
+
+def at_records(study, inputs, force, temperature=40.0):
+    """Surfaces at records of some forces."""
+    experiment = experiment_of(np.full(len(force), 0.5), np.array(force), 100.0, temperature)
+    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+    choices = study.rough_rollers, study.film_formulas
+    model = film_at_records(experiment, oils, *choices, **study.film_model)
+    return model, surfaces_at_records(study, experiment, model, inputs, 2)
+
+
+@pytest.fixture(scope="module")
+def plain(busy_study, few_surfaces):
+    study = of_surfaces(busy_study)
+    return study, made(study, ("lubricant", "film", "areal"))
+
+
+@pytest.fixture(scope="module")
+def found(plain):
+    """Records on the grid, beside it, and twice the same."""
+    return at_records(*plain, [1600.0, 900.0, 400.0, 900.0])
+
+
+def test_records_on_the_grid_have_the_values_of_areal_nc_and_are_not_sampled_again(plain, found):
+    study, inputs = plain
+    halved = inputs["areal"].copy(deep=True)
+    for limit in LIMITS:
+        halved[f"breakthrough_probability{limit}"] /= 2.0
+    _, other = at_records(study, inputs | {"areal": halved}, [1600.0, 900.0, 400.0, 900.0])
+    stored = inputs["areal"].isel(film_formula=0).squeeze()
+    for name, limit in zip(NUMBERS, LIMITS, strict=True):
+        here = stored[f"breakthrough_probability{limit}"].values
+        np.testing.assert_array_equal(found[1][name].values[[2, 0]], here)
+        np.testing.assert_array_equal(other[name].values[[2, 0]], here / 2.0)
+        np.testing.assert_array_equal(other[name].values[[1, 3]], found[1][name].values[[1, 3]])
+    share, size = (found[1][f"surface_{name}"].values[2] for name in ("probability", "sample_size"))
+    scatter = stored["pair_deviation"].values[0]
+    assert np.sqrt(share * (1.0 - share) / size) == pytest.approx(scatter, rel=1e-9)
+
+
+def test_records_beside_the_grid_are_sampled_at_their_film(plain, found):
+    study, _ = plain
+    oil = lubricant_table(study.lubricants, [40.0])
+    film = film_table(oil, study.rough_rollers, [900.0], [100.0], ["paper"], **study.film_model)
+    choices = study.line_spec, study.rollers.length, film, study.boundary_layer, study.seed
+    direct = surface_contact(*choices)
+    for name, limit in zip(NUMBERS, LIMITS, strict=True):
+        expected = direct[f"breakthrough_probability{limit}"].item()
+        np.testing.assert_array_equal(found[1][name].values[[1, 3]], expected)
+
+
+def test_curves_are_those_of_other_films_at_the_same_width(plain, found):
+    study, _ = plain
+    model, surfaces = found
+    first = model.isel(film_formula=0, record=[0])
+    ratios = surfaces["curve_lambda_ratio"].values[2:5]
+    film = first.assign(film_thickness=("film", ratios * first["composite_rms_roughness"].item()))
+    choices = study.line_spec, study.rollers.length, film, study.boundary_layer, 7
+    direct = surface_contact(*choices)
+    for row, share in enumerate(direct["breakthrough_probability"].values.ravel(), 2):
+        here = surfaces.isel(record=0, curve_lambda_ratio=row)
+        errors = [
+            0.5 * (each[f"{name}_upper"] - each[name]).values.ravel()
+            for each, name in ((here, CURVE), (direct, "breakthrough_probability"))
+        ]
+        error = np.hypot(errors[0], errors[1][row - 2])
+        assert 0.0 < error < 0.3
+        assert abs(here[CURVE].item() - share) < 3.0 * error
+    assert (np.diff(surfaces[CURVE], axis=0) < 1e-3).all()
+    np.testing.assert_array_equal(surfaces[CURVE][:, 1], surfaces[CURVE][:, 3])
+
+
+def test_a_share_of_a_curve_is_read_back_to_its_film(found):
+    model, surfaces = found
+    row = 3
+    shares = surfaces[CURVE].values[row]
+    assert ((shares > 0.01) & (shares < 0.99)).all()
+    records = model.isel(film_formula=[0]).merge(surfaces)
+    records["measured_share"] = "record", shares
+    curves = surface_curves(records, False)
+    films = [curve.film_at(share) for curve, share in zip(curves.of_records, shares, strict=True)]
+    ratio = surfaces["curve_lambda_ratio"].values[row]
+    np.testing.assert_allclose(np.exp(films), ratio, rtol=1e-9)
+    spread = 0.25 * (surfaces[f"{CURVE}_upper"] - surfaces[f"{CURVE}_lower"])
+    np.testing.assert_allclose(reading_errors(records), spread.values[row], rtol=1e-9)
+
+
+def test_between_its_films_a_curve_is_that_of_independent_contacts():
+    """Contacts of a Gaussian surface: their number is a known function of the film."""
+
+    def probability(ratio):
+        return -np.expm1(-200.0 * ratio**1.6 * np.exp(-0.5 * ratio**2))
+
+    ratios = np.geomspace(3.0, 6.0, 8)
+    share = probability(ratios)
+    names = values_with_limits(CURVE, [share] * 3) | {"curve_sample_size": np.full(8, 900.0)}
+    dims = "curve_lambda_ratio", "record"
+    records = xr.Dataset({name: (dims, each[:, None]) for name, each in names.items()})
+    records = records.assign(
+        curve_lambda_ratio=ratios, film_thickness=(("film_formula", "record"), [[1e-6]])
+    )
+    (curve,) = surface_curves(records, False).of_records
+    for ratio in (3.2, 3.7, 4.4, 5.3):
+        assert np.exp(curve.film_at(probability(ratio))) == pytest.approx(ratio, rel=2e-3)
+
+
+def test_an_unknown_film_has_no_contact_and_no_curve_its_neighbours_have(plain):
+    study, inputs = plain
+    experiment = experiment_of([0.5, 0.5], np.array([900.0, 1600.0]), 100.0, 40.0)
+    oils = lubricant_table(study.lubricants, [40.0])
+    choices = study.rough_rollers, study.film_formulas
+    model = film_at_records(experiment, oils, *choices, **study.film_model)
+    model["film_thickness"][:, 0] = np.nan
+    found = surfaces_at_records(study, experiment, model, inputs, 2)
+    assert np.isnan(found["surface_probability"][0]) and found["surface_probability"][1] > 0.0
+
+
+def test_surfaces_that_the_oil_answers_have_the_response_at_their_record(busy_study, few_surfaces):
+    """A record on the grid, and the same record where the grid lacks its force."""
+    choices = {"film_shape": "computed", "roughness_deformation": "computed"}
+    study = of_surfaces(busy_study, **choices)
+    inputs = made(study, ("lubricant", "film", "surface_response", "areal"))
+    kinds = "film", "surface_response", "areal"
+    _, on_grid = at_records(study, inputs, [400.0])
+    _, beside = at_records(study, {kind: inputs[kind].isel(force=[1]) for kind in kinds}, [400.0])
+    for name in ("surface_probability", CURVE):
+        errors = [0.5 * (each[f"{name}_upper"] - each[name]) for each in (on_grid, beside)]
+        assert (abs(on_grid[name] - beside[name]) < 3.0 * np.hypot(*errors) + 1e-3).all()
