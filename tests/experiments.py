@@ -84,15 +84,16 @@ def surface_probability(ratios):
 
 
 def made_up_surfaces(ratios, error=0.0):
-    """Surfaces at records with some lambda ratios, with a relative standard error."""
+    """A ``surface_records`` dataset at some lambda ratios, with a relative standard error."""
     curves = np.repeat(surface_probability(CURVE_RATIOS)[:, None], ratios.size, axis=1)
     sides = np.array([1.0, 1.0 - 2.0 * error, 1.0 + 2.0 * error])
     values = {
-        "surface_sample_size": np.full(ratios.size, float(SURFACE_WINDOWS)),
+        "record": [f"record {number}" for number in range(ratios.size)],
+        "sample_size": np.full(ratios.size, float(SURFACE_WINDOWS)),
         "curve_lambda_ratio": CURVE_RATIOS,
         "curve_sample_size": np.full(curves.shape, float(SURFACE_WINDOWS)),
         **values_with_limits("curve_probability", sides[:, None, None] * curves),
     }
     limits = sides[:, None] * surface_probability(ratios)
-    own = values_with_limits("surface_probability", limits, "record")
-    return xr.Dataset(own | with_dims("comparison", values))
+    values |= values_with_limits("breakthrough_probability", limits)
+    return label(xr.Dataset(with_dims("surface_records", values)), "surface_records")

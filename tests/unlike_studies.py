@@ -89,6 +89,7 @@ STUDIES = {
     ),
     "measured": _small(
         "measured",
+        contact_model=["line", "surface"],
         film_formulas=["paper", "moes"],
         operating_grid=_grid([200, 800, 1600], [100, 200], [50, 65, 80]),
         traces=[_trace(800, 100, 65), _trace(1600, 100, 80)],

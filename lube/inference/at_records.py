@@ -52,9 +52,7 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
         response to the roughness at the record's slip. Apart from these, slip does not change the
         expected probability, only the scatter of a record.
     """
-    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    rollers, formulas = study.rough_rollers, study.film_formulas
-    at_records = film_at_records(experiment, oils, rollers, formulas, **study.film_model)
+    at_records = study_films_at_records(study, experiment)
     windows, inverse = study_windows(study, at_records).distinct()
     stored = _stored(study, film, contact)
     probability = _probability(windows, stored, contact.sizes["realisation"], study)[:, inverse]
@@ -66,6 +64,13 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     model = at_records.assign(with_dims("comparison", values))
     attributes = {name: contact.attrs[name] for name in ("travel", "longest_wavelength")}
     return model.assign_attrs(attributes)
+
+
+def study_films_at_records(study: Study, experiment: xr.Dataset) -> xr.Dataset:
+    """Film thickness at the conditions of each record by a study's films, as `film_at_records`."""
+    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
+    choices = study.rough_rollers, study.film_formulas
+    return film_at_records(experiment, oils, *choices, **study.film_model)
 
 
 def film_at_records(

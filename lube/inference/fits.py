@@ -243,7 +243,7 @@ def fit_records(
         A ``comparison`` dataset of these P records and one film formula, without its dimension.
     contact_model : str, optional
         ``line``; or ``surface``, whose probability is not that of the realisations: records have
-        the sample size that theory gives the surface, and are correlated as those of the line.
+        the ``sample_size`` of the ``surface_records`` file, and are correlated as for the line.
 
     Returns
     -------
@@ -252,7 +252,7 @@ def fit_records(
     """
     logits, comparison, probabilities, size = _usable(logits, comparison)
     if contact_model == "surface":
-        size = comparison["surface_sample_size"].values
+        size = comparison["sample_size"].values
     logits = logits + _pooled_shift(comparison)
     deviations = comparison["record_deviation"].values
     # Only the first realisations were run as records of several revolutions.

@@ -36,7 +36,7 @@ _SLIP = "slide_to_roll_ratio"
 def surfaces_at_records(
     study: Study,
     experiment: xr.Dataset,
-    model: xr.Dataset,
+    first: xr.Dataset,
     inputs: Datasets,
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -48,9 +48,9 @@ def surfaces_at_records(
         Its surfaces, boundary layer, films and seed.
     experiment : xarray.Dataset
         An ``experiment`` dataset.
-    model : xarray.Dataset
-        Films at its records, from `lube.inference.at_records.film_at_records`; the first film
-        formula is used.
+    first : xarray.Dataset
+        Films at its records by the first film formula, from
+        `lube.inference.at_records.film_at_records`, without the dimension film_formula.
     inputs : dict of str to xarray.Dataset
         The study's ``film`` and ``areal``, and its ``surface_response`` if the oil answers the
         surfaces. Where they contain the film of a record, its probability is taken from them.
@@ -60,13 +60,12 @@ def surfaces_at_records(
     Returns
     -------
     xarray.Dataset
-        ``surface_probability`` with ``_lower`` and ``_upper`` over record, and
-        ``surface_sample_size``, the effective sample size of one revolution of pure rolling. As
+        ``breakthrough_probability`` with ``_lower`` and ``_upper`` over record, and
+        ``sample_size``, the effective sample size of one revolution of pure rolling. As
         ``curve_probability`` and ``curve_sample_size`` the same over curve_lambda_ratio and record:
         for the film of the record, made thinner and thicker. The shape of the film, and how the oil
         deforms the surfaces, stay those of the record.
     """
-    first = model.isel(film_formula=0)
     grid, known = _on_grid(study, inputs)
     rows = {key: row for row, key in enumerate(study_windows(study, grid).keys)}
     row_of = np.array([rows.get(key, -1) for key in study_windows(study, first).keys], int)
@@ -83,10 +82,14 @@ def surfaces_at_records(
     for records, films in parts:
         films = films.assign(film_thickness=thickness * xr.ones_like(films["film_thickness"]))
         curves[..., records] = _sampled(study, films, threads, FEWER)
-    found = {"surface_sample_size": own[3], "curve_sample_size": curves[3]}
-    found |= values_with_limits("curve_probability", curves[:3]) | {"curve_lambda_ratio": ratios}
-    shares = values_with_limits("surface_probability", own[:3], "record")
-    return xr.Dataset(shares | with_dims("comparison", found))
+    found = {
+        "curve_lambda_ratio": ratios,
+        **values_with_limits("breakthrough_probability", own[:3]),
+        "sample_size": own[3],
+        **values_with_limits("curve_probability", curves[:3]),
+        "curve_sample_size": curves[3],
+    }
+    return xr.Dataset(with_dims("surface_records", found))
 
 
 def _on_grid(study, inputs):
@@ -149,13 +152,15 @@ def _curve_ratios(study, first):
     return np.geomspace(*ends, CURVE_FILMS)
 
 
-def surface_curves(comparison: xr.Dataset, has_shape: bool) -> RecordCurves:
-    """Curves of contact of the surfaces at the records, as `surfaces_at_records` found them.
+def surface_curves(surfaces: xr.Dataset, comparison: xr.Dataset, has_shape: bool) -> RecordCurves:
+    """Curves of contact of the surfaces at records.
 
     Parameters
     ----------
+    surfaces : xarray.Dataset
+        A ``surface_records`` dataset.
     comparison : xarray.Dataset
-        A ``comparison`` dataset with contact of surfaces.
+        The ``comparison`` dataset of the same records.
     has_shape : bool
         Whether films have the computed shape.
 
@@ -165,28 +170,30 @@ def surface_curves(comparison: xr.Dataset, has_shape: bool) -> RecordCurves:
         Without curves for other boundary layers: hardly any of the many contacts in the strip holds
         its layer, so their probability does not tell the layer's strength.
     """
-    films = np.log(comparison["curve_lambda_ratio"].values)
-    columns = (comparison[f"curve_{name}"].values.T for name in ("probability", "sample_size"))
+    films = np.log(surfaces["curve_lambda_ratio"].values)
+    columns = (surfaces[f"curve_{name}"].values.T for name in ("probability", "sample_size"))
     of_records = [_finer_curve(films, *of_record) for of_record in zip(*columns, strict=True)]
     offsets = curve_offsets(comparison, has_shape)
     return RecordCurves(of_records, offsets, np.zeros(0), [], "surface")
 
 
-def reading_errors(comparison: xr.Dataset) -> Array:
+def reading_errors(surfaces: xr.Dataset, shares: Array) -> Array:
     """Find the errors of the curves where they have the shares of the records.
 
     Parameters
     ----------
-    comparison : xarray.Dataset
+    surfaces : xarray.Dataset
         As in `surface_curves`.
+    shares : numpy.ndarray, shape (record,)
+        Contact shares of the records.
 
     Returns
     -------
     numpy.ndarray, shape (record,)
         Standard errors of the probability.
     """
-    curves = (comparison[f"curve_probability{limit}"].values.T for limit in LIMITS)
-    rows = zip(comparison["measured_share"].values, *curves, strict=True)
+    curves = (surfaces[f"curve_probability{limit}"].values.T for limit in LIMITS)
+    rows = zip(shares, *curves, strict=True)
     # The thickest film first: its probability is the least.
     return np.array(
         [

@@ -213,10 +213,19 @@ _ROWS = (
         only_with=("conducts",),
     ),
     Stage(
+        "surface_records",
+        "contact of the surfaces at the films of the records, some minutes",
+        inputs=("film", "experiment", "areal"),
+        inputs_with={"surface_response": "gap.is_answered"},
+        same_values=("areal",),
+        only_with=("compares_surfaces",),
+        parallel=True,
+    ),
+    Stage(
         "comparison",
         "breakthrough probability against the contact share of each record",
         inputs=("film", "contact", "experiment"),
-        inputs_with={"areal": "compares_surfaces", "surface_response": "compares_answered"},
+        inputs_with={"surface_records": "compares_surfaces"},
         values=_named("contact_model"),
         only_with=("conducts",),
     ),
@@ -224,6 +233,7 @@ _ROWS = (
         "gauge",
         "films, pressure-viscosity coefficient and boundary layer from the records",
         inputs=("master", "contact", "comparison"),
+        inputs_with={"surface_records": "compares_surfaces"},
         only_with=("conducts",),
     ),
     Stage(

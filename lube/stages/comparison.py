@@ -25,7 +25,6 @@ from lube.contact.ensemble import windows_in
 from lube.contact.surface_strip import SURFACES
 from lube.inference.at_records import model_at_records
 from lube.inference.study_shares import levels_named, log_lines
-from lube.inference.surface_records import surfaces_at_records
 from lube.schema import (
     AT_RECORDS,
     LIMITS,
@@ -53,8 +52,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     model = model_at_records(experiment, film, contact, study)
     if not study.compares_surfaces:
         return compare(model, experiment, contact)
-    surfaces = surfaces_at_records(study, experiment, model, inputs, threads)
-    return compare(model.merge(surfaces), experiment, contact, study.contact_model)
+    surfaces = inputs["surface_records"]
+    return compare(model, experiment, contact, study.contact_model, surfaces)
 
 
 def compare(
@@ -62,20 +61,22 @@ def compare(
     experiment: xr.Dataset,
     levels: xr.Dataset,
     contact_models: Sequence[str] = ("line",),
+    surfaces: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Compare simulated probabilities with measured contact shares, for each record and overall.
 
     Parameters
     ----------
     model : xarray.Dataset
-        From `lube.inference.at_records.model_at_records`; if records are compared with surfaces,
-        with the variables of `lube.inference.surface_records.surfaces_at_records`.
+        From `lube.inference.at_records.model_at_records`.
     experiment : xarray.Dataset
         The ``experiment`` dataset that it was made for.
     levels : xarray.Dataset
         Any dataset of the study with its lubricants, forces, speeds and temperatures.
     contact_models : sequence of str, optional
         What records are compared with: the ``line``, the ``surface``, or both.
+    surfaces : xarray.Dataset, optional
+        A ``surface_records`` dataset, if records are compared with surfaces.
 
     Returns
     -------
@@ -97,7 +98,7 @@ def compare(
         log_lines(log, lines)
     table = table.assign_attrs({name: "\n".join(lines) for name, lines in notes.items()})
     if "surface" in contact_models:
-        table = _by_model(table, experiment, contact_models)
+        table = _by_model(table, experiment, contact_models, surfaces)
     return label(table, "comparison")
 
 
@@ -126,31 +127,30 @@ def _of_lines(table):
     return limits, prediction_limits(pooled, size, ratio, len(probabilities), noise, error)
 
 
-def _of_surfaces(table):
+def _of_surfaces(table, surfaces):
     """As `_of_lines`, of surfaces by the first film formula; NaN for other formulas.
 
     The scatter of a record between pairs of rollers is to that of one revolution of pure rolling as
     it is for lines.
     """
     shape = table.sizes["film_formula"] - 1, table.sizes["record"]
-    limits = [table[f"surface_probability{limit}"].values for limit in LIMITS]
+    limits = [surfaces[f"breakthrough_probability{limit}"].values for limit in LIMITS]
     noise = np.hypot(table["share_error"].values, 0.25 * (limits[2] - limits[1]))
-    size, ratio = table["surface_sample_size"].values, table["scatter_ratio"].values[0]
+    size, ratio = surfaces["sample_size"].values, table["scatter_ratio"].values[0]
     predicted = prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
     others = np.full(shape, np.nan)
     return tuple([np.vstack([row, others]) for row in rows] for rows in (limits, predicted))
 
 
-def _by_model(lines, experiment, contact_models):
+def _by_model(lines, experiment, contact_models, surfaces):
     """Comparison over contact_model, with lines as given."""
     names = model_dependent("comparison")
-    used = [f"surface_probability{limit}" for limit in LIMITS]
-    surfaces = with_dims("comparison", _judged(lines, experiment, _of_surfaces(lines)))
-    unknown = {name: np.nan * lines[name] for name in names if name not in surfaces}
-    both = {"line": lines, "surface": lines.assign(surfaces | unknown)}
+    judged = with_dims("comparison", _judged(lines, experiment, _of_surfaces(lines, surfaces)))
+    unknown = {name: np.nan * lines[name] for name in names if name not in judged}
+    both = {"line": lines, "surface": lines.assign(judged | unknown)}
     levels = xr.DataArray(list(contact_models), dims="contact_model", name="contact_model")
-    judged = xr.concat([both[name][names] for name in contact_models], levels, join="exact")
-    return lines.drop_vars([*names, *used]).merge(judged)
+    by_model = xr.concat([both[name][names] for name in contact_models], levels, join="exact")
+    return lines.drop_vars(names).merge(by_model)
 
 
 def _judged(table, experiment, sides):

@@ -42,25 +42,27 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         if model == "line":
             inferred.append(_inferred(by_line(records), contact, records))
         else:
-            records = _of_surfaces(records)
-            curves = surface_curves(records, study.gap.has_shape)
+            records = _of_surfaces(records, inputs["surface_records"])
+            curves = surface_curves(inputs["surface_records"], records, study.gap.has_shape)
             of_first = _inferred(curves, contact, records)
             inferred.append(of_first.reindex(film_formula=comparison["film_formula"]))
     by_model = xr.concat(inferred, comparison["contact_model"], join="exact")
     return _with_records(by_model, contact, comparison)
 
 
-def _of_surfaces(comparison):
+def _of_surfaces(comparison, surfaces):
     """Comparison with surfaces, by the first film formula, as the fits read it.
 
     Its probability has no error from realisations, but that of its curve adds to the noise.
     """
     first = comparison.isel(film_formula=[0])
     probability, noise = first["simulated_probability"], first["share_error"]
+    errors = reading_errors(surfaces, first["measured_share"].values)
     return first.assign(
         pooled_probability=probability,
         pooled_error=xr.zeros_like(probability),
-        share_error=noise.copy(data=np.hypot(noise.values, reading_errors(comparison))),
+        share_error=noise.copy(data=np.hypot(noise.values, errors)),
+        sample_size=surfaces["sample_size"].drop_attrs(),
     )
 
 

@@ -214,11 +214,6 @@ class Study(StrictModel):
         return self.has_surfaces and self.conducts and self.experiment.manifest is not None
 
     @property
-    def compares_answered(self) -> bool:
-        """Whether records are compared with surfaces that the oil answers."""
-        return self.compares_surfaces and self.gap.is_answered
-
-    @property
     def is_sampled(self) -> bool:
         """Whether rare contact can be sampled: lines that are Gaussian, and not flattened."""
         return self.line_spec.is_gaussian and not self.gap.is_flattened

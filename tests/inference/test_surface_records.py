@@ -7,7 +7,7 @@ from experiments import experiment_of
 from made import made
 
 from lube.contact.surface_strip import surface_contact
-from lube.inference.at_records import film_at_records
+from lube.inference.at_records import study_films_at_records
 from lube.inference.surface_records import reading_errors, surface_curves, surfaces_at_records
 from lube.schema import LIMITS, values_with_limits
 from lube.stages import film_table
@@ -15,7 +15,7 @@ from lube.study.oil_properties import lubricant_table
 
 CURVE = "curve_probability"
 GRID = {"force": (400.0, 1600.0), "speed": (100.0,), "temperature": (40.0,)}
-NUMBERS = [f"surface_probability{limit}" for limit in LIMITS]
+NUMBERS = [f"breakthrough_probability{limit}" for limit in LIMITS]
 
 
 def of_surfaces(busy_study, **changes):
@@ -28,10 +28,8 @@ def of_surfaces(busy_study, **changes):
 def at_records(study, inputs, force, temperature=40.0):
     """Surfaces at records of some forces."""
     experiment = experiment_of(np.full(len(force), 0.5), np.array(force), 100.0, temperature)
-    oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
-    choices = study.rough_rollers, study.film_formulas
-    model = film_at_records(experiment, oils, *choices, **study.film_model)
-    return model, surfaces_at_records(study, experiment, model, inputs, 2)
+    first = study_films_at_records(study, experiment).isel(film_formula=0)
+    return first, surfaces_at_records(study, experiment, first, inputs, 2)
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +56,7 @@ def test_records_on_the_grid_have_the_values_of_areal_nc_and_are_not_sampled_aga
         np.testing.assert_array_equal(found[1][name].values[[2, 0]], here)
         np.testing.assert_array_equal(other[name].values[[2, 0]], here / 2.0)
         np.testing.assert_array_equal(other[name].values[[1, 3]], found[1][name].values[[1, 3]])
-    share, size = (found[1][f"surface_{name}"].values[2] for name in ("probability", "sample_size"))
+    share, size = (found[1][name].values[2] for name in ("breakthrough_probability", "sample_size"))
     scatter = stored["pair_deviation"].values[0]
     assert np.sqrt(share * (1.0 - share) / size) == pytest.approx(scatter, rel=1e-9)
 
@@ -76,8 +74,8 @@ def test_records_beside_the_grid_are_sampled_at_their_film(plain, found):
 
 def test_curves_are_those_of_other_films_at_the_same_width(plain, found):
     study, _ = plain
-    model, surfaces = found
-    first = model.isel(film_formula=0, record=[0])
+    first, surfaces = found
+    first = first.isel(record=[0])
     ratios = surfaces["curve_lambda_ratio"].values[2:5]
     film = first.assign(film_thickness=("film", ratios * first["composite_rms_roughness"].item()))
     choices = study.line_spec, study.rollers.length, film, study.boundary_layer, 7
@@ -96,18 +94,16 @@ def test_curves_are_those_of_other_films_at_the_same_width(plain, found):
 
 
 def test_a_share_of_a_curve_is_read_back_to_its_film(found):
-    model, surfaces = found
+    first, surfaces = found
     row = 3
     shares = surfaces[CURVE].values[row]
     assert ((shares > 0.01) & (shares < 0.99)).all()
-    records = model.isel(film_formula=[0]).merge(surfaces)
-    records["measured_share"] = "record", shares
-    curves = surface_curves(records, False)
+    curves = surface_curves(surfaces, first.expand_dims("film_formula"), False)
     films = [curve.film_at(share) for curve, share in zip(curves.of_records, shares, strict=True)]
     ratio = surfaces["curve_lambda_ratio"].values[row]
     np.testing.assert_allclose(np.exp(films), ratio, rtol=1e-9)
     spread = 0.25 * (surfaces[f"{CURVE}_upper"] - surfaces[f"{CURVE}_lower"])
-    np.testing.assert_allclose(reading_errors(records), spread.values[row], rtol=1e-9)
+    np.testing.assert_allclose(reading_errors(surfaces, shares), spread.values[row], rtol=1e-9)
 
 
 def test_between_its_films_a_curve_is_that_of_independent_contacts():
@@ -120,11 +116,10 @@ def test_between_its_films_a_curve_is_that_of_independent_contacts():
     share = probability(ratios)
     names = values_with_limits(CURVE, [share] * 3) | {"curve_sample_size": np.full(8, 900.0)}
     dims = "curve_lambda_ratio", "record"
-    records = xr.Dataset({name: (dims, each[:, None]) for name, each in names.items()})
-    records = records.assign(
-        curve_lambda_ratio=ratios, film_thickness=(("film_formula", "record"), [[1e-6]])
-    )
-    (curve,) = surface_curves(records, False).of_records
+    surfaces = xr.Dataset({name: (dims, each[:, None]) for name, each in names.items()})
+    surfaces = surfaces.assign_coords(curve_lambda_ratio=ratios)
+    records = xr.Dataset({"film_thickness": (("film_formula", "record"), [[1e-6]])})
+    (curve,) = surface_curves(surfaces, records, False).of_records
     for ratio in (3.2, 3.7, 4.4, 5.3):
         assert np.exp(curve.film_at(probability(ratio))) == pytest.approx(ratio, rel=2e-3)
 
@@ -132,12 +127,10 @@ def test_between_its_films_a_curve_is_that_of_independent_contacts():
 def test_an_unknown_film_has_no_contact_and_no_curve_its_neighbours_have(plain):
     study, inputs = plain
     experiment = experiment_of([0.5, 0.5], np.array([900.0, 1600.0]), 100.0, 40.0)
-    oils = lubricant_table(study.lubricants, [40.0])
-    choices = study.rough_rollers, study.film_formulas
-    model = film_at_records(experiment, oils, *choices, **study.film_model)
-    model["film_thickness"][:, 0] = np.nan
-    found = surfaces_at_records(study, experiment, model, inputs, 2)
-    assert np.isnan(found["surface_probability"][0]) and found["surface_probability"][1] > 0.0
+    first = study_films_at_records(study, experiment).isel(film_formula=0)
+    first["film_thickness"][0] = np.nan
+    share = surfaces_at_records(study, experiment, first, inputs, 2)["breakthrough_probability"]
+    assert np.isnan(share[0]) and share[1] > 0.0
 
 
 def test_surfaces_that_the_oil_answers_have_the_response_at_their_record(busy_study, few_surfaces):
@@ -148,6 +141,6 @@ def test_surfaces_that_the_oil_answers_have_the_response_at_their_record(busy_st
     kinds = "film", "surface_response", "areal"
     _, on_grid = at_records(study, inputs, [400.0])
     _, beside = at_records(study, {kind: inputs[kind].isel(force=[1]) for kind in kinds}, [400.0])
-    for name in ("surface_probability", CURVE):
+    for name in ("breakthrough_probability", CURVE):
         errors = [0.5 * (each[f"{name}_upper"] - each[name]) for each in (on_grid, beside)]
         assert (abs(on_grid[name] - beside[name]) < 3.0 * np.hypot(*errors) + 1e-3).all()

@@ -50,6 +50,6 @@ def on_surfaces(busy):
     def run(experiment, models=("line", "surface"), error=0.0):
         model = model_of_records(experiment, busy.film, busy.contact, busy.study)
         surfaces = made_up_surfaces(model["lambda_ratio"].values[0], error)
-        return compare(model.merge(surfaces), experiment, busy.contact, models)
+        return compare(model, experiment, busy.contact, models, surfaces)
 
     return run

@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 import xarray as xr
-from experiments import experiment_at, experiment_of, surface_probability
+from experiments import (
+    experiment_at,
+    experiment_of,
+    made_up_surfaces,
+    surface_probability,
+)
 from made import made
 
 from lube.contact.rough_pair import drawn
@@ -291,12 +296,14 @@ def test_two_realisations_give_no_coverage(busy, own):
 # By surfaces
 
 
-def gauge_on_surfaces(busy, comparison):
+def gauge_on_surfaces(busy, comparison, error=0.0):
     """Gauge records by the stage, of a study that compares them with surfaces."""
     experiment = busy.study.experiment.model_copy(update={"manifest": "records.csv"})
     changes = {"experiment": experiment, "contact_model": ("line", "surface")}
     study = busy.study.model_copy(update=changes)
-    return make(study, {"master": busy.master, "contact": busy.contact, "comparison": comparison})
+    surfaces = made_up_surfaces(comparison["lambda_ratio"].values[0], error)
+    inputs = {"master": busy.master, "contact": busy.contact, "comparison": comparison}
+    return make(study, inputs | {"surface_records": surfaces})
 
 
 def surface_experiment(busy, thinner=1.0):
@@ -353,7 +360,7 @@ def test_the_error_of_the_surfaces_curve_widens_the_films(busy, on_surfaces):
     _, experiment = surface_experiment(busy)
     widths = []
     for error in (0.0, 0.1):
-        found = gauge_on_surfaces(busy, on_surfaces(experiment, error=error))
+        found = gauge_on_surfaces(busy, on_surfaces(experiment, error=error), error)
         found = found.sel(contact_model="surface")
         upper, lower = (found[f"gauged_lambda_ratio{side}"].values for side in ("_upper", "_lower"))
         widths.append(upper - lower)
