@@ -241,7 +241,7 @@ _ROWS = (
         "films gauged from the records, by contact of the surface",
         inputs=("film", "areal", "comparison", "gauge"),
         target="areal_contact",
-        only_with=(*_SURFACE, "gap.is_plain", "conducts"),
+        only_with=(*_SURFACE, "gap.is_plain", "conducts", "compares_lines_only"),
     ),
     Stage(
         "patch",

@@ -214,6 +214,11 @@ class Study(StrictModel):
         return self.has_surfaces and self.conducts and self.experiment.manifest is not None
 
     @property
+    def compares_lines_only(self) -> bool:
+        """Whether records are compared with lines alone."""
+        return not self.compares_surfaces
+
+    @property
     def is_sampled(self) -> bool:
         """Whether rare contact can be sampled: lines that are Gaussian, and not flattened."""
         return self.line_spec.is_gaussian and not self.gap.is_flattened

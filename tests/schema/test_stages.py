@@ -61,6 +61,7 @@ def test_what_the_registry_promises_is_what_the_stages_can_make(name, tmp_path):
     surfaces = study.line_spec, study.rollers.length, 0.0, study.gap
     assert study.has("areal") == (not refuses(check_surfaces, *surfaces))
     on_surface = study.has("areal") and study.has("gauge") and study.gap.is_plain
+    on_surface &= not study.has("surface_records")  # gauge.nc then has films by surfaces
     assert study.has("areal_gauge") == on_surface
     assert study.has("patch") == (not refuses(patch_contact, study.line_spec, None, None))
     assert study.has("surface") == bool(study.topographies)
