@@ -16,6 +16,7 @@ def on_few_surfaces(number=6):
     the size of an error is not judged."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("lube.contact.surface_strip.SURFACES", number)
+        patch.setattr("lube.inference.surface_records.FEWER", 1)
         patch.setattr("lube.grid.film_responses.ANGLES", np.arange(0.0, 91.0, 45.0))
         yield
 

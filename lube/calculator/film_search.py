@@ -12,7 +12,7 @@ from lube.physics.excursions import expected_contacts
 from lube.schema import LIMITS
 from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval, probability_interval
-from lube.statistics.curves import peaked_curve
+from lube.statistics.curves import contact_curve, peaked_curve
 from lube.study.line_spec import check_width
 from lube.surfaces.spectra import pair_moments
 from lube.surfaces.synthetic import draw_realisation
@@ -109,7 +109,7 @@ class FilmSearch:
         look = self._at_surfaces if self._on_surface else self._at_lines
         table, limits = look(half_width, table_at, ends, own)
         ratios = table["film_thickness"].values / self._sigma
-        found = np.array([_crossing(ratios, each, self._share) for each in limits])
+        found = np.array([self._crossing(ratios, each) for each in limits])
         if not found[0] > 0.0:
             peak = np.nanargmax(limits[0])
             raise RangeError(
@@ -160,6 +160,13 @@ class FilmSearch:
         layer, seed = self._rollers.layer, self._seed
         found = surface_contact(spec, length, table, layer, seed, self.gap, weaker=weaker)
         return table, [found[f"breakthrough_probability{end}"].values for end in LIMITS]
+
+    def _crossing(self, ratios, probabilities):
+        """Greatest lambda ratio at which a probability equals the share: 0 if it is always less."""
+        if not self._on_surface:
+            return _crossing(ratios, probabilities, self._share)
+        curve = contact_curve(np.log(ratios), probabilities, np.ones(ratios.size))
+        return np.exp(curve.film_at(self._share))
 
     def _flat(self, ratios, half_width):
         films = {"film_thickness": ("film", ratios * self._sigma), "contact_half_width": half_width}

@@ -39,7 +39,7 @@ from lube.schema import LIMITS, values_with_limits
 from lube.statistics.confidence import jackknife_interval, mean_interval
 from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
-from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.isotropic import isotropic_surface, surface_grid
 from lube.surfaces.spectra import pair_moments
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
@@ -47,7 +47,7 @@ from lube.types import Values
 
 SURFACES = 24
 """Surfaces drawn; the errors follow from the scatter between them."""
-STRIPS = 400
+STRIPS = 500
 """Strips on each surface."""
 MANY = 30.0
 """Expected number of contacts above which contact is certain, and contacts are counted."""
@@ -58,6 +58,10 @@ COUNTED_STRIPS = 5
 AROUND = 100
 """Rows beyond a known point in which its contact is followed; a first contact begins within as many
 before it."""
+FADING = 6.0
+"""How fast points are chosen less often the more they overlap, over the density of heights at the
+film. Without it large contacts are chosen far more often than small ones, in proportion to their
+area."""
 AT_ONCE = 10
 """Operating points at which the oil answers that are sampled together, for which surfaces are drawn
 again: what the oil adds to the covariances takes 5 to 40 MB a point."""
@@ -66,7 +70,7 @@ _NUMBERS = {
     "breakthrough_probability": "breakthroughs",
 }
 _EXPECTED = "expected_contacts", "expected_breakthroughs"
-_SAMPLED = (f"{name}{end}" for pair in _NUMBERS.items() for name in pair for end in LIMITS)
+_SAMPLED = [f"{name}{end}" for pair in _NUMBERS.items() for name in pair for end in LIMITS]
 _VARIABLES = (*_EXPECTED, *_SAMPLED, "passage_width", "pair_deviation")
 
 
@@ -183,26 +187,40 @@ def _contacts(spec, strips, sharp, length, seeds, threads):
     moments = pair_moments(spec)
     known = zip(strips, sharp, strict=True)
     expected = np.array([strip.expected(moments, length, own) for strip, own in known]).T
-    # Size of the smallest contact: a parabola as high as the mean summit above the film.
-    thickest = max(strip.films(strip.width / COLUMNS).min() for strip in strips)
-    smallest = math.sqrt(8.0 / moments[1]) * moments[0] / thickest
-    widest, is_answered = max(strip.width for strip in strips), strips[0].answers is not None
-    multiple = 2**COARSEST if is_answered else 1
-    surface = isotropic_surface(spec, widest, smallest, multiple=multiple)
-    certain = expected[0] > MANY
-    at_once = AT_ONCE if is_answered else len(strips)
-    groups = [slice(first, first + at_once) for first in range(0, len(strips), at_once)]
-    found = [
-        _sampled(spec, surface, strips[some], certain[some], sharp[some], length, seeds, threads)
-        for some in groups
-    ]
-    found = {name: np.concatenate([one[name] for one in found]) for name in found[0]}
+    certain, found = expected[0] > MANY, {name: np.empty(len(strips)) for name in _SAMPLED}
+    for surface, some in _on_alike_grids(spec, strips):
+        own = [strips[point] for point in some]
+        sampled = _sampled(spec, surface, own, certain[some], sharp[some], length, seeds, threads)
+        for name, values in sampled.items():
+            found[name][some] = values
     passages = [strip.passage(moments, length) for strip in strips]
     perimeter = spec.points[0] * spec.spacing
     shares = zip(found["breakthrough_probability"], passages, strict=True)
     found["passage_width"] = [width for width, *_ in passages]
     found["pair_deviation"] = [pair_deviation(share, *one[1:], perimeter) for share, one in shares]
     return dict(zip(_EXPECTED, expected, strict=True)) | found
+
+
+def _on_alike_grids(spec, strips):
+    """Yield surfaces, each with the numbers of some strips, whose contacts it resolves.
+
+    The grid of a strip does not depend on the other strips.
+    """
+    moments = pair_moments(spec)
+    widest, is_answered = max(strip.width for strip in strips), strips[0].answers is not None
+    # Size of the smallest contacts: parabolas as high as the mean summit above the film. It is
+    # rounded down to a power of the root of two, so that strips share surfaces.
+    films = np.array([strip.films(strip.width / COLUMNS).min() for strip in strips])
+    smallest = math.sqrt(8.0 / moments[1]) * moments[0] / films
+    smallest = 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))
+    spacings = np.array([surface_grid(spec, widest, size)[1] for size in smallest])
+    at_once = AT_ONCE if is_answered else len(strips)
+    for spacing in np.unique(spacings):
+        alike = np.flatnonzero(spacings == spacing)
+        multiple = 2**COARSEST if is_answered else 1
+        surface = isotropic_surface(spec, widest, smallest[alike[0]], multiple=multiple)
+        for first in range(0, alike.size, at_once):
+            yield surface, alike[first : first + at_once]
 
 
 def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
@@ -255,21 +273,25 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
             rms, shift = rms * answer.rms, answer.shift
             by_oil = answer.of_waves(both if len(answer.answers) > 1 else [long_waves])
         count = FEWER_STRIPS if is_certain else STRIPS
-        # Known points of strips, and the weight of each strip, as in `lube.surfaces.rare_contact`.
-        log_tails = scipy.special.log_ndtr(-film / rms)
-        likely = np.cumsum(np.exp(log_tails - log_tails.max()))
+        # Known points of strips, and the weight of each strip. The density of a known height is
+        # that of all heights, times exp(-fading overlap): a normal one with another mean.
+        rms = np.broadcast_to(rms, film.shape)
+        fading = FADING * film / rms**2
+        log_tails = scipy.special.log_ndtr(-(1.0 + FADING) * film / rms)
+        log_chances = log_tails + FADING * (1.0 + 0.5 * FADING) * (film / rms) ** 2
+        likely = np.cumsum(np.exp(log_chances - log_chances.max()))
         known = np.searchsorted(likely, chosen[3, :count] * likely[-1])
         heights = np.log(chosen[2, :count]) + log_tails[known]
-        heights = -np.broadcast_to(rms, film.shape)[known] * scipy.special.ndtri_exp(heights)
+        heights = -rms[known] * scipy.special.ndtri_exp(heights) - FADING * film[known]
         touching = known, heights.astype(np.float32)
-        weight = likely[-1] * np.exp(log_tails.max()) / count
+        weight = likely[-1] * np.exp(log_chances.max()) / count
         first_row, size = longest + around, surface.points + 1 - (1 << shift)
         room = size - first_row - around, size - film.size + 1
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
         # Strips begin at nodes.
         places = tuple(-(-place >> shift << shift) for place in (first_row + row, column))
         *each, contacts = touching_strips(
-            fields, tops, covariances, places, touching, film, sharp, around, by_oil
+            fields, tops, covariances, places, touching, film, sharp, fading, around, by_oil
         )
         first.append(weight * np.stack(each))
         if is_certain:

@@ -6,17 +6,16 @@ record, and its film is read from their probability at thinner and thicker films
 """
 
 import numpy as np
-import scipy
 import xarray as xr
 
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import study_windows
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES
 from lube.inference.at_records import table_at_records
-from lube.inference.record_curves import FINER, RecordCurves, curve_offsets
+from lube.inference.record_curves import RecordCurves, curve_offsets
 from lube.physics.excursions import expected_contacts
 from lube.schema import LIMITS, values_with_limits, with_dims
-from lube.statistics.curves import Curve, falling_curve
+from lube.statistics.curves import contact_curve
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import Study
 from lube.surfaces.spectra import pair_moments
@@ -26,10 +25,8 @@ CURVE_FILMS = 8
 """Number of films of a curve at which contact is sampled."""
 CURVE_CONTACTS = 20.0, 1e-5
 """Contacts that theory expects in the strip under the thinnest and the thickest of these films."""
-FEWER = 2
+FEWER = 4
 """Surfaces drawn for the film of a record, for each one drawn for its curve."""
-RESOLUTION = 1e-6
-"""Probabilities closer than this to 0 or to 1 are not read from a curve."""
 _SLIP = "slide_to_roll_ratio"
 
 
@@ -172,7 +169,7 @@ def surface_curves(surfaces: xr.Dataset, comparison: xr.Dataset, has_shape: bool
     """
     films = np.log(surfaces["curve_lambda_ratio"].values)
     columns = (surfaces[f"curve_{name}"].values.T for name in ("probability", "sample_size"))
-    of_records = [_finer_curve(films, *of_record) for of_record in zip(*columns, strict=True)]
+    of_records = [contact_curve(films, *of_record) for of_record in zip(*columns, strict=True)]
     offsets = curve_offsets(comparison, has_shape)
     return RecordCurves(of_records, offsets, np.zeros(0), [], "surface")
 
@@ -201,20 +198,3 @@ def reading_errors(surfaces: xr.Dataset, shares: Array) -> Array:
             for share, mean, lower, upper in rows
         ]
     )
-
-
-def _finer_curve(films, share, sample_size):
-    """Curve of a record, interpolated between its films.
-
-    Contacts come nearly independently: -ln(1 - P) falls as the exponential of the squared film.
-    """
-    known = (share > 0.0) & (share < 1.0)
-    if np.count_nonzero(known) < 2:
-        return Curve(*np.zeros((3, 0)))
-    films, sample_size = films[known], sample_size[known]
-    numbers = np.arange(FINER * (films.size - 1) + 1) / FINER
-    finer = np.interp(numbers, np.arange(films.size), films)
-    contacts = np.log(-np.log1p(-share[known]))
-    between = scipy.interpolate.PchipInterpolator(np.exp(2.0 * films), contacts)
-    share = -np.expm1(-np.exp(between(np.exp(2.0 * finer))))
-    return falling_curve(finer, share, np.interp(finer, films, sample_size), RESOLUTION)

@@ -58,6 +58,7 @@ def touching_strips(
     touching: Pair,
     film: Array,
     sharp: Array,
+    fading: Array,
     around: int,
     answered: Answered,
 ) -> tuple[Array, Array, Array]:
@@ -69,8 +70,9 @@ def touching_strips(
 
     and its curvature with it. The curvature is that of the surface as drawn: the oil hardly changes
     the short waves, which make summits sharp. The boundary layer of a contact breaks if the
-    surface is sharp enough where it is highest above the film. A row of n touching points could
-    have been chosen by any of them, so it counts 1/n.
+    surface is sharp enough where it is highest above the film. A point that overlaps by e is chosen
+    with a probability in proportion to :math:`e^{-f e}`, where f is `fading`. A row could have been
+    chosen by any of its touching points, so it counts :math:`1 / \sum e^{-f e}` over them.
 
     Parameters
     ----------
@@ -94,6 +96,9 @@ def touching_strips(
         Film thickness at each column of the strip, height steps.
     sharp : numpy.ndarray, shape (W,)
         Curvature above which the boundary layer breaks there, in the unit of the curvatures.
+    fading : numpy.ndarray, shape (W,)
+        How fast the probability to be the known point falls with the overlap there, one over height
+        steps.
     around : int
         Number of rows ahead of the known one in which its contact is followed; it is followed back
         through all R rows. A contact that begins as many rows back, or more, is too long for the
@@ -104,13 +109,13 @@ def touching_strips(
     Returns
     -------
     contact, breakthrough : numpy.ndarray
-        Shape (R - `around` + 1,) each, sums of weights. Element 0 is the sum over the known rows,
-        1/n for a row of n touching points. Element k is the sum over the first contacts: those of m
-        points count 1/m if the strip does not touch in the k rows before the contact begins, and
+        Shape (R - `around` + 1,) each, sums of weights. Element 0 is the sum over the known rows.
+        Element k is the sum over the first contacts: they count one over the sum of their points'
+        :math:`e^{-f e}` if the strip does not touch in the k rows before the contact begins, and
         contacts that begin in the same row divide it among them. `breakthrough` counts only
         contacts whose boundary layer breaks.
     contacts : numpy.ndarray
-        Shape (2,), sums of 1/m over all contacts, and over those whose boundary layer breaks.
+        Shape (2,), sums over all contacts, and over those whose boundary layer breaks.
     """
     reach, width = covariances[0].shape[0] - 1, film.size
     rows = reach - around
@@ -138,18 +143,23 @@ def touching_strips(
         variance = one + _along(by_known[0, 0], origin, answered.shift)
         rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
         moved = fields, covariances, places[0][k], places[1][k], origin, rise, oil
-        search = film, sharp, seen, np.int32(2 * k + 1), stack
-        touched, _, broken, _ = _row(moved, search, heights, known_row)
-        contact[0] += 1.0 / max(touched, 1)
-        breakthrough[0] += (broken > 0) / max(touched, 1)
-        search = film, sharp, seen, np.int32(2 * k + 2), stack
-        points, breaks, first = _contact(moved, search, known_row, origin)
-        contacts[0] += 1.0 / points
-        contacts[1] += breaks / points
+        search = film, sharp, fading, seen, np.int32(2 * k + 1), stack
+        _, broken, _ = _row(moved, search, heights, known_row)
+        chosen = 0.0
+        for column in range(width):
+            overlap = heights[column] - film[column]
+            if overlap > 0.0 or column == origin:  # the known point may be rounded to the film
+                chosen += np.exp(-fading[column] * overlap)
+        contact[0] += 1.0 / chosen
+        breakthrough[0] += (broken > 0) / chosen
+        search = film, sharp, fading, seen, np.int32(2 * k + 2), stack
+        chosen, breaks, first = _contact(moved, search, known_row, origin)
+        contacts[0] += 1.0 / chosen
+        contacts[1] += breaks / chosen
         if first <= -around:
             continue  # too long a contact to be a first one
         _least_by_block(places[1][k], film, least)
-        _, others, broken, earliest = _row(moved, search, heights, first)
+        others, broken, earliest = _row(moved, search, heights, first)
         # Several contacts that begin in the same row count as one first contact.
         alone, alone_broken = 1 + others, 1 + broken
         if not breaks or earliest < first:
@@ -159,13 +169,13 @@ def touching_strips(
             if _touches(moved, tops, known, film, least, row):
                 alone = 0
                 if alone_broken > 0:
-                    _, _, broken, _ = _row(moved, search, heights, row)
+                    _, broken, _ = _row(moved, search, heights, row)
                     if broken > 0:
                         alone_broken = 0
             if alone > 0:
-                contact[before] += 1.0 / (points * alone)
+                contact[before] += 1.0 / (chosen * alone)
             if alone_broken > 0:
-                breakthrough[before] += 1.0 / (points * alone_broken)
+                breakthrough[before] += 1.0 / (chosen * alone_broken)
             if alone == 0 and alone_broken == 0:
                 break
     return contact, breakthrough, contacts
@@ -204,13 +214,13 @@ def contacts_per_row(
     origin, unmoved, first = np.int64(0), np.float32(0.0), np.int64(-reach)
     strip_nodes = answered.shapes.shape[0]
     by_known = np.zeros((2, answered.covariances.shape[2], strip_nodes), np.float32)
-    nodes = np.empty(strip_nodes, np.float32)
+    nodes, fading = np.empty(strip_nodes, np.float32), np.zeros(film.size)
     oil = answered, by_known, nodes, np.empty(0, np.float32)
     for k in range(places[0].size):
         moved = fields, covariances, places[0][k], places[1][k], origin, unmoved, oil
-        search = film, sharp, seen, np.int32(k + 1), stack
+        search = film, sharp, fading, seen, np.int32(k + 1), stack
         for row in range(first, around + 1):
-            _, contacts, broken, _ = _row(moved, search, heights, row)
+            contacts, broken, _ = _row(moved, search, heights, row)
             if row > first:  # those of the first row may begin before it
                 counts[0] += contacts
                 counts[1] += broken
@@ -221,23 +231,21 @@ def contacts_per_row(
 def _row(moved, search, heights, row):
     """Follow the contacts of a row that were not followed before.
 
-    Returns the numbers of touching points, of new contacts, and of new contacts whose boundary
-    layer breaks, and the earliest row of the last ones.
+    Returns the numbers of new contacts, and of new contacts whose boundary layer breaks, and the
+    earliest row of the last ones.
     """
-    film, seen, mark = search[0], search[2], search[3]
+    film, seen, mark = search[0], search[3], search[4]
     reach = moved[1][0].shape[0] - 1
-    touched, contacts, broken, earliest = 0, 0, 0, row
+    contacts, broken, earliest = 0, 0, row
     _fill_row(moved, row, heights)
     for column in range(heights.size):
-        if heights[column] > film[column]:
-            touched += 1
-            if seen[reach + row, column] != mark:
-                _, breaks, first = _contact(moved, search, row, column)
-                contacts += 1
-                if breaks:
-                    broken += 1
-                    earliest = min(earliest, first)
-    return touched, contacts, broken, earliest
+        if heights[column] > film[column] and seen[reach + row, column] != mark:
+            _, breaks, first = _contact(moved, search, row, column)
+            contacts += 1
+            if breaks:
+                broken += 1
+                earliest = min(earliest, first)
+    return contacts, broken, earliest
 
 
 @inlined
@@ -363,15 +371,17 @@ def _node(point, shift):
 def _contact(moved, search, row, column):
     """Follow the contact at a touching point.
 
-    Returns the number of its points, whether its boundary layer breaks, and its earliest row.
+    Returns the sum of its points' probabilities to be known, over that of a point without overlap,
+    whether its boundary layer breaks, and its earliest row.
     """
-    film, sharp, seen, mark, stack = search
+    film, sharp, fading, seen, mark, stack = search
     reach = moved[1][0].shape[0] - 1
     ahead = seen.shape[0] - reach - 1
     seen[reach + row, column] = mark
     stack[0, 0], stack[0, 1] = row, column
-    waiting, points, earliest = 1, 1, row
+    waiting, earliest = 1, row
     highest, summit_row, summit_column = _moved(0, moved, row, column) - film[column], row, column
+    chosen = np.exp(-fading[column] * highest)
     while waiting > 0:
         waiting -= 1
         here_row, here_column = stack[waiting, 0], stack[waiting, 1]
@@ -385,8 +395,9 @@ def _contact(moved, search, row, column):
             if overlap > 0.0:
                 seen[reach + next_row, next_column] = mark
                 stack[waiting, 0], stack[waiting, 1] = next_row, next_column
-                waiting, points, earliest = waiting + 1, points + 1, min(earliest, next_row)
+                waiting, earliest = waiting + 1, min(earliest, next_row)
+                chosen += np.exp(-fading[next_column] * overlap)
                 if overlap > highest:
                     highest, summit_row, summit_column = overlap, next_row, next_column
     breaks = _moved(1, moved, summit_row, summit_column) > sharp[summit_column]
-    return points, breaks, earliest
+    return chosen, breaks, earliest

@@ -15,6 +15,10 @@ import scipy.special
 from lube.statistics.one_pair import quantile, standard_error
 from lube.types import Array
 
+FINER = 8
+"""Levels of a curve of contacts for each film at which the probability is known."""
+LEAST = 1e-12
+"""Probabilities of contact closer than this to 0 or to 1 are not read from it."""
 STEPS = 16
 """Steps between two levels of a curve in the search for the limits of a film."""
 
@@ -183,6 +187,41 @@ def peaked_curve(
     thick = falling.films, falling.logits, falling.sample_size
     joined = (np.concatenate([a[:0:-1], b]) for a, b in zip(thin, thick, strict=True))
     return Curve(*joined, peak=rising.films.size - 1)
+
+
+def contact_curve(films: Array, probabilities: Array, sample_size: Array) -> Curve:
+    r"""Fit a falling curve to probabilities of contact of a surface, at few films.
+
+    Contacts in a strip come nearly independently. So their number :math:`M = -\ln(1 - p)` is
+    interpolated between the films: its logarithm is nearly linear in the square of the film.
+
+    Parameters
+    ----------
+    films, probabilities, sample_size
+        As in `falling_curve`. Probabilities of 0, of 1 and unknown ones are left out.
+
+    Returns
+    -------
+    Curve
+        With `FINER` levels for each film; empty if fewer than two films are left.
+
+    Examples
+    --------
+    >>> ratios = np.array([3.0, 3.5, 4.0])
+    >>> curve = contact_curve(np.log(ratios), -np.expm1(-np.exp(5.0 - 0.5 * ratios**2)), np.ones(3))
+    >>> print(f"{np.exp(curve.film_at(-np.expm1(-np.exp(5.0 - 0.5 * 3.2**2)))):.3f}")
+    3.200
+    """
+    known = (probabilities > 0.0) & (probabilities < 1.0)
+    if np.count_nonzero(known) < 2:
+        return Curve(*np.zeros((3, 0)))
+    films, sample_size = films[known], sample_size[known]
+    numbers = np.arange(FINER * (films.size - 1) + 1) / FINER
+    finer = np.interp(numbers, np.arange(films.size), films)
+    contacts = np.log(-np.log1p(-probabilities[known]))
+    between = scipy.interpolate.PchipInterpolator(np.exp(2.0 * films), contacts)
+    shares = -np.expm1(-np.exp(between(np.exp(2.0 * finer))))
+    return falling_curve(finer, shares, np.interp(finer, films, sample_size), LEAST)
 
 
 def film_interval(

@@ -16,7 +16,7 @@ from lube.study.oil_properties import lubricant_table
 from lube.surfaces.isotropic import isotropic_surface
 
 SEED = 2
-SURFACES, FEWER_SURFACES = 150, 80
+SURFACES, FEWER_SURFACES = 180, 80
 ROWS = 40
 
 

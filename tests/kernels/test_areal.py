@@ -54,7 +54,7 @@ def added(answered, row, column, origin):
     return heights, [interpolated(each, *lags)[0] for each in answered.covariances]
 
 
-def naive(fields, covariances, row, column, origin, height, film, sharp, answered):
+def naive(fields, covariances, row, column, origin, height, film, sharp, fading, answered):
     """First touching row and contacts of one strip, with all contacts labelled at once."""
     rows = np.arange(-REACH, AROUND + 1)
     columns = np.arange(WIDTH)
@@ -74,13 +74,15 @@ def naive(fields, covariances, row, column, origin, height, film, sharp, answere
         summit = np.argmax(np.where(labels == number, heights - film, -np.inf))
         breaks[number] = curvatures.ravel()[summit] > sharp[summit % WIDTH]
     mine = labels[REACH, origin]
-    size, begin = np.sum(labels == mine), np.min(np.nonzero(labels == mine)[0])
+    chosen = np.exp(-fading * (heights - film))
+    size, begin = np.sum(chosen[labels == mine]), np.min(np.nonzero(labels == mine)[0])
     results = [np.zeros(REACH - AROUND + 1), np.zeros(REACH - AROUND + 1)]
     numbers = np.array([1.0, breaks[mine]]) / size
-    here = labels[REACH][labels[REACH] > 0]
+    touches = labels[REACH] > 0
+    here = labels[REACH][touches]
     for which, result in enumerate(results):
         counted = [number for number in breaks if number and (which == 0 or breaks[number])]
-        result[0] = bool(set(here) & set(counted)) / here.size
+        result[0] = bool(set(here) & set(counted)) / np.sum(chosen[REACH][touches])
         if mine not in counted or begin <= REACH - AROUND:
             continue
         together = len(set(labels[begin]) & set(counted))
@@ -95,7 +97,7 @@ def naive(fields, covariances, row, column, origin, height, film, sharp, answere
 @pytest.mark.parametrize("shape", [0.0, 0.8])
 @pytest.mark.parametrize("least", [1.0, 1.6, 2.4])
 def test_strips_are_weighed_as_by_a_naive_implementation(least, shape, is_answered):
-    film, sharp = least + shape * ACROSS**2, 0.9 + shape * ACROSS
+    film, sharp, fading = least + shape * ACROSS**2, 0.9 + shape * ACROSS, 2.0 + ACROSS
     rng = np.random.default_rng(5)
     fields = smooth_surface(rng, 200)
     covariances = bump(2.0, REACH + 1, WIDTH), 0.5 * bump(1.5, REACH + 1, WIDTH)
@@ -109,10 +111,10 @@ def test_strips_are_weighed_as_by_a_naive_implementation(least, shape, is_answer
     touching = known, (film[known] + rng.exponential(0.3, count)).astype(np.float32)
     expected = [0.0, 0.0, 0.0]
     for each in zip(*places, *touching, strict=True):
-        parts = naive(fields, covariances, *each, film, sharp, answered)
+        parts = naive(fields, covariances, *each, film, sharp, fading, answered)
         expected = [total + part for total, part in zip(expected, parts, strict=True)]
     tops = np.maximum.reduceat(fields[0], np.arange(0, 200, BLOCK), axis=1)
-    strips = places, touching, film, sharp, AROUND
+    strips = places, touching, film, sharp, fading, AROUND
     found = touching_strips(fields, tops, covariances, *strips, answered)
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)
