@@ -45,9 +45,9 @@ from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 from lube.types import Values
 
-SURFACES = 24
+SURFACES = 16
 """Surfaces drawn; the errors follow from the scatter between them."""
-STRIPS = 500
+STRIPS = 750
 """Strips on each surface."""
 MANY = 30.0
 """Expected number of contacts above which contact is certain, and contacts are counted."""

@@ -25,7 +25,7 @@ CURVE_FILMS = 8
 """Number of films of a curve at which contact is sampled."""
 CURVE_CONTACTS = 20.0, 1e-5
 """Contacts that theory expects in the strip under the thinnest and the thickest of these films."""
-FEWER = 4
+FEWER = 3
 """Surfaces drawn for the film of a record, for each one drawn for its curve."""
 _SLIP = "slide_to_roll_ratio"
 
