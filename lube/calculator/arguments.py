@@ -1,13 +1,14 @@
 """Check the arguments of the calculator: numbers with units, choices and counts."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, TypedDict, get_args
 
 import numpy as np
 import xarray as xr
 
 from lube.errors import LubeError, StudyError, located, right_one, shown
-from lube.grid.gap import Gap
+from lube.grid.gap import PLAIN, Gap
 from lube.study.field_types import bounded
 from lube.study.rig_settings import RIG_REALISATIONS
 from lube.study.study import CONTACT_MODELS, Study
@@ -153,20 +154,45 @@ def single(values: xr.DataArray) -> float:
     return values.item()
 
 
-def gap_of(film_shape: str, roughness_deformation: str) -> Gap:
-    """Choose how film and roughness make up the gap, by the values of a study's keys.
+@dataclass(frozen=True)
+class Choices:
+    """What film and contact are made of, apart from the film formula.
 
-    Raises
-    ------
-    StudyError
-        If a study has no such choice.
+    Attributes
+    ----------
+    gap : Gap
+        How film and roughness make up the gap.
+    models : tuple of str
+        Contact models.
+    load_sharing : str
+        ``none``, or ``iterated``: the asperities carry a share of the load.
     """
-    given = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
-    for name, value in given.items():
-        options = get_args(Study.model_fields[name].annotation)
-        if value not in options:
-            raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
-    return Gap(**given)
+
+    gap: Gap = PLAIN
+    models: tuple[str, ...] = ("line",)
+    load_sharing: str = "none"
+
+    @classmethod
+    def of(
+        cls,
+        film_shape: str,
+        roughness_deformation: str,
+        load_sharing: str,
+        contact_model: str | Sequence[str],
+    ) -> "Choices":
+        """Choose by the values of a study's keys.
+
+        Raises
+        ------
+        StudyError
+            If a study has no such choice.
+        """
+        gap = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
+        for name, value in (gap | {"load_sharing": load_sharing}).items():
+            options = get_args(Study.model_fields[name].annotation)
+            if value not in options:
+                raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
+        return cls(Gap(**gap), tuple(contact_models(contact_model)), load_sharing)
 
 
 def contact_models(names: str | Sequence[str]) -> list[str]:

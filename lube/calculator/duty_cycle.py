@@ -14,16 +14,15 @@ from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
+    Choices,
     amount,
     check_realisations,
-    contact_models,
-    gap_of,
     one_formula,
 )
 from lube.calculator.operating_points import (
     FILM_VARIABLES,
     ensemble,
-    film_choices,
+    film_model,
     film_of_oil,
     joined,
     of_surface,
@@ -63,6 +62,7 @@ def duty(
     film_formula: str = FORMULA,
     film_shape: str = "flat",
     roughness_deformation: str = "none",
+    load_sharing: str = "none",
     contact_model: str | Sequence[str] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
@@ -86,7 +86,7 @@ def duty(
         Material, roughness and, for points without radii, the radii.
     oil : Oil
         The oil.
-    film_formula, film_shape, roughness_deformation, contact_model, realisations, seed
+    film_formula, film_shape, roughness_deformation, load_sharing, contact_model, realisations, seed
         As in `lube.contact_probability`.
 
     Returns
@@ -122,18 +122,19 @@ def duty(
     share = columns.get("share", xr.ones_like(columns["force"]))
     if not share.sum() > 0.0:
         raise DataError("points: share: got 0 at all points, need a share above 0 for at least one")
-    gap, models = gap_of(film_shape, roughness_deformation), contact_models(contact_model)
+    choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
+    gap = choices.gap
     check_realisations(realisations, seed)
     slip = _slip(columns)
-    table = _film(columns, rollers, oil, film_formula, film_choices(rollers, gap, slip, models))
+    table = _film(columns, rollers, oil, film_formula, film_model(rollers, choices, slip))
     share, parts, whole = share / share.sum(), table[FILM_VARIABLES], {}
-    if "line" in models:
+    if "line" in choices.models:
         contact = ensemble(table, rollers, realisations, seed, gap=gap)
         on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
         width = 2.0 * table["contact_half_width"].max().item()
         whole = _whole(contact, on_pairs, share, rollers.lines.independent_windows(width))
         parts = joined(table, contact, on_pairs)
-    if "surface" in models:
+    if "surface" in choices.models:
         parts = parts.assign(of_surface(table, rollers, seed, gap))
         for end in LIMITS:
             of_points = parts[f"surface_breakthrough_probability{end}"]

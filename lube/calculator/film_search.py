@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from lube.calculator.arguments import bare_number, check_realisations, one_model
+from lube.calculator.arguments import bare_number, check_realisations
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError
@@ -48,15 +48,13 @@ class FilmSearch:
         Share of time with contact, between 0 and 1.
     realisations, seed : int
         As in `lube.contact_probability`.
-    gap : Gap
-        How film and roughness make up the gap.
-    contact_model : str
-        ``line`` or ``surface``.
+    choices : Choices
+        What film and contact are made of, with a single contact model.
     """
 
-    def __init__(self, rollers, share, realisations, seed, gap, contact_model):
-        self._share, self.gap = bare_number("share", share, above=0.0, below=1.0), gap
-        self._on_surface = one_model(contact_model) == "surface"
+    def __init__(self, rollers, share, realisations, seed, choices):
+        self._share, self.gap = bare_number("share", share, above=0.0, below=1.0), choices.gap
+        self._on_surface = "surface" in choices.models
         self._realisations = check_realisations(realisations, seed)
         self._rollers, self._seed = rollers, seed
         self._sigma = rollers.pair.composite_rms_roughness
@@ -67,13 +65,13 @@ class FilmSearch:
         Parameters
         ----------
         table : callable
-            Film table at some levels, of flat films, and with a gap as second argument of others.
+            Film table at some levels, with a gap as second argument.
         levels : numpy.ndarray
             Levels of the condition that are tried.
         tried : str
             These levels in words.
         """
-        whole = table(levels)
+        whole = table(levels, PLAIN)
         for name, size in whole["film_thickness"].sizes.items():
             if size != levels.size:
                 raise StudyError(f"{name}: got {size} values, need one")

@@ -12,11 +12,10 @@ from lube.calculator.arguments import (
     REALISATIONS,
     SEED,
     Amount,
+    Choices,
     bare_number,
     check_realisations,
     conditions,
-    contact_models,
-    gap_of,
     one_formula,
     single,
 )
@@ -108,9 +107,8 @@ def film_in_si(
     speed: Amount,
     temperature: Amount,
     film_formula: str | Sequence[str],
-    gap: Gap = PLAIN,
+    choices: Choices | None = None,
     slip: float = 0.0,
-    contact_model: str | Sequence[str] = "line",
 ) -> xr.Dataset:
     """All variables of the film table in SI units, and the oil's viscosity.
 
@@ -120,21 +118,26 @@ def film_in_si(
     formulas = np.ravel(film_formula).tolist()
     if not formulas or not isinstance(formulas[0], str):
         raise StudyError(f"film_formula: got {shown(film_formula)}, need a name, or a list of them")
-    choices = film_choices(rollers, gap, slip, contact_models(contact_model))
-    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, **choices)
+    model = film_model(rollers, choices or Choices(), slip)
+    table = film_of_oil(oil, rollers.pair, force, speed, temperature, formulas, **model)
     dims = ("film_formula", "temperature", "speed", "force")
     table = table.assign_coords(force=force, speed=speed)
     table = table.transpose(*dims, ..., missing_dims="ignore")
     return table if np.ndim(film_formula) else table.isel(film_formula=0)
 
 
-def film_choices(rollers, gap, slip, models) -> dict[str, Any]:
-    """Arguments of `film_of_oil` for a gap, a slide-to-roll ratio and some contact models."""
+def film_model(rollers: Rollers, choices: Choices, slip: float) -> dict[str, Any]:
+    """Arguments of `film_of_oil` for some choices and a slide-to-roll ratio."""
     answered = {"line": "answered_lines", "surface": "answered_surfaces"}
-    lines = {answered[model]: rollers.lines for model in models if gap.is_answered}
-    surfaces = rollers.lines if "surface" in models else None
-    choices = {"with_shape": gap.has_shape, "slide_to_roll_ratio": slip}
-    return choices | lines | {"rough_surfaces": surfaces}
+    used = choices.models if choices.gap.is_answered else ()
+    has_surfaces = "surface" in choices.models or choices.load_sharing != "none"
+    return {
+        "with_shape": choices.gap.has_shape,
+        "slide_to_roll_ratio": slip,
+        "rough_surfaces": rollers.lines if has_surfaces else None,
+        "load_sharing": choices.load_sharing,
+        **{answered[model]: rollers.lines for model in used},
+    }
 
 
 def film_of_oil(oil, pair, force, speed, temperature, formulas, **choices) -> xr.Dataset:
@@ -176,6 +179,7 @@ def contact_probability(
     film_formula: str | Sequence[str] = FORMULA,
     film_shape: str = "flat",
     roughness_deformation: str = "none",
+    load_sharing: str = "none",
     slide_to_roll_ratio: float = 0.0,
     contact_model: str | Sequence[str] = "line",
     realisations: int = REALISATIONS,
@@ -204,6 +208,9 @@ def contact_probability(
         ``"none"``; ``"computed"``: the oil deforms each wave of the roughness by Reynolds'
         equation, which takes some seconds for each operating point; or ``"venner-1997"``: it
         flattens long waves of lines by a formula.
+    load_sharing : str, optional
+        ``"none"``, the oil carries the whole load; or ``"iterated"``, the asperities of the
+        rollers' surfaces carry a share of it, and the film is that of the rest.
     slide_to_roll_ratio : float, optional
         Difference of the surface speeds over their mean. It changes the computing time and the
         scatter, and with ``roughness_deformation="computed"`` also the expected probability.
@@ -254,18 +261,19 @@ def contact_probability(
     True
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
-    gap = gap_of(film_shape, roughness_deformation)
-    models = contact_models(contact_model)
+    choices = Choices.of(film_shape, roughness_deformation, load_sharing, contact_model)
+    gap = choices.gap
     check_realisations(realisations, seed)
     point = force, speed, temperature, film_formula
-    table = film_in_si(rollers, oil, *point, gap, slip, models)
+    table = film_in_si(rollers, oil, *point, choices, slip)
     found = table[FILM_VARIABLES]
-    if "line" in models:
+    if "line" in choices.models:
         contact = ensemble(table, rollers, realisations, seed, slip, gap)
         on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
         found = joined(table, contact, on_pairs)
-    if "surface" in models:
+    if "surface" in choices.models:
         found = found.assign(of_surface(table, rollers, seed, gap))
+    if "surface_load_share" in table:
         found["surface_load_share"] = table["surface_load_share"]
     return with_remarks(found, table, rollers)
 

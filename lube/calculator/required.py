@@ -2,8 +2,10 @@
 
 Each answer lies where the breakthrough probability equals the given share of time, and its limits
 lie where the limits of the probability do. So the 95 % interval is that of the mean over pairs of
-rollers.
+rollers. The oil carries the whole load: films that keep contact rare leave little to asperities.
 """
+
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -13,9 +15,10 @@ from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
+    Choices,
     amount,
-    gap_of,
     one_formula,
+    one_model,
     rotation_speed,
     single,
 )
@@ -23,7 +26,6 @@ from lube.calculator.film_search import FilmSearch
 from lube.calculator.operating_points import film_in_si
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.grid.film_profiles import shaped_films
-from lube.grid.gap import PLAIN
 from lube.schema import values_with_limits
 
 FACTORS = np.geomspace(1e-3, 1e3, 601)
@@ -74,7 +76,9 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    search = FilmSearch(rollers, share, realisations, seed, PLAIN, contact_model)
+    search = FilmSearch(
+        rollers, share, realisations, seed, Choices(models=(one_model(contact_model),))
+    )
     force = single(amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
     return _labelled(search.films(half_width))
@@ -120,13 +124,14 @@ def required_viscosity(
     rotation = single(rotation_speed(speed, rollers.pair.first.radius))
     one = one_formula(film_formula)
 
-    def table(factors, gap=PLAIN):
+    def table(factors, gap):
         # The film depends on the product of viscosity and speed, so the speed is varied for both.
         speeds = rotation * factors, "rpm"
-        return film_in_si(rollers, oil, force, speeds, temperature, one, gap, 0.0, contact_model)
+        model = replace(choices, gap=gap)
+        return film_in_si(rollers, oil, force, speeds, temperature, one, model)
 
-    gap = gap_of(film_shape, roughness_deformation)
-    search = FilmSearch(rollers, share, realisations, seed, gap, contact_model)
+    choices = _choices(film_shape, roughness_deformation, contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors = search.along(table, FACTORS, tried)
     properties = oil.at(amount("temperature", temperature, "degC"))
@@ -172,13 +177,12 @@ def required_speed(
     """
     one = one_formula(film_formula)
 
-    def table(speeds, gap=PLAIN):
-        return film_in_si(
-            rollers, oil, force, (speeds, "m/s"), temperature, one, gap, 0.0, contact_model
-        )
+    def table(speeds, gap):
+        model = replace(choices, gap=gap)
+        return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, model)
 
-    gap = gap_of(film_shape, roughness_deformation)
-    search = FilmSearch(rollers, share, realisations, seed, gap, contact_model)
+    choices = _choices(film_shape, roughness_deformation, contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
@@ -221,13 +225,12 @@ def required_temperature(
     """
     one = one_formula(film_formula)
 
-    def table(temperatures, gap=PLAIN):
-        return film_in_si(
-            rollers, oil, force, speed, (temperatures, "degC"), one, gap, 0.0, contact_model
-        )
+    def table(temperatures, gap):
+        model = replace(choices, gap=gap)
+        return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, model)
 
-    gap = gap_of(film_shape, roughness_deformation)
-    search = FilmSearch(rollers, share, realisations, seed, gap, contact_model)
+    choices = _choices(film_shape, roughness_deformation, contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
@@ -273,11 +276,11 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    gap = gap_of(film_shape, roughness_deformation)
-    search = FilmSearch(rollers, share, realisations, seed, gap, contact_model)
+    choices = _choices(film_shape, roughness_deformation, contact_model)
+    search = FilmSearch(rollers, share, realisations, seed, choices)
     one = one_formula(film_formula)
     point = force, speed, temperature, one
-    film = film_in_si(rollers, oil, *point, search.gap, 0.0, contact_model)
+    film = film_in_si(rollers, oil, *point, choices)
     own = single(film["lambda_ratio"])
 
     def table_at(ratios):
@@ -293,6 +296,11 @@ def required_roughness(
     sigma = rollers.pair.composite_rms_roughness * own / ratios
     found = {"roughness_factor": own / ratios, "composite_rms_roughness": sigma}
     return _labelled(found | {"lambda_ratio": ratios})
+
+
+def _choices(film_shape, roughness_deformation, contact_model):
+    """Choices with one contact model; the oil carries the whole load."""
+    return Choices.of(film_shape, roughness_deformation, "none", one_model(contact_model))
 
 
 def _labelled(found):

@@ -8,7 +8,8 @@ import xarray as xr
 
 import lube
 from lube import LubeError
-from lube.stages import areal, tail
+from lube.calculator.arguments import FORMULA
+from lube.stages import areal, film_table, tail
 from lube.stages.film_profile import film_profile_table
 from lube.study.oil_properties import lubricant_table
 
@@ -92,6 +93,21 @@ def test_surface_and_line_are_answered_together(rollers, oil):
     name = "breakthrough_probability"
     assert found[f"tail_{name}_upper"] < found[f"surface_{name}_lower"]
     assert {"tail_" + name, name + "_mean"} <= set(found)
+
+
+def test_asperities_that_carry_a_share_of_the_load_leave_a_thicker_film(rollers, oil, busy):
+    hot = POINT | {"temperature": "80 degC"}
+    whole = lube.contact_probability(rollers, oil, **hot, realisations=2)
+    found = lube.contact_probability(rollers, oil, **hot, realisations=2, load_sharing="iterated")
+    properties = lubricant_table(busy.study.lubricants, [80.0])
+    levels = [400.0], [100.0], [FORMULA]
+    sharing = {"rough_surfaces": rollers.lines, "load_sharing": "iterated"}
+    film = film_table(properties, rollers.pair, *levels, **sharing).squeeze()
+    assert found["film_thickness"] == pytest.approx(1e6 * film["film_thickness"].item())
+    assert found["surface_load_share"] == pytest.approx(film["surface_load_share"].item())
+    assert 1.001 * whole["film_thickness"] < found["film_thickness"]
+    name = "tail_breakthrough_probability"
+    assert found[name] < whole[name]
 
 
 def test_the_most_complete_model_is_asked_for_by_name(rollers, oil):
@@ -225,6 +241,7 @@ def test_the_trace_of_an_insulator_has_no_resistance(oil):
         ({"realisations": 10**9}, "realisations: got 1000000000, need at most 1000000"),
         ({"realisations": 0}, "realisations: got 0, need a whole number, at least 1"),
         ({"seed": 1.5}, "seed: got 1.5, need a whole number, at least 0"),
+        ({"load_sharing": "all"}, "load_sharing: got 'all', need one of none, iterated"),
         ({"contact_model": "strip"}, "contact_model: got 'strip', need one of line, surface"),
         (
             {"contact_model": "surface", "roughness_deformation": "venner-1997"},
