@@ -2,15 +2,21 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy import ndimage
 
 from lube.contact.strip_film import StripFilm, pair_deviation
+from lube.contact.surface_strip import SURFACES as SAMPLED
+from lube.contact.surface_strip import surface_contact
+from lube.statistics.curves import contact_curve, film_interval
 from lube.surfaces.isotropic import isotropic_surface
 from lube.surfaces.spectra import pair_moments
 
 WIDTH, LENGTH = 3e-4, 5e-4
 SURFACES, PAIRS = 8, 10
 """Surfaces drawn, and pairs of rollers from each: their circumference is the side."""
+GAUGED = (2.6, 3.0, 3.4, 3.8)
+"""Lambda ratios that are read from the pairs' shares."""
 
 
 @pytest.fixture(scope="module")
@@ -92,3 +98,25 @@ def test_few_pairs_ever_touch_under_thick_films(spec, surface, rollers):
         width, *_ = film.passage(pair_moments(spec), LENGTH)
         expected = -np.expm1(np.log1p(-found.mean()) * side / width)
         assert np.mean(found > 0.0) == pytest.approx(expected, abs=0.08)
+
+
+def test_films_read_from_single_pairs_have_intervals_that_hold_the_true_film(
+    spec, surface, rollers, study
+):
+    """Each pair of whole rollers is the record of a rig, a revolution long."""
+    moments, side = pair_moments(spec), surface.points * surface.spacing
+    rms, ratios = np.sqrt(moments[0]), np.geomspace(2.0, 5.0, 12)
+    films = {"film_thickness": ("film", ratios * rms), "contact_half_width": 0.5 * WIDTH}
+    films = xr.Dataset(films | {"reduced_modulus": study.rollers.reduced_modulus})
+    found = surface_contact(spec, LENGTH, films, study.boundary_layer, 3)
+    share, scatter = found["geometric_contact_probability"].values, []
+    flat = {ratio: StripFilm.flat(ratio * rms, 0.5 * WIDTH) for ratio in (*ratios, *GAUGED)}
+    for ratio, one in zip(ratios, share, strict=True):
+        scatter.append(pair_deviation(one, *flat[ratio].passage(moments, LENGTH)[1:], side))
+    sizes = share * (1.0 - share) / np.square(scatter)
+    curve, held = contact_curve(np.log(ratios), share, sizes), []
+    for ratio in GAUGED:
+        for one in shares(rollers, flat[ratio].films(surface.spacing)):
+            _, lower, upper = film_interval(curve, one, 1.0, SAMPLED)
+            held.append(lower <= np.log(ratio) <= upper)
+    assert 0.92 < np.mean(held) < 0.99
