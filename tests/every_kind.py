@@ -39,10 +39,11 @@ def datasets_of_every_kind(study):
         "realisations": 2,
     }
     own = study.model_copy(update=own)
-    # Measured times, what a package makes that need not be installed, and what takes long.
+    # Measured times, what a package makes that need not be installed, what takes long, and what
+    # needs measured records.
     others = [kind for kind, stage in STAGES.items() if stage.target == "benchmark"]
     others += ["patch", "passage", "film_plane", "heating_plane"]
-    others += ["surface_response", "variants"]
+    others += ["surface_response", "variants", "surface_records"]
     with on_few_surfaces():
         quick = made(own, [kind for kind in STAGES if kind not in others])
     return {
