@@ -105,10 +105,10 @@ def test_films_read_from_single_pairs_have_intervals_that_hold_the_true_film(
 ):
     """Each pair of whole rollers is the record of a rig, a revolution long."""
     moments, side = pair_moments(spec), surface.points * surface.spacing
-    rms, ratios = np.sqrt(moments[0]), np.geomspace(2.0, 5.0, 12)
+    rms, ratios = np.sqrt(moments[0]), np.geomspace(2.0, 5.0, 9)
     films = {"film_thickness": ("film", ratios * rms), "contact_half_width": 0.5 * WIDTH}
     films = xr.Dataset(films | {"reduced_modulus": study.rollers.reduced_modulus})
-    found = surface_contact(spec, LENGTH, films, study.boundary_layer, 3)
+    found = surface_contact(spec, LENGTH, films, study.boundary_layer, 3, fewer=2)
     share, scatter = found["geometric_contact_probability"].values, []
     flat = {ratio: StripFilm.flat(ratio * rms, 0.5 * WIDTH) for ratio in (*ratios, *GAUGED)}
     for ratio, one in zip(ratios, share, strict=True):
@@ -117,6 +117,6 @@ def test_films_read_from_single_pairs_have_intervals_that_hold_the_true_film(
     curve, held = contact_curve(np.log(ratios), share, sizes), []
     for ratio in GAUGED:
         for one in shares(rollers, flat[ratio].films(surface.spacing)):
-            _, lower, upper = film_interval(curve, one, 1.0, SAMPLED)
+            _, lower, upper = film_interval(curve, one, 1.0, SAMPLED // 2)
             held.append(lower <= np.log(ratio) <= upper)
     assert 0.92 < np.mean(held) < 0.99

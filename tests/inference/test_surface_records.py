@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from experiments import experiment_of
-from made import made
+from made import made, on_few_surfaces
 
 from lube.contact.surface_strip import surface_contact
 from lube.inference.at_records import study_films_at_records
@@ -133,14 +133,15 @@ def test_an_unknown_film_has_no_contact_and_no_curve_its_neighbours_have(plain):
     assert np.isnan(share[0]) and share[1] > 0.0
 
 
-def test_surfaces_that_the_oil_answers_have_the_response_at_their_record(busy_study, few_surfaces):
+def test_surfaces_that_the_oil_answers_have_the_response_at_their_record(busy_study):
     """A record on the grid, and the same record where the grid lacks its force."""
     choices = {"film_shape": "computed", "roughness_deformation": "computed"}
     study = of_surfaces(busy_study, **choices)
-    inputs = made(study, ("lubricant", "film", "surface_response", "areal"))
     kinds = "film", "surface_response", "areal"
-    _, on_grid = at_records(study, inputs, [400.0])
-    _, beside = at_records(study, {kind: inputs[kind].isel(force=[1]) for kind in kinds}, [400.0])
+    with on_few_surfaces(4):
+        inputs = made(study, ("lubricant", *kinds))
+        without = {kind: inputs[kind].isel(force=[1]) for kind in kinds}
+        (_, on_grid), (_, beside) = (at_records(study, each, [400.0]) for each in (inputs, without))
     for name in ("breakthrough_probability", CURVE):
         errors = [0.5 * (each[f"{name}_upper"] - each[name]) for each in (on_grid, beside)]
         assert (abs(on_grid[name] - beside[name]) < 3.0 * np.hypot(*errors) + 1e-3).all()

@@ -289,7 +289,7 @@ def test_surfaces_that_are_right_agree_and_hold_the_records_of_their_pairs(on_su
     ratios = busy.film["lambda_ratio"].isel(film_formula=0).squeeze()
     exact = ratios.transpose("temperature", "speed", "force").values.ravel()
     exact = surface_probability(exact)
-    for _ in range(40):
+    for _ in range(20):
         shares = rng.binomial(SURFACE_WINDOWS, exact) / SURFACE_WINDOWS
         experiment = experiment_at(busy.study.operating_grid.model_dump(), shares)
         found = on_surfaces(experiment).sel(contact_model="surface").isel(film_formula=0)
