@@ -204,7 +204,7 @@ def _contacts(spec, strips, sharp, length, seeds, threads):
 def _on_alike_grids(spec, strips):
     """Yield surfaces, each with the numbers of some strips, whose contacts it resolves.
 
-    The grid of a strip does not depend on the other strips.
+    The grid of a strip depends on its own film, and on the width of the widest strip.
     """
     moments = pair_moments(spec)
     widest, is_answered = max(strip.width for strip in strips), strips[0].answers is not None

@@ -217,7 +217,6 @@ _ROWS = (
         "contact of the surfaces at the films of the records, some minutes",
         inputs=("film", "experiment", "areal"),
         inputs_with={"surface_response": "gap.is_answered"},
-        same_values=("areal",),
         only_with=("compares_surfaces",),
         parallel=True,
     ),
