@@ -14,7 +14,7 @@ from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval, probability_interval
 from lube.statistics.curves import contact_curve, peaked_curve
 from lube.study.line_spec import check_width
-from lube.surfaces.spectra import pair_moments
+from lube.surfaces.spectra import surface_moments
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 
@@ -149,7 +149,7 @@ class FilmSearch:
         spec, length = self._rollers.lines, self._rollers.pair.length
         # Theory for high, flat films says where to look.
         ratios = LAMBDA_RATIOS[LAMBDA_RATIOS > 1.0]
-        films, moments = ratios * self._sigma, pair_moments(spec)
+        films, moments = ratios * self._sigma, surface_moments(spec)
         contacts = expected_contacts(films, moments, length, 2.0 * half_width)
         found = _crossing(ratios, -np.expm1(-contacts), self._share)
         ratios = np.unique(np.clip(max(found, ratios[0]) * AROUND, *ends))

@@ -12,16 +12,16 @@ the covariance
 From it follows how far the share of time of one pair of rollers lies from the mean P over all.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
 
 from lube.contact.surface_answers import AnsweredStrip
-from lube.physics.excursions import expected_contacts, sharp_surface_summit_share
-from lube.surfaces.isotropic import Surface
+from lube.physics.excursions import SurfaceMoments, expected_contacts, sharp_surface_summit_share
 from lube.surfaces.rare_contact import likely_part
+from lube.surfaces.rough_surface import Surface
 from lube.types import Array, Pair
 
 COLUMNS = 200
@@ -76,19 +76,19 @@ class StripFilm:
         """
         return sharp - 0.5 * self.thickness(self._columns(spacing), 2)
 
-    def answered(self, surface: Surface, rows: int) -> AnsweredStrip | None:
-        """Find what the oil adds to a surface, for covariances over some rows."""
+    def answered(self, surface: Surface, rows: Pair) -> AnsweredStrip | None:
+        """Find what the oil adds to a surface, for covariances over rows before and after."""
         if self.answers is None or not any(one.shapes.size for one in self.answers):
             return None
-        columns = self._columns(surface.spacing)
-        return AnsweredStrip(self.answers, surface, columns[0], columns.size, rows)
+        columns = self._columns(surface.spacing[1])
+        return AnsweredStrip(self.answers, surface, columns[0], columns.size, *rows)
 
-    def expected(self, moments: Sequence[float], length: float, sharp: float) -> Pair:
+    def expected(self, moments: SurfaceMoments, length: float, sharp: float) -> Pair:
         """Find the numbers of contacts, and of breakthroughs, that theory expects in the strip.
 
         Parameters
         ----------
-        moments : sequence of float
+        moments : SurfaceMoments
             As in `lube.physics.excursions.expected_contacts`.
         length : float
             Length of the strip along the rollers, m.
@@ -105,7 +105,7 @@ class StripFilm:
         broken = contacts * sharp_surface_summit_share(films, moments, sharp)
         return contacts.sum(), broken.sum()
 
-    def passage(self, moments: Sequence[float], length: float) -> tuple[float, Array, Array]:
+    def passage(self, moments: SurfaceMoments, length: float) -> tuple[float, Array, Array]:
         """Find how far a contact moves while it is in the strip.
 
         Parameters

@@ -10,7 +10,7 @@ import xarray as xr
 from lube.contact.waves import FINER, NODES, PRECISION, STEEPNESS, expanded, of_both_rollers
 from lube.ehl.response import at_wavelengths
 from lube.kernels.areal import Answered
-from lube.surfaces.isotropic import Surface, on_coarser_grid
+from lube.surfaces.rough_surface import Surface, on_coarser_grid
 from lube.types import Array, Pair
 
 FINER_ANGLES = 3
@@ -160,8 +160,8 @@ class AnsweredStrip:
         Position of the strip's first column, m from the line of centres.
     columns : int
         Columns of the strip.
-    rows : int
-        Rows over which heights are correlated.
+    before, after : int
+        Rows before and after that of a height with which its covariances are wanted.
 
     Attributes
     ----------
@@ -169,43 +169,52 @@ class AnsweredStrip:
         Rms height in the gap at each column, over that of the surfaces as drawn.
     shift : int
         Binary logarithm of the number of points of the surface from node to node.
-    points : int
-        Nodes along a side of the surface.
+    points : tuple of int
+        Nodes along the sides of the surface.
     """
 
-    def __init__(self, answers: Pair, surface: Surface, begin: float, columns: int, rows: int):
+    def __init__(
+        self, answers: Pair, surface: Surface, begin: float, columns: int, before: int, after: int
+    ):
         are_alike = answers[0] is answers[1]
         self.answers = answers[:1] if are_alike else answers
-        self.shift = self.answers[0].shift(surface.spacing)
-        self.points = surface.points >> self.shift
+        self.shift = self.answers[0].shift(surface.spacing[1])
+        self.points = tuple(number >> self.shift for number in surface.points)
         nodes = np.arange(((columns - 1) >> self.shift) + 2) << self.shift
-        self._shapes = [one.at(begin + nodes * surface.spacing) for one in self.answers]
+        self._shapes = [one.at(begin + nodes * surface.spacing[1]) for one in self.answers]
         # The waves that the oil changes: their places among those of the coarser grid.
-        half, unit = (self.points - 1) // 2, 2.0 * np.pi / surface.side
-        down, along = np.meshgrid(np.arange(-half, half + 1), np.arange(half + 1), indexing="ij")
-        most = max(one.wavenumber[-1] for one in self.answers) / unit
-        length = np.hypot(down, along)
-        changed = (length > 0.5) & (length < most)
+        halves = [(number - 1) // 2 for number in self.points]
+        down = np.arange(-halves[0], halves[0] + 1)
+        down, along = np.meshgrid(down, np.arange(halves[1] + 1), indexing="ij")
+        units = [2.0 * np.pi / side for side in surface.sides]
+        length = np.hypot(units[0] * down, units[1] * along)
+        changed = length < max(one.wavenumber[-1] for one in self.answers)
+        changed[halves[0], 0] = False  # the mean height is no wave
         self._down, self._along = down[changed], along[changed]
-        filters = [one.filters_at(unit * self._along, unit * self._down) for one in self.answers]
+        waves = units[1] * self._along, units[0] * self._down
+        filters = [one.filters_at(*waves) for one in self.answers]
         self._filters = [each.astype(np.complex64) for each in filters]
         variances = surface.variances[self._down, self._along] / surface.rms**2
         curvatures = surface.curvatures[self._down, self._along]
-        first_part = surface.first_part[np.rint(length[changed]).astype(np.int64)]
+        first_part = surface.first_part[self._down, self._along]
         parts = [1.0] if are_alike else [first_part, 1.0 - first_part]
+        self._first_lag = -before >> self.shift
+        lags = np.arange(self._first_lag, (after >> self.shift) + 2) << self.shift
         added = [
-            self._added(part * variances, curvatures, *each, nodes, rows, unit * surface.spacing)
+            self._added(part * variances, curvatures, *each, nodes, lags, surface)
             for part, *each in zip(parts, filters, self._shapes, strict=True)
         ]
         self._covariances = np.ascontiguousarray(sum(added))
-        own = np.diagonal(self._covariances[0, :, 0])
+        own = np.diagonal(self._covariances[0, :, -self._first_lag])
         self.rms = np.sqrt(1.0 + np.interp(np.arange(columns), nodes, own))
 
-    def _added(self, variances, curvatures, filters, shapes, nodes, rows, unit):
+    def _added(self, variances, curvatures, filters, shapes, nodes, lags, surface):
         """Sum what the oil adds to the covariances of one surface, with heights and curvatures."""
-        lags = np.arange((rows >> self.shift) + 2) << self.shift
+        down_unit, unit = (2.0 * np.pi / number for number in surface.points)
         downs = np.arange(self._down.max() + 1)
-        of_waves = np.empty((downs.size, 2, nodes.size, nodes.size), np.float32)
+        # Waves up and down the rollers together: their sums, and differences unless they are alike.
+        parts = [np.cos] if surface.is_mirrored else [np.cos, np.sin]
+        of_waves = np.empty((len(parts), downs.size, 2, nodes.size, nodes.size), np.float32)
         for down in downs:
             here = np.flatnonzero(np.abs(self._down) == down)
             drawn = np.exp(1j * unit * nodes[:, None] * self._along[here])
@@ -213,10 +222,14 @@ class AnsweredStrip:
             # Waves along rolling stand for their mirror images too.
             power = variances[here] * np.where(self._along[here], 2.0, 1.0)
             curved, by_oil = drawn * (power * curvatures[here]), changed - drawn
-            heights = changed.conj() @ (changed * power).T - drawn.conj() @ (drawn * power).T
-            of_waves[down] = heights.real, (by_oil.conj() @ curved.T).real
-        along = np.cos(unit * lags[:, None] * downs).astype(np.float32)
-        return np.einsum("rd,dktc->ktrc", along, of_waves, optimize=True)
+            for part, signs in enumerate([1.0, 1j * np.sign(self._down[here])][: len(parts)]):
+                heights = changed.conj() @ (changed * power * signs).T
+                heights -= drawn.conj() @ (drawn * power * signs).T
+                curvatures_too = by_oil.conj() @ (curved * signs).T
+                of_waves[part, down] = heights.real, curvatures_too.real
+        along = [one(down_unit * lags[:, None] * downs) for one in parts]
+        along = np.stack(along).astype(np.float32)
+        return np.einsum("prd,pdktc->ktrc", along, of_waves, optimize=True)
 
     def of_waves(self, waves: list[Array]) -> Answered:
         """Filter the long waves of drawn surfaces, on the coarser grid of the nodes.
@@ -232,7 +245,7 @@ class AnsweredStrip:
         Answered
             For `lube.kernels.areal`.
         """
-        shape, fields = (self.points, self.points), []
+        shape, fields = self.points, []
         for own, filters in zip(waves, self._filters, strict=True):
             coarser = on_coarser_grid(own, self.points)
             for each in filters.T:
@@ -240,4 +253,5 @@ class AnsweredStrip:
                 changed[self._down, self._along] = coarser[self._down, self._along] * each
                 fields.append(np.pad(scipy.fft.irfft2(changed, shape), (0, 1), mode="wrap"))
         shapes = np.hstack(self._shapes).astype(np.float32)
-        return Answered(np.stack(fields, axis=-1), shapes, self._covariances, self.shift)
+        first = self._first_lag
+        return Answered(np.stack(fields, axis=-1), shapes, self._covariances, first, self.shift)

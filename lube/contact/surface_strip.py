@@ -39,8 +39,9 @@ from lube.schema import LIMITS, values_with_limits
 from lube.statistics.confidence import jackknife_interval, mean_interval
 from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
-from lube.surfaces.isotropic import isotropic_surface, surface_grid
-from lube.surfaces.spectra import pair_moments
+from lube.surfaces.lay import extents
+from lube.surfaces.rough_surface import rough_surface, surface_grid
+from lube.surfaces.spectra import surface_moments
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 from lube.types import Values
@@ -129,8 +130,8 @@ def surface_contact(
     """
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     check_surfaces(spec, length, 2.0 * half_width.max().item(), gap)
-    moments = pair_moments(spec)
-    strips = _strip_films(film, thickness, half_width, gap, math.sqrt(moments[0]))
+    rms = math.sqrt(surface_moments(spec).height)
+    strips = _strip_films(film, thickness, half_width, gap, rms)
     known = [point for point, strip in enumerate(strips) if strip is not None]
     layer, modulus = boundary_layer, film["reduced_modulus"].item()
     sharp = 0.5 * breaking_curvature(modulus, layer.critical_thickness, layer.shear_strength)
@@ -184,7 +185,7 @@ def _drawn_strips(film, thickness, half_width, gap, rms):
 
 def _contacts(spec, strips, sharp, length, seeds, threads):
     """Variables of `surface_contact` at some strips, shape (strips,) each."""
-    moments = pair_moments(spec)
+    moments = surface_moments(spec)
     known = zip(strips, sharp, strict=True)
     expected = np.array([strip.expected(moments, length, own) for strip, own in known]).T
     certain, found = expected[0] > MANY, {name: np.empty(len(strips)) for name in _SAMPLED}
@@ -206,19 +207,20 @@ def _on_alike_grids(spec, strips):
 
     The grid of a strip depends on its own film, and on the width of the widest strip.
     """
-    moments = pair_moments(spec)
+    moments = surface_moments(spec)
     widest, is_answered = max(strip.width for strip in strips), strips[0].answers is not None
-    # Size of the smallest contacts: parabolas as high as the mean summit above the film. It is
-    # rounded down to a power of the root of two, so that strips share surfaces.
+    # Sizes of the smallest contacts: parabolas as high as the mean summit above the film. They are
+    # rounded down to powers of the root of two, so that strips share surfaces.
     films = np.array([strip.films(strip.width / COLUMNS).min() for strip in strips])
-    smallest = math.sqrt(8.0 / moments[1]) * moments[0] / films
+    slopes = np.array([moments.across, moments.along])
+    smallest = np.sqrt(4.0 / slopes) * moments.height / films[:, None]
     smallest = 2.0 ** (0.5 * np.floor(2.0 * np.log2(smallest)))
-    spacings = np.array([surface_grid(spec, widest, size)[1] for size in smallest])
+    spacings = np.array([surface_grid(spec, widest, tuple(size))[1] for size in smallest])
     at_once = AT_ONCE if is_answered else len(strips)
-    for spacing in np.unique(spacings):
-        alike = np.flatnonzero(spacings == spacing)
+    for spacing in np.unique(spacings, axis=0):
+        alike = np.flatnonzero((spacings == spacing).all(axis=1))
         multiple = 2**COARSEST if is_answered else 1
-        surface = isotropic_surface(spec, widest, smallest[alike[0]], multiple=multiple)
+        surface = rough_surface(spec, widest, tuple(smallest[alike[0]]), multiple=multiple)
         for first in range(0, alike.size, at_once):
             yield surface, alike[first : first + at_once]
 
@@ -228,25 +230,25 @@ def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
 
     `certain` says of each strip whether contact is certain there.
     """
-    longest = math.ceil(spec.longest_wavelength / surface.spacing)
-    reach = longest, min(AROUND, longest)
-    films = [strip.films(surface.spacing) / spec.height_step for strip in strips]
+    down, along = surface.spacing
+    reach = _reach(spec, down)
+    rows = sum(reach), reach[1]
+    films = [strip.films(along) / spec.height_step for strip in strips]
     limits = [
-        strip.breaking_curvatures(surface.spacing, own) / spec.height_step
+        strip.breaking_curvatures(along, own) / spec.height_step
         for strip, own in zip(strips, sharp, strict=True)
     ]
     with one_blas_thread():
-        rows = sum(reach) + 1
         answered = on_threads(lambda strip: strip.answered(surface, rows), strips, threads)
     strips = list(zip(films, limits, certain.tolist(), answered, strict=True))
-    covariances = tuple(surface.covariances(sum(reach) + 1, max(film.size for film in films)))
+    covariances = tuple(surface.covariances(*rows, max(film.size for film in films)))
 
     def on_one_surface(of_one):
         return _on_one_surface(of_one, surface, covariances, strips, reach)
 
     found = on_threads(on_one_surface, seeds, threads, "contact of surfaces")
     first, numbers = map(np.stack, zip(*found, strict=True))
-    rows = max(int(length / surface.spacing), 1)
+    rows = max(int(length / down), 1)
     results = {}
     for which, (name, counts) in enumerate(_NUMBERS.items()):
         limits = jackknife_interval(first[:, :, which], partial(strip_probability, rows=rows), 1.0)
@@ -255,16 +257,27 @@ def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
     return results
 
 
+def _reach(spec, spacing):
+    """Rows beyond which rows are independent, and over which contacts are followed."""
+    stretched = [extents(line.lay_ratio, line.lay_angle) for line in spec.lines]
+    lines = list(zip(spec.lines, stretched, strict=True))
+    longest = max(2.0 * math.pi / line.q_min * across for line, (_, across) in lines)
+    # Ridges at an angle reach further along the rollers than a cut through one along the rollers.
+    oblique = max(along * across / line.lay_ratio for line, (along, across) in lines)
+    longest = math.ceil(longest / spacing)
+    return longest, min(math.ceil(AROUND * oblique), longest)
+
+
 def _on_one_surface(seeds, surface, covariances, strips, reach):
     """Probability of first rows, shape (strips, 2, R + 1), and contacts per row, (strips, 2)."""
     drawing, choosing = map(np.random.default_rng, seeds)
     answered = [one for *_, one in strips if one]
-    coarser = max((one.points for one in answered), default=1)
+    coarser = max((one.points for one in answered), default=(1, 1))
     *fields, long_waves = surface.draw(drawing, coarser)
     fields, chosen, both = tuple(fields), choosing.random((4, STRIPS)), []
     if any(len(one.answers) > 1 for one in answered):
-        both = surface.of_each(long_waves, drawing)
-    tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points, BLOCK), axis=1)
+        both = surface.of_each(long_waves, coarser, drawing)
+    tops = np.maximum.reduceat(fields[0], np.arange(0, surface.points[1], BLOCK), axis=1)
     longest, around = reach
     first, numbers = [], []
     for film, sharp, is_certain, answer in strips:
@@ -285,8 +298,8 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
         heights = -rms[known] * scipy.special.ndtri_exp(heights) - FADING * film[known]
         touching = known, heights.astype(np.float32)
         weight = likely[-1] * np.exp(log_chances.max()) / count
-        first_row, size = longest + around, surface.points + 1 - (1 << shift)
-        room = size - first_row - around, size - film.size + 1
+        first_row, sizes = longest + around, [one + 1 - (1 << shift) for one in surface.points]
+        room = sizes[0] - first_row - around, sizes[1] - film.size + 1
         row, column = ((room[side] * chosen[side, :count]).astype(np.int64) for side in range(2))
         # Strips begin at nodes.
         places = tuple(-(-place >> shift << shift) for place in (first_row + row, column))

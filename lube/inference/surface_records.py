@@ -18,7 +18,7 @@ from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import contact_curve
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import Study
-from lube.surfaces.spectra import pair_moments
+from lube.surfaces.spectra import surface_moments
 from lube.types import Array, Datasets
 
 CURVE_FILMS = 8
@@ -142,7 +142,7 @@ def _numbers(study, contact):
 
 def _curve_ratios(study, first):
     """Lambda ratios of the curves, from theory for high, flat films."""
-    moments, ratios = pair_moments(study.line_spec), np.geomspace(1.0, 20.0, 400)
+    moments, ratios = surface_moments(study.line_spec), np.geomspace(1.0, 20.0, 400)
     size = study.rollers.length, 2.0 * first["contact_half_width"].mean().item()
     contacts = expected_contacts(ratios * first["composite_rms_roughness"].item(), moments, *size)
     ends = np.interp(-np.log(CURVE_CONTACTS), -np.log(contacts), ratios)

@@ -32,8 +32,10 @@ class Answered(NamedTuple):
         nodes of the strip, shape (n, M), float32.
     covariances : numpy.ndarray
         Shape (2, n, R', n), float32: what the oil adds to the covariance of the height at a node
-        of the strip with heights, and with curvatures as drawn, at distances of 0 .. R' - 1 rows of
-        nodes and at each node across the strip; over the variance of the heights as drawn.
+        of the strip with heights, and with curvatures as drawn, in R' rows of nodes around it and
+        at each node across the strip; over the variance of the heights as drawn.
+    first : int
+        Row of the first of these rows of nodes, counted from that of the height.
     shift : int
         Binary logarithm of the number of points from node to node.
     """
@@ -41,11 +43,12 @@ class Answered(NamedTuple):
     fields: Array
     shapes: Array
     covariances: Array
+    first: int
     shift: int
 
 
 _NOTHING = np.zeros((2, 2, 0), np.float32)
-NO_ANSWER = Answered(_NOTHING, _NOTHING[0, :0], np.zeros((2, 2, 2, 0), np.float32), 30)
+NO_ANSWER = Answered(_NOTHING, _NOTHING[0, :0], np.zeros((2, 2, 2, 0), np.float32), 0, 30)
 """The oil does not change the surface."""
 
 
@@ -82,12 +85,12 @@ def touching_strips(
     tops : numpy.ndarray
         Shape (M, ceil(M / `BLOCK`)), float32: greatest height of every `BLOCK` points of a row.
     covariances : tuple of numpy.ndarray
-        Shape (R + 1, 2 C - 1) each, float32: covariance of the height at a point with heights and
-        with curvatures around it, over the variance of the heights; at distances of 0 .. R rows
-        and of -(C - 1) .. C - 1 columns, at least the W columns of the strip.
+        Shape (R + 1 + A, 2 C - 1) each, float32: covariance of the height at a point with heights
+        and with curvatures around it, over the variance of the heights; at distances of -R .. A
+        rows and of -(C - 1) .. C - 1 columns, at least the W columns of the strip.
     places : tuple of numpy.ndarray
         Shape (K,) each: row of the surface in which each strip's known point lies, at least R from
-        the first row and `around` from the last, and column of the surface in which the strip
+        the first row and A from the last, and column of the surface in which the strip
         begins; both at nodes if the oil answers.
     touching : tuple of numpy.ndarray
         Shape (K,) each: column of the strip in which the known point lies, and its height,
@@ -100,8 +103,8 @@ def touching_strips(
         How fast the probability to be the known point falls with the overlap there, one over height
         steps.
     around : int
-        Number of rows ahead of the known one in which its contact is followed; it is followed back
-        through all R rows. A contact that begins as many rows back, or more, is too long for the
+        Number A of rows ahead of the known one in which its contact is followed; it is followed
+        back through all R rows. A contact that begins as many rows back, or more, is too long for the
         sums over first contacts.
     answered : Answered
         What the oil adds to the surface; `NO_ANSWER` if it does not change it.
@@ -109,7 +112,7 @@ def touching_strips(
     Returns
     -------
     contact, breakthrough : numpy.ndarray
-        Shape (R - `around` + 1,) each, sums of weights. Element 0 is the sum over the known rows.
+        Shape (R - A + 1,) each, sums of weights. Element 0 is the sum over the known rows.
         Element k is the sum over the first contacts: they count one over the sum of their points'
         :math:`e^{-f e}` if the strip does not touch in the k rows before the contact begins, and
         contacts that begin in the same row divide it among them. `breakthrough` counts only
@@ -117,14 +120,14 @@ def touching_strips(
     contacts : numpy.ndarray
         Shape (2,), sums over all contacts, and over those whose boundary layer breaks.
     """
-    reach, width = covariances[0].shape[0] - 1, film.size
+    reach, width = covariances[0].shape[0] - 1 - around, film.size
     rows = reach - around
     contact, breakthrough, contacts = np.zeros(rows + 1), np.zeros(rows + 1), np.zeros(2)
     seen = np.zeros((reach + 1 + around, width), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
     heights = np.empty(width, np.float32)
-    known = np.empty((2, reach + 1), np.float32)
-    for row in range(reach + 1):
+    known = np.empty((2, reach + 1 + around), np.float32)
+    for row in range(known.shape[1]):
         known[0, row], known[1, row] = covariances[0][row].min(), covariances[0][row].max()
     least = np.empty((width - 2) // BLOCK + 2, np.float32)
     known_row = np.int64(0)  # for the literal 0, Numba would compile `_row` and `_contact` again
@@ -139,10 +142,10 @@ def touching_strips(
         by_known += part * (answered.covariances[:, node + 1] - by_known)
         highest[:] = np.nan
         oil = answered, by_known, nodes, highest
-        drawn = fields, covariances, places[0][k], places[1][k], origin, unmoved, oil
-        variance = one + _along(by_known[0, 0], origin, answered.shift)
+        drawn = fields, covariances, reach, places[0][k], places[1][k], origin, unmoved, oil
+        variance = one + _along(by_known[0, -answered.first], origin, answered.shift)
         rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
-        moved = fields, covariances, places[0][k], places[1][k], origin, rise, oil
+        moved = fields, covariances, reach, places[0][k], places[1][k], origin, rise, oil
         search = film, sharp, fading, seen, np.int32(2 * k + 1), stack
         _, broken, _ = _row(moved, search, heights, known_row)
         chosen = 0.0
@@ -206,7 +209,7 @@ def contacts_per_row(
     numpy.ndarray
         Shape (2,): mean number of contacts, and of those whose boundary layer breaks.
     """
-    reach = covariances[0].shape[0] - 1
+    reach = covariances[0].shape[0] - 1 - around
     seen = np.zeros((reach + 1 + around, film.size), np.int32)
     stack = np.empty((seen.size, 2), np.int32)
     heights = np.empty(film.size, np.float32)
@@ -217,7 +220,7 @@ def contacts_per_row(
     nodes, fading = np.empty(strip_nodes, np.float32), np.zeros(film.size)
     oil = answered, by_known, nodes, np.empty(0, np.float32)
     for k in range(places[0].size):
-        moved = fields, covariances, places[0][k], places[1][k], origin, unmoved, oil
+        moved = fields, covariances, reach, places[0][k], places[1][k], origin, unmoved, oil
         search = film, sharp, fading, seen, np.int32(k + 1), stack
         for row in range(first, around + 1):
             contacts, broken, _ = _row(moved, search, heights, row)
@@ -235,7 +238,7 @@ def _row(moved, search, heights, row):
     earliest row of the last ones.
     """
     film, seen, mark = search[0], search[3], search[4]
-    reach = moved[1][0].shape[0] - 1
+    reach = moved[2]
     contacts, broken, earliest = 0, 0, row
     _fill_row(moved, row, heights)
     for column in range(heights.size):
@@ -251,11 +254,11 @@ def _row(moved, search, heights, row):
 @inlined
 def _fill_row(moved, row, heights):
     """Fill in the heights of a row, counted from the known one."""
-    fields, covariances, first_row, first_column, origin, rise, oil = moved
+    fields, covariances, reach, first_row, first_column, origin, rise, oil = moved
     width = heights.size
     drawn = fields[0][first_row + row, first_column : first_column + width]
     middle = covariances[0].shape[1] // 2
-    known = covariances[0][abs(row), middle - origin : middle - origin + width]
+    known = covariances[0][reach + row, middle - origin : middle - origin + width]
     for column in range(width):  # without a branch, so the compiler vectorises it
         heights[column] = drawn[column] + known[column] * rise
     if oil[2].size > 0:
@@ -276,11 +279,11 @@ def _least_by_block(first_column, film, least):
 @kernel
 def _touches(moved, tops, known, film, least, row):
     """Whether any point of a row touches; blocks that lie too low are skipped."""
-    fields, covariances, first_row, first_column, origin, rise, oil = moved
-    most = max(known[0, abs(row)] * rise, known[1, abs(row)] * rise)
+    fields, covariances, reach, first_row, first_column, origin, rise, oil = moved
+    most = max(known[0, reach + row] * rise, known[1, reach + row] * rise)
     if oil[2].size > 0:
         # Between rows of nodes, what the oil adds is linear.
-        before = abs(row) >> oil[0].shift
+        before = (row >> oil[0].shift) - oil[0].first
         most += max(_most_added(moved, before), _most_added(moved, before + 1))
     first, middle, filled = first_column // BLOCK, covariances[0].shape[1] // 2, False
     for block in range(least.size):
@@ -294,7 +297,7 @@ def _touches(moved, tops, known, film, least, row):
         touched = False
         for column in range(begin, end):
             height = fields[0][first_row + row, first_column + column]
-            height += covariances[0][abs(row), middle - origin + column] * rise
+            height += covariances[0][reach + row, middle - origin + column] * rise
             height += _along(oil[2], column, oil[0].shift)
             touched |= height > film[column]
         if touched:
@@ -305,10 +308,10 @@ def _touches(moved, tops, known, film, least, row):
 @inlined
 def _moved(surface, moved, row, column):
     """Height (0) or curvature (1) at a point of the strip, rows counted from the known one."""
-    fields, covariances, first_row, first_column, origin, rise, oil = moved
+    fields, covariances, reach, first_row, first_column, origin, rise, oil = moved
     drawn = fields[surface][first_row + row, first_column + column]
     middle = covariances[surface].shape[1] // 2
-    found = drawn + covariances[surface][abs(row), middle + column - origin] * rise
+    found = drawn + covariances[surface][reach + row, middle + column - origin] * rise
     if oil[2].size > 0:
         node, part = _node(column, oil[0].shift)
         left = _at_node(surface, moved, row, node)
@@ -318,10 +321,10 @@ def _moved(surface, moved, row, column):
 
 @inlined
 def _most_added(moved, before):
-    """Find the most that the oil adds in a row of nodes, counted back from the known row."""
-    answered, _, nodes, highest = moved[6]
+    """Find the most that the oil adds in a row of nodes."""
+    answered, _, nodes, highest = moved[7]
     if np.isnan(highest[before]):
-        _fill_nodes(moved, -(before << answered.shift))
+        _fill_nodes(moved, (answered.first + before) << answered.shift)
         highest[before] = nodes.max()
     return highest[before]
 
@@ -329,7 +332,7 @@ def _most_added(moved, before):
 @inlined
 def _fill_nodes(moved, row):
     """Fill in what the oil adds to a row at the nodes."""
-    nodes = moved[6][2]
+    nodes = moved[7][2]
     for node in range(nodes.size):
         nodes[node] = _at_node(0, moved, row, node)
 
@@ -337,7 +340,7 @@ def _fill_nodes(moved, row):
 @inlined
 def _at_node(surface, moved, row, node):
     """Find what the oil adds to `_moved` at a node of the strip."""
-    _, _, first_row, first_column, _, rise, (answered, by_known, _, _) = moved
+    _, _, _, first_row, first_column, _, rise, (answered, by_known, _, _) = moved
     fields, shapes, shift = answered.fields, answered.shapes, answered.shift
     added = np.float32(0.0)
     if surface == 0:
@@ -346,7 +349,7 @@ def _at_node(surface, moved, row, node):
         for m in range(shapes.shape[1]):
             here = fields[upper, column, m]
             added += shapes[node, m] * (here + part * (fields[upper + 1, column, m] - here))
-    lag, part = _node(abs(row), shift)
+    lag, part = _node(row - (answered.first << shift), shift)
     here = by_known[surface, lag, node]
     return added + rise * (here + part * (by_known[surface, lag + 1, node] - here))
 
@@ -375,7 +378,7 @@ def _contact(moved, search, row, column):
     whether its boundary layer breaks, and its earliest row.
     """
     film, sharp, fading, seen, mark, stack = search
-    reach = moved[1][0].shape[0] - 1
+    reach = moved[2]
     ahead = seen.shape[0] - reach - 1
     seen[reach + row, column] = mark
     stack[0, 0], stack[0, 1] = row, column

@@ -11,6 +11,7 @@ S. O. Rice, Mathematical analysis of random noise, Bell Syst. Tech. J. 23 (1944)
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import scipy.special
@@ -21,6 +22,28 @@ _HEIGHTS, _HEIGHT_WEIGHTS = np.polynomial.laguerre.laggauss(60)
 _CURVATURES, _CURVATURE_WEIGHTS = np.polynomial.legendre.leggauss(60)
 _WIDE = 9.0
 """Standard deviations beyond which a normal density is left out."""
+
+
+class SurfaceMoments(NamedTuple):
+    """Moments of a stationary Gaussian surface.
+
+    Attributes
+    ----------
+    height : float
+        Mean square height, m^2.
+    along, across : float
+        Mean square slopes along rolling and along the rollers.
+    mixed : float
+        Mean product of both slopes.
+    curvature : float
+        Mean square of the sum of both curvatures, 1/m^2.
+    """
+
+    height: float
+    along: float
+    across: float
+    mixed: float
+    curvature: float
 
 
 def crossing_rate(level: Values, moments: Sequence[float]) -> Values:
@@ -108,31 +131,31 @@ def sharp_summit_share(level: Array, moments: Sequence[float], curvature: float)
     return _share(level, moments, curvature, lambda kappa: kappa)
 
 
-def expected_contacts(level: Array, moments: Sequence[float], length: float, width: Array) -> Array:
-    r"""Compute the expected number of contacts of an isotropic surface above a level.
+def expected_contacts(level: Array, moments: SurfaceMoments, length: float, width: Array) -> Array:
+    r"""Compute the expected number of contacts of a surface above a level.
 
     The surface is a rectangle.
 
     The formula gives the expected Euler characteristic: the number of contacts less the holes in
-    them. At high levels contacts have no holes. With :math:`u = h / \sqrt{m_0}` and the sides a
-    and b,
+    them. At high levels contacts have no holes. With :math:`u = h / \sqrt{m_0}`, the sides a along
+    rolling and b along the rollers, and the matrix M of the mean squares :math:`m_a` and
+    :math:`m_b` and the mean product of both slopes,
 
     .. math::
 
-        Q(u) + (a + b) \frac{1}{2 \pi} \sqrt{\frac{m_2}{2 m_0}}\, e^{-u^2/2}
-        + a b \frac{u}{(2 \pi)^{3/2}} \frac{m_2}{2 m_0}\, e^{-u^2/2}
+        Q(u) + \frac{a \sqrt{m_a} + b \sqrt{m_b}}{2 \pi \sqrt{m_0}}\, e^{-u^2/2}
+        + a b \frac{u}{(2 \pi)^{3/2}} \frac{\sqrt{\det M}}{m_0}\, e^{-u^2/2}
 
     Parameters
     ----------
     level : numpy.ndarray
         Levels h, m.
-    moments : sequence of float
-        Moments of the line that the surface corresponds to, as in `crossing_rate`. The surface's
-        mean square slope in one direction is :math:`m_2 / 2`.
+    moments : SurfaceMoments
+        Moments of the surface.
     length : float
-        One side, m.
+        Side along the rollers, m.
     width : numpy.ndarray
-        The other side, m; it broadcasts against the levels.
+        Side along rolling, m; it broadcasts against the levels.
 
     Returns
     -------
@@ -145,32 +168,33 @@ def expected_contacts(level: Array, moments: Sequence[float], length: float, wid
 
     Examples
     --------
-    >>> expected_contacts(np.array([4.0]), (1.0, 8.0, 100.0), 10.0, 20.0).round(3)
+    >>> moments = SurfaceMoments(1.0, along=4.0, across=4.0, mixed=0.0, curvature=100.0)
+    >>> expected_contacts(np.array([4.0]), moments, 10.0, 20.0).round(3)
     array([0.071])
     """
-    m0, m2, _ = moments
-    height = np.asarray(level) / math.sqrt(m0)
-    density = math.sqrt(0.5 * m2 / m0) / (2.0 * math.pi)
-    area = length * width * height * math.sqrt(2.0 * math.pi) * density**2
-    edges = (length + width) * density
+    height = np.asarray(level) / math.sqrt(moments.height)
+    slopes = math.sqrt(moments.along * moments.across - moments.mixed**2)
+    area = length * width * height * slopes / moments.height / (2.0 * math.pi) ** 1.5
+    edges = length * math.sqrt(moments.across) + width * math.sqrt(moments.along)
+    edges = edges / (2.0 * math.pi * math.sqrt(moments.height))
     return scipy.special.ndtr(-height) + (edges + area) * np.exp(-0.5 * height**2)
 
 
-def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature: Values) -> Array:
+def sharp_surface_summit_share(level: Array, moments: SurfaceMoments, curvature: Values) -> Array:
     r"""Fraction of a surface's summits above a level that are sharper than a given curvature.
 
-    The surface is isotropic.
+    The surface is isotropic. For one with a lay the fraction is NaN.
 
     The mean curvature :math:`\kappa` of a summit in two directions and the difference between the
     directions are independent. Averaged over the difference, summits have the density (Nayak)
 
     .. math::
 
-        \left[ \kappa^2 - \mu (1 - e^{-\kappa^2/\mu}) \right] p(z, \kappa), \qquad
-        \mu = \frac{m_4}{4} ,
+        \left[ \kappa^2 - \mu (1 - e^{-\kappa^2/\mu}) \right] p(z, \kappa) ,
 
-    where p is Gaussian with the variances :math:`m_0` and :math:`m_4/4` and the covariance
-    :math:`m_2/2`.
+    where p is Gaussian with the variances :math:`m_0` and :math:`\mu` and the covariance
+    :math:`m_a`, the mean square slope in one direction; :math:`4 \mu` is the mean square of the
+    sum of both curvatures.
 
     Parameters
     ----------
@@ -190,14 +214,16 @@ def sharp_surface_summit_share(level: Array, moments: Sequence[float], curvature
 
     Examples
     --------
-    >>> sharp_surface_summit_share(np.array([5.0]), (1.0, 4.0, 100.0), 10.0).round(3)
+    >>> moments = SurfaceMoments(1.0, along=2.0, across=2.0, mixed=0.0, curvature=100.0)
+    >>> sharp_surface_summit_share(np.array([5.0]), moments, 10.0).round(3)
     array([0.866])
     """
-    m0, m2, m4 = moments
-    spread = 0.25 * m4
+    if moments.along != moments.across or moments.mixed != 0.0:
+        return np.full(np.shape(level), np.nan)
+    spread = 0.25 * moments.curvature
     return _share(
         level,
-        (m0, 0.5 * m2, 0.25 * m4),
+        (moments.height, moments.along, spread),
         curvature,
         lambda kappa: kappa**2 + spread * np.expm1(-(kappa**2) / spread),
     )

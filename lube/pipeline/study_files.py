@@ -84,6 +84,7 @@ def origin(figure: str) -> str:
 _NEEDED = {
     "topographies": "a measured topography of a roller",
     "line_spec.is_gaussian": "Gaussian roughness lines",
+    "line_spec.has_surface": "lines that stand for surfaces",
     "line_spec.is_isotropic": "isotropic surfaces",
     "conducts": "rollers that conduct, a `resistivity` that is not `insulator`",
     "line_spec.is_drawn": "lines that are drawn from a spectrum",

@@ -80,7 +80,7 @@ def _cylinder(roller):
     return {name: f"rollers.{roller}.{name}" for name in names}
 
 
-_SURFACE = ("line_spec.is_gaussian", "line_spec.is_isotropic")
+_SURFACE = ("line_spec.is_gaussian", "line_spec.has_surface")
 _LINES = {"seed": "seed", "lines": "line_spec"}
 _LAYER = _named("rollers.reduced_modulus boundary_layer")
 _CONTACT = _LAYER | _named("operating_grid.slide_to_roll_ratio roughness_deformation")
@@ -247,7 +247,7 @@ _ROWS = (
         "surfaces pressed against a flat, several minutes",
         values=_LINES | _named("rollers.reduced_modulus"),
         target="patch_contact",
-        only_with=_SURFACE,
+        only_with=(*_SURFACE, "line_spec.is_isotropic"),
     ),
     Stage(
         "film_profile",

@@ -14,8 +14,8 @@ from lube.schema import label, with_dims
 from lube.study.line_spec import LineSpec
 from lube.study.study import Study
 from lube.surfaces.elastic_contact import find_tamaas, press_line, press_surface
-from lube.surfaces.isotropic import isotropic_surface
-from lube.surfaces.rare_contact import check_isotropic
+from lube.surfaces.rare_contact import check_stands_for_surface
+from lube.surfaces.rough_surface import rough_surface
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import ROLLER_NUMBERS, draw_realisation
 from lube.types import Datasets
@@ -64,9 +64,9 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
         If the band of wavelengths is too wide for a surface, or tamaas finds no solution.
     """
     find_tamaas()
-    check_isotropic(spec)
+    check_stands_for_surface(spec)
     smallest = 4.0 * spec.longest_wavelength / LEAST_POINTS
-    surface = isotropic_surface(spec, contact=smallest, waves=1)
+    surface = rough_surface(spec, contact=(smallest, smallest), waves=1)
     lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLER_NUMBERS))]
     rms_height, gradient = (
         np.sqrt(sum(np.square(line[name]) for line in lines))
@@ -76,7 +76,7 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
         "relative_pressure": np.array(PRESSURES),
         "pressure": reduced_modulus * gradient * np.array(PRESSURES),
         "realisation": np.arange(REALISATIONS),
-        "side": surface.points * surface.spacing,
+        "side": surface.sides[0],
         "rms_height": rms_height,
         "rms_gradient": gradient,
         "reduced_modulus": reduced_modulus,

@@ -43,7 +43,11 @@ class RoughLine(StrictModel):
     heights : bytes, optional
         Measured heights of the line itself: `points` numbers int32, in height steps.
     isotropic : bool
-        Whether the line stands for an isotropic surface; by default it does.
+        Whether the line stands for a surface that is isotropic, apart from its lay; by default it
+        does.
+    lay_ratio, lay_angle : float
+        Length over width of the surface's ridges, by default 1, no lay; and the angle between them
+        and rolling, degrees. The spectrum is then that of waves across the lay.
     """
 
     points: int
@@ -57,11 +61,13 @@ class RoughLine(StrictModel):
     spectrum: tuple[tuple[float, ...], tuple[float, ...]] | None = None
     heights: Annotated[bytes, PlainSerializer(_digest)] | None = Field(None, repr=False)
     isotropic: bool = True
+    lay_ratio: float = 1.0
+    lay_angle: float = 90.0
 
     @property
     def longest_wavelength(self) -> float:
         """Longest wavelength of the line, m."""
-        return 2.0 * math.pi / self.q_min
+        return 2.0 * math.pi / self.q_min * self.lay_ratio
 
     @property
     def shortest_wavelength(self) -> float:
@@ -107,9 +113,14 @@ class LineSpec(StrictModel):
         return all(line.is_gaussian for line in self.lines)
 
     @property
+    def has_surface(self) -> bool:
+        """Whether both lines stand for surfaces."""
+        return all(line.isotropic for line in self.lines)
+
+    @property
     def is_isotropic(self) -> bool:
         """Whether both lines stand for isotropic surfaces."""
-        return all(line.isotropic for line in self.lines)
+        return self.has_surface and all(line.lay_ratio == 1.0 for line in self.lines)
 
     @property
     def is_drawn(self) -> bool:
@@ -124,7 +135,7 @@ class LineSpec(StrictModel):
     @property
     def q_min(self) -> float:
         """Smallest wave number of both lines, rad/m."""
-        return min(line.q_min for line in self.lines)
+        return min(line.q_min / line.lay_ratio for line in self.lines)
 
     @property
     def q_max(self) -> float:
@@ -227,7 +238,6 @@ def _rough_line(rollers, roughness, name, rms, lengths):
         roll_off = longest
     _check_band(longest, shortest, roughness.points, spacing, key)
     _check_roll_off(longest, shortest, roll_off, key)
-    _check_perimeter(points * spacing, longest, shortest, name)
     _check_distribution(own, key)
     if roller.topography:
         with located(f"rollers.{name}.topography", StudyError):
@@ -238,7 +248,8 @@ def _rough_line(rollers, roughness, name, rms, lengths):
         raise StudyError(f"{key('hurst_exponent')}: missing, need it for the {name} roller")
     else:
         rms *= _beyond_cutoffs(own, longest, shortest, key)
-        shape = {"rms_height": rms, "hurst_exponent": own.hurst_exponent}
+        shape = {"rms_height": rms, "hurst_exponent": own.hurst_exponent} | _lay(own, key)
+    _check_perimeter(points * spacing, longest * shape.get("lay_ratio", 1.0), shortest, name)
     _check_height_step(shape["rms_height"], roughness.height_step, name, roller)
     return RoughLine(
         points=points,
@@ -280,6 +291,18 @@ def _key(roller, own, name):
     """Name the key that set a value of the roughness: the roller's, else the study's."""
     is_own = getattr(own, name, None) is not None
     return f"rollers.{roller}.roughness.{name}" if is_own else f"roughness.{name}"
+
+
+def _lay(own, key):
+    """Lay of a roller's surface, nothing if it has none."""
+    if own.lay_ratio == 1.0:
+        return {}
+    if own.lay_angle is None:
+        raise StudyError(
+            f"{key('lay_angle')}: missing, need it with a lay_ratio of {own.lay_ratio:g}: 0 deg "
+            "for ridges along rolling, 90 deg for ridges across"
+        )
+    return {"lay_ratio": own.lay_ratio, "lay_angle": own.lay_angle}
 
 
 def _beyond_cutoffs(own, longest, shortest, key):

@@ -28,7 +28,10 @@ ROLLERS = ("first", "second")
 """Keys of the two rollers."""
 ROUGHNESS_KEYS = ("rms_roughness", "ra_roughness", "topography")
 """Keys that give a roller's roughness; a roller has at most one of them."""
-_OF_SPECTRUM = ("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff")
+_OF_SPECTRUM = (
+    *("hurst_exponent", "roll_off_wavelength", "long_cutoff", "short_cutoff"),
+    *("lay_ratio", "lay_angle"),
+)
 """Keys of its section `roughness` that a measured spectrum replaces."""
 INSULATOR = "insulator"
 """Resistivity of rollers if either does not conduct."""
@@ -86,6 +89,7 @@ _ShortestWavelength = Annotated[
 _Hurst = Annotated[float, quantity(None, above=0.0, below=1.0)]
 _Skewness = Annotated[float, quantity(None, least=-3.0, most=3.0)]
 _Kurtosis = Annotated[float, quantity(None, above=1.0, most=20.0)]
+_LayRatio = Annotated[float, quantity(None, least=1.0, most=1e4)]
 
 
 class OwnRoughness(StrictModel):
@@ -108,6 +112,14 @@ class OwnRoughness(StrictModel):
     short_cutoff: Length | None = None
     """cutoff lambda_s of the measurement: the stated rms height is that of the waves down to this
     length, and shorter waves add to it; by default the shortest wavelength
+    """
+    lay_ratio: _LayRatio | None = None
+    """how many times longer than wide the ridges of the surface are, 1 for an isotropic surface;
+    wavelengths, cutoffs and Hurst exponent are those across the ridges
+    """
+    lay_angle: Annotated[float, quantity("deg", least=-90.0, most=90.0)] | None = None
+    """angle between the ridges and rolling: 0 deg along rolling, as on a ground roller, 90 deg
+    across; seen from the same side for both rollers
     """
     skewness: _Skewness | None = None
     """skewness of the heights"""
@@ -250,6 +262,10 @@ class Roughness(OwnRoughness):
     kurtosis: _Kurtosis = 3.0
     """kurtosis of the heights, 3 for Gaussian heights; at least 1.5 plus 1.25 times the skewness
     squared
+    """
+    lay_ratio: _LayRatio = 1.0
+    """how many times longer than wide the ridges of the surface are, 1 for an isotropic surface;
+    wavelengths, cutoffs and Hurst exponent are those across the ridges
     """
     points: Annotated[StrictInt, Field(ge=64, le=MOST_POINTS)]
     """points N around the first roller"""

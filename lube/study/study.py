@@ -379,14 +379,14 @@ class Study(StrictModel):
         if self.has_surfaces:
             self._check_surfaces()
         elif self.rough_surfaces is not None:
-            self._check_isotropic()
+            self._check_stands_for_surface()
         return self
 
-    def _check_isotropic(self):
-        from lube.surfaces.rare_contact import check_isotropic  # which loads scipy
+    def _check_stands_for_surface(self):
+        from lube.surfaces.rare_contact import check_stands_for_surface  # which loads scipy
 
         with located(f"load_sharing: got {self.load_sharing}, need none", ValueError):
-            check_isotropic(self.line_spec)
+            check_stands_for_surface(self.line_spec)
 
     def _check_surfaces(self):
         from lube.study.surface_checks import check_surfaces  # which loads scipy

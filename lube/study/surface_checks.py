@@ -2,8 +2,8 @@
 
 from lube.errors import DataError, StudyError
 from lube.grid.gap import Gap
-from lube.surfaces.isotropic import surface_grid
-from lube.surfaces.rare_contact import check_isotropic
+from lube.surfaces.rare_contact import check_stands_for_surface
+from lube.surfaces.rough_surface import surface_grid
 from lube.surfaces.synthetic import LineSpecLike
 
 
@@ -30,7 +30,7 @@ def check_surfaces(spec: LineSpecLike, length: float, width: float, gap: Gap) ->
         If the rollers are shorter than the contact is wide, or the band of wavelengths is too wide
         for a surface.
     """
-    check_isotropic(spec)
+    check_stands_for_surface(spec)
     if gap.is_flattened:
         raise StudyError(
             f"roughness_deformation: got {gap.roughness_deformation}, need none or computed for "

@@ -32,7 +32,7 @@ import functools
 import numpy as np
 import scipy.special
 
-from lube.surfaces.rare_contact import check_isotropic
+from lube.surfaces.rare_contact import check_stands_for_surface
 from lube.surfaces.synthetic import LineSpecLike, wave_amplitudes
 from lube.types import Array
 
@@ -64,7 +64,7 @@ def contact_pressure(spec: LineSpecLike, modulus: float, gap: Array) -> Array:
     Raises
     ------
     StudyError
-        As from `lube.surfaces.rare_contact.check_isotropic`.
+        As from `lube.surfaces.rare_contact.check_stands_for_surface`.
     """
     rms, gradient, gaps, by_theory, meeting = _curve(spec)
     by_summits, by_theory = _by_summits(gap / rms), np.interp(-gap, -gaps, by_theory)
@@ -82,7 +82,7 @@ def _curve(spec):
 
     The pressures are logarithms, over E* times the gradient.
     """
-    check_isotropic(spec)
+    check_stands_for_surface(spec)
     wavenumber, variance = _waves(spec)
     gradient = np.sqrt(np.sum(variance * wavenumber**2))
     gaps = _mean_gaps(wavenumber, variance, PRESSURES * gradient)

@@ -103,8 +103,8 @@ def check_gaussian(spec: LineSpecLike) -> None:
             )
 
 
-def check_isotropic(spec: LineSpecLike) -> None:
-    """Refuse lines that do not stand for an isotropic Gaussian surface.
+def check_stands_for_surface(spec: LineSpecLike) -> None:
+    """Refuse lines that do not stand for a Gaussian surface.
 
     Parameters
     ----------
@@ -119,8 +119,8 @@ def check_isotropic(spec: LineSpecLike) -> None:
     check_gaussian(spec)
     if not all(line.isotropic for line in spec.lines):
         raise StudyError(
-            "rollers: got a topography taken along rolling, need isotropic topographies: the "
-            "surface that a line stands for is isotropic"
+            "rollers: got a topography taken along rolling, need an isotropic one or one with a "
+            "lay: profiles along rolling do not say how long the ridges are"
         )
 
 

@@ -24,6 +24,7 @@ import numpy as np
 import scipy.fft
 
 from lube.kernels.synthesis import gaussian_phasors, random_phasors, translated_steps
+from lube.surfaces.lay import waves_of_line
 from lube.surfaces.translation import REACH, gaussian_power, johnson_curve
 
 ROLLER_NUMBERS = (1, 2)
@@ -67,6 +68,8 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     Below the roll-off wavenumber the isotropic surface's density :math:`C_{2D}` is constant, so
     that :math:`C_{1D} = \pi q\, C_{2D}` and :math:`a_k \propto q_k^{1/2}`. With a measured spectrum
     :math:`a_k \propto C(q_k)^{1/2}`. The amplitudes of a measured line follow from its heights.
+    If the surface has a lay, this is the spectrum across it, and `lube.surfaces.lay` explains that
+    of the line.
 
     Parameters
     ----------
@@ -94,6 +97,19 @@ def wave_amplitudes(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
     (10, 91)
     >>> f"{np.sqrt(0.5 * np.sum(amplitudes**2)):.3g}"
     '2e-07'
+    """
+    first_wave, amplitudes = amplitudes_across_lay(spec, roller)
+    ratio = spec.lines[roller].lay_ratio
+    if ratio == 1.0:
+        return first_wave, amplitudes
+    first_wave, squares = waves_of_line(first_wave, amplitudes**2, ratio)
+    return first_wave, np.sqrt(squares)
+
+
+def amplitudes_across_lay(spec: LineSpecLike, roller: int) -> tuple[int, np.ndarray]:
+    """Amplitudes of the waves across the lay of one roller's surface, as from `wave_amplitudes`.
+
+    Without a lay they are those of the line.
     """
     line = spec.lines[roller]
     # Leave out the wave of two points: its rms height on the grid would depend on its phase.

@@ -9,8 +9,8 @@ from lube.contact.strip_film import StripFilm, pair_deviation
 from lube.contact.surface_strip import SURFACES as SAMPLED
 from lube.contact.surface_strip import surface_contact
 from lube.statistics.curves import contact_curve, film_interval
-from lube.surfaces.isotropic import isotropic_surface
-from lube.surfaces.spectra import pair_moments
+from lube.surfaces.rough_surface import rough_surface
+from lube.surfaces.spectra import surface_moments
 
 WIDTH, LENGTH = 3e-4, 5e-4
 SURFACES, PAIRS = 8, 10
@@ -26,14 +26,14 @@ def spec(make_spec):
 
 @pytest.fixture(scope="module")
 def surface(spec):
-    return isotropic_surface(spec, waves=24)
+    return rough_surface(spec, waves=24)
 
 
 @pytest.fixture(scope="module")
 def rollers(spec, surface):
     """Heights of pairs of rollers, metres, shape (pairs, along the rollers, around them)."""
-    rows, apart = int(LENGTH / surface.spacing), surface.points // PAIRS
-    assert (apart - rows) * surface.spacing > spec.longest_wavelength
+    rows, apart = int(LENGTH / surface.spacing[0]), surface.points[0] // PAIRS
+    assert (apart - rows) * surface.spacing[0] > spec.longest_wavelength
     found = []
     for number in range(SURFACES):
         heights = surface.draw(np.random.default_rng(number))[0]
@@ -42,7 +42,7 @@ def rollers(spec, surface):
 
 
 def films_of(spec):
-    rms = np.sqrt(pair_moments(spec)[0])
+    rms = np.sqrt(surface_moments(spec).height)
     across = np.linspace(-2 * WIDTH, 2 * WIDTH, 401)
     bent = 1.0 + 0.6 * (across / WIDTH) ** 2 + 0.3 * (across / WIDTH) ** 3
     for ratio in (2.7, 3.1, 3.5):
@@ -60,10 +60,10 @@ def shares(rollers, film):
 
 
 def test_the_share_of_a_revolution_scatters_between_pairs_as_expected(spec, surface, rollers):
-    side, ratios = surface.points * surface.spacing, []
+    side, ratios = surface.sides[1], []
     for film in films_of(spec):
-        found = shares(rollers, film.films(surface.spacing))
-        _, *common = film.passage(pair_moments(spec), LENGTH)
+        found = shares(rollers, film.films(surface.spacing[1]))
+        _, *common = film.passage(surface_moments(spec), LENGTH)
         ratios.append(found.std(ddof=1) / pair_deviation(found.mean(), *common, side))
     # Of 80 pairs a standard deviation is known to 8 %.
     assert np.all(np.abs(np.log(ratios)) < 0.2)
@@ -71,17 +71,17 @@ def test_the_share_of_a_revolution_scatters_between_pairs_as_expected(spec, surf
 
 
 def test_contacts_are_in_the_strip_as_long_as_expected(spec, surface, rollers):
-    moments, side = pair_moments(spec), surface.points * surface.spacing
+    moments, side = surface_moments(spec), surface.sides[1]
     for film in films_of(spec):
         width, *_ = film.passage(moments, LENGTH)
-        films = film.films(surface.spacing)
+        films = film.films(surface.spacing[1])
         extents, numbers = 0.0, 0
         for heights in rollers[::4]:
             contacts, count = ndimage.label(heights > films.min())
             numbers += count
             if film.has_edges:
                 sides = ndimage.find_objects(contacts)
-                extents += sum(each[1].stop - each[1].start for each in sides) * surface.spacing
+                extents += sum(each[1].stop - each[1].start for each in sides) * surface.spacing[1]
         per_turn = numbers / len(rollers[::4])
         contacts, _ = film.expected(moments, LENGTH, 0.0)
         assert contacts * side / width == pytest.approx(per_turn, rel=0.1)
@@ -91,11 +91,11 @@ def test_contacts_are_in_the_strip_as_long_as_expected(spec, surface, rollers):
 
 def test_few_pairs_ever_touch_under_thick_films(spec, surface, rollers):
     """Groups of contacts come independently of one another."""
-    rms, side = np.sqrt(pair_moments(spec)[0]), surface.points * surface.spacing
+    rms, side = np.sqrt(surface_moments(spec).height), surface.sides[1]
     for ratio in (4.0, 4.4):
         film = StripFilm.flat(ratio * rms, 0.5 * WIDTH)
-        found = shares(rollers, film.films(surface.spacing))
-        width, *_ = film.passage(pair_moments(spec), LENGTH)
+        found = shares(rollers, film.films(surface.spacing[1]))
+        width, *_ = film.passage(surface_moments(spec), LENGTH)
         expected = -np.expm1(np.log1p(-found.mean()) * side / width)
         assert np.mean(found > 0.0) == pytest.approx(expected, abs=0.08)
 
@@ -104,8 +104,8 @@ def test_films_read_from_single_pairs_have_intervals_that_hold_the_true_film(
     spec, surface, rollers, study
 ):
     """Each pair of whole rollers is the record of a rig, a revolution long."""
-    moments, side = pair_moments(spec), surface.points * surface.spacing
-    rms, ratios = np.sqrt(moments[0]), np.geomspace(2.0, 5.0, 9)
+    moments, side = surface_moments(spec), surface.sides[1]
+    rms, ratios = np.sqrt(moments.height), np.geomspace(2.0, 5.0, 9)
     films = {"film_thickness": ("film", ratios * rms), "contact_half_width": 0.5 * WIDTH}
     films = xr.Dataset(films | {"reduced_modulus": study.rollers.reduced_modulus})
     found = surface_contact(spec, LENGTH, films, study.boundary_layer, 3, fewer=2)
@@ -116,7 +116,7 @@ def test_films_read_from_single_pairs_have_intervals_that_hold_the_true_film(
     sizes = share * (1.0 - share) / np.square(scatter)
     curve, held = contact_curve(np.log(ratios), share, sizes), []
     for ratio in GAUGED:
-        for one in shares(rollers, flat[ratio].films(surface.spacing)):
+        for one in shares(rollers, flat[ratio].films(surface.spacing[1])):
             _, lower, upper = film_interval(curve, one, 1.0, SAMPLED // 2)
             held.append(lower <= np.log(ratio) <= upper)
     assert 0.92 < np.mean(held) < 0.99

@@ -13,11 +13,18 @@ from lube.errors import StudyError
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
 from lube.study.oil_properties import lubricant_table
-from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.rough_surface import rough_surface
 
 SEED = 2
 SURFACES, FEWER_SURFACES = 180, 80
 ROWS = 40
+LAYS = {
+    "without a lay": {},
+    "across": {"lay_ratio": 4.0, "lay_angle": 90.0},
+    "along": {"lay_ratio": 4.0, "lay_angle": 0.0},
+    "at an angle": {"lay_ratio": 2.0, "lay_angle": 60.0},
+    "on the second roller": {"second_own": {"lay_ratio": 2.0, "lay_angle": "-45 deg"}},
+}
 
 
 @pytest.fixture(scope="module")
@@ -51,6 +58,22 @@ def test_a_film_that_is_not_known_has_no_contact_that_is(spec, film, study):
         assert values.notnull().values.ravel().tolist() == [False, True]
 
 
+@pytest.mark.parametrize(("angle", "longer"), [(90.0, (1.0, 3.0)), (0.0, (3.0, 1.0))])
+def test_a_stretched_surface_has_the_contacts_of_the_isotropic_one(
+    make_spec, film, study, angle, longer
+):
+    """Of a strip stretched as well, by the same random numbers; but summits get blunter."""
+    few = film.isel(film_formula=0, temperature=0, speed=0, force=[0])
+    stretched = few.assign(contact_half_width=longer[0] * few["contact_half_width"])
+    layer, names = study.boundary_layer, ["geometric_contact_probability", "contacts"]
+    one = surface_contact(make_spec(50_000), 0.01, few, layer, SEED, fewer=4)
+    spec = make_spec(50_000, lay_ratio=3.0, lay_angle=angle)
+    other = surface_contact(spec, longer[1] * 0.01, stretched, layer, SEED, fewer=4)
+    for name in names:
+        np.testing.assert_allclose(one[name], other[name], rtol=0.03)
+    assert np.all(other["breakthrough_probability"] < 0.9 * one["breakthrough_probability"])
+
+
 # --- Counting ------------------------------------------------------------------------------
 
 
@@ -61,25 +84,22 @@ def shape(rms, spacing):
     return position, film
 
 
-@pytest.fixture(scope="module", params=["flat", "shaped"])
-def strip(request, spec):
-    """Film of a strip on the surface of these lines."""
-    surface = isotropic_surface(spec)
+def strip_of(spec, film_shape):
+    """Surface of these lines, and film of a strip on it."""
+    surface = rough_surface(spec)
     rms = surface.rms * spec.height_step
-    if request.param == "flat":
-        return surface, StripFilm.flat(2.6 * rms, 6.01 * surface.spacing)
-    return surface, StripFilm.shaped(*shape(rms, surface.spacing), rms)
+    if film_shape == "flat":
+        return surface, StripFilm.flat(2.6 * rms, 6.01 * surface.spacing[1])
+    return surface, StripFilm.shaped(*shape(rms, surface.spacing[1]), rms)
 
 
-@pytest.fixture(scope="module", params=[("flat", 0.0), ("computed", 0.0), ("computed", 0.4)])
-def answered(request, study, spec):
-    """Surface, strip and film at an operating point, with the slip: the oil answers the waves."""
-    film_shape, slip = request.param
+def answered_strip(study, spec, film_shape, slip):
+    """Surface, strip and film at an operating point: the oil answers the waves."""
     oil = lubricant_table(study.lubricants, [80.0]).isel(lubricant=0, temperature=0)
     choices = ["computed"], True, slip
     point = xr.DataArray(1600.0), xr.DataArray(100.0)
     film = film_at(oil, study.rollers, *point, *choices, answered_surfaces=spec).squeeze()
-    surface = isotropic_surface(spec, multiple=2**COARSEST)
+    surface = rough_surface(spec, multiple=2**COARSEST)
     rms = surface.rms * spec.height_step
     scale = 2.0 * rms / film["film_thickness"]
     film = film.assign({name: scale * film[name] for name in ("film_thickness", "film_profile")})
@@ -105,14 +125,16 @@ class Filtered:
 
     def __init__(self, surface, strip, film):
         self._surface, half_width = surface, film["contact_half_width"].item()
-        column = np.arange(strip.films(surface.spacing).size)
-        position = (strip.begin + surface.spacing * (column + 0.5)) / half_width
-        numbers = np.fft.fftfreq(surface.points, 1.0 / surface.points)
-        down, along = np.meshgrid(numbers, np.arange(surface.points // 2 + 1), indexing="ij")
-        self._number = np.hypot(down, along)
-        wavelength = surface.side / np.where(self._number, self._number, 1e-9)
+        column = np.arange(strip.films(surface.spacing[1]).size)
+        position = (strip.begin + surface.spacing[1] * (column + 0.5)) / half_width
+        rows, columns = surface.points
+        numbers = np.fft.fftfreq(rows, 1.0 / rows), np.arange(columns // 2 + 1)
+        down, along = np.meshgrid(*numbers, indexing="ij")
+        inverse = np.hypot(down / surface.sides[0], along / surface.sides[1])
+        wavelength = 1.0 / np.where(inverse, inverse, 1e-9)
         known = film["wavelength"].values
         self._changed = np.nonzero(np.isfinite(wavelength) & (wavelength >= known[-1]))
+        down, along = down / surface.sides[0], along / surface.sides[1]
         angle = np.degrees(np.arctan2(np.abs(down), along))
         place = angle[self._changed], -np.log(np.minimum(wavelength[self._changed], known[0]))
         self._responses = []
@@ -127,28 +149,28 @@ class Filtered:
             values = values * np.exp(1j * slope[..., None] * outside)
             response = RegularGridInterpolator(levels, values, method="cubic")
             beyond = position - np.clip(position, -1.0, 1.0)
-            slope = 2.0 * np.pi * half_width / surface.side * along[self._changed][:, None]
+            slope = 2.0 * np.pi * half_width * along[self._changed][:, None]
             found = [response((*place, np.full(place[0].size, one))) for one in position]
             self._responses.append(np.transpose(found) * np.exp(-1j * slope * beyond))
 
     def drawn(self, generator):
-        surface, shape = self._surface, (self._surface.points,) * 2
-        first = surface.first_part[np.rint(self._number).astype(int)]
+        surface, shape = self._surface, self._surface.points
+        first = surface.first_part
         waves = [
             np.fft.rfft2(generator.standard_normal(shape))
-            * (surface.points * np.sqrt(part * surface.variances))
+            * np.sqrt(np.prod(shape) * part * surface.variances)
             for part in (first, 1.0 - first)
         ]
         heights = np.fft.irfft2(sum(waves), shape)
         down, along = self._changed
 
         def across(column, width):
-            at = 2j * np.pi / surface.points * along[:, None] * (column + np.arange(width))
+            at = 2j * np.pi / shape[1] * along[:, None] * (column + np.arange(width))
             twice = np.where(along, 2.0, 1.0)[:, None] * np.exp(at)
-            added = np.zeros((surface.points, width), complex)
+            added = np.zeros((shape[0], width), complex)
             for own, response in zip(waves, self._responses, strict=True):
                 np.add.at(added, down, own[self._changed][:, None] * response * twice)
-            added = np.fft.ifft(added, axis=0).real / surface.points
+            added = np.fft.ifft(added, axis=0).real / shape[1]
             return heights[:, column : column + width] + added
 
         return across, np.fft.irfft2(sum(waves) * surface.curvatures, shape)
@@ -157,32 +179,37 @@ class Filtered:
 def searched(surfaces, points, films, sharp, generator):
     """Shares of strips that touch and that break, and their numbers in a strip, on a surface."""
     across, curvatures = surfaces.drawn(generator)
-    found = np.zeros((2, 2))
-    begins = [
-        (row, column)
-        for column in range(0, points - films.size, 40)
-        for row in range(0, points - ROWS, 2 * ROWS)
-    ]
-    columns = {column: across(column, films.size) for _, column in begins}
-    for row, column in begins:
-        part = np.s_[row : row + ROWS, column : column + films.size]
-        overlap = columns[column][row : row + ROWS] - films
-        labels, contacts = scipy.ndimage.label(overlap > 0.0)
-        summits = scipy.ndimage.maximum_position(overlap, labels, range(1, contacts + 1))
-        breaking = sum(curvatures[part][summit] > sharp[summit[1]] for summit in summits)
-        found += [[contacts > 0, breaking > 0], [contacts, breaking]]
-    return found / len(begins)
+    shares, numbers = [], []
+    for column in range(0, points[1] - films.size, 40):
+        overlap = across(column, films.size) - films
+        sharper = curvatures[:, column : column + films.size] > sharp
+        for row in range(0, points[0] - ROWS, 2 * ROWS):
+            part = slice(row, row + ROWS)
+            found = contacts_in(overlap[part], sharper[part])[1:]
+            shares.append([len(found) > 0, any(found)])
+        # A contact is in the strip in which it begins.
+        labels, *found = contacts_in(overlap, sharper)
+        begun = np.delete(found, np.unique(labels[0])[1:] - 1)
+        numbers.append(np.array([begun.size, np.sum(begun)]) * ROWS / (points[0] - 1))
+    return np.stack([np.mean(shares, axis=0), np.mean(numbers, axis=0)])
+
+
+def contacts_in(overlap, sharper):
+    """Labels of contacts, then of each whether it breaks its boundary layer."""
+    labels, count = scipy.ndimage.label(overlap > 0.0)
+    summits = scipy.ndimage.maximum_position(overlap, labels, range(1, count + 1))
+    return labels, *(bool(sharper[summit]) for summit in summits)
 
 
 def compare(spec, surfaces, surface, film, count):
     """Compare sampled contact with contact counted on whole surfaces."""
     curvature = 2.0 * np.std(surface.draw(np.random.default_rng(1))[1]) * spec.height_step
-    films = film.films(surface.spacing) / spec.height_step
-    sharp = film.breaking_curvatures(surface.spacing, curvature) / spec.height_step
+    films = film.films(surface.spacing[1]) / spec.height_step
+    sharp = film.breaking_curvatures(surface.spacing[1], curvature) / spec.height_step
     rng = np.random.default_rng(8)
     points = surface.points
     counted = np.array([searched(surfaces, points, films, sharp, rng) for _ in range(count)])
-    length = (ROWS + 0.5) * surface.spacing
+    length = (ROWS + 0.5) * surface.spacing[0]
     strips = [film], np.array([False])
     seeds = surface_strip.surface_seeds(SEED, surface_strip.SURFACES)
     found = surface_strip._sampled(spec, surface, *strips, [curvature], length, seeds)
@@ -191,17 +218,31 @@ def compare(spec, surfaces, surface, film, count):
     for name, values in zip(names, counted.reshape(count, 4).T, strict=True):
         half = (found[f"{name}_upper"] - found[name]).item()
         error = np.hypot(np.std(values, ddof=1) / count**0.5, half / 2.0)
-        # A contact that lies across an end of the strip is counted, but does not begin there.
         assert abs(found[name].item() - np.mean(values)) < 3.0 * error
-        assert error < 0.07 * np.mean(values)
+        assert error < 0.15 * np.mean(values)
     assert np.mean(counted[:, 0, 1]) < 0.95 * np.mean(counted[:, 0, 0])  # some do not break
 
 
-def test_strips_touch_and_break_as_often_as_on_whole_surfaces(spec, strip):
-    surface, film = strip
+@pytest.mark.parametrize("lay", LAYS)
+@pytest.mark.parametrize("film_shape", ["flat", "shaped"])
+def test_strips_touch_and_break_as_often_as_on_whole_surfaces(make_spec, film_shape, lay):
+    spec = make_spec(50_000, **LAYS[lay])
+    surface, film = strip_of(spec, film_shape)
     compare(spec, Unchanged(surface), surface, film, SURFACES)
 
 
-def test_strips_that_the_oil_answers_touch_as_often_as_whole_surfaces_so_filtered(spec, answered):
-    surface, strip, film = answered
+@pytest.mark.parametrize(
+    ("film_shape", "slip", "lay"),
+    [
+        ("flat", 0.0, "without a lay"),
+        ("computed", 0.0, "without a lay"),
+        ("computed", 0.4, "without a lay"),
+        ("computed", 0.4, "at an angle"),
+    ],
+)
+def test_strips_that_the_oil_answers_touch_as_often_as_whole_surfaces_so_filtered(
+    study, make_spec, film_shape, slip, lay
+):
+    spec = make_spec(50_000, **LAYS[lay])
+    surface, strip, film = answered_strip(study, spec, film_shape, slip)
     compare(spec, Filtered(surface, strip, film), surface, strip, FEWER_SURFACES)

@@ -10,6 +10,7 @@ from lube.kernels.areal import BLOCK, NO_ANSWER, Answered, contacts_per_row, tou
 REACH, AROUND, WIDTH = 60, 20, 24
 ACROSS = np.linspace(-1.0, 1.0, WIDTH)
 SHIFT, NODES = 2, (WIDTH - 1 >> 2) + 2
+FIRST = -REACH >> SHIFT
 
 
 def smooth_surface(rng, size):
@@ -18,9 +19,10 @@ def smooth_surface(rng, size):
     return heights.astype(np.float32), (-scipy.ndimage.laplace(heights)).astype(np.float32)
 
 
-def bump(width, rows, columns):
-    down, across = np.arange(rows)[:, None], np.arange(1 - columns, columns)
-    return np.exp(-0.5 * (down**2 + across**2) / width**2).astype(np.float32)
+def bump(width):
+    """Covariance of a surface with a lay at an angle."""
+    down, across = np.arange(-REACH, AROUND + 1)[:, None], np.arange(1 - WIDTH, WIDTH)
+    return np.exp(-0.5 * (down**2 + across**2 + down * across) / width**2).astype(np.float32)
 
 
 def random_answer(rng, size):
@@ -29,11 +31,13 @@ def random_answer(rng, size):
     fields = np.pad(scipy.ndimage.gaussian_filter(fields, (0, 1, 1)), ((0, 0), (0, 1), (0, 1)))
     shapes = np.linspace([0.5, -1.0], [2.0, 1.0], NODES)
     node = np.arange(NODES)
-    across, rows = (node[:, None] - node)[:, None], np.arange((REACH >> SHIFT) + 2)[:, None]
-    covariances = (0.1 * node[:, None, None] - 0.3) * np.exp(-0.1 * (across**2 + rows**2))
+    across = (node[:, None] - node)[:, None]
+    rows = np.arange(FIRST, (AROUND >> SHIFT) + 2)[:, None]
+    distance = across**2 + rows**2 + rows * across
+    covariances = (0.1 * node[:, None, None] - 0.3) * np.exp(-0.1 * distance)
     covariances = np.stack([covariances, 0.4 * covariances[::-1]])
     values = np.moveaxis(fields, 0, -1), shapes, covariances
-    return Answered(*(each.astype(np.float32) for each in values), SHIFT)
+    return Answered(*(each.astype(np.float32) for each in values), FIRST, SHIFT)
 
 
 def interpolated(values, *places):
@@ -50,7 +54,7 @@ def added(answered, row, column, origin):
     first = column >> SHIFT
     part = answered.fields[:, first : first + NODES]
     heights = interpolated(np.sum(part * answered.shapes, axis=-1), row + rows, columns)
-    lags = np.array([origin]), np.abs(rows), columns
+    lags = np.array([origin]), rows - (FIRST << SHIFT), columns
     return heights, [interpolated(each, *lags)[0] for each in answered.covariances]
 
 
@@ -62,8 +66,7 @@ def naive(fields, covariances, row, column, origin, height, film, sharp, fading,
     lags = covariances[0].shape[1] // 2 + columns - origin
     by_oil, known_by_oil = added(answered, row, column, origin)
     known, known_curvature = (
-        drawn[np.abs(rows)][:, lags] + by_oil
-        for drawn, by_oil in zip(covariances, known_by_oil, strict=True)
+        drawn[:, lags] + by_oil for drawn, by_oil in zip(covariances, known_by_oil, strict=True)
     )
     heights = fields[0][part] + by_oil
     rise = (height - heights[REACH, origin]) / known[REACH, origin]
@@ -100,7 +103,7 @@ def test_strips_are_weighed_as_by_a_naive_implementation(least, shape, is_answer
     film, sharp, fading = least + shape * ACROSS**2, 0.9 + shape * ACROSS, 2.0 + ACROSS
     rng = np.random.default_rng(5)
     fields = smooth_surface(rng, 200)
-    covariances = bump(2.0, REACH + 1, WIDTH), 0.5 * bump(1.5, REACH + 1, WIDTH)
+    covariances = bump(2.0), 0.5 * bump(1.5)
     count = 150
     places = rng.integers(REACH, 200 - AROUND, count), rng.integers(0, 200 - WIDTH, count)
     answered = NO_ANSWER
@@ -141,7 +144,7 @@ def test_contacts_are_counted_in_the_row_in_which_they_begin(shape, is_answered)
         summits = scipy.ndimage.maximum_position(overlap, labels, begun)
         breaks = [fields[1][part][summit] > sharp[summit[1]] for summit in summits]
         expected += len(begun), sum(breaks)
-    covariances = (np.zeros((REACH + 1, 2 * WIDTH - 1), np.float32),) * 2
+    covariances = (np.zeros((REACH + 1 + AROUND, 2 * WIDTH - 1), np.float32),) * 2
     found = contacts_per_row(fields, covariances, places, film, sharp, AROUND, answered)
     np.testing.assert_allclose(found * 20 * (REACH + AROUND), expected)
     assert 0 < expected[1] < 0.9 * expected[0]

@@ -6,6 +6,7 @@ import scipy.integrate
 import scipy.stats
 
 from lube.physics.excursions import (
+    SurfaceMoments,
     breaking_curvature,
     crossing_rate,
     expected_contacts,
@@ -14,6 +15,7 @@ from lube.physics.excursions import (
 )
 
 MOMENTS = 2.0, 3.0, 40.0
+SURFACE = SurfaceMoments(2.0, along=1.5, across=1.5, mixed=0.0, curvature=40.0)
 
 
 def test_a_narrow_band_crosses_zero_once_a_wave():
@@ -63,26 +65,28 @@ def test_the_layer_breaks_at_the_curvature_where_the_remaining_thickness_is_crit
 def test_contacts_of_a_point_a_line_and_a_large_area():
     height = 3.0
     level, tail = height * np.sqrt(MOMENTS[0]), scipy.stats.norm.sf(height)
-    assert expected_contacts(level, MOMENTS, 0.0, 0.0) == pytest.approx(tail)
-    one_direction = MOMENTS[0], MOMENTS[1] / 2.0, 0.0
-    along = 5.0 * crossing_rate(level, one_direction)
-    assert expected_contacts(level, MOMENTS, 5.0, 0.0) == pytest.approx(tail + along)
-    # Adler & Taylor: (2 pi)^(-3/2) lambda_2 u exp(-u^2/2) per area.
+    moments = SurfaceMoments(MOMENTS[0], along=0.9, across=2.1, mixed=0.4, curvature=40.0)
+    assert expected_contacts(level, moments, 0.0, 0.0) == pytest.approx(tail)
+    for slope, *sides in ((moments.across, 5.0, 0.0), (moments.along, 0.0, 5.0)):
+        edge = 5.0 * crossing_rate(level, (MOMENTS[0], slope, 0.0))
+        assert expected_contacts(level, moments, *sides) == pytest.approx(tail + edge)
+    # Adler & Taylor: (2 pi)^(-3/2) (det lambda)^(1/2) u exp(-u^2/2) per area.
     dense = height * np.exp(-(height**2) / 2.0) / (2.0 * np.pi) ** 1.5
-    dense *= MOMENTS[1] / 2.0 / MOMENTS[0]
-    assert expected_contacts(level, MOMENTS, 1e4, 1e4) == pytest.approx(1e8 * dense, rel=1e-3)
+    dense *= np.sqrt(np.linalg.det([[0.9, 0.4], [0.4, 2.1]])) / MOMENTS[0]
+    assert expected_contacts(level, moments, 1e4, 1e4) == pytest.approx(1e8 * dense, rel=1e-3)
 
 
 def test_all_summits_of_a_surface_are_sharper_than_flat_and_none_than_a_needle():
     levels = np.array([0.5, 2.0, 9.0])
-    np.testing.assert_allclose(sharp_surface_summit_share(levels, MOMENTS, 0.0), 1.0)
-    assert np.all(sharp_surface_summit_share(levels, MOMENTS, 1e3) < 1e-100)
+    np.testing.assert_allclose(sharp_surface_summit_share(levels, SURFACE, 0.0), 1.0)
+    assert np.all(sharp_surface_summit_share(levels, SURFACE, 1e3) < 1e-100)
+    unlike = SURFACE._replace(along=1.0)
+    assert np.isnan(sharp_surface_summit_share(levels, unlike, 1.0)).all()
 
 
 def test_sharp_summits_of_a_surface_are_those_of_drawn_critical_points():
     """Heights and second derivatives drawn at points without slope, weighed by |det H| (Rice)."""
-    m0, m2, m4 = MOMENTS
-    m2, cross = m2 / 2.0, m4 / 8.0
+    m0, m2, cross = SURFACE.height, SURFACE.along, SURFACE.curvature / 8.0
     covariance = [
         [m0, -m2, -m2, 0.0],
         [-m2, 3.0 * cross, cross, 0.0],
@@ -95,6 +99,6 @@ def test_sharp_summits_of_a_surface_are_those_of_drawn_critical_points():
     maximum = (weight > 0.0) & (xx < 0.0) & (z > 2.0)
     sharp = maximum & (-(xx + yy) / 2.0 > 4.0)
     expected = weight[sharp].sum() / weight[maximum].sum()
-    found = sharp_surface_summit_share(np.array([2.0]), MOMENTS, 4.0)
+    found = sharp_surface_summit_share(np.array([2.0]), SURFACE, 4.0)
     assert found == pytest.approx(expected, abs=0.01)
     assert 0.1 < expected < 0.9

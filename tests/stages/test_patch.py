@@ -66,7 +66,7 @@ def test_lines_that_are_not_gaussian_are_refused(make_spec):
 
 
 def test_without_tamaas_one_line_comes_before_any_work(spec, monkeypatch):
-    monkeypatch.setattr(patch, "isotropic_surface", None)
+    monkeypatch.setattr(patch, "rough_surface", None)
     monkeypatch.setitem(sys.modules, "tamaas", None)
     with pytest.raises(LubeError, match="tamaas is not installed"):
         patch_contact(spec, MODULUS, 1)

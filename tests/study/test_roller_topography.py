@@ -14,7 +14,7 @@ from studies import CONFIG, PAPER
 
 from lube.errors import LubeError
 from lube.study.study import load_study
-from lube.surfaces.rare_contact import check_isotropic
+from lube.surfaces.rare_contact import check_stands_for_surface
 from lube.surfaces.spectra import spectrum_moments
 from lube.surfaces.synthetic import draw_realisation
 
@@ -156,11 +156,13 @@ def test_a_topography_of_both_rollers_is_read_and_resampled_once(study_file):
 
 
 def test_no_isotropic_surface_belongs_to_profiles_along_rolling(study_file):
-    check_isotropic(load_study(study_file(MAP)).line_spec)
+    check_stands_for_surface(load_study(study_file(MAP)).line_spec)
     with pytest.raises(LubeError, match="need isotropic topographies"):
-        check_isotropic(load_study(study_file(SCAN)).line_spec)
+        check_stands_for_surface(load_study(study_file(SCAN)).line_spec)
     with pytest.raises(LubeError, match="got a measured line, need lines drawn"):
-        check_isotropic(load_study(study_file(SCAN | {"use": "repeated line"}, MAP)).line_spec)
+        check_stands_for_surface(
+            load_study(study_file(SCAN | {"use": "repeated line"}, MAP)).line_spec
+        )
 
 
 def test_what_was_read_of_a_map_is_plain_data_and_spares_the_jobs_reading_it(study_file):

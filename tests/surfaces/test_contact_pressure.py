@@ -7,7 +7,7 @@ import scipy.special
 from lube.errors import StudyError
 from lube.surfaces.contact_pressure import contact_pressure
 from lube.surfaces.elastic_contact import press_surface
-from lube.surfaces.isotropic import isotropic_surface
+from lube.surfaces.rough_surface import rough_surface
 from lube.surfaces.spectra import pair_moments
 
 MODULUS = 115e9
@@ -45,10 +45,10 @@ def test_pressure_rises_without_a_jump_as_the_gap_closes(spec, make_spec):
 def test_pressure_is_that_of_a_numerical_solution(spec):
     """On a surface of eight longest waves, which differ by some 10 % from one another."""
     rms, gradient = moments(spec)
-    surface = isotropic_surface(spec, contact=3.75e-5, waves=8)
+    surface = rough_surface(spec, contact=(3.75e-5, 3.75e-5), waves=8)
     pressures = MODULUS * gradient * np.array([0.003, 0.03, 0.1])
     heights = surface.draw(np.random.default_rng(0))[0].astype(float) * spec.height_step
-    pressed = press_surface(heights, surface.side, MODULUS, pressures)
+    pressed = press_surface(heights, surface.sides[0], MODULUS, pressures)
     gaps = np.array([contact.gap for contact in pressed])
     assert 0.4 * rms < gaps[-1] and 1.9 * rms < gaps[0]
     np.testing.assert_allclose(contact_pressure(spec, MODULUS, gaps), pressures, rtol=0.2)

@@ -1,0 +1,296 @@
+r"""The rough surface whose line the model uses.
+
+The method of dimensionality reduction replaces a surface of the power spectrum :math:`C_{2D}` by a
+line of :math:`C_{1D} = \pi q\, C_{2D}` (paper, section 2). Backwards, every spectrum of lines
+belongs to one isotropic surface. Its waves have the line's distribution of wavenumbers, and run in
+all directions:
+
+.. math:: \langle z^2 \rangle = \int_0^\infty 2 \pi q\, C_{2D}(q)\, dq
+          = \int_{-\infty}^\infty C_{1D}(q)\, dq
+
+A surface with a lay is stretched along it, see `lube.surfaces.lay`.
+"""
+
+import functools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+
+from lube.errors import DataError
+from lube.surfaces.lay import extents, unstretched
+from lube.surfaces.synthetic import LineSpecLike, amplitudes_across_lay
+from lube.types import Array, Pair
+
+POINTS_PER_WAVE = 5
+"""Grid points in the shortest wavelength."""
+LONGEST_WAVES = 4
+"""Longest wavelengths along a side of the surface."""
+POINTS_PER_CONTACT = 6
+"""Grid points across the smallest contacts, unless a side then has more than `LARGE` points."""
+LARGE, LARGEST = 4096, 8192
+"""Most points along a side to which the grid is refined for small contacts, and most allowed."""
+UNRESOLVED = math.inf, math.inf
+"""The smallest contacts do not matter."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The sum of both rollers' surfaces, on a periodic rectangle.
+
+    Its rows lie along rolling, and follow one another along the rollers.
+
+    Attributes
+    ----------
+    spacing : tuple of float
+        Distance of neighbouring rows, and of neighbouring points in a row, m.
+    points : tuple of int
+        Rows M, and points N in a row.
+    rms : float
+        Rms height, height steps.
+    first_part : numpy.ndarray
+        Shape (M, N // 2 + 1), part of the variance of each wave that is the first roller's.
+    variances : numpy.ndarray
+        Shape (M, N // 2 + 1), variance of the heights by each wave, squared height steps.
+    curvatures : numpy.ndarray
+        Shape (M, N // 2 + 1), mean curvature of each wave over its height, 1/m^2.
+    is_mirrored : bool
+        Whether the surface is alike in both directions along the rollers; not if it has a lay at
+        an angle.
+    """
+
+    spacing: tuple[float, float]
+    points: tuple[int, int]
+    rms: float
+    first_part: Array
+    variances: Array
+    curvatures: Array
+    is_mirrored: bool
+
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Lengths along the rollers and along rolling, m."""
+        return self.points[0] * self.spacing[0], self.points[1] * self.spacing[1]
+
+    def draw(
+        self, generator: np.random.Generator, coarser: tuple[int, int] = (1, 1)
+    ) -> tuple[Array, Array, Array]:
+        """Draw a realisation.
+
+        Parameters
+        ----------
+        generator : numpy.random.Generator
+            Source of randomness.
+        coarser : tuple of int, optional
+            Points of a coarser grid, on which the long waves are wanted too.
+
+        Returns
+        -------
+        heights, curvatures : numpy.ndarray
+            Shape (M, N) each, float32, height steps and height steps per square metre. The
+            curvature is the mean of those in two directions, positive at summits.
+        long_waves : numpy.ndarray
+            Fourier coefficients of the heights on the coarser grid, as from `scipy.fft.rfft2`.
+        """
+        noise = generator.standard_normal(self.points, dtype=np.float32)
+        waves = scipy.fft.rfft2(noise)
+        waves *= _amplitudes(self.points, self.variances)
+        heights, long_waves = scipy.fft.irfft2(waves, self.points), on_coarser_grid(waves, coarser)
+        waves *= self.curvatures.astype(np.float32)
+        return heights, scipy.fft.irfft2(waves, self.points, overwrite_x=True), long_waves
+
+    def of_each(self, waves: Array, points: Pair, generator: np.random.Generator) -> list[Array]:
+        """Divide drawn waves among the surfaces of both rollers.
+
+        Parameters
+        ----------
+        waves : numpy.ndarray
+            Long waves from `draw`.
+        points : tuple of int
+            Points of their grid.
+        generator : numpy.random.Generator
+            Source of randomness.
+
+        Returns
+        -------
+        list of numpy.ndarray
+            Waves of the first and of the second surface, which are independent. Their sum is
+            `waves`.
+        """
+        part, variances = (_long_waves(each, points) for each in (self.first_part, self.variances))
+        # The first is the mean that the sum leaves to expect, and a part independent of the sum.
+        noise = scipy.fft.rfft2(generator.standard_normal(points, dtype=np.float32))
+        noise *= _amplitudes(points, part * (1.0 - part) * variances)
+        first = part.astype(np.float32) * waves + noise
+        return [first, waves - first]
+
+    def covariances(self, before: int, after: int, columns: int) -> Iterator[Array]:
+        """Covariance of a height with heights and with curvatures around it.
+
+        Parameters
+        ----------
+        before, after, columns : int
+            Numbers of rows B before and A after that of the height, and number of columns C.
+
+        Yields
+        ------
+        numpy.ndarray
+            First the covariance with heights, then with curvatures: shape (B + 1 + A, 2 C - 1),
+            float32, over the variance of the heights; at distances of -B .. A rows and of
+            -(C - 1) .. C - 1 columns.
+        """
+        rows = np.arange(-before, after + 1)[:, None]
+        for factor in (1.0, self.curvatures):
+            around = scipy.fft.irfft2(self.variances * factor, self.points, norm="forward")
+            yield (around[rows, np.arange(1 - columns, columns)] / self.rms**2).astype(np.float32)
+
+
+def on_coarser_grid(waves: Array, points: tuple[int, int]) -> Array:
+    """Fourier coefficients of the same surface on a coarser grid, without waves too short for it.
+
+    Parameters
+    ----------
+    waves : numpy.ndarray
+        Coefficients as from `scipy.fft.rfft2`, shape (M, N // 2 + 1).
+    points : tuple of int
+        Points of the coarser grid, as many times fewer in both directions.
+
+    Returns
+    -------
+    numpy.ndarray
+        Coefficients, shape (points[0], points[1] // 2 + 1).
+    """
+    return (points[0] / waves.shape[0]) ** 2 * _long_waves(waves, points)
+
+
+def _long_waves(values, points):
+    """Values at the waves that a coarser grid has, 0 at its shortest waves."""
+    found = np.zeros((points[0], points[1] // 2 + 1), values.dtype)
+    half, columns = (points[0] - 1) // 2, (points[1] + 1) // 2
+    rows = np.arange(-half, half + 1)
+    found[rows, :columns] = values[rows, :columns]
+    return found
+
+
+def _amplitudes(points, variances):
+    """Amplitudes of waves that are made of white noise."""
+    return math.sqrt(points[0] * points[1]) * np.sqrt(variances).astype(np.float32)
+
+
+def surface_grid(
+    spec: LineSpecLike, width: float, contact: Pair = UNRESOLVED, waves: int = LONGEST_WAVES
+) -> tuple[Pair, Pair]:
+    """Choose the grid of a surface.
+
+    Parameters
+    ----------
+    spec, width, contact, waves
+        As in `rough_surface`.
+
+    Returns
+    -------
+    sides, spacing : tuple of float
+        Least lengths of the sides, and distances of neighbouring points, along the rollers and
+        along rolling, m.
+
+    Raises
+    ------
+    DataError
+        If the band of wavelengths is too wide for the grid.
+    """
+    lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
+    sides, spacings = [], []
+    for along, own in ((1, contact[0]), (0, contact[1])):
+        # The ridges of either surface reach furthest, and are cut along a side.
+        stretched = [extents(*lay) for lay in lays]
+        lines = zip(spec.lines, stretched, strict=True)
+        longest = max(2.0 * math.pi / line.q_min * one[along] for line, one in lines)
+        cuts = zip(spec.lines, lays, stretched, strict=True)
+        shortest = min(
+            2.0 * math.pi / line.q_max * (lay[0] / one[1 - along]) for line, lay, one in cuts
+        )
+        side, spacing = max(waves * longest, width + longest), shortest / POINTS_PER_WAVE
+        spacing = min(spacing, max(own / POINTS_PER_CONTACT, side / LARGE))
+        times = side / spacing / LARGEST
+        if times > 1.0:
+            lay = ", or ridges less long" * (longest > spec.longest_wavelength)
+            raise DataError(
+                f"roughness: got a shortest wavelength of {shortest:.3g} m, too short for a "
+                f"surface of {side:.3g} m, need one {times:.3g} times as long{lay}"
+            )
+        sides.append(side)
+        spacings.append(spacing)
+    return tuple(sides), tuple(spacings)
+
+
+@functools.lru_cache(maxsize=1)
+def rough_surface(
+    spec: LineSpecLike,
+    width: float = 0.0,
+    contact: Pair = UNRESOLVED,
+    waves: int = LONGEST_WAVES,
+    multiple: int = 1,
+) -> Surface:
+    """Find the surface that a pair of lines stands for.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines.
+    width : float, optional
+        Contact width, m; the surface is wider by a longest wavelength at least.
+    contact : tuple of float, optional
+        Lengths of the smallest contacts along the rollers and along rolling, m.
+    waves : int, optional
+        Least number of longest wavelengths along a side.
+    multiple : int, optional
+        The number of points along a side is a multiple of this.
+
+    Returns
+    -------
+    Surface
+        The sum of both rollers' surfaces.
+
+    Raises
+    ------
+    DataError
+        If the band of wavelengths is too wide for the grid.
+    """
+    sides, spacing = surface_grid(spec, width, contact, waves)
+    points = tuple(
+        multiple * scipy.fft.next_fast_len(math.ceil(side / one / multiple), real=True)
+        for side, one in zip(sides, spacing, strict=True)
+    )
+    steps = [2.0 * np.pi / (number * one) for number, one in zip(points, spacing, strict=True)]
+    down = steps[0] * np.fft.fftfreq(points[0], 1.0 / points[0])[:, None]
+    along = steps[1] * np.arange(points[1] // 2 + 1)
+    # The first column, and the last of an even number, hold a wave and its mirror image.
+    number = np.full((points[0], along.size), 2)
+    number[:, 0] = 1
+    number[:, -1] -= 1 - points[1] % 2
+    lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
+    of_each = []
+    for roller, lay in enumerate(lays):
+        # The variance of the lines' waves is divided among the surface's waves of the same length,
+        # in shells of a width at which none is empty.
+        step = max(unstretched(steps[1], 0.0, *lay), unstretched(0.0, steps[0], *lay))
+        shell = np.rint(unstretched(along, down, *lay) / step).astype(np.int64)
+        power = _power(spec, roller, step, shell.max() + 1)
+        of_each.append((power / np.bincount(shell.ravel(), number.ravel()))[shell])
+    first, second = of_each
+    variances = first + second
+    rms = math.sqrt(np.sum(variances * number))
+    first = first / np.where(variances > 0.0, variances, 1.0)
+    curvatures = 0.5 * (along**2 + down**2)
+    is_mirrored = all(angle % 90.0 == 0.0 or ratio == 1.0 for ratio, angle in lays)
+    return Surface(spacing, points, rms, first, variances, curvatures, is_mirrored)
+
+
+def _power(spec, roller, step, shells):
+    """Variance of a line's waves in each shell of wavenumbers, squared height steps."""
+    first, amplitudes = amplitudes_across_lay(spec, roller)
+    own_step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    shell = np.rint(own_step / step * np.arange(first, first + amplitudes.size)).astype(np.int64)
+    return np.bincount(shell, 0.5 * (amplitudes / spec.height_step) ** 2, minlength=shells)
