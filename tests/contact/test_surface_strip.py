@@ -66,9 +66,10 @@ def test_a_stretched_surface_has_the_contacts_of_the_isotropic_one(
     few = film.isel(film_formula=0, temperature=0, speed=0, force=[0])
     stretched = few.assign(contact_half_width=longer[0] * few["contact_half_width"])
     layer, names = study.boundary_layer, ["geometric_contact_probability", "contacts"]
-    one = surface_contact(make_spec(50_000), 0.01, few, layer, SEED, fewer=4)
+    choices = {"fewer": 4, "weaker": 2.0}
+    one = surface_contact(make_spec(50_000), 0.01, few, layer, SEED, **choices)
     spec = make_spec(50_000, lay_ratio=3.0, lay_angle=angle)
-    other = surface_contact(spec, longer[1] * 0.01, stretched, layer, SEED, fewer=4)
+    other = surface_contact(spec, longer[1] * 0.01, stretched, layer, SEED, **choices)
     for name in names:
         np.testing.assert_allclose(one[name], other[name], rtol=0.03)
     assert np.all(other["breakthrough_probability"] < 0.9 * one["breakthrough_probability"])
