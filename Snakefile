@@ -25,14 +25,18 @@ rule all:
     input:
         [result(f"{kind}.nc") for kind in STUDY.datasets],
         products(ALWAYS),
-        result("explorer.html"),
+        EXPLORER,
         [result(f"report/{page}.html") for page in ("configuration", "assumptions", "run_times")],
     message:
-        f"Done: datasets, figures, executed notebooks and explorer.html are in {RESULTS}"
+        (
+            f"Done: datasets, figures, executed notebooks and explorer.html are in {RESULTS}"
+            if EXPLORER
+            else f"Done: datasets, figures and executed notebooks are in {RESULTS}"
+        )
 
 
 rule areal_contact:
-    """Contact of the isotropic surface that the lines stand for."""
+    """Contact of the surface that the lines stand for."""
     input:
         products(made_by("areal_contact", FIGURES)),
     message:

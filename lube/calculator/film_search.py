@@ -13,7 +13,7 @@ from lube.schema import LIMITS
 from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval, probability_interval
 from lube.statistics.curves import contact_curve, peaked_curve
-from lube.study.line_spec import check_width
+from lube.study.line_spec import check_follows_rolling, check_width
 from lube.surfaces.spectra import surface_moments
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
@@ -57,6 +57,8 @@ class FilmSearch:
         self._on_surface = "surface" in choices.models
         self._realisations = check_realisations(realisations, seed)
         self._rollers, self._seed = rollers, seed
+        if not self._on_surface:
+            check_follows_rolling(rollers.lines)
         self._sigma = rollers.pair.composite_rms_roughness
 
     def along(self, table, levels, tried):

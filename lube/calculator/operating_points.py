@@ -35,7 +35,7 @@ from lube.stages.film_profile import film_profile_table
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.stages.trace import contact_trace
 from lube.statistics.sample_size import independent_windows
-from lube.study.line_spec import check_width
+from lube.study.line_spec import check_follows_rolling, check_width
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
@@ -333,6 +333,7 @@ def ensemble(
     thickness, width = xr.broadcast(table["film_thickness"], 2.0 * table["contact_half_width"])
     for end in (width.min().item(), width.max().item()):
         check_width(spec, end, "force: the contact")
+    check_follows_rolling(spec)
     check_realisations(realisations, seed)
     windows = ContactWindows(spec, table, rollers.layer, gap)
 
@@ -393,6 +394,7 @@ def trace(
     table = film_table(*one, [one_formula(film_formula)])
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
     check_width(rollers.lines, 2.0 * table["contact_half_width"].item(), "force: the contact")
+    check_follows_rolling(rollers.lines)
     lines = roughness_batch(rollers.lines, seed, [0])
     found = contact_trace(lines, table, [point], rollers.layer, rollers.resistivity)
     names = ["film_thickness", "contact_half_width", "contact_length", "contact_resistance"]

@@ -47,6 +47,8 @@ _MODELS = (
         "roll_off_wavelength",
         "skewness",
         "kurtosis",
+        "lay_ratio",
+        "lay_angle",
     ),
 )
 """Arguments for a roller, for the heights of its roughness, and for the roughness of both."""
@@ -127,6 +129,10 @@ class Rollers:
         none.
     skewness, kurtosis : float, optional
         Skewness and kurtosis of the heights, by default Gaussian.
+    lay_ratio : float, optional
+        How many times longer than wide the ridges of the surfaces are, by default 1: no lay.
+    lay_angle : str, optional
+        Angle between ridges and rolling, such as ``"0 deg"`` for ground rollers.
     points : int, optional
         Grid points around the first roller; by default about ten in the shortest wavelength.
     critical_thickness, shear_strength : str, optional
@@ -186,6 +192,8 @@ class Rollers:
         roll_off_wavelength: str | None = None,
         skewness: float = 0.0,
         kurtosis: float = 3.0,
+        lay_ratio: float = 1.0,
+        lay_angle: str | None = None,
         points: int | None = None,
         critical_thickness: str = "5 nm",
         shear_strength: str = "1 MPa",

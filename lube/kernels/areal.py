@@ -104,8 +104,8 @@ def touching_strips(
         steps.
     around : int
         Number A of rows ahead of the known one in which its contact is followed; it is followed
-        back through all R rows. A contact that begins as many rows back, or more, is too long for the
-        sums over first contacts.
+        back through all R rows. A contact that begins as many rows back, or more, is too long for
+        the sums over first contacts.
     answered : Answered
         What the oil adds to the surface; `NO_ANSWER` if it does not change it.
 

@@ -20,6 +20,7 @@ NO_FIGURE = "no-figure"
 _SHOWS = {
     "gaussian-lines": lambda study: study.is_sampled,
     "lines": lambda study: study.has_lines,
+    "no-lines": lambda study: not study.has("contact"),
     "surfaces": lambda study: study.has("surface_response"),
     "flat-film": lambda study: study.gap.is_plain,
     "ensemble": lambda study: not study.line_spec.is_one_pair,
@@ -80,9 +81,10 @@ class Figure:
         bool
             False if the study lacks a dataset of the figure, or what a tag asks for: several levels
             or oils (``several-force``, ``several-lubricant``), Gaussian lines that can be sampled
-            (``gaussian-lines``), contact of lines (``lines``), lines that stand for isotropic
-            Gaussian surfaces (``surfaces``), contact that depends only on film thickness and
-            contact width (``flat-film``), or several pairs of lines (``ensemble``).
+            (``gaussian-lines``), contact of lines (``lines``), surfaces for which no line stands
+            (``no-lines``), lines that stand for Gaussian surfaces (``surfaces``), contact that
+            depends only on film thickness and contact width (``flat-film``), or several pairs of
+            lines (``ensemble``).
         """
         if not all(study.has(name) for name in self.datasets):
             return False

@@ -83,6 +83,7 @@ def origin(figure: str) -> str:
 
 _NEEDED = {
     "topographies": "a measured topography of a roller",
+    "line_spec.follows_rolling": "ridges that do not run along rolling",
     "line_spec.is_gaussian": "Gaussian roughness lines",
     "line_spec.has_surface": "lines that stand for surfaces",
     "line_spec.is_isotropic": "isotropic surfaces",
@@ -204,9 +205,11 @@ class StudyFiles:
         dict of str to list of str
             From the step's name in the report to its files.
         """
-        steps = {"batches of realisations": [f"batch_{first}" for first in self.study.batches]}
-        steps |= {stage: [stage] for stage in self.study.datasets}
-        steps |= {"figures": list(figures), "explorer": ["explorer"]}
+        steps = {stage: [stage] for stage in self.study.datasets}
+        steps |= {"figures": list(figures)}
+        if self.study.has("contact"):
+            batches = [f"batch_{first}" for first in self.study.batches]
+            steps = {"batches of realisations": batches} | steps | {"explorer": ["explorer"]}
         file = "benchmarks/{}.tsv".format
         return {step: [self.result(file(job)) for job in jobs] for step, jobs in steps.items()}
 

@@ -1,4 +1,4 @@
 """The report of a study and the tables of the documentation."""
 
-SUMMARISED = ("lubricant", "film", "contact", "experiment", "comparison", "gauge")
+SUMMARISED = ("lubricant", "film", "contact", "tail", "experiment", "comparison", "gauge")
 """Datasets that the summary of a study uses, as far as the study has them."""

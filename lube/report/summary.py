@@ -109,6 +109,9 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
     """
     film, contact, comparison = map(results.get, ("film", "contact", "comparison"))
     first = {"film_formula": study.film_formulas[0]}
+    counted = contact is not None
+    if not counted:
+        contact = _of_surfaces(results["tail"])
     return render(
         "findings.md",
         study=study,
@@ -116,7 +119,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         contact=_contact(contact.sel(first)),
         trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
         spread=_spread(film, contact, first),
-        held=_held(film, contact, first),
+        held=_held(film, contact if counted else None, first),
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=[_trace(point, film, contact, comparison) for point in study.trace_points],
         notes={
@@ -221,14 +224,27 @@ def _spread(film, contact, first):
     }
 
 
+def _of_surfaces(tail):
+    """Probabilities of surfaces, named as the means over realisations of lines are."""
+    of_surfaces = tail.sel(contact_model="surface")
+    name = "breakthrough_probability"
+    ends = {"_mean": "", "_lower": "_lower", "_upper": "_upper"}
+    found = {f"{name}{end}": of_surfaces[f"{name}{own}"] for end, own in ends.items()}
+    return xr.Dataset(found | {name: xr.full_like(found[f"{name}_mean"], np.nan)})
+
+
 def _held(film, contact, first):
     """Load on the line's asperities, and the numbers of points where the model does not hold."""
-    film, contact = film.sel(first), contact.sel(first)
-    share = contact["contact_load_share"].mean("realisation")
-    return {
-        "share": share.max().item(),
-        "overloaded": int(overloaded(contact).sum()),
-        "merged": int(merged(contact, film).sum()),
+    film = film.sel(first)
+    found = {"share": math.nan, "overloaded": 0, "merged": 0}
+    if contact is not None:
+        contact = contact.sel(first)
+        found = {
+            "share": contact["contact_load_share"].mean("realisation").max().item(),
+            "overloaded": int(overloaded(contact).sum()),
+            "merged": int(merged(contact, film).sum()),
+        }
+    return found | {
         "deformed": int(deformed(film).sum()),
         "small": LARGEST_DEFORMATION,
         "surface_share": (
@@ -236,7 +252,6 @@ def _held(film, contact, first):
         ),
         "rubbing": int(rubbing(film).sum()),
         "little": LARGEST_SHARE,
-        "points": share.size,
     }
 
 

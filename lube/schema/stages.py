@@ -81,6 +81,7 @@ def _cylinder(roller):
 
 
 _SURFACE = ("line_spec.is_gaussian", "line_spec.has_surface")
+_LINE = ("line_spec.follows_rolling",)
 _LINES = {"seed": "seed", "lines": "line_spec"}
 _LAYER = _named("rollers.reduced_modulus boundary_layer")
 _CONTACT = _LAYER | _named("operating_grid.slide_to_roll_ratio roughness_deformation")
@@ -117,6 +118,7 @@ _ROWS = (
         "the kept realisations, with their moments",
         values=_LINES,
         parameters=("kept_realisations",),
+        only_with=_LINE,
     ),
     Stage(
         "surface",
@@ -136,6 +138,7 @@ _ROWS = (
         values=_LINES | _CONTACT | _named("revolutions"),
         same_values=("roughness",),  # each batch draws its lines itself
         in_batches=True,
+        only_with=_LINE,
     ),
     Stage(
         "surface_response",
@@ -170,7 +173,7 @@ _ROWS = (
         inputs=("film",),
         values=_LINES | _LAYER | _named("roughness_deformation"),
         same_values=("roughness",),  # the same lines, with other height distributions
-        only_with=("line_spec.is_drawn",),
+        only_with=(*_LINE, "line_spec.is_drawn"),
         priority=2,
     ),
     Stage(
@@ -180,13 +183,14 @@ _ROWS = (
         values=_LINES | _LAYER,
         same_values=("roughness",),
         in_batches=True,
-        only_with=("gap.is_plain",),
+        only_with=(*_LINE, "gap.is_plain"),
     ),
     Stage(
         "trace",
         "contact length and resistance over one revolution",
         inputs=("film", "roughness"),
         values=_LINES | _CONTACT | _named("traces resistivity"),
+        only_with=_LINE,
     ),
     Stage(
         "experiment",
@@ -200,7 +204,7 @@ _ROWS = (
             "grid": _named("operating_grid.force operating_grid.speed operating_grid.temperature"),
         },
         same_values=("roughness",),  # it draws the lines of the simulated rig's rollers
-        only_with=("conducts",),
+        only_with=(*_LINE, "conducts"),
         written="measured_files",
         priority=2,
     ),
@@ -210,14 +214,14 @@ _ROWS = (
         inputs=("film",),
         values=_named("traces"),
         same_values=("experiment",),
-        only_with=("conducts",),
+        only_with=(*_LINE, "conducts"),
     ),
     Stage(
         "surface_records",
         "contact of the surfaces at the films of the records, some minutes",
         inputs=("film", "experiment", "areal"),
         inputs_with={"surface_response": "gap.is_answered"},
-        only_with=("compares_surfaces",),
+        only_with=(*_LINE, "compares_surfaces"),
         parallel=True,
     ),
     Stage(
@@ -226,21 +230,21 @@ _ROWS = (
         inputs=("film", "contact", "experiment"),
         inputs_with={"surface_records": "compares_surfaces"},
         values=_named("contact_model"),
-        only_with=("conducts",),
+        only_with=(*_LINE, "conducts"),
     ),
     Stage(
         "gauge",
         "films, pressure-viscosity coefficient and boundary layer from the records",
         inputs=("master", "contact", "comparison"),
         inputs_with={"surface_records": "compares_surfaces"},
-        only_with=("conducts",),
+        only_with=(*_LINE, "conducts"),
     ),
     Stage(
         "areal_gauge",
         "films gauged from the records, by contact of the surface",
         inputs=("film", "areal", "comparison", "gauge"),
         target="areal_contact",
-        only_with=(*_SURFACE, "gap.is_plain", "conducts", "compares_lines_only"),
+        only_with=(*_LINE, *_SURFACE, "gap.is_plain", "conducts", "compares_lines_only"),
     ),
     Stage(
         "patch",
@@ -263,6 +267,7 @@ _ROWS = (
         values={"lines": "line_spec"} | _named("operating_grid.slide_to_roll_ratio"),
         target="computed",
         parallel=True,
+        only_with=_LINE,
     ),
     Stage(
         "variants",
@@ -271,6 +276,7 @@ _ROWS = (
         values=_LINES | _LAYER | _named("realisations roughness_deformation rollers.length"),
         target="computed",
         parallel=True,
+        only_with=_LINE,
     ),
     Stage(
         "passage",
@@ -279,6 +285,7 @@ _ROWS = (
         values=_LINES | _LAYER | {"slide_to_roll_ratio": "operating_grid.slide_to_roll_ratio"},
         target="rough_passage",
         parallel=True,
+        only_with=_LINE,
     ),
     Stage(
         "indicators",
@@ -306,7 +313,7 @@ _ROWS = (
         values=_named("realisations"),
         same_values=("contact", "master", "experiment"),
         target="benchmark",
-        only_with=("conducts",),
+        only_with=(*_LINE, "conducts"),
         parallel=True,
     ),
     Stage(
@@ -315,6 +322,7 @@ _ROWS = (
         same_values=("contact",),
         target="benchmark",
         parallel=True,
+        only_with=_LINE,
     ),
     Stage(
         "reading",

@@ -86,7 +86,10 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = inputs["film"].transpose("film_formula", *POINT_DIMS, ...)
     if remark := _why_not(study.line_spec, study.gap):
         return _unknown(film, np.asarray(study.slips, float), remark)
-    table = _on_lines(study, film, threads)
+    if study.line_spec.follows_rolling:
+        table = _on_lines(study, film, threads)
+    else:
+        table = _unknown(film, np.asarray(study.slips, float), "").drop_attrs()
     if study.has_surfaces:
         table = _by_model(study, film, table, inputs["areal"])
     return label(table.assign_attrs(remarks=""), "tail")

@@ -11,6 +11,7 @@ from lube.errors import StudyError, located
 from lube.statistics.sample_size import independent_windows
 from lube.study.field_types import StrictModel
 from lube.study.rollers import AUTOMATIC_WAVELENGTH, ROLLERS, RollerPair, Roughness
+from lube.surfaces.lay import MOST_ALONG_ROLLING, waves_along_rolling
 from lube.types import Values
 from lube.units import with_unit
 
@@ -75,6 +76,15 @@ class RoughLine(StrictModel):
         return 2.0 * math.pi / self.q_max
 
     @property
+    def follows_rolling(self) -> bool:
+        """Whether a line along rolling can stand for the surface.
+
+        It cannot if ridges run along rolling, or nearly so.
+        """
+        least = waves_along_rolling(MOST_ALONG_ROLLING, 0.0)
+        return waves_along_rolling(self.lay_ratio, self.lay_angle) >= least
+
+    @property
     def is_gaussian(self) -> bool:
         """Whether the line is drawn, with Gaussian heights."""
         return (self.skewness, self.kurtosis, self.heights) == (0.0, 3.0, None)
@@ -116,6 +126,11 @@ class LineSpec(StrictModel):
     def has_surface(self) -> bool:
         """Whether both lines stand for surfaces."""
         return all(line.isotropic for line in self.lines)
+
+    @property
+    def follows_rolling(self) -> bool:
+        """Whether lines along rolling can stand for both surfaces."""
+        return all(line.follows_rolling for line in self.lines)
 
     @property
     def is_isotropic(self) -> bool:
@@ -212,10 +227,12 @@ def band_in_words(rollers: RollerPair, roughness: Roughness, spec: LineSpec) -> 
     bands = []
     for name, line in zip(ROLLERS, spec.lines, strict=True):
         own = roughness.of(getattr(rollers, name).roughness)
-        longest, shortest = line.longest_wavelength, line.shortest_wavelength
+        longest, shortest = line.longest_wavelength / line.lay_ratio, line.shortest_wavelength
         automatic = line.heights is None and own.longest_wavelength == AUTOMATIC_WAVELENGTH
         why = f" ({AUTOMATIC_WAVELENGTH})" if automatic else ""
         band = f"waves {with_unit(longest, 'm', 3)}{why} to {with_unit(shortest, 'm', 3)}"
+        if line.lay_ratio > 1.0:
+            band += f" across ridges {line.lay_ratio:g} times longer, at {line.lay_angle:g} deg"
         if line.hurst_exponent is not None and (own.long_cutoff or own.short_cutoff):
             cutoffs = own.long_cutoff or longest, own.short_cutoff or shortest
             band += f", heights stated for {' to '.join(with_unit(one, 'm', 3) for one in cutoffs)}"
@@ -285,6 +302,28 @@ def check_width(spec: LineSpec, width: float, what: str) -> None:
             f"{what} is {width:.3g} m wide, need at least two grid spacings, {least:.3g} m, and "
             f"less than a roller's perimeter, {most:.3g} m"
         )
+
+
+def check_follows_rolling(spec: LineSpec) -> None:
+    """Refuse surfaces for which lines cannot stand, as their waves run across rolling.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        The roughness lines.
+
+    Raises
+    ------
+    StudyError
+        With the lay, and what is needed.
+    """
+    for line in spec.lines:
+        if not line.follows_rolling:
+            raise StudyError(
+                f"lay_angle: got ridges {line.lay_ratio:g} times longer than wide at "
+                f"{line.lay_angle:g} deg to rolling, need a contact_model of surface alone: a line "
+                "cannot stand for a surface whose waves mostly run across rolling"
+            )
 
 
 def _key(roller, own, name):

@@ -29,7 +29,13 @@ from lube.study.field_types import (
     read_by,
     validate,
 )
-from lube.study.line_spec import LineSpec, band_in_words, check_width, line_spec
+from lube.study.line_spec import (
+    LineSpec,
+    band_in_words,
+    check_follows_rolling,
+    check_width,
+    line_spec,
+)
 from lube.study.lubricant_record import (
     LubricantRecord,
     check_temperatures,
@@ -113,8 +119,9 @@ class Study(StrictModel):
     waves by the formula of Venner et al., for pure rolling and high loads
     """
     contact_model: tuple[Literal[CONTACT_MODELS], ...] = Field(("line",), min_length=1)
-    """line, as in the paper; surface, the isotropic rough surface that the line stands for, over
-    the length of the rollers; or a list of both
+    """line, as in the paper; surface, the rough surface that the line stands for, over the length
+    of the rollers; or a list of both. Rollers whose ridges run along rolling have no such line, and
+    need [surface]
     """
     boundary_layer: BoundaryLayer
     resistivity: _Resistivity
@@ -196,7 +203,8 @@ class Study(StrictModel):
     @property
     def answered_lines(self) -> LineSpec | None:
         """The roughness lines, if the oil answers them."""
-        return self.line_spec if self.gap.is_answered else None
+        spec = self.line_spec
+        return spec if self.gap.is_answered and spec.follows_rolling else None
 
     @property
     def has_lines(self) -> bool:
@@ -376,6 +384,9 @@ class Study(StrictModel):
             check_sizes(self)
             for ratio in self.slips:
                 self.check_slip(ratio)
+        if self.has_lines:
+            with located(kind=ValueError):
+                check_follows_rolling(self.line_spec)
         if self.has_surfaces:
             self._check_surfaces()
         elif self.rough_surfaces is not None:

@@ -82,10 +82,10 @@ def waves_of_line(first_wave: int, variances: Array, ratio: float) -> tuple[int,
     last_wave = first_wave + variances.size - 1
     known = np.arange(first_wave, last_wave + 2) - 0.5
     power = np.concatenate([[0.0], np.cumsum(variances)])
-    first = max(math.floor(first_wave / ratio), 1)
+    stretched = stretched_wavenumbers(ratio)
+    first = max(math.floor(first_wave * stretched.min()), 1)
     edges = np.arange(first, last_wave + 2) - 0.5
-    below = sum(np.interp(edges / one, known, power) for one in stretched_wavenumbers(ratio))
-    below /= DIRECTIONS
+    below = sum(np.interp(edges / one, known, power) for one in stretched) / DIRECTIONS
     below[0] = 0.0  # the first wave takes what lies below it
     return first, np.diff(below)
 

@@ -12,6 +12,7 @@ from lube.contact.surface_strip import StripFilm, strip_probability, surface_con
 from lube.errors import StudyError
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
+from lube.stages.tail import pair_probabilities
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.rough_surface import rough_surface
 
@@ -56,6 +57,19 @@ def test_a_film_that_is_not_known_has_no_contact_that_is(spec, film, study):
     found = surface_contact(spec, 0.01, few, study.boundary_layer, SEED)
     for values in found.values():
         assert values.notnull().values.ravel().tolist() == [False, True]
+
+
+def test_ridges_as_long_as_the_rollers_touch_as_often_as_their_line(make_spec, film, study):
+    few = film.isel(film_formula=0, temperature=0, speed=0, force=[2, 4])
+    spec = make_spec(50_000, lay_ratio=700.0, lay_angle=90.0)
+    found = surface_contact(spec, 1e-3, few, study.boundary_layer, SEED)
+    of_lines = pair_probabilities(spec, few, study.boundary_layer, SEED, 0.0)
+    name = "geometric_contact_probability"
+    line = of_lines[name].mean("pair")
+    half = 0.5 * (found[f"{name}_upper"] - found[f"{name}_lower"])
+    error = np.hypot(0.5 * half, of_lines[name].std("pair", ddof=1) / of_lines.pair.size**0.5)
+    assert np.all(np.abs(found[name] - line) < 3.0 * error)
+    assert np.all(error < 0.1 * line)
 
 
 @pytest.mark.parametrize(("angle", "longer"), [(90.0, (1.0, 3.0)), (0.0, (3.0, 1.0))])

@@ -5,6 +5,7 @@ import pytest
 
 from lube.errors import DataError
 from lube.surfaces.rough_surface import rough_surface
+from lube.surfaces.spectra import surface_moments
 from lube.surfaces.synthetic import wave_amplitudes
 
 
@@ -46,6 +47,33 @@ def test_heights_slopes_and_curvatures_are_those_that_the_line_prescribes(spec, 
     # Rounded to whole waves around the square, the longest waves are a little shorter.
     assert np.all(np.abs(found - expected) < 4.0 * error + 0.02 * expected)
     assert np.all(error < 0.05 * expected)
+
+
+@pytest.mark.parametrize("angles", [(90.0, 90.0), (0.0, 0.0), (25.0, -60.0)])
+def test_a_lay_makes_slopes_differ_as_expected(make_spec, angles):
+    second = {"lay_ratio": 4.0, "lay_angle": f"{angles[1]} deg"}
+    spec = make_spec(50_000, lay_ratio=2.5, lay_angle=angles[0], second_own=second)
+    surface, found = rough_surface(spec), []
+    for seed in range(60):
+        heights, curvatures, _ = surface.draw(np.random.default_rng(seed))
+        heights = heights.astype(float) * spec.height_step
+        waves = np.fft.fft2(heights)
+        down, along = (
+            2j * np.pi * np.fft.fftfreq(*one)
+            for one in zip(surface.points, surface.spacing, strict=True)
+        )
+        down, along = (np.fft.ifft2(one * waves).real for one in (down[:, None], along))
+        squares = heights**2, along**2, down**2, along * down
+        curvature = 2.0 * curvatures.astype(float) * spec.height_step
+        found.append([*map(np.mean, squares), np.mean(curvature**2)])
+    error = np.std(found, axis=0, ddof=1) / len(found) ** 0.5
+    expected = np.array(surface_moments(spec))
+    # The moments are those of the grid of the lines, on which slopes are finite differences.
+    allowed = 4.0 * error + 0.04 * np.abs(expected)
+    assert np.all(np.abs(np.mean(found, axis=0) - expected) < allowed)
+    assert np.all(error[[0, 1, 2, 4]] < 0.05 * expected[[0, 1, 2, 4]])
+    assert surface.is_mirrored == (angles[0] % 90.0 == 0.0)
+    assert np.all(np.array(surface.sides) > 3.9 * 2.0 * np.pi / spec.lines[0].q_min)
 
 
 def test_the_covariance_is_that_of_drawn_surfaces(surface, drawn):

@@ -1,5 +1,8 @@
 from lube.explorer import EXPLORED
 
+# The page shows contact of lines.
+EXPLORER = [result("explorer.html")] if STUDY.has("contact") else []
+
 
 rule explorer:
     """A page that shows any operating point of the study."""

@@ -48,7 +48,7 @@ rule times:
         # All other jobs come first.
         [result(f"{kind}.nc") for kind in STUDY.datasets],
         products(ALWAYS),
-        result("explorer.html"),
+        EXPLORER,
         sources=script_sources("times"),
     output:
         report(

@@ -59,27 +59,29 @@ for stage in STAGES.values():
     list(workflow.rules)[-1].docstring = stage.message
 
 
-rule batch:
-    """Batches of realisations, which contact and master map join."""
-    input:
-        film=result("film.nc"),
-        sources=script_sources("batch"),
-    output:
-        **{
-            kind: result(f"batches/{kind}_{{first}}.nc")
-            for kind in ("contact", "master")
-            if STUDY.has(kind)
-        },
-    log:
-        result("logs/batch_{first}.log"),
-    benchmark:
-        result("benchmarks/batch_{first}.tsv")
-    # The summary and most figures wait for them.
-    priority: 1
-    params:
-        study=FILES.stage_inputs("contact", "master"),
-        realisations=FILES.batch_limits,
-    message:
-        "Batch: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points"
-    script:
-        "../scripts/batch.py"
+if STUDY.has("contact"):
+
+    rule batch:
+        """Batches of realisations, which contact and master map join."""
+        input:
+            film=result("film.nc"),
+            sources=script_sources("batch"),
+        output:
+            **{
+                kind: result(f"batches/{kind}_{{first}}.nc")
+                for kind in ("contact", "master")
+                if STUDY.has(kind)
+            },
+        log:
+            result("logs/batch_{first}.log"),
+        benchmark:
+            result("benchmarks/batch_{first}.tsv")
+        # The summary and most figures wait for them.
+        priority: 1
+        params:
+            study=FILES.stage_inputs("contact", "master"),
+            realisations=FILES.batch_limits,
+        message:
+            "Batch: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points"
+        script:
+            "../scripts/batch.py"
