@@ -78,7 +78,7 @@ def _surface(topography, line, hurst):
     """Describe the surface of a roller; fits use the waves in the band of its line."""
     surface = prepared(topography)
     spectrum = line_spectrum(surface, preparation(topography))
-    waves = waves_of_surface(spectrum, line.longest_wavelength, line.shortest_wavelength)
+    waves = waves_of_surface(spectrum, 2.0 * np.pi / line.q_min, line.shortest_wavelength)
     bend = roll_off(spectrum, waves)
     shorter = waves if bend is None else waves._replace(longest=bend.value)
     table = {
@@ -89,6 +89,8 @@ def _surface(topography, line, hurst):
         "line_rms_height": line.rms_height,
         "resolved_wavelength": waves.resolution,
         "texture": topography.texture,
+        "lay_ratio": spectrum.lay_ratio,
+        "lay_angle": spectrum.lay_angle if spectrum.lay_ratio > 1.0 else np.nan,
         "use": topography.use,
         **values_with_limits("density", _density(spectrum), "wave"),
         **values_with_limits("roll_off_wavelength", bend or _UNKNOWN),

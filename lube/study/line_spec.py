@@ -260,7 +260,7 @@ def _rough_line(rollers, roughness, name, rms, lengths):
         with located(f"rollers.{name}.topography", StudyError):
             grid = points, spacing, (longest, shortest)
             shape = roller.topography.line(grid, width, roughness.height_step)
-            shape["isotropic"] = roller.topography.texture == "isotropic"
+            shape["isotropic"] = roller.topography.texture != "along rolling"
     elif own.hurst_exponent is None:
         raise StudyError(f"{key('hurst_exponent')}: missing, need it for the {name} roller")
     else:

@@ -22,8 +22,10 @@ class RollerTopography(StrictModel):
 
     file: Text
     """profile or map: a file of an instrument, CSV (`position [mm],height [um]`) or NetCDF"""
-    texture: Literal["isotropic", "along rolling"]
-    """alike in all directions; or, for ground surfaces, only profiles along rolling are used"""
+    texture: Literal["isotropic", "lay", "along rolling"]
+    """alike in all directions; or a map of ridges, such as those of a ground surface, whose length
+    and direction are found from it; or only profiles along rolling are used
+    """
     use: Literal["spectrum", "closed line", "repeated line"] = "spectrum"
     """lines are drawn from its spectrum; or the profile is the line, as one turn or repeated"""
     form: Literal["none", "tilt", "curvature"] = "tilt"
@@ -41,10 +43,10 @@ class RollerTopography(StrictModel):
 
     @model_validator(mode="after")
     def _read(self, info: ValidationInfo):
-        if self.is_line and self.texture == "isotropic":
+        if self.is_line and self.texture != "along rolling":
             raise ValueError(
-                "texture: got 'isotropic', need 'along rolling' for a profile that is the line: "
-                "the line of an isotropic surface is not its profile"
+                f"texture: got {self.texture!r}, need 'along rolling' for a profile that is the "
+                "line: the line that stands for a surface is not its profile"
             )
         from lube.study import topography_lines
 
@@ -94,7 +96,8 @@ class RollerTopography(StrictModel):
         Returns
         -------
         dict
-            ``rms_height``, and ``spectrum`` or ``heights``, of `lube.study.line_spec.RoughLine`.
+            ``rms_height``, and ``spectrum`` with the lay, or ``heights``, of
+            `lube.study.line_spec.RoughLine`.
 
         Raises
         ------
@@ -106,7 +109,8 @@ class RollerTopography(StrictModel):
         points, spacing, band = grid
         if not self.is_line:
             rms, spectrum = topography_lines.table(self._measured, band)
-            return {"rms_height": rms, "spectrum": spectrum}
+            lay = {name: getattr(self._measured, name) for name in ("lay_ratio", "lay_angle")}
+            return {"rms_height": rms, "spectrum": spectrum, **lay}
         length = self._measured.lengths[0]
         if length < width:
             raise DataError(

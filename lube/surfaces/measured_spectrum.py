@@ -7,6 +7,8 @@ mean square height. It is
   mean over all directions and its integral over the plane of wave vectors is the mean square
   height (in the two-sided convention, :math:`C_{1D} = \pi q\, C_{2D}`);
 - of a profile cut from an isotropic surface: the Abel inversion of the profile's density;
+- of a map of a surface with a lay: the density of the isotropic surface of which it is a stretched
+  one, see `lube.surfaces.lay`;
 - of a surface taken along rolling, such as a ground one: the density of its profiles along
   rolling.
 
@@ -30,9 +32,11 @@ import math
 
 import numpy as np
 import scipy.fft
+import scipy.optimize
 
 from lube.errors import DataError
 from lube.surfaces.abel import line_of_profile, monotone
+from lube.surfaces.lay import unstretched
 from lube.surfaces.spectra import power_spectrum
 from lube.surfaces.spectrum_table import LineSpectrum, with_power
 from lube.surfaces.topography import Preparation, Topography, power_transfer, used_directions
@@ -99,25 +103,31 @@ def line_spectrum(surface: Topography, settings: Preparation) -> LineSpectrum:
         surface.resolution,
         settings.short_cutoff or 0.0,
     )
-    isotropic = settings.texture == "isotropic"
+    of_surface, lay = settings.texture != "along rolling", (1.0, 90.0)
     if surface.heights.ndim == 1:
+        if settings.texture == "lay":
+            raise DataError(f"{surface.name}: got a profile, need a map for the texture `lay`")
         bins = _profile_bins(surface, 2.0 * np.pi / shortest)
     else:
-        bins = _map_bins(surface, 2.0 * np.pi / shortest, isotropic)
+        *bins, lay = _map_bins(surface, 2.0 * np.pi / shortest, settings.texture)
     wave_vector, density, estimates, inside, windowed = bins
     mean_square = np.mean(np.square(surface.heights))
     if wave_vector.size < 3 or mean_square < LEAST_RMS_HEIGHT**2 or not np.all(density > 0.0):
         raise DataError(f"{surface.name}: its spectrum is empty, need rough heights on more points")
     whole = windowed if settings.long_cutoff is None else mean_square
     density = with_power(wave_vector, density, estimates, whole - (windowed - inside))
-    transfer = power_transfer(wave_vector, settings.long_cutoff, settings.short_cutoff)
-    if isotropic and surface.heights.ndim == 1:
+    cutoffs = settings.long_cutoff, settings.short_cutoff
+    transfer = power_transfer(wave_vector, *cutoffs)
+    if lay[0] > 1.0:
+        transfer = _ring_transfer(surface, 2.0 * np.pi / shortest, cutoffs, lay)
+    if of_surface and surface.heights.ndim == 1:
         # A profile's filter acts on the profile, a surface's on the surface.
         density, estimates = _inverted(wave_vector, density / transfer, estimates)
         density = density * transfer
     length = min(used_directions(surface.lengths, settings))
     limits = min(2.0 * np.pi * LEAST_WAVES / length, wave_vector[0]), 2.0 * np.pi / shortest
-    return LineSpectrum(surface.name, wave_vector, density, estimates, transfer, isotropic, limits)
+    kind = of_surface, limits, *lay
+    return LineSpectrum(surface.name, wave_vector, density, estimates, transfer, *kind)
 
 
 def profile_density(heights: Array, spacing: float) -> Pair:
@@ -243,37 +253,98 @@ def _profile_bins(surface, q_max):
     return middle, total / counts, estimates, *powers
 
 
-def _map_bins(surface, q_max, isotropic):
-    """Means over rings of a map's waves, or over its waves of equal wave vector along rolling."""
-    power = map_power(surface.heights)
-    if not isotropic:
-        return *_column_means(power, surface.lengths[0], q_max), power.sum()
+def lay_of_map(power: Array, lengths: Pair, q_max: float) -> tuple[float, float]:
+    r"""Fit the lay of a map, that is how an isotropic surface is stretched into it.
+
+    The powers of the waves are exponentially distributed. Their mean is any function of the
+    wavenumber q' of the isotropic surface, a constant in each bin. The fit has the greatest
+    likelihood, the least :math:`\sum n \ln \bar P` over bins with n waves of the mean power
+    :math:`\bar P`.
+
+    Parameters
+    ----------
+    power, lengths, q_max
+        As in `anisotropy`.
+
+    Returns
+    -------
+    ratio : float
+        Length of the ridges over their width, to three digits.
+    angle : float
+        Angle between the ridges and the first axis, to a tenth of a degree.
+    """
+    _, direction = anisotropy(power, lengths, q_max)
+    along, across = np.broadcast_arrays(*_wave_vectors(power, lengths))
+    # The window blurs ridges longer than half of the map.
+    ridges = np.abs(across * math.cos(direction) - along * math.sin(direction))
+    used = ridges >= 2.0 * np.pi * LEAST_WAVES / min(lengths)
+    used &= (np.hypot(along, across) <= q_max) & (power > 0.0)
+    along, across, powers = along[used], across[used], power[used]
+
+    def misfit(lay):
+        own = unstretched(along, across, math.exp(abs(lay[0])), lay[1])
+        inside = (np.log10(own / own.min()) * BINS_PER_DECADE).astype(np.int64)
+        counts, total = np.bincount(inside), np.bincount(inside, powers)
+        filled = counts > 0
+        return np.sum(counts[filled] * np.log(total[filled] / counts[filled])) / powers.size
+
+    tried = [(math.log(ratio), math.degrees(direction) + 90.0) for ratio in (1.2, 3.0, 8.0, 20.0)]
+    begin = min(tried, key=misfit)
+    steps = np.array([begin, (begin[0] + 0.3, begin[1]), (begin[0], begin[1] + 5.0)])
+    options = {"initial_simplex": steps, "xatol": 1e-3, "fatol": 1e-9}
+    found = scipy.optimize.minimize(misfit, begin, method="Nelder-Mead", options=options).x
+    angle = (found[1] + 90.0) % 180.0 - 90.0  # ridges at 100 degrees are at -80
+    return float(f"{math.exp(abs(found[0])):.3g}"), round(float(angle), 1)
+
+
+def _map_bins(surface, q_max, texture):
+    """Means over rings of a map's waves, or over its waves of equal wave vector along rolling.
+
+    The last value is the ratio and the angle of the lay.
+    """
+    power, lay = map_power(surface.heights), (1.0, 90.0)
+    if texture == "along rolling":
+        return *_column_means(power, surface.lengths[0], q_max), power.sum(), lay
+    if texture == "lay":
+        lay = lay_of_map(power, surface.lengths, q_max)
+        return *_ring_means(power, surface.lengths, q_max, *lay), power.sum(), lay
     measure, direction = anisotropy(power, surface.lengths, q_max)
     if measure > MOST_ANISOTROPY:
         raise DataError(
             f"{surface.name}: got an anisotropy of {measure:.2f}, the lay at "
             f"{90.0 - abs(math.degrees(direction)):.0f} degrees to rolling, need at most "
-            f"{MOST_ANISOTROPY} for `isotropic`, or else `along rolling`"
+            f"{MOST_ANISOTROPY} for `isotropic`, or else `lay` or `along rolling`"
         )
-    return *_ring_means(power, surface.lengths, q_max), power.sum()
+    return *_ring_means(power, surface.lengths, q_max), power.sum(), lay
 
 
-def _ring_means(power, lengths, q_max):
+def _ring_means(power, lengths, q_max, ratio=1.0, angle=90.0):
     """Density of the isotropic surface's line, by rings of the half plane of wave vectors."""
     along, across = _wave_vectors(power, lengths)
-    wave_vector = np.hypot(along, across)
+    wave_vector = unstretched(along, across, ratio, angle)
     sums = _sums_by_bin(wave_vector, min(lengths), q_max)
     # Each wave of the half plane stands for two, but not those of the first column.
     waves = 2 * sums() - sums(np.broadcast_to(across == 0.0, power.shape))
     wave_vector[0, 0] = 1.0
     wave_vector **= -3.0
     # The wave vector at which a power law of the exponent -3 has its mean over the ring.
-    middle = (sums(wave_vector) / sums()) ** (-1.0 / 3.0)
+    filled = sums() > 0  # with a lay, some of the first rings have no wave
+    waves = waves[filled]
+    middle = (sums(wave_vector)[filled] / sums()[filled]) ** (-1.0 / 3.0)
     cell = (2.0 * np.pi) ** 2 / (lengths[0] * lengths[1])
-    surface_density = sums(power) / (waves * cell)
+    surface_density = sums(power)[filled] / (waves * cell)
     estimates = np.maximum(0.5 * waves / _BLUR**2, 1.0)
     inside = np.sum(surface_density * waves) * cell
-    return middle, 2.0 * np.pi * middle * surface_density, estimates, inside
+    # The waves of the isotropic surface lie in a plane that is stretched across the lay.
+    return middle, 2.0 * np.pi * middle * surface_density / ratio, estimates, inside
+
+
+def _ring_transfer(surface, q_max, cutoffs, lay):
+    """Fraction of power that filters leave of a ring's waves, which differ in length with a lay."""
+    along, across = _wave_vectors(map_power(surface.heights), surface.lengths)
+    sums = _sums_by_bin(unstretched(along, across, *lay), min(surface.lengths), q_max)
+    filled = sums() > 0
+    return sums(power_transfer(np.hypot(along, across), *cutoffs))[filled] / sums()[filled]
 
 
 def _column_means(power, length, q_max):

@@ -33,10 +33,13 @@ class LineSpectrum:
     transfer : numpy.ndarray
         Shape (n,): fraction of the power that the Gaussian filters have left.
     isotropic : bool
-        Whether the surface is isotropic.
+        Whether the surface is isotropic, apart from its lay.
     limits : tuple of float, optional
         Smallest and largest wave vector that the densities are means over, rad/m; by default
         those of the first and the last density.
+    lay_ratio, lay_angle : float
+        Length of the ridges over their width, and their angle to rolling, degrees. With a lay,
+        wave vectors and densities are those of the isotropic surface that is stretched.
     """
 
     name: str
@@ -46,6 +49,8 @@ class LineSpectrum:
     transfer: Array
     isotropic: bool
     limits: tuple[float, float] | None = None
+    lay_ratio: float = 1.0
+    lay_angle: float = 90.0
 
 
 def band_table(spectrum: LineSpectrum, q_min: float, q_max: float) -> Pair:

@@ -8,6 +8,7 @@ import scipy.fft
 from example_surface import rolled_off_surface
 
 from lube.errors import DataError
+from lube.surfaces.lay import unstretched
 from lube.surfaces.measured_spectrum import (
     MOST_ANISOTROPY,
     anisotropy,
@@ -21,7 +22,7 @@ from lube.surfaces.spectrum_table import band_table, power_law_integral
 from lube.surfaces.topography import Preparation, Topography, prepare
 from profiles import line_over_profile, profile_of_line, rms_height
 
-ISOTROPIC, ALONG = Preparation("isotropic"), Preparation("along rolling")
+ISOTROPIC, ALONG, LAY = map(Preparation, ("isotropic", "along rolling", "lay"))
 LENGTH, ROLL_OFF, RMS = 1e-3, 1e-4, 0.2e-6
 
 
@@ -226,6 +227,56 @@ def test_drawn_lines_have_the_rms_height_of_a_narrower_band():
     assert np.std(line) == pytest.approx(near, rel=0.05)
 
 
+# --- Surfaces with a lay -------------------------------------------------------------------
+
+
+def stretched_map(ratio, angle, seed, points=512, hurst=0.7):
+    """A map of ridges, cut from a larger periodic one; and the density of its isotropic surface."""
+    number, spacing = 2 * points, LENGTH / points
+    along = 2 * np.pi * np.fft.fftfreq(number, spacing)[:, None]
+    across = 2 * np.pi * np.fft.rfftfreq(number, spacing)
+    own = unstretched(along, across, ratio, angle)
+
+    def shape(q):
+        return np.maximum(q * ROLL_OFF / (2 * np.pi), 1.0) ** (-2 * hurst - 2)
+
+    # All waves that the spectrum may have, and some shorter ones.
+    power = np.where(np.hypot(along, across) < 0.8 * np.pi / spacing, shape(own), 0.0)
+    power[0, 0] = 0.0
+    noise = np.random.default_rng(seed).normal(size=(number, number))
+    heights = scipy.fft.irfft2(np.fft.rfft2(noise) * np.sqrt(power), noise.shape)
+    weights = np.where(across > 0.0, 2.0, 1.0)
+    # White noise of variance 1 has this mean square after the filter.
+    mean_square = np.sum(weights * power) / number**2
+    heights *= RMS / np.sqrt(mean_square)
+    cell = (2 * np.pi / (number * spacing)) ** 2
+    level = RMS**2 / np.sum(weights * power) / cell
+    surface = Topography("ridges.x3p", heights[:points, :points], (spacing,) * 2)
+    return surface, lambda q: 2 * np.pi * q * shape(q) * level / ratio
+
+
+@pytest.mark.parametrize(("ratio", "angle"), [(1.0, 0.0), (2.0, 90.0), (5.0, 0.0), (10.0, -70.0)])
+def test_length_and_direction_of_ridges_are_found_on_a_map(ratio, angle):
+    for seed in range(3):
+        surface, _ = stretched_map(ratio, angle, seed)
+        found = spectrum_of(surface, LAY)
+        assert found.lay_ratio == pytest.approx(ratio, rel=0.12)
+        if ratio > 1.0:
+            assert abs((found.lay_angle - angle + 90.0) % 180.0 - 90.0) < 1.0
+
+
+@pytest.mark.parametrize("settings", [LAY, replace(LAY, long_cutoff=3e-4)])
+def test_the_spectrum_of_ridges_is_that_of_the_surface_that_is_stretched(settings):
+    ratios = []
+    for seed in range(4):
+        surface, density = stretched_map(4.0, 30.0, seed)
+        found = spectrum_of(surface, settings)
+        q = found.wave_vector
+        seen = (q > 2 * np.pi / 3e-4) & (found.transfer > 0.3)
+        ratios.append(np.mean(found.density[seen] / found.transfer[seen] / density(q[seen])))
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.08)
+
+
 # --- Refusals ----------------------------------------------------------------------------
 
 
@@ -235,6 +286,9 @@ def test_a_ground_surface_is_not_isotropic():
     with pytest.raises(DataError, match=r"ground.x3p: got an anisotropy of 0\.\d+, the lay at 0 d"):
         spectrum_of(ground)
     assert np.all(spectrum_of(ground, ALONG).density > 0.0)
+    profile = Topography("profile.x3p", heights[0], (1e-6,))
+    with pytest.raises(DataError, match=r"profile.x3p: got a profile, need a map for the texture"):
+        spectrum_of(profile, LAY)
 
 
 def test_a_flat_surface_has_no_spectrum():
