@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from lube.calculator.arguments import bare_number, check_realisations
+from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.errors import RangeError, StudyError
@@ -14,7 +15,6 @@ from lube.stages.tail import PAIRS
 from lube.statistics.confidence import mean_interval, probability_interval
 from lube.statistics.curves import contact_curve, peaked_curve
 from lube.study.line_spec import check_follows_rolling, check_width
-from lube.surfaces.spectra import surface_moments
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 

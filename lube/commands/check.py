@@ -63,7 +63,11 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
         "study": f"{study.name}: valid{', see the remarks below' if notes else ''}",
         "operating points": " = ".join([f"{points:,}", *filter(None, [" × ".join(factors)])]),
         "band": study.band,
-        "contact runs": " × ".join([f"{runs:,} = {points:,}", *more]),
+        "contact runs": (
+            " × ".join([f"{runs:,} = {points:,}", *more])
+            if study.has("contact")
+            else "none: no line stands for these surfaces"
+        ),
         **overview(*question),
         "records": records,
         "results": folder,
@@ -101,6 +105,8 @@ def _records(study):
     """Say where the records come from; and one line for each that cannot be used."""
     if not study.conducts:
         return "none: the rollers do not conduct", []
+    if not study.has("experiment"):
+        return "none: records are compared with lines", []
     manifest = study.experiment.manifest
     if manifest is None:
         return f"simulated, {count(study.rig.pairs, 'pair')} of rollers", []

@@ -20,8 +20,11 @@ import scipy
 
 from lube.contact.surface_answers import AnsweredStrip
 from lube.physics.excursions import SurfaceMoments, expected_contacts, sharp_surface_summit_share
+from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.rare_contact import likely_part
 from lube.surfaces.rough_surface import Surface
+from lube.surfaces.spectra import pair_moments, spectrum_moments
+from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair
 
 COLUMNS = 200
@@ -147,6 +150,35 @@ def _without_edges(films, moments, length, spacing):
     # Without edges along the rollers, contacts are in proportion to the width.
     widths = expected_contacts(films, moments, length, spacing)
     return widths - expected_contacts(films, moments, length, 0.0)
+
+
+def surface_moments(spec: LineSpecLike) -> SurfaceMoments:
+    """Moments of the surface that a pair of lines stands for, expected from their spectra.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines. Their mean square slope is the surface's in both directions.
+
+    Returns
+    -------
+    SurfaceMoments
+        Moments of the sum of both rollers' surfaces.
+    """
+    slopes = np.zeros(3)
+    for roller, line in enumerate(spec.lines):
+        slope = spectrum_moments(spec, roller)["rms_slope"] ** 2
+        # Along and across the ridges.
+        ridges = slope / (1.0 + line.lay_ratio**2)
+        across = slope - ridges
+        cosine, sine = cosine_and_sine(line.lay_angle)
+        slopes += (
+            ridges * cosine**2 + across * sine**2,
+            ridges * sine**2 + across * cosine**2,
+            (ridges - across) * cosine * sine,
+        )
+    m0, _, m4 = pair_moments(spec)
+    return SurfaceMoments(m0, *slopes.tolist(), m4)
 
 
 def pair_deviation(probability: float, lags: Array, common: Array, perimeter: float) -> float:

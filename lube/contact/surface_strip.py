@@ -1,4 +1,4 @@
-r"""Contact of the isotropic surface that the lines stand for, in the strip 2a x L'.
+r"""Contact of the surface that the lines stand for, in the strip 2a x L'.
 
 The strip is followed row by row along the rollers. Row j is the first of the strip that touches
 with the probability :math:`g_j`, so that a strip of n rows touches with
@@ -28,7 +28,7 @@ import scipy
 import scipy.special
 import xarray as xr
 
-from lube.contact.strip_film import COLUMNS, StripFilm, pair_deviation
+from lube.contact.strip_film import COLUMNS, StripFilm, pair_deviation, surface_moments
 from lube.contact.surface_answers import COARSEST, surface_answers
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
@@ -41,7 +41,6 @@ from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
 from lube.surfaces.lay import extents
 from lube.surfaces.rough_surface import rough_surface, surface_grid
-from lube.surfaces.spectra import surface_moments
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 from lube.types import Values
@@ -52,7 +51,7 @@ STRIPS = 750
 """Strips on each surface."""
 MANY = 30.0
 """Expected number of contacts above which contact is certain, and contacts are counted."""
-FEWER_STRIPS = 10
+FEWER_STRIPS = 30
 """Strips on each surface where contact is certain."""
 COUNTED_STRIPS = 5
 """The first of these, in which contacts are counted."""
@@ -304,12 +303,15 @@ def _on_one_surface(seeds, surface, covariances, strips, reach):
         # Strips begin at nodes.
         places = tuple(-(-place >> shift << shift) for place in (first_row + row, column))
         *each, contacts = touching_strips(
-            fields, tops, covariances, places, touching, film, sharp, fading, around, by_oil
+            *(fields, tops, covariances, places, touching, film, sharp, fading, around, by_oil),
+            surface.diagonal,
         )
         first.append(weight * np.stack(each))
         if is_certain:
             some = tuple(place[:COUNTED_STRIPS] for place in places)
-            contacts = contacts_per_row(fields, covariances, some, film, sharp, around, by_oil)
+            contacts = contacts_per_row(
+                fields, covariances, some, film, sharp, around, by_oil, surface.diagonal
+            )
         else:
             contacts = weight * contacts
         numbers.append(contacts)

@@ -1,13 +1,14 @@
 """Contact of the surfaces at the conditions of each record, and curves of it against the film.
 
 The resistance of a real rig falls where the rollers touch anywhere along their length. So a record
-is compared with contact of the isotropic surfaces that the lines stand for, at the film of the
+is compared with contact of the surfaces that the lines stand for, at the film of the
 record, and its film is read from their probability at thinner and thicker films.
 """
 
 import numpy as np
 import xarray as xr
 
+from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import study_windows
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES
@@ -18,7 +19,6 @@ from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import contact_curve
 from lube.study.oil_properties import lubricant_table
 from lube.study.study import Study
-from lube.surfaces.spectra import surface_moments
 from lube.types import Array, Datasets
 
 CURVE_FILMS = 8

@@ -2,7 +2,8 @@
 
 Heights are height steps in single precision, as in `lube.kernels.tail`. The strip is the contact
 area: its rows lie across it, in the direction of rolling, and follow one another along the rollers.
-A *contact* is a group of touching points that are neighbours in a row or a column.
+A *contact* is a group of touching points that are neighbours in a row or a column, or along the
+diagonal in the direction of oblique ridges, which are narrow on the grid.
 
 The oil may answer the surface: its pressure flattens the waves in the contact. What it adds to the
 heights is smooth, so it is computed at some points, the nodes, and taken as linear between them.
@@ -64,6 +65,7 @@ def touching_strips(
     fading: Array,
     around: int,
     answered: Answered,
+    diagonal: int,
 ) -> tuple[Array, Array, Array]:
     r"""Weigh rows of a strip in which one point is known to touch.
 
@@ -108,6 +110,9 @@ def touching_strips(
         the sums over first contacts.
     answered : Answered
         What the oil adds to the surface; `NO_ANSWER` if it does not change it.
+    diagonal : int
+        1 if points are neighbours of those in the next row and the next column too, -1 if of those
+        in the next row and the column before, 0 if of neither.
 
     Returns
     -------
@@ -146,7 +151,7 @@ def touching_strips(
         variance = one + _along(by_known[0, -answered.first], origin, answered.shift)
         rise = (touching[1][k] - _moved(0, drawn, known_row, origin)) / variance
         moved = fields, covariances, reach, places[0][k], places[1][k], origin, rise, oil
-        search = film, sharp, fading, seen, np.int32(2 * k + 1), stack
+        search = film, sharp, fading, seen, np.int32(2 * k + 1), stack, diagonal
         _, broken, _ = _row(moved, search, heights, known_row)
         chosen = 0.0
         for column in range(width):
@@ -155,7 +160,7 @@ def touching_strips(
                 chosen += np.exp(-fading[column] * overlap)
         contact[0] += 1.0 / chosen
         breakthrough[0] += (broken > 0) / chosen
-        search = film, sharp, fading, seen, np.int32(2 * k + 2), stack
+        search = film, sharp, fading, seen, np.int32(2 * k + 2), stack, diagonal
         chosen, breaks, first = _contact(moved, search, known_row, origin)
         contacts[0] += 1.0 / chosen
         contacts[1] += breaks / chosen
@@ -193,12 +198,13 @@ def contacts_per_row(
     sharp: Array,
     around: int,
     answered: Answered,
+    diagonal: int,
 ) -> Array:
     """Count the contacts that begin in a row of a strip, where no point is known to touch.
 
     Parameters
     ----------
-    fields, covariances, film, sharp, around, answered
+    fields, covariances, film, sharp, around, answered, diagonal
         As in `touching_strips`; of the covariances only the shape is used.
     places : tuple of numpy.ndarray
         As in `touching_strips`: of each strip R rows before this row, and `around` rows after it,
@@ -221,7 +227,7 @@ def contacts_per_row(
     oil = answered, by_known, nodes, np.empty(0, np.float32)
     for k in range(places[0].size):
         moved = fields, covariances, reach, places[0][k], places[1][k], origin, unmoved, oil
-        search = film, sharp, fading, seen, np.int32(k + 1), stack
+        search = film, sharp, fading, seen, np.int32(k + 1), stack, diagonal
         for row in range(first, around + 1):
             contacts, broken, _ = _row(moved, search, heights, row)
             if row > first:  # those of the first row may begin before it
@@ -377,7 +383,7 @@ def _contact(moved, search, row, column):
     Returns the sum of its points' probabilities to be known, over that of a point without overlap,
     whether its boundary layer breaks, and its earliest row.
     """
-    film, sharp, fading, seen, mark, stack = search
+    film, sharp, fading, seen, mark, stack, diagonal = search
     reach = moved[2]
     ahead = seen.shape[0] - reach - 1
     seen[reach + row, column] = mark
@@ -388,9 +394,12 @@ def _contact(moved, search, row, column):
     while waiting > 0:
         waiting -= 1
         here_row, here_column = stack[waiting, 0], stack[waiting, 1]
-        for side in range(4):
+        for side in range(6 if diagonal else 4):
             next_row = here_row + (side == 0) - (side == 1)
             next_column = here_column + (side == 2) - (side == 3)
+            if side > 3:
+                next_row += 1 if side == 4 else -1
+                next_column += diagonal if side == 4 else -diagonal
             inside = -reach <= next_row <= ahead and 0 <= next_column < seen.shape[1]
             if not inside or seen[reach + next_row, next_column] == mark:
                 continue

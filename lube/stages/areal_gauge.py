@@ -2,7 +2,7 @@ r"""The gauge by the surface: records read as contact anywhere along the rollers
 
 A resistance below the threshold shows that the rollers touch somewhere in the strip 2a x L'. A line
 has no length along the rollers' axis, and the stage gauge reads each record as contact of such a
-line. Here the same share is read as contact of the isotropic surface in the strip.
+line. Here the same share is read as contact of the surface in the strip.
 """
 
 from functools import cache

@@ -48,7 +48,7 @@ class Variant:
         Whether the boundary layer is judged on uncut segments, of which any part lies in the
         window; otherwise on the parts that the edges of the window leave.
     contact_model : str, optional
-        ``line``, or ``surface``: the isotropic surface that the line stands for, over the length of
+        ``line``, or ``surface``: the surface that the line stands for, over the length of
         the rollers.
     """
 

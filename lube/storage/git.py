@@ -17,7 +17,8 @@ workflow/Snakefile workflow/rules/*.smk workflow/scripts/*.py workflow/report/*
 workflow/envs/constraints.txt workflow/config/surfaces/example.x3p
 workflow/config/paper.yaml workflow/config/smoke.yaml workflow/config/slip.yaml
 workflow/config/thousand.yaml workflow/config/run-in.yaml workflow/config/measured.yaml
-workflow/config/oils.yaml workflow/config/complete.yaml config/README.md config/config.yaml
+workflow/config/oils.yaml workflow/config/complete.yaml workflow/config/ground.yaml
+config/README.md config/config.yaml
 """.split()
 
 _CACHE = re.compile(r"(^|/)(\.|__pycache__/)")

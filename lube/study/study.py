@@ -387,6 +387,11 @@ class Study(StrictModel):
         if self.has_lines:
             with located(kind=ValueError):
                 check_follows_rolling(self.line_spec)
+        if self.experiment.manifest is not None and not self.line_spec.follows_rolling:
+            raise ValueError(
+                f"experiment.manifest: got {shown(self.experiment.manifest)} for rollers for whose "
+                "surfaces no line stands, need none: how records scatter is known of lines only"
+            )
         if self.has_surfaces:
             self._check_surfaces()
         elif self.rough_surfaces is not None:

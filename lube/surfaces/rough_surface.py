@@ -59,6 +59,9 @@ class Surface:
     is_mirrored : bool
         Whether the surface is alike in both directions along the rollers; not if it has a lay at
         an angle.
+    diagonal : int
+        Direction of its ridges: 1 if along the rollers they run on in the direction of rolling, -1
+        if against it, and 0 without such a lay.
     """
 
     spacing: tuple[float, float]
@@ -68,6 +71,7 @@ class Surface:
     variances: Array
     curvatures: Array
     is_mirrored: bool
+    diagonal: int
 
     @property
     def sides(self) -> tuple[float, float]:
@@ -285,7 +289,9 @@ def rough_surface(
     first = first / np.where(variances > 0.0, variances, 1.0)
     curvatures = 0.5 * (along**2 + down**2)
     is_mirrored = all(angle % 90.0 == 0.0 or ratio == 1.0 for ratio, angle in lays)
-    return Surface(spacing, points, rms, first, variances, curvatures, is_mirrored)
+    mixed = 0.0 if is_mirrored else np.sum(variances * number * along * down)
+    diagonal = -int(np.sign(mixed))
+    return Surface(spacing, points, rms, first, variances, curvatures, is_mirrored, diagonal)
 
 
 def _power(spec, roller, step, shells):

@@ -3,8 +3,6 @@
 import numpy as np
 import scipy.fft
 
-from lube.physics.excursions import SurfaceMoments
-from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.synthetic import LineSpecLike, wave_amplitudes
 
 
@@ -124,35 +122,6 @@ def pair_moments(spec: LineSpecLike) -> list[float]:
     """
     lines = [spectrum_moments(spec, roller).values() for roller in (0, 1)]
     return [sum(root**2 for root in roots) for roots in zip(*lines, strict=True)]
-
-
-def surface_moments(spec: LineSpecLike) -> SurfaceMoments:
-    """Moments of the surface that a pair of lines stands for, expected from their spectra.
-
-    Parameters
-    ----------
-    spec : LineSpecLike
-        Parameters of the lines. Their mean square slope is the surface's in both directions.
-
-    Returns
-    -------
-    SurfaceMoments
-        Moments of the sum of both rollers' surfaces.
-    """
-    slopes = np.zeros(3)
-    for roller, line in enumerate(spec.lines):
-        slope = spectrum_moments(spec, roller)["rms_slope"] ** 2
-        # Along and across the ridges.
-        ridges = slope / (1.0 + line.lay_ratio**2)
-        across = slope - ridges
-        cosine, sine = cosine_and_sine(line.lay_angle)
-        slopes += (
-            ridges * cosine**2 + across * sine**2,
-            ridges * sine**2 + across * cosine**2,
-            (ridges - across) * cosine * sine,
-        )
-    m0, _, m4 = pair_moments(spec)
-    return SurfaceMoments(m0, *slopes.tolist(), m4)
 
 
 def autocovariance(spec: LineSpecLike, roller: int, lags: int) -> np.ndarray:

@@ -5,12 +5,11 @@ import pytest
 import xarray as xr
 from scipy import ndimage
 
-from lube.contact.strip_film import StripFilm, pair_deviation
+from lube.contact.strip_film import StripFilm, pair_deviation, surface_moments
 from lube.contact.surface_strip import SURFACES as SAMPLED
 from lube.contact.surface_strip import surface_contact
 from lube.statistics.curves import contact_curve, film_interval
 from lube.surfaces.rough_surface import rough_surface
-from lube.surfaces.spectra import surface_moments
 
 WIDTH, LENGTH = 3e-4, 5e-4
 SURFACES, PAIRS = 8, 10

@@ -191,27 +191,31 @@ class Filtered:
         return across, np.fft.irfft2(sum(waves) * surface.curvatures, shape)
 
 
-def searched(surfaces, points, films, sharp, generator):
+def searched(surfaces, surface, films, sharp, generator):
     """Shares of strips that touch and that break, and their numbers in a strip, on a surface."""
-    across, curvatures = surfaces.drawn(generator)
+    (across, curvatures), points = surfaces.drawn(generator), surface.points
+    diagonal = surface.diagonal
     shares, numbers = [], []
     for column in range(0, points[1] - films.size, 40):
         overlap = across(column, films.size) - films
         sharper = curvatures[:, column : column + films.size] > sharp
         for row in range(0, points[0] - ROWS, 2 * ROWS):
             part = slice(row, row + ROWS)
-            found = contacts_in(overlap[part], sharper[part])[1:]
+            found = contacts_in(overlap[part], sharper[part], diagonal)[1:]
             shares.append([len(found) > 0, any(found)])
         # A contact is in the strip in which it begins.
-        labels, *found = contacts_in(overlap, sharper)
+        labels, *found = contacts_in(overlap, sharper, diagonal)
         begun = np.delete(found, np.unique(labels[0])[1:] - 1)
         numbers.append(np.array([begun.size, np.sum(begun)]) * ROWS / (points[0] - 1))
     return np.stack([np.mean(shares, axis=0), np.mean(numbers, axis=0)])
 
 
-def contacts_in(overlap, sharper):
+def contacts_in(overlap, sharper, diagonal):
     """Labels of contacts, then of each whether it breaks its boundary layer."""
-    labels, count = scipy.ndimage.label(overlap > 0.0)
+    neighbours = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
+    if diagonal:
+        neighbours[0, 1 - diagonal] = neighbours[2, 1 + diagonal] = 1
+    labels, count = scipy.ndimage.label(overlap > 0.0, neighbours)
     summits = scipy.ndimage.maximum_position(overlap, labels, range(1, count + 1))
     return labels, *(bool(sharper[summit]) for summit in summits)
 
@@ -222,8 +226,7 @@ def compare(spec, surfaces, surface, film, count):
     films = film.films(surface.spacing[1]) / spec.height_step
     sharp = film.breaking_curvatures(surface.spacing[1], curvature) / spec.height_step
     rng = np.random.default_rng(8)
-    points = surface.points
-    counted = np.array([searched(surfaces, points, films, sharp, rng) for _ in range(count)])
+    counted = np.array([searched(surfaces, surface, films, sharp, rng) for _ in range(count)])
     length = (ROWS + 0.5) * surface.spacing[0]
     strips = [film], np.array([False])
     seeds = surface_strip.surface_seeds(SEED, surface_strip.SURFACES)

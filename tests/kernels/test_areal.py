@@ -58,7 +58,17 @@ def added(answered, row, column, origin):
     return heights, [interpolated(each, *lags)[0] for each in answered.covariances]
 
 
-def naive(fields, covariances, row, column, origin, height, film, sharp, fading, answered):
+def neighbours(diagonal):
+    """Points that are neighbours, those of the next row and the next column too if it is 1."""
+    found = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
+    if diagonal:
+        found[0, 1 - diagonal] = found[2, 1 + diagonal] = 1
+    return found
+
+
+def naive(
+    fields, covariances, row, column, origin, height, film, sharp, fading, answered, diagonal
+):
     """First touching row and contacts of one strip, with all contacts labelled at once."""
     rows = np.arange(-REACH, AROUND + 1)
     columns = np.arange(WIDTH)
@@ -71,7 +81,7 @@ def naive(fields, covariances, row, column, origin, height, film, sharp, fading,
     heights = fields[0][part] + by_oil
     rise = (height - heights[REACH, origin]) / known[REACH, origin]
     heights, curvatures = heights + known * rise, fields[1][part] + known_curvature * rise
-    labels, count = scipy.ndimage.label(heights > film)
+    labels, count = scipy.ndimage.label(heights > film, neighbours(diagonal))
     breaks = {0: False}
     for number in range(1, count + 1):
         summit = np.argmax(np.where(labels == number, heights - film, -np.inf))
@@ -98,8 +108,8 @@ def naive(fields, covariances, row, column, origin, height, film, sharp, fading,
 
 @pytest.mark.parametrize("is_answered", [False, True])
 @pytest.mark.parametrize("shape", [0.0, 0.8])
-@pytest.mark.parametrize("least", [1.0, 1.6, 2.4])
-def test_strips_are_weighed_as_by_a_naive_implementation(least, shape, is_answered):
+@pytest.mark.parametrize(("least", "diagonal"), [(1.0, 0), (1.6, 1), (1.6, -1), (2.4, 0)])
+def test_strips_are_weighed_as_by_a_naive_implementation(least, diagonal, shape, is_answered):
     film, sharp, fading = least + shape * ACROSS**2, 0.9 + shape * ACROSS, 2.0 + ACROSS
     rng = np.random.default_rng(5)
     fields = smooth_surface(rng, 200)
@@ -114,19 +124,19 @@ def test_strips_are_weighed_as_by_a_naive_implementation(least, shape, is_answer
     touching = known, (film[known] + rng.exponential(0.3, count)).astype(np.float32)
     expected = [0.0, 0.0, 0.0]
     for each in zip(*places, *touching, strict=True):
-        parts = naive(fields, covariances, *each, film, sharp, fading, answered)
+        parts = naive(fields, covariances, *each, film, sharp, fading, answered, diagonal)
         expected = [total + part for total, part in zip(expected, parts, strict=True)]
     tops = np.maximum.reduceat(fields[0], np.arange(0, 200, BLOCK), axis=1)
     strips = places, touching, film, sharp, fading, AROUND
-    found = touching_strips(fields, tops, covariances, *strips, answered)
+    found = touching_strips(fields, tops, covariances, *strips, answered, diagonal)
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)
     assert 0.0 < found[1][1] < found[0][1] and 0.0 < found[2][1] < found[2][0]
 
 
 @pytest.mark.parametrize("is_answered", [False, True])
-@pytest.mark.parametrize("shape", [0.0, 0.8])
-def test_contacts_are_counted_in_the_row_in_which_they_begin(shape, is_answered):
+@pytest.mark.parametrize(("shape", "diagonal"), [(0.0, 0), (0.0, 1), (0.8, 0)])
+def test_contacts_are_counted_in_the_row_in_which_they_begin(shape, diagonal, is_answered):
     film, sharp = 0.5 + shape * ACROSS**2, 0.9 + shape * ACROSS
     rng = np.random.default_rng(6)
     fields = smooth_surface(rng, 300)
@@ -139,12 +149,13 @@ def test_contacts_are_counted_in_the_row_in_which_they_begin(shape, is_answered)
     for row, column in zip(*places, strict=True):
         part = np.s_[row - REACH : row + AROUND + 1, column : column + WIDTH]
         overlap = fields[0][part] + added(answered, row, column, 0)[0] - film
-        labels, count = scipy.ndimage.label(overlap > 0.0)
+        labels, count = scipy.ndimage.label(overlap > 0.0, neighbours(diagonal))
         begun = [number for number in range(1, count + 1) if not (labels[0] == number).any()]
         summits = scipy.ndimage.maximum_position(overlap, labels, begun)
         breaks = [fields[1][part][summit] > sharp[summit[1]] for summit in summits]
         expected += len(begun), sum(breaks)
     covariances = (np.zeros((REACH + 1 + AROUND, 2 * WIDTH - 1), np.float32),) * 2
-    found = contacts_per_row(fields, covariances, places, film, sharp, AROUND, answered)
+    strips = places, film, sharp, AROUND, answered
+    found = contacts_per_row(fields, covariances, *strips, diagonal)
     np.testing.assert_allclose(found * 20 * (REACH + AROUND), expected)
     assert 0 < expected[1] < 0.9 * expected[0]

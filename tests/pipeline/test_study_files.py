@@ -32,11 +32,11 @@ def test_a_target_that_the_study_lacks_is_refused_in_one_line(paper_with):
             files.check_targets([target])
 
 
-def test_a_surface_along_rolling_has_no_isotropic_surface_to_press_or_to_count(tmp_path):
+def test_profiles_along_rolling_have_no_surface_to_press_or_to_count(tmp_path):
     path = write_study(STUDIES["insulator"], tmp_path / "mine")
     files = StudyFiles(load_study(path), path, {})
     for target in ("areal_contact", "patch_contact", "results/insulator/areal.nc"):
-        with pytest.raises(SystemExit, match=f"the target {target}, need .*isotropic surfaces"):
+        with pytest.raises(SystemExit, match=f"the target {target}, need .*stand for surfaces"):
             files.check_targets([target])
     for target in ("rig", "results/insulator/experiment.nc", "comparison", "gauge"):
         with pytest.raises(SystemExit, match=f"the target {target}, need .*that conduct"):

@@ -40,7 +40,7 @@ def test_every_value_that_is_set_is_shown_with_its_unit(shown):
     unset |= {"traces[].slide_to_roll_ratio", "about.doi"}
     unset |= {"about.creators[].affiliation", "about.creators[].orcid"}
     unset |= {"rollers.composite_rms_roughness", "roughness.roll_off_wavelength"}
-    unset |= {"roughness.long_cutoff", "roughness.short_cutoff"}
+    unset |= {"roughness.long_cutoff", "roughness.short_cutoff", "roughness.lay_angle"}
     keys = {key.strip("`") for key, _, _ in study_keys()}
     own = ("ra_roughness", "roughness", "topography")
     for roller in ("first", "second"):

@@ -157,7 +157,7 @@ def test_a_topography_of_both_rollers_is_read_and_resampled_once(study_file):
 
 def test_no_isotropic_surface_belongs_to_profiles_along_rolling(study_file):
     check_stands_for_surface(load_study(study_file(MAP)).line_spec)
-    with pytest.raises(LubeError, match="need isotropic topographies"):
+    with pytest.raises(LubeError, match="need an isotropic one or one with a lay"):
         check_stands_for_surface(load_study(study_file(SCAN)).line_spec)
     with pytest.raises(LubeError, match="got a measured line, need lines drawn"):
         check_stands_for_surface(

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from lube.contact.strip_film import surface_moments
 from lube.errors import DataError
 from lube.surfaces.rough_surface import rough_surface
-from lube.surfaces.spectra import surface_moments
 from lube.surfaces.synthetic import wave_amplitudes
 
 
