@@ -52,6 +52,7 @@ _SILICON_NITRIDE = {
     },
 }
 
+_HONED = {"roughness": {"lay_ratio": 2, "lay_angle": "-60 deg"}}
 _STEEL = {"young_modulus": "210 GPa", "poisson_ratio": 0.3}
 _EXAMPLE = str(CONFIG / "surfaces/example.x3p")
 _MAP = {"file": _EXAMPLE, "texture": "isotropic", "holes": "interpolate"}
@@ -134,6 +135,21 @@ STUDIES = {
         inlet_meniscus="0.4 mm",
         load_sharing="iterated",
         operating_grid=_grid([400, 1600], [100, 200], [60, 80], [0, 1]),
+        traces=[_trace(1600, 100, 80, slide_to_roll_ratio=1)],
+    ),
+    # A ground roller, whose ridges run along rolling, on a honed one, under shaped films that both
+    # surfaces answer: no line stands for them.
+    "ground": _small(
+        "ground",
+        contact_model=["surface"],
+        film_shape="computed",
+        roughness_deformation="computed",
+        film_formulas=["paper"],
+        rollers=PAPER_CONTENT["rollers"]
+        | {"second": _STEEL | {"radius": "40 mm", "rms_roughness": "0.15 um"} | _HONED},
+        roughness=PAPER_CONTENT["roughness"]
+        | {"points": 40_000, "lay_ratio": 4, "lay_angle": "0 deg"},
+        operating_grid=_grid([400, 1600], [100], [60, 80], [0, 1]),
         traces=[_trace(1600, 100, 80, slide_to_roll_ratio=1)],
     ),
     # So fast that at the greater force, 40 degC, the heating is beyond its formula's range.

@@ -10,6 +10,7 @@ import logging
 import numpy as np
 import xarray as xr
 
+from lube.errors import StudyError
 from lube.schema import label, with_dims
 from lube.study.line_spec import LineSpec
 from lube.study.study import Study
@@ -59,12 +60,15 @@ def patch_contact(spec: LineSpec, reduced_modulus: float, seed: int) -> xr.Datas
     LubeError
         If tamaas is not installed.
     StudyError
-        If the heights of a line are not Gaussian, or a line was measured along rolling.
+        If the heights of a line are not Gaussian, a line was measured along rolling, or a surface
+        has a lay.
     DataError
         If the band of wavelengths is too wide for a surface, or tamaas finds no solution.
     """
     find_tamaas()
     check_stands_for_surface(spec)
+    if not spec.is_isotropic:
+        raise StudyError("roughness.lay_ratio: got a lay, need none: squares have no direction")
     smallest = 4.0 * spec.longest_wavelength / LEAST_POINTS
     surface = rough_surface(spec, contact=(smallest, smallest), waves=1)
     lines = [spectrum_moments(spec, roller) for roller in range(len(ROLLER_NUMBERS))]

@@ -203,8 +203,7 @@ class Study(StrictModel):
     @property
     def answered_lines(self) -> LineSpec | None:
         """The roughness lines, if the oil answers them."""
-        spec = self.line_spec
-        return spec if self.gap.is_answered and spec.follows_rolling else None
+        return self.line_spec if self.gap.is_answered else None
 
     @property
     def has_lines(self) -> bool:

@@ -219,7 +219,7 @@ def surface_grid(
         spacing = min(spacing, max(own / POINTS_PER_CONTACT, side / LARGE))
         times = side / spacing / LARGEST
         if times > 1.0:
-            lay = ", or ridges less long" * (longest > spec.longest_wavelength)
+            lay = ", or shorter ridges" * any(ratio > 1.0 for ratio, _ in lays)
             raise DataError(
                 f"roughness: got a shortest wavelength of {shortest:.3g} m, too short for a "
                 f"surface of {side:.3g} m, need one {times:.3g} times as long{lay}"

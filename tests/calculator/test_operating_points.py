@@ -95,6 +95,27 @@ def test_surface_and_line_are_answered_together(rollers, oil):
     assert {"tail_" + name, name + "_mean"} <= set(found)
 
 
+def test_ground_rollers_touch_by_their_surfaces_alone(oil):
+    bent = {"longest_wavelength": "0.2 mm", "shortest_wavelength": "20 um", "points": 40_000}
+    lay = {"lay_ratio": 4.0, "lay_angle": "0 deg"}
+    ground = lube.Rollers("20 mm", "0.07 um", **bent, **lay)
+    cold = POINT | {"temperature": "40 degC"}
+    choices = {"film_formula": "paper", "contact_model": "surface", "seed": 3}
+    found = lube.contact_probability(ground, oil, **cold, **choices)
+    other = lube.contact_probability(
+        lube.Rollers("20 mm", "0.1 um", **bent), oil, **cold, **choices
+    )
+    name = "surface_geometric_contact_probability"
+    assert 0.0 < found[name] < 0.9 * other[name]
+    assert np.isnan(found["surface_expected_breakthroughs"])
+    refused = r"^lay_angle: got ridges 4 times longer than wide"
+    for answer in (lube.contact_probability, lube.trace):
+        with pytest.raises(lube.LubeError, match=refused):
+            answer(ground, oil, **POINT)
+    with pytest.raises(lube.LubeError, match=refused):
+        lube.required_film(ground, POINT["force"])
+
+
 def test_asperities_that_carry_a_share_of_the_load_leave_a_thicker_film(rollers, oil, busy):
     hot = POINT | {"temperature": "80 degC"}
     whole = lube.contact_probability(rollers, oil, **hot, realisations=2)

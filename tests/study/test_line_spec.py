@@ -52,6 +52,26 @@ def test_a_rollers_own_roughness_is_an_input_of_its_lines_but_not_of_the_film(st
     assert before.stage_inputs("roughness") != after.stage_inputs("roughness")
 
 
+def test_a_lay_is_of_a_roller_and_lengthens_the_waves_of_its_line(study_with):
+    own = {"lay_ratio": 3, "lay_angle": "90 deg"}
+    study = study_with(("rollers.second.roughness", own))
+    first, second = study.line_spec.lines
+    assert (second.lay_ratio, second.lay_angle) == (3.0, 90.0)
+    assert second.longest_wavelength == pytest.approx(3.0 * first.longest_wavelength)
+    assert second.q_max == first.q_max and study.line_spec.q_min == second.q_min / 3.0
+    assert study.line_spec.follows_rolling and not study.line_spec.is_isotropic
+    band = study_with(("rollers.first.roughness", own), ("rollers.second.roughness", own)).band
+    assert band.endswith("to 3.14 µm across ridges 3 times longer, at 90 deg")
+    alone = (
+        ("contact_model", ["surface"]),
+        ("roughness.lay_ratio", 3),
+        ("roughness.lay_angle", "0 deg"),
+    )
+    ground = study_with(*alone)
+    assert not ground.line_spec.follows_rolling and ground.has("areal")
+    assert {"lubricant", "film", "tail"} == set(ground.datasets)
+
+
 CUTOFFS = {"long_cutoff": "0.4 mm", "short_cutoff": "10 um"}
 
 

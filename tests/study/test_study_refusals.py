@@ -186,6 +186,30 @@ def test_surfaces_that_cannot_touch_are_refused(paper_with):
     assert "load_sharing: got iterated, need none: roughness: got a skewness of 0 and" in said
 
 
+def test_lays_that_a_line_cannot_take_are_refused(paper_with):
+    ridges, surface = ("roughness.lay_ratio", 5), ("contact_model", ["surface"])
+    angle = "roughness.lay_angle"
+    for *changes, message in [
+        (ridges, "roughness.lay_angle: missing, need it with a lay_ratio of 5: 0 deg for ridges"),
+        (ridges, (angle, "0 deg"), "got ridges 5 times longer than wide at 0 deg to rolling, need"),
+        (ridges, (angle, "120 deg"), "got 120 deg, need a value at least -90 and at most 90 deg"),
+        (("roughness.lay_ratio", 0.5), "roughness.lay_ratio: got 0.5, need a value at least 1"),
+        (
+            *(ridges, (angle, "0 deg"), surface, ("experiment.manifest", "records.csv")),
+            "experiment.manifest: got ",
+        ),
+        (("roughness.lay_ratio", 900), (angle, "90 deg"), "got a perimeter of 0.314 m, need room"),
+        (
+            *(("roughness.lay_ratio", 50), (angle, "30 deg"), surface),
+            "need one 7.07 times as long, or shorter ridges",
+        ),
+    ]:
+        assert message in refusal(paper_with(*changes)), message
+    load_study(paper_with(ridges, (angle, "0 deg"), surface))
+    load_study(paper_with(ridges, (angle, "45 deg")))
+    load_study(paper_with(("roughness.lay_ratio", 1.4), (angle, "0 deg")))
+
+
 def test_a_contact_that_does_not_fit_the_grid_or_the_rollers_is_refused(paper_with):
     forces, trace = "operating_grid.force.values", ("traces.0.force", "1600 N")
     longest = "roughness.longest_wavelength"
