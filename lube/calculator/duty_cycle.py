@@ -135,7 +135,7 @@ def duty(
         whole = _whole(contact, on_pairs, share, rollers.lines.independent_windows(width))
         parts = joined(table, contact, on_pairs)
     if "surface" in choices.models:
-        parts = parts.assign(of_surface(table, rollers, seed, gap))
+        parts = parts.assign(of_surface(table, rollers, seed, gap, slip))
         for end in LIMITS:
             of_points = parts[f"surface_breakthrough_probability{end}"]
             whole[f"whole_surface_probability{end}"] = (of_points * share).sum(skipna=False)

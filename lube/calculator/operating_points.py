@@ -239,8 +239,8 @@ def contact_probability(
         ``surface_breakthroughs`` and ``surface_contacts`` at any moment, each with ``_lower`` and
         ``_upper``. By theory: ``surface_load_share``, the share of the load that their asperities
         would carry; ``surface_pair_deviation``, the standard deviation of the share of
-        one pair of rollers in a revolution; ``surface_passage_width``, over which a contact moves
-        while it is in the strip; and, if the oil does not deform the roughness,
+        one pair of rollers in a revolution; ``surface_passage_width``, over which the rollers move
+        while a contact is in the strip; and, if the oil does not deform the roughness,
         ``surface_expected_breakthroughs`` and ``surface_expected_contacts``.
 
     Raises
@@ -272,16 +272,20 @@ def contact_probability(
         on_pairs = pair_probabilities(rollers.lines, table, rollers.layer, seed, slip, gap)
         found = joined(table, contact, on_pairs)
     if "surface" in choices.models:
-        found = found.assign(of_surface(table, rollers, seed, gap))
+        found = found.assign(of_surface(table, rollers, seed, gap, slip))
     if "surface_load_share" in table:
         found["surface_load_share"] = table["surface_load_share"]
     return with_remarks(found, table, rollers)
 
 
-def of_surface(table: xr.Dataset, rollers: Rollers, seed: int, gap: Gap) -> dict[str, xr.DataArray]:
+def of_surface(
+    table: xr.Dataset, rollers: Rollers, seed: int, gap: Gap, slip: xr.DataArray | float
+) -> dict[str, xr.DataArray]:
     """Contact of the surface at some films, by the names of `contact_probability`."""
-    length = rollers.pair.length
-    found = surface_contact(rollers.lines, length, table, rollers.layer, seed, gap)
+    choices = rollers.layer, seed, gap
+    found = surface_contact(
+        rollers.lines, rollers.pair.length, table, *choices, slide_to_roll_ratio=slip
+    )
     return {f"surface_{name}": values for name, values in found.items()}
 
 

@@ -19,7 +19,14 @@ import numpy as np
 import scipy
 
 from lube.contact.surface_answers import AnsweredStrip
-from lube.physics.excursions import SurfaceMoments, expected_contacts, sharp_surface_summit_share
+from lube.grid.operating_points import surface_speeds
+from lube.physics.excursions import (
+    SurfaceMoments,
+    SurfaceMotion,
+    appearing_contacts,
+    expected_contacts,
+    sharp_surface_summit_share,
+)
 from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.rare_contact import likely_part
 from lube.surfaces.rough_surface import Surface
@@ -141,6 +148,33 @@ class StripFilm:
         width = spacing * columns.sum() / columns.max()
         return width, spacing * np.arange(common.size), common / common[0]
 
+    def appearing(self, moments: SurfaceMoments, motion: SurfaceMotion, length: float) -> float:
+        """Find how many times more contacts appear in the strip than in pure rolling.
+
+        Parameters
+        ----------
+        moments, length
+            As in `expected`.
+        motion : SurfaceMotion
+            From `surface_motion`.
+        """
+        rolling = SurfaceMotion(moments.along, -moments.along, -moments.mixed)
+        if self.has_edges:
+            film, width = self.thickness([0.0]), self.width
+            both = (
+                appearing_contacts(film, moments, one, length, width) for one in (motion, rolling)
+            )
+            more, fewer = both
+            return (more / fewer).item()
+        spacing = self.width / COLUMNS
+        films = self.films(spacing)
+        # Without slip contacts come in where the film is thinnest. With slip, others appear inside.
+        inside = [
+            appearing_contacts(films, moments, motion, length, width) for width in (spacing, 0.0)
+        ]
+        columns = _without_edges(films, moments, length, spacing)
+        return 1.0 + spacing * np.sum(inside[0] - inside[1]) / columns.max()
+
     def _columns(self, spacing):
         return self.begin + spacing * (np.arange(max(int(self.width / spacing), 1)) + 0.5)
 
@@ -165,20 +199,44 @@ def surface_moments(spec: LineSpecLike) -> SurfaceMoments:
     SurfaceMoments
         Moments of the sum of both rollers' surfaces.
     """
-    slopes = np.zeros(3)
-    for roller, line in enumerate(spec.lines):
-        slope = spectrum_moments(spec, roller)["rms_slope"] ** 2
-        # Along and across the ridges.
-        ridges = slope / (1.0 + line.lay_ratio**2)
-        across = slope - ridges
-        cosine, sine = cosine_and_sine(line.lay_angle)
-        slopes += (
+    slopes = _slopes(spec, 0) + _slopes(spec, 1)
+    m0, _, m4 = pair_moments(spec)
+    return SurfaceMoments(m0, *slopes.tolist(), m4)
+
+
+def surface_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> SurfaceMotion:
+    """Moments of both surfaces in motion, per way of the entrainment speed.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        As in `surface_moments`.
+    slide_to_roll_ratio : float
+        Slide-to-roll ratio.
+    """
+    speeds = surface_speeds(1.0, slide_to_roll_ratio)
+    change, along, across = 0.0, 0.0, 0.0
+    for roller, speed in enumerate(speeds):
+        own = _slopes(spec, roller)
+        change += speed**2 * own[0]
+        along -= speed * own[0]
+        across -= speed * own[2]
+    return SurfaceMotion(change, along, across)
+
+
+def _slopes(spec, roller):
+    """Mean square slopes of a surface along rolling and along the rollers, and their product."""
+    line, slope = spec.lines[roller], spectrum_moments(spec, roller)["rms_slope"] ** 2
+    ridges = slope / (1.0 + line.lay_ratio**2)
+    across = slope - ridges
+    cosine, sine = cosine_and_sine(line.lay_angle)
+    return np.array(
+        [
             ridges * cosine**2 + across * sine**2,
             ridges * sine**2 + across * cosine**2,
             (ridges - across) * cosine * sine,
-        )
-    m0, _, m4 = pair_moments(spec)
-    return SurfaceMoments(m0, *slopes.tolist(), m4)
+        ]
+    )
 
 
 def pair_deviation(probability: float, lags: Array, common: Array, perimeter: float) -> float:

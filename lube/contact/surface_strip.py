@@ -28,7 +28,13 @@ import scipy
 import scipy.special
 import xarray as xr
 
-from lube.contact.strip_film import COLUMNS, StripFilm, pair_deviation, surface_moments
+from lube.contact.strip_film import (
+    COLUMNS,
+    StripFilm,
+    pair_deviation,
+    surface_moments,
+    surface_motion,
+)
 from lube.contact.surface_answers import COARSEST, surface_answers
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
@@ -84,6 +90,7 @@ def surface_contact(
     threads: int | None = None,
     weaker: Values = 1.0,
     fewer: int = 1,
+    slide_to_roll_ratio: xr.DataArray | float = 0.0,
 ) -> xr.Dataset:
     """Find how often, and at how many positions, surfaces touch over the length of the rollers.
 
@@ -109,15 +116,17 @@ def surface_contact(
         How many times weaker than `boundary_layer` the layer is, at all films or at each.
     fewer : int, optional
         How many times fewer surfaces are drawn than `SURFACES`, for a faster, less exact result.
+    slide_to_roll_ratio : xarray.DataArray or float, optional
+        For the passage width, which also has its dimensions; by default pure rolling.
 
     Returns
     -------
     xarray.Dataset
         ``geometric_contact_probability`` and ``breakthrough_probability``, the numbers ``contacts``
         and ``breakthroughs`` in the strip, each with ``_lower`` and ``_upper``, and the numbers
-        that theory expects, ``expected_contacts`` and ``expected_breakthroughs``; the way of a
-        contact through the strip, ``passage_width`` (m), and the scatter of a pair's share of
-        breakthrough in a revolution of pure rolling, ``pair_deviation``, as
+        that theory expects, ``expected_contacts`` and ``expected_breakthroughs``; the way that the
+        rollers move while a contact is in the strip, ``passage_width`` (m), and the scatter of a
+        pair's share of breakthrough in a revolution of pure rolling, ``pair_deviation``, as
         `lube.contact.strip_film` explains; over the dimensions of the films, NaN where the film is
         not known. Theory neglects the slope of a film with a shape. Where the oil answers the
         surfaces, the expected numbers are NaN, and way and scatter those of the surfaces as drawn.
@@ -145,7 +154,24 @@ def surface_contact(
         values |= {name: np.full(thickness.size, np.nan) for name in _EXPECTED}
     dims, shape = thickness.dims, thickness.shape
     values = {name: (dims, each.reshape(shape)) for name, each in values.items()}
-    return xr.Dataset(values, thickness.coords)
+    found = xr.Dataset(values, thickness.coords)
+    appearing = _appearing(spec, strips, length, thickness, slide_to_roll_ratio)
+    return found.assign(passage_width=found["passage_width"] / appearing)
+
+
+def _appearing(spec, strips, length, thickness, slide_to_roll_ratio):
+    """How many times more contacts appear than in pure rolling, over films and slip."""
+    points = thickness.copy(data=np.arange(thickness.size).reshape(thickness.shape))
+    slips, points = xr.broadcast(xr.DataArray(slide_to_roll_ratio), points)
+    moments = surface_moments(spec)
+    motions = {slip: surface_motion(spec, slip) for slip in np.unique(slips).tolist()}
+
+    def at(slip, point):
+        if slip == 0.0 or strips[point] is None:
+            return 1.0
+        return strips[point].appearing(moments, motions[slip], length)
+
+    return xr.apply_ufunc(np.vectorize(at, otypes=[float]), slips, points)
 
 
 def surface_seeds(seed: int, count: int) -> list:

@@ -96,7 +96,7 @@ def _on_grid(study, inputs):
         responses = inputs["surface_response"][list(SURFACE_VARIABLES)]
         film = film.assign(responses.rename(film_position="response_position"))
     if _SLIP not in film["film_thickness"].dims:
-        areal = areal.isel({_SLIP: 0})
+        areal = areal.sel({_SLIP: 0.0}, method="nearest")
     points = {"record": film["film_thickness"].dims}
     film, areal = (each.stack(points, create_index=False) for each in (film, areal))
     return film, _numbers(study, areal)

@@ -46,6 +46,22 @@ class SurfaceMoments(NamedTuple):
     curvature: float
 
 
+class SurfaceMotion(NamedTuple):
+    """Moments of a surface in motion, per way of the mean motion along rolling.
+
+    Attributes
+    ----------
+    change : float
+        Mean square change of the height at a fixed place.
+    along, across : float
+        Mean product of this change and the slope along rolling, and along the rollers.
+    """
+
+    change: float
+    along: float
+    across: float
+
+
 def crossing_rate(level: Values, moments: Sequence[float]) -> Values:
     r"""Upward crossings of a level per unit length (Rice).
 
@@ -178,6 +194,71 @@ def expected_contacts(level: Array, moments: SurfaceMoments, length: float, widt
     edges = length * math.sqrt(moments.across) + width * math.sqrt(moments.along)
     edges = edges / (2.0 * math.pi * math.sqrt(moments.height))
     return scipy.special.ndtr(-height) + (edges + area) * np.exp(-0.5 * height**2)
+
+
+def appearing_contacts(
+    level: Array, moments: SurfaceMoments, motion: SurfaceMotion, length: float, width: Array
+) -> Array:
+    r"""Compute the expected number of contacts that appear in a rectangle per way of motion.
+
+    With the way as a third direction a contact is a body in space. The formula gives the bodies
+    that begin per way: those in the rectangle, on its two pairs of sides and at its corners. With
+    the matrices M of the mean squares and products of the changes in space (a, b) and along the way
+    (t),
+
+    .. math::
+
+        \left[ a b\, \frac{(u^2 - 1) \sqrt{\det M_{abt}}}{(2 \pi)^2 m_0^{3/2}}
+        + \frac{u \left( a \sqrt{\det M_{at}} + b \sqrt{\det M_{bt}} \right)}
+        {(2 \pi)^{3/2} m_0} + \frac{\sqrt{m_t}}{2 \pi \sqrt{m_0}} \right] e^{-u^2/2}
+
+    Parameters
+    ----------
+    level, moments, length, width
+        As in `expected_contacts`.
+    motion : SurfaceMotion
+        Moments of the motion.
+
+    Returns
+    -------
+    numpy.ndarray
+        Expected number, 1/m. It is below the true one where contacts merge.
+
+    References
+    ----------
+    As for `expected_contacts`.
+
+    Examples
+    --------
+    Without slip a contact passes the width and its own extent:
+
+    >>> moments = SurfaceMoments(1.0, along=4.0, across=4.0, mixed=0.0, curvature=100.0)
+    >>> rolling = SurfaceMotion(4.0, along=-4.0, across=0.0)
+    >>> level = np.array([4.0])
+    >>> appearing_contacts(level, moments, rolling, 10.0, 20.0).round(4)
+    array([0.0035])
+    >>> wider = expected_contacts(level, moments, 10.0, np.array([21.0, 20.0]))
+    >>> f"{wider[0] - wider[1]:.4f}"
+    '0.0035'
+    """
+    height = np.asarray(level) / math.sqrt(moments.height)
+    matrix = np.array(
+        [
+            [moments.along, moments.mixed, motion.along],
+            [moments.mixed, moments.across, motion.across],
+            [motion.along, motion.across, motion.change],
+        ]
+    )
+
+    def root(rows):  # of a determinant that vanishes without slip
+        return math.sqrt(max(np.linalg.det(matrix[np.ix_(rows, rows)]), 0.0))
+
+    body = length * width * (height**2 - 1.0) * root([0, 1, 2])
+    sides = height * (width * root([0, 2]) + length * root([1, 2]))
+    found = body / (2.0 * math.pi * math.sqrt(moments.height)) ** 2 / math.sqrt(moments.height)
+    found += sides / moments.height / (2.0 * math.pi) ** 1.5
+    found += math.sqrt(motion.change / moments.height) / (2.0 * math.pi)
+    return found * np.exp(-0.5 * height**2)
 
 
 def sharp_surface_summit_share(level: Array, moments: SurfaceMoments, curvature: Values) -> Array:

@@ -35,7 +35,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         film = film.assign(responses.rename(film_position="response_position"))
     film = film.transpose(*CONTACT_DIMS, ..., missing_dims="ignore")
     choices = study.boundary_layer, study.seed, study.gap, threads
-    found = surface_contact(study.line_spec, length, film, *choices).drop_attrs()
-    if _SLIP not in found.dims:  # the film is the same at all slips, and the probability as well
-        found = found.expand_dims({_SLIP: list(study.slips)})
+    slips = xr.DataArray(list(study.slips), dims=_SLIP, coords={_SLIP: list(study.slips)})
+    found = surface_contact(study.line_spec, length, film, *choices, slide_to_roll_ratio=slips)
+    # If the film is the same at all slips, so is the probability.
+    found = xr.broadcast(found.drop_attrs())[0]
     return label(found.transpose(*CONTACT_DIMS).copy(deep=True).assign(length=length), "areal")

@@ -129,17 +129,15 @@ def _by_model(study, film, lines, areal):
 def _on_surfaces(study, speed, areal):
     """Variables of surfaces, for the first film formula.
 
-    Rates and durations are known in pure rolling: then a contact stays the same while it passes
-    through the strip.
+    A contact is counted once, from where it appears in the strip to where it disappears.
     """
-    perimeter = study.line_spec.points[0] * study.line_spec.spacing
-    rolls, passage = areal[_SLIP] == 0.0, areal["passage_width"]
+    perimeter, passage = study.line_spec.points[0] * study.line_spec.spacing, areal["passage_width"]
     table = {f"{name}{end}": areal[f"{name}{end}"] for name in _PROBABILITIES for end in LIMITS}
     for end in LIMITS:
-        rate = areal[f"breakthroughs{end}"] * speed / passage
-        table[f"breakthrough_rate{end}"] = rate.where(rolls)
-    table["breakthroughs_per_revolution"] = table["breakthrough_rate"] * perimeter / speed
-    table["breakthrough_duration"] = (passage / speed).where(rolls)
+        table[f"breakthrough_rate{end}"] = areal[f"breakthroughs{end}"] * speed / passage
+    turn = perimeter / surface_speeds(speed, areal[_SLIP])[0]
+    table["breakthroughs_per_revolution"] = table["breakthrough_rate"] * turn
+    table["breakthrough_duration"] = passage / speed
     areal = _in_pure_rolling(areal)
     passages = perimeter / areal["passage_width"]
     return xr.Dataset(table | _by_groups(areal, passages, perimeter / speed))

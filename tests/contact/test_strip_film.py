@@ -5,9 +5,15 @@ import pytest
 import xarray as xr
 from scipy import ndimage
 
-from lube.contact.strip_film import StripFilm, pair_deviation, surface_moments
+from lube.contact.strip_film import (
+    StripFilm,
+    pair_deviation,
+    surface_moments,
+    surface_motion,
+)
 from lube.contact.surface_strip import SURFACES as SAMPLED
 from lube.contact.surface_strip import surface_contact
+from lube.grid.operating_points import surface_speeds
 from lube.statistics.curves import contact_curve, film_interval
 from lube.surfaces.rough_surface import rough_surface
 
@@ -86,6 +92,45 @@ def test_contacts_are_in_the_strip_as_long_as_expected(spec, surface, rollers):
         assert contacts * side / width == pytest.approx(per_turn, rel=0.1)
         if film.has_edges:
             assert width == pytest.approx(WIDTH + extents / numbers, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("slip", "own"),
+    [(0.0, {}), (0.5, {}), (2.0, {}), (0.5, {"lay_ratio": 2.0, "lay_angle": "40 deg"})],
+)
+def test_contacts_appear_with_slip_as_often_as_on_surfaces_in_motion(make_spec, slip, own):
+    """Both surfaces are moved step by step, and contacts followed in time."""
+    few = {"longest_wavelength": 4e-4, "shortest_wavelength": "16 points"}
+    spec = make_spec(50_000, second_own=own, **few)
+    surface = rough_surface(spec, contact=(6e-5, 6e-5), waves=6)
+    moments, (rows, columns) = surface_moments(spec), surface.points
+    film = StripFilm.flat(2.5 * np.sqrt(moments.height), 1e-4)
+    width, steps, found = int(2e-4 / surface.spacing[1]), 160, []
+    phase = 2j * np.pi / columns * np.arange(columns // 2 + 1)
+    for seed in range(16):
+        generator = np.random.default_rng(seed)
+        waves = surface.draw(generator, surface.points)[2]
+        both = [
+            np.fft.rfft(np.fft.irfft2(each, surface.points), axis=1)
+            for each in surface.of_each(waves, surface.points, generator)
+        ]
+        touching = np.empty((steps, rows, width), bool)
+        for step in range(steps):
+            moved = zip(both, surface_speeds(1.0, slip), strict=True)
+            now = sum(each * np.exp(-step * speed * phase) for each, speed in moved)
+            heights = np.fft.irfft(now, columns, axis=1)[:, :width] * spec.height_step
+            touching[step] = heights > film.thickness(0.0)
+        # A contact may be narrower than its way in a step.
+        labels, count = ndimage.label(touching, np.ones((3, 3, 3)))
+        found.append(count - np.unique(labels[0])[1:].size)
+    way, side = (steps - 1) * surface.spacing[1], surface.sides[0]
+    number, _ = film.expected(moments, side, 0.0)
+    passage, *_ = film.passage(moments, side)
+    appearing = film.appearing(moments, surface_motion(spec, slip), side) / passage
+    error = np.std(found, ddof=1) / len(found) ** 0.5
+    # Theory does not count contacts that merge, and pixels merge more.
+    assert abs(np.mean(found) - number * appearing * way) < 3.0 * error + 0.08 * np.mean(found)
+    assert error < 0.12 * np.mean(found)
 
 
 def test_few_pairs_ever_touch_under_thick_films(spec, surface, rollers):
