@@ -40,7 +40,7 @@ rule areal_contact:
     input:
         products(made_by("areal_contact", FIGURES)),
     message:
-        f"Done: areal.nc, areal_gauge.nc and their figures are in {RESULTS}"
+        f"Done: areal.nc, surface_trace.nc, areal_gauge.nc and their figures are in {RESULTS}"
 
 
 rule patch_contact:

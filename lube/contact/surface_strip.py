@@ -139,10 +139,9 @@ def surface_contact(
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     check_surfaces(spec, length, 2.0 * half_width.max().item(), gap)
     rms = math.sqrt(surface_moments(spec).height)
-    strips = _strip_films(film, thickness, half_width, gap, rms)
+    strips = strip_films(film, thickness, half_width, gap, rms)
     known = [point for point, strip in enumerate(strips) if strip is not None]
-    layer, modulus = boundary_layer, film["reduced_modulus"].item()
-    sharp = 0.5 * breaking_curvature(modulus, layer.critical_thickness, layer.shear_strength)
+    sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
     sharp = np.broadcast_to(sharp / weaker, thickness.size)[known]
     values = {name: np.full(thickness.size, np.nan) for name in _VARIABLES}
     if known:
@@ -174,6 +173,11 @@ def _appearing(spec, strips, length, thickness, slide_to_roll_ratio):
     return xr.apply_ufunc(np.vectorize(at, otypes=[float]), slips, points)
 
 
+def mean_breaking_curvature(reduced_modulus: float, layer: BoundaryLayer) -> float:
+    """Mean curvature of an overlap above which its boundary layer breaks, 1/m."""
+    return 0.5 * breaking_curvature(reduced_modulus, layer.critical_thickness, layer.shear_strength)
+
+
 def surface_seeds(seed: int, count: int) -> list:
     """Seeds of some surfaces: for each one that draws it, and one that chooses strips on it."""
     # The first two children draw the lines of the realisation of this number, the next three are
@@ -181,8 +185,20 @@ def surface_seeds(seed: int, count: int) -> list:
     return [np.random.SeedSequence((seed, number)).spawn(7)[5:] for number in range(count)]
 
 
-def _strip_films(film, thickness, half_width, gap, rms):
-    """Film across the strip of every operating point, None where it is not known."""
+def strip_films(
+    film: xr.Dataset, thickness: xr.DataArray, half_width: xr.DataArray, gap: Gap, rms: float
+) -> list[StripFilm | None]:
+    """Films across the strips of operating points, None where they are not known.
+
+    Parameters
+    ----------
+    film, gap
+        As in `surface_contact`.
+    thickness, half_width : xarray.DataArray
+        Film thickness and half-width of the contact, m, over the same dimensions.
+    rms : float
+        Rms height of both surfaces together, m.
+    """
     strips = _drawn_strips(film, thickness, half_width, gap, rms)
     if not gap.is_answered:
         return strips

@@ -160,6 +160,16 @@ _ROWS = (
         parallel=True,
     ),
     Stage(
+        "surface_trace",
+        "contacts of the surfaces along the rollers, at the points of the traces",
+        inputs=("film",),
+        inputs_with={"surface_response": "gap.is_answered"},
+        values=_LINES | _CONTACT | _named("traces resistivity rollers.length"),
+        target="areal_contact",
+        only_with=(*_SURFACE, "gap.is_on_surfaces"),
+        parallel=True,
+    ),
+    Stage(
         "tail",
         "probability and rate of contact, however rare",
         inputs=("film",),

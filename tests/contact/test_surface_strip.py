@@ -120,7 +120,7 @@ def answered_strip(study, spec, film_shape, slip):
     film = film.assign({name: scale * film[name] for name in ("film_thickness", "film_profile")})
     thickness, width = film["film_thickness"], film["contact_half_width"]
     gap = Gap(film_shape, "computed")
-    (strip,) = surface_strip._strip_films(film, thickness, width, gap, rms)
+    (strip,) = surface_strip.strip_films(film, thickness, width, gap, rms)
     return surface, strip, film
 
 

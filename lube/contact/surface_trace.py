@@ -1,0 +1,206 @@
+"""Contact of surfaces along the rollers at every step of a way.
+
+The strip is put together of independent pieces, each of which is a surface as wide as a few of the
+longest waves. Their joins cut few contacts. The rollers move by one period of these surfaces.
+"""
+
+import itertools
+import math
+
+import numpy as np
+import scipy.fft
+import scipy.ndimage
+import xarray as xr
+
+from lube.contact.strip_film import surface_moments
+from lube.contact.surface_answers import COARSEST
+from lube.contact.surface_strip import mean_breaking_curvature, strip_films
+from lube.ehl.line_contact import one_blas_thread
+from lube.grid.gap import PLAIN, Gap
+from lube.grid.operating_points import surface_speeds
+from lube.study.rollers import BoundaryLayer
+from lube.study.surface_checks import check_surfaces
+from lube.surfaces.rough_surface import on_coarser_grid, rough_surface
+from lube.surfaces.synthetic import LineSpecLike
+from lube.threads import on_threads
+
+STEPS = 200
+"""Time steps."""
+PLACES = 100
+"""Places along the rollers at which contacts are shown."""
+
+
+def surface_traces(
+    spec: LineSpecLike,
+    length: float,
+    film: xr.Dataset,
+    boundary_layer: BoundaryLayer,
+    seed: int,
+    slide_to_roll_ratio: float = 0.0,
+    gap: Gap = PLAIN,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Follow the contacts of surfaces along the rollers, at some films on the same surfaces.
+
+    Parameters
+    ----------
+    spec, length, film, boundary_layer, seed, gap, threads
+        As in `lube.contact.surface_strip.surface_contact`; the films over ``operating_point``.
+    slide_to_roll_ratio : float, optional
+        Slide-to-roll ratio, by default pure rolling.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over operating_point and step: the numbers ``contacts``, and ``breakthroughs`` of contacts
+        whose boundary layer breaks, and the summed diameters ``contact_length`` (m) of the latter,
+        of circles of the same area, as far as they lie in the strip; as ``contact_length_at`` also
+        over roller_position (m), by the highest point of each contact. ``step`` is the way of the
+        rollers, m. NaN where the film is not known.
+
+    Raises
+    ------
+    StudyError, DataError
+        As from `lube.study.surface_checks.check_surfaces`.
+    """
+    thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
+    widest = 2.0 * half_width.max().item()
+    check_surfaces(spec, length, widest, gap)
+    rms = math.sqrt(surface_moments(spec).height)
+    strips = strip_films(film, thickness, half_width, gap, rms)
+    wide = max([widest, *(strip.width for strip in strips if strip)])
+    surface = rough_surface(spec, wide, multiple=2**COARSEST if gap.is_answered else 1)
+    down, along = surface.spacing
+    sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
+    with one_blas_thread():
+        known = [
+            None
+            if strip is None
+            else (
+                (strip.films(along) / spec.height_step).astype(np.float32),
+                strip.breaking_curvatures(along, sharp) / spec.height_step,
+                strip.answered(surface, (1, 1)),
+            )
+            for strip in strips
+        ]
+    rows = max(int(length / down), 1)
+    pieces = [surface.points[0]] * (rows // surface.points[0]) + [rows % surface.points[0]]
+    speeds = surface_speeds(1.0, slide_to_roll_ratio)
+    way = surface.sides[1] / max(speeds) / STEPS * np.arange(STEPS)
+
+    def of_piece(number):
+        seeds = np.random.SeedSequence((seed, number)).spawn(9)[8]
+        moving = _moving(surface, np.random.default_rng(seeds), speeds)
+        return [_followed(surface, moving, each, pieces[number], way) for each in known]
+
+    numbers = [number for number, size in enumerate(pieces) if size]
+    found = on_threads(of_piece, numbers, threads, "trace of surfaces")
+    return _table(found, [pieces[number] for number in numbers], thickness, way, rows, down)
+
+
+def _moving(surface, generator, speeds):
+    """Surfaces that move alike: speed, heights, curvatures, and waves; one in pure rolling."""
+    heights, curvatures, waves = surface.draw(generator, surface.points)
+    if speeds[0] == speeds[1]:
+        return [(speeds[0], heights, curvatures, waves)]
+    both = []
+    for speed, own in zip(speeds, surface.of_each(waves, surface.points, generator), strict=True):
+        curved = own * surface.curvatures.astype(np.float32)
+        fields = (scipy.fft.irfft2(each, surface.points) for each in (own, curved))
+        both.append((speed, *fields, own))
+    return both
+
+
+def _followed(surface, moving, known, rows, way):
+    """Contacts of a piece at every step: their row, diameter, and whether they break."""
+    if known is None:
+        return None
+    films, sharp, answer = known
+    added = _added(surface, moving, answer)
+    shift = answer.shift if answer else 0
+    columns, steps = np.arange(films.size), []
+    near = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
+    if surface.diagonal:
+        near[0, 1 - surface.diagonal] = near[2, 1 + surface.diagonal] = 1
+    for here in way:
+        overlap, curvature = np.float32(0.0) - films, []
+        for (speed, heights, curvatures, _), more in zip(moving, added, strict=True):
+            # Points of the surface that lie upstream come into the strip.
+            place = round(-here * speed / surface.spacing[1]) >> shift << shift
+            at = (place + columns) % surface.points[1]
+            overlap = overlap + heights[:rows].take(at, axis=1)
+            curvature.append((curvatures, at))
+            if more is not None:
+                overlap += more(place)[:rows, : films.size]
+        # Rows with a contact, each with the next row, so that others stay apart.
+        touched = (overlap > 0.0).any(axis=1)
+        touched[1:] |= touched[:-1]
+        some = np.flatnonzero(touched)
+        labels, count = scipy.ndimage.label(overlap[some] > 0.0, near)
+        if not count:
+            steps.append(np.empty((0, 3)))
+            continue
+        summits = scipy.ndimage.maximum_position(overlap[some], labels, np.arange(1, count + 1))
+        row, column = np.array(summits).T
+        row = some[row]
+        area = surface.spacing[0] * surface.spacing[1] * np.bincount(labels.ravel())[1:]
+        curved = sum(curvatures[row, at[column]] for curvatures, at in curvature)
+        steps.append(np.column_stack([row, np.sqrt(4.0 * area / np.pi), curved > sharp[column]]))
+    return steps
+
+
+def _added(surface, moving, answer):
+    """Functions of the place of a strip for what the oil adds to each moving surface, or None."""
+    if answer is None:
+        return [None] * len(moving)
+    waves = [on_coarser_grid(own, answer.points) for *_, own in moving]
+    by_oil = answer.of_waves(waves if len(answer.answers) > 1 else [sum(waves)])
+    fields, shapes, ends = by_oil.fields[:-1, :-1], by_oil.shapes, [0]
+    ends += np.cumsum([one.shapes.shape[1] for one in answer.answers]).tolist()
+
+    def of_one(begin, end):
+        def added(place):
+            nodes = (place >> answer.shift) + np.arange(shapes.shape[0])
+            part = fields[:, nodes % fields.shape[1], begin:end] * shapes[:, begin:end]
+            rough = np.sum(part, axis=-1)
+            rough = _finer(np.vstack([rough, rough[:1]]), answer.shift)
+            return _finer(rough.T, answer.shift).T
+
+        return added
+
+    functions = [of_one(*each) for each in itertools.pairwise(ends)]
+    return functions + [None] * (len(moving) - len(functions))
+
+
+def _finer(nodes, shift):
+    """Linear interpolation between rows of nodes."""
+    part = (np.arange(1 << shift) / np.float32(1 << shift))[None, :, None]
+    between = nodes[:-1, None] * (1.0 - part) + nodes[1:, None] * part
+    return between.reshape(-1, nodes.shape[1])
+
+
+def _table(found, pieces, thickness, way, rows, spacing):
+    """Numbers and lengths over operating point, step and place along the rollers."""
+    shape = thickness.size, way.size
+    values = {name: np.zeros(shape) for name in ("contacts", "breakthroughs", "contact_length")}
+    at = np.zeros((*shape, PLACES))
+    begins = np.concatenate([[0], np.cumsum(pieces)[:-1]])
+    for begin, of_points in zip(begins, found, strict=True):
+        for point, steps in enumerate(of_points):
+            if steps is None:
+                for each in (*values.values(), at):
+                    each[point] = np.nan
+                continue
+            for step, contacts in enumerate(steps):
+                row, diameter, breaks = contacts.T
+                broken = breaks > 0.0
+                values["contacts"][point, step] += row.size
+                values["breakthroughs"][point, step] += np.count_nonzero(broken)
+                values["contact_length"][point, step] += np.sum(diameter[broken])
+                place = ((begin + row[broken]) * PLACES / rows).astype(np.int64)
+                at[point, step] += np.bincount(place, diameter[broken], PLACES)
+    middle = (np.arange(PLACES) + 0.5) * rows * spacing / PLACES
+    dims = "operating_point", "step"
+    found = {name: (dims, each) for name, each in values.items()}
+    found["contact_length_at"] = (*dims, "roller_position"), at
+    return xr.Dataset(found, {"step": way, "roller_position": middle})

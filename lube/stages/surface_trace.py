@@ -1,0 +1,50 @@
+"""The surface trace stage: contacts along the rollers at every step of a way."""
+
+import numpy as np
+import xarray as xr
+
+from lube.contact.surface_trace import surface_traces
+from lube.grid.film_responses import SURFACE_VARIABLES
+from lube.grid.operating_points import at_slip
+from lube.physics.electrical import contact_resistance
+from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, with_dims
+from lube.study.study import Study
+from lube.types import Datasets
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``surface_trace.nc``: contacts of the surfaces at the points of the traces.
+
+    Parameters
+    ----------
+    study, inputs, threads
+        As in `lube.stages`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``surface_trace`` file of `lube.schema`, by
+        `lube.contact.surface_trace.surface_traces`.
+    """
+    points, slip = study.trace_points, study.trace_points[0]["slide_to_roll_ratio"]
+    columns = {name: [point[name] for point in points] for name in CONTACT_DIMS}
+    levels = xr.Dataset(with_dims("surface_trace", columns))
+    film = inputs["film"]
+    if "surface_response" in inputs:
+        responses = inputs["surface_response"][list(SURFACE_VARIABLES)]
+        film = film.assign(responses.rename(film_position="response_position"))
+    film = at_slip(film, slip)
+    film = film.sel({name: levels[name] for name in OPERATING_DIMS})
+    film = film.transpose("operating_point", ...)
+    choices = study.boundary_layer, study.seed, slip, study.gap, threads
+    found = surface_traces(study.line_spec, study.rollers.length, film, *choices)
+    resistivity = study.resistivity if study.conducts else np.nan
+    resistance = contact_resistance(found["contact_length"].values, resistivity)
+    # All traces have the same speed, and so the same times.
+    times = found["step"].values / film["entrainment_speed"].values[0]
+    found = found.assign_coords(step=times, **levels.data_vars).rename(step="time")
+    found = found.assign(
+        contact_resistance=(("operating_point", "time"), resistance),
+        **film[["film_thickness", "contact_half_width", "entrainment_speed"]],
+    )
+    return label(found.drop_attrs(), "surface_trace")
