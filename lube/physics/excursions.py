@@ -242,19 +242,15 @@ def appearing_contacts(
     '0.0035'
     """
     height = np.asarray(level) / math.sqrt(moments.height)
-    matrix = np.array(
-        [
-            [moments.along, moments.mixed, motion.along],
-            [moments.mixed, moments.across, motion.across],
-            [motion.along, motion.across, motion.change],
-        ]
-    )
-
-    def root(rows):  # of a determinant that vanishes without slip
-        return math.sqrt(max(np.linalg.det(matrix[np.ix_(rows, rows)]), 0.0))
-
-    body = length * width * (height**2 - 1.0) * root([0, 1, 2])
-    sides = height * (width * root([0, 2]) + length * root([1, 2]))
+    change, along, across = motion
+    # Minors of the matrix, and its determinant. Two of them vanish without slip.
+    along_change = moments.along * change - along**2
+    across_change = moments.across * change - across**2
+    crossed = moments.mixed * change - along * across
+    whole = (along_change * across_change - crossed**2) / change
+    roots = [math.sqrt(max(each, 0.0)) for each in (whole, along_change, across_change)]
+    body = length * width * (height**2 - 1.0) * roots[0]
+    sides = height * (width * roots[1] + length * roots[2])
     found = body / (2.0 * math.pi * math.sqrt(moments.height)) ** 2 / math.sqrt(moments.height)
     found += sides / moments.height / (2.0 * math.pi) ** 1.5
     found += math.sqrt(motion.change / moments.height) / (2.0 * math.pi)

@@ -31,13 +31,13 @@ FEW = "fig02_film", "fig07_probability", "fig09_roughness", "fig17_gauge"
 
 
 def figures_in(notebooks):
-    """Figures that bare `snakemake` makes of the smoke study; it has one oil to compare."""
+    """Figures that bare `snakemake` makes of the smoke study, which has one oil, and lines."""
     others = set(STAGES).difference(load_study(ROOT / SMOKE).datasets)
     texts = {path.stem: path.read_text("utf-8") for path in sorted(notebooks.glob("fig*.ipynb"))}
     return [
         figure
         for figure, text in texts.items()
-        if "several-lubricant" not in text
+        if not any(tag in text for tag in ("several-lubricant", "no-lines"))
         and not any(f'study / \\"{kind}.nc' in text for kind in others)
     ]
 

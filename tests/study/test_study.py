@@ -130,7 +130,7 @@ def changed_stages(paper_with):
     return compare
 
 
-MECHANICS = {"contact", "tail", "areal", "trace", "experiment"}
+MECHANICS = {"contact", "tail", "areal", "trace", "surface_trace", "experiment"}
 # Those that are for pure rolling too.
 LAYER = MECHANICS | {"master", "height_distribution", "variants", "passage"}
 DEFORMED = {"variants", "height_distribution"}
@@ -142,7 +142,7 @@ GRID = {"experiment"}  # whose records are labelled by the levels that they are 
 
 def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stages):
     for key, value, stages in [
-        ("resistivity", "0.3 uohm*m", {"trace", "experiment"}),
+        ("resistivity", "0.3 uohm*m", {"trace", "surface_trace", "experiment"}),
         ("boundary_layer.critical_thickness", "6 nm", LAYER),
         ("operating_grid.slide_to_roll_ratio", [0, 0.05], MECHANICS | SLIDING),
         ("inlet_shear_heating", "zhu-cheng-1988", {"film"}),
@@ -161,7 +161,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
         ("contact_model", ["line", "surface"], {"tail", "film", "comparison"}),
         ("load_sharing", "iterated", {"film"}),
-        ("traces.1.temperature", "60 degC", {"trace", "rig"}),
+        ("traces.1.temperature", "60 degC", {"trace", "surface_trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"experiment"}),
         ("rig.drift", 0.1, {"experiment"}),
         ("experiment.threshold", "10 ohm", {"experiment"}),
@@ -180,7 +180,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
     ("key", "value", "lost"),
     [
         ("film_shape", "computed", set()),
-        ("roughness_deformation", "venner-1997", {"areal"}),
+        ("roughness_deformation", "venner-1997", {"areal", "surface_trace"}),
         ("roughness_deformation", "computed", set()),
     ],
 )
