@@ -160,12 +160,9 @@ class StripFilm:
         """
         rolling = SurfaceMotion(moments.along, -moments.along, -moments.mixed)
         if self.has_edges:
-            film, width = self.thickness([0.0]), self.width
-            both = (
-                appearing_contacts(film, moments, one, length, width) for one in (motion, rolling)
-            )
-            more, fewer = both
-            return (more / fewer).item()
+            film, size = self.thickness([0.0]), (length, self.width)
+            more = appearing_contacts(film, moments, motion, *size)
+            return (more / appearing_contacts(film, moments, rolling, *size)).item()
         spacing = self.width / COLUMNS
         films = self.films(spacing)
         # Without slip contacts come in where the film is thinnest. With slip, others appear inside.

@@ -46,7 +46,7 @@ from lube.statistics.confidence import jackknife_interval, mean_interval
 from lube.study.rollers import BoundaryLayer
 from lube.study.surface_checks import check_surfaces
 from lube.surfaces.lay import extents
-from lube.surfaces.rough_surface import rough_surface, surface_grid
+from lube.surfaces.rough_surface import longest_waves, rough_surface, surface_grid
 from lube.surfaces.synthetic import LineSpecLike
 from lube.threads import on_threads
 from lube.types import Values
@@ -300,12 +300,10 @@ def _sampled(spec, surface, strips, certain, sharp, length, seeds, threads=1):
 
 def _reach(spec, spacing):
     """Rows beyond which rows are independent, and over which contacts are followed."""
-    stretched = [extents(line.lay_ratio, line.lay_angle) for line in spec.lines]
-    lines = list(zip(spec.lines, stretched, strict=True))
-    longest = max(2.0 * math.pi / line.q_min * across for line, (_, across) in lines)
+    longest = math.ceil(longest_waves(spec)[0] / spacing)
     # Ridges at an angle reach further along the rollers than a cut through one along the rollers.
-    oblique = max(along * across / line.lay_ratio for line, (along, across) in lines)
-    longest = math.ceil(longest / spacing)
+    lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
+    oblique = max(math.prod(extents(*lay)) / lay[0] for lay in lays)
     return longest, min(math.ceil(AROUND * oblique), longest)
 
 

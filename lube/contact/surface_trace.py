@@ -153,8 +153,8 @@ def _added(surface, moving, answer):
     """Functions of the place of a strip for what the oil adds to each moving surface, or None."""
     if answer is None:
         return [None] * len(moving)
-    waves = [on_coarser_grid(own, answer.points) for *_, own in moving]
-    by_oil = answer.of_waves(waves if len(answer.answers) > 1 else [sum(waves)])
+    # In pure rolling the film responds to both surfaces alike, and their sum has one answer.
+    by_oil = answer.of_waves([on_coarser_grid(own, answer.points) for *_, own in moving])
     fields, shapes, ends = by_oil.fields[:-1, :-1], by_oil.shapes, [0]
     ends += np.cumsum([one.shapes.shape[1] for one in answer.answers]).tolist()
 
@@ -168,8 +168,7 @@ def _added(surface, moving, answer):
 
         return added
 
-    functions = [of_one(*each) for each in itertools.pairwise(ends)]
-    return functions + [None] * (len(moving) - len(functions))
+    return [of_one(*each) for each in itertools.pairwise(ends)]
 
 
 def _finer(nodes, shift):

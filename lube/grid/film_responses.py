@@ -11,6 +11,7 @@ from lube.grid.film_profiles import film_positions, six_digits
 from lube.grid.operating_points import surface_speeds
 from lube.surfaces.synthetic import wave_amplitudes
 from lube.threads import on_threads
+from lube.types import Datasets
 
 log = logging.getLogger(__name__)
 
@@ -97,6 +98,15 @@ def surface_responses(
     response, _ = _solved(solved, contact, slide_to_roll_ratio, spec, ANGLES, threads)
     values = response.real, response.imag
     return xr.Dataset(dict(zip(SURFACE_VARIABLES, values, strict=True)))
+
+
+def with_surface_responses(inputs: Datasets) -> xr.Dataset:
+    """Return the film of a stage's inputs, with its responses to surfaces if they have these."""
+    film = inputs["film"]
+    if "surface_response" not in inputs:
+        return film
+    responses = inputs["surface_response"][list(SURFACE_VARIABLES)]
+    return film.assign(responses.rename(film_position="response_position"))
 
 
 def _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads):

@@ -11,7 +11,7 @@ import xarray as xr
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import study_windows
-from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES
+from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, with_surface_responses
 from lube.inference.at_records import table_at_records
 from lube.inference.record_curves import RecordCurves, curve_offsets
 from lube.physics.excursions import expected_contacts
@@ -91,10 +91,8 @@ def surfaces_at_records(
 
 def _on_grid(study, inputs):
     """Films of the operating points as of records, and numbers as from `_numbers`."""
-    film, areal = (inputs[kind].isel(film_formula=0) for kind in ("film", "areal"))
-    if "surface_response" in inputs:
-        responses = inputs["surface_response"][list(SURFACE_VARIABLES)]
-        film = film.assign(responses.rename(film_position="response_position"))
+    both = with_surface_responses(inputs), inputs["areal"]
+    film, areal = (each.isel(film_formula=0) for each in both)
     if _SLIP not in film["film_thickness"].dims:
         areal = areal.sel({_SLIP: 0.0}, method="nearest")
     points = {"record": film["film_thickness"].dims}

@@ -3,7 +3,7 @@
 import xarray as xr
 
 from lube.contact.surface_strip import surface_contact
-from lube.grid.film_responses import SURFACE_VARIABLES
+from lube.grid.film_responses import with_surface_responses
 from lube.schema import CONTACT_DIMS, label
 from lube.study.study import Study
 from lube.types import Datasets
@@ -29,10 +29,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     StudyError, DataError
         As from `lube.contact.surface_strip.surface_contact`.
     """
-    film, length = inputs["film"].isel(film_formula=[0]), study.rollers.length
-    if "surface_response" in inputs:
-        responses = inputs["surface_response"][list(SURFACE_VARIABLES)]
-        film = film.assign(responses.rename(film_position="response_position"))
+    film, length = with_surface_responses(inputs).isel(film_formula=[0]), study.rollers.length
     film = film.transpose(*CONTACT_DIMS, ..., missing_dims="ignore")
     choices = study.boundary_layer, study.seed, study.gap, threads
     slips = xr.DataArray(list(study.slips), dims=_SLIP, coords={_SLIP: list(study.slips)})

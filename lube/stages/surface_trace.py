@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.surface_trace import surface_traces
-from lube.grid.film_responses import SURFACE_VARIABLES
+from lube.grid.film_responses import with_surface_responses
 from lube.grid.operating_points import at_slip
 from lube.physics.electrical import contact_resistance
 from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, with_dims
@@ -29,11 +29,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     points, slip = study.trace_points, study.trace_points[0]["slide_to_roll_ratio"]
     columns = {name: [point[name] for point in points] for name in CONTACT_DIMS}
     levels = xr.Dataset(with_dims("surface_trace", columns))
-    film = inputs["film"]
-    if "surface_response" in inputs:
-        responses = inputs["surface_response"][list(SURFACE_VARIABLES)]
-        film = film.assign(responses.rename(film_position="response_position"))
-    film = at_slip(film, slip)
+    film = at_slip(with_surface_responses(inputs), slip)
     film = film.sel({name: levels[name] for name in OPERATING_DIMS})
     film = film.transpose("operating_point", ...)
     choices = study.boundary_layer, study.seed, slip, study.gap, threads

@@ -183,6 +183,16 @@ def _amplitudes(points, variances):
     return math.sqrt(points[0] * points[1]) * np.sqrt(variances).astype(np.float32)
 
 
+def longest_waves(spec: LineSpecLike) -> Pair:
+    """Longest wavelengths of both rollers' surfaces along the rollers and along rolling, m."""
+    waves = [
+        np.multiply(2.0 * math.pi / line.q_min, extents(line.lay_ratio, line.lay_angle))
+        for line in spec.lines
+    ]
+    along, across = np.max(waves, axis=0).tolist()
+    return across, along
+
+
 def surface_grid(
     spec: LineSpecLike, width: float, contact: Pair = UNRESOLVED, waves: int = LONGEST_WAVES
 ) -> tuple[Pair, Pair]:
@@ -206,14 +216,11 @@ def surface_grid(
     """
     lays = [(line.lay_ratio, line.lay_angle) for line in spec.lines]
     sides, spacings = [], []
-    for along, own in ((1, contact[0]), (0, contact[1])):
-        # The ridges of either surface reach furthest, and are cut along a side.
-        stretched = [extents(*lay) for lay in lays]
-        lines = zip(spec.lines, stretched, strict=True)
-        longest = max(2.0 * math.pi / line.q_min * one[along] for line, one in lines)
-        cuts = zip(spec.lines, lays, stretched, strict=True)
+    for number, (longest, own) in enumerate(zip(longest_waves(spec), contact, strict=True)):
+        # A cut through a ridge along one side, over its reach along the other.
         shortest = min(
-            2.0 * math.pi / line.q_max * (lay[0] / one[1 - along]) for line, lay, one in cuts
+            2.0 * math.pi / line.q_max * (lay[0] / extents(*lay)[number])
+            for line, lay in zip(spec.lines, lays, strict=True)
         )
         side, spacing = max(waves * longest, width + longest), shortest / POINTS_PER_WAVE
         spacing = min(spacing, max(own / POINTS_PER_CONTACT, side / LARGE))

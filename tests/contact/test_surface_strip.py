@@ -76,7 +76,7 @@ def test_ridges_as_long_as_the_rollers_touch_as_often_as_their_line(make_spec, f
 def test_a_stretched_surface_has_the_contacts_of_the_isotropic_one(
     make_spec, film, study, angle, longer
 ):
-    """Of a strip stretched as well, by the same random numbers; but summits get blunter."""
+    """The strip is stretched too, and the random numbers are the same. Only summits are blunter."""
     few = film.isel(film_formula=0, temperature=0, speed=0, force=[0])
     stretched = few.assign(contact_half_width=longer[0] * few["contact_half_width"])
     layer, names = study.boundary_layer, ["geometric_contact_probability", "contacts"]

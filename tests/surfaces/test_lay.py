@@ -19,7 +19,7 @@ def test_a_surface_without_a_lay_keeps_its_waves():
 
 @pytest.mark.parametrize("ratio", [1.5, 6.0, 1e5])
 def test_height_gradient_and_curvature_keep_their_mean_squares(ratio):
-    """Of a wave at an angle to the lay the gradient is the mean over both axes, stretched."""
+    """Stretching divides the component of each wave vector along the lay by the ratio."""
     first, variances = waves_of_line(FIRST, VARIANCES, ratio)
     angle = np.linspace(0.0, 2.0 * np.pi, 1000, endpoint=False)
     square = np.cos(angle) ** 2 + np.sin(angle) ** 2 / ratio**2
