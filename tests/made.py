@@ -12,10 +12,11 @@ from lube.stages import maker
 
 @contextlib.contextmanager
 def on_few_surfaces(number=6):
-    """Sample contact of surfaces on few of them, whose waves run at few angles to rolling: where
-    the size of an error is not judged."""
+    """Sample contact of surfaces on few strips of few of them, whose waves run at few angles to
+    rolling: where the size of an error is not judged."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("lube.contact.surface_strip.SURFACES", number)
+        patch.setattr("lube.contact.surface_strip.STRIPS", 150)
         patch.setattr("lube.inference.surface_records.FEWER", 1)
         patch.setattr("lube.grid.film_responses.ANGLES", np.arange(0.0, 91.0, 45.0))
         yield

@@ -356,7 +356,7 @@ def test_in_uneven_windows_as_many_pairs_touch_as_counted_and_as_late(coarse, st
     levels = study.rollers, [800.0], [110.0, 125.0, 140.0], ["paper"]
     film = film_table(oil, *levels, **weak.film_model)
     found, windows = make(weak, {"film": film}).squeeze(), study_windows(weak, film)
-    pairs, seen, first = 100, [], []
+    pairs, seen, first = 50, [], []
     for number in range(pairs):
         lines = draw_pair(weak.line_spec, SEED, 100 + number)[0]
         broken = windows.trace(tuple(np.rint(line).astype(np.int32) for line in lines)) > 0

@@ -43,10 +43,10 @@ def test_pressure_rises_without_a_jump_as_the_gap_closes(spec, make_spec):
 
 
 def test_pressure_is_that_of_a_numerical_solution(spec):
-    """On a surface of eight longest waves, which differ by some 10 % from one another."""
+    """On a surface of six longest waves, which differ by some 10 % from one another."""
     rms, gradient = moments(spec)
-    surface = rough_surface(spec, contact=(3.75e-5, 3.75e-5), waves=8)
-    pressures = MODULUS * gradient * np.array([0.003, 0.03, 0.1])
+    surface = rough_surface(spec, contact=(3.75e-5, 3.75e-5), waves=6)
+    pressures = MODULUS * gradient * np.array([0.003, 0.1])
     heights = surface.draw(np.random.default_rng(0))[0].astype(float) * spec.height_step
     pressed = press_surface(heights, surface.sides[0], MODULUS, pressures)
     gaps = np.array([contact.gap for contact in pressed])
