@@ -25,14 +25,10 @@ rule all:
     input:
         [result(f"{kind}.nc") for kind in STUDY.datasets],
         products(ALWAYS),
-        EXPLORER,
+        result("explorer.html"),
         [result(f"report/{page}.html") for page in ("configuration", "assumptions", "run_times")],
     message:
-        (
-            f"Done: datasets, figures, executed notebooks and explorer.html are in {RESULTS}"
-            if EXPLORER
-            else f"Done: datasets, figures and executed notebooks are in {RESULTS}"
-        )
+        f"Done: datasets, figures, executed notebooks and explorer.html are in {RESULTS}"
 
 
 rule areal_contact:

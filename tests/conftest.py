@@ -2,6 +2,7 @@
 
 import fcntl
 import pickle
+import shutil
 import subprocess
 from types import SimpleNamespace
 
@@ -11,6 +12,7 @@ from every_kind import datasets_of_every_kind
 from hypothesis import settings
 from made import on_few_surfaces
 from studies import PAPER_CONTENT, SMOKE, with_value
+from unlike_studies import STUDIES, write_datasets
 
 from lube.contact.ensemble import gather, gather_map
 from lube.contact.rough_pair import roughness_batch
@@ -218,6 +220,19 @@ def made_once(tmp_path_factory, worker_id):
         return path
 
     return path_of
+
+
+@pytest.fixture(scope="session")
+def unlike(made_once):
+    """Folder of an unlike study with its datasets, by its name; not to be changed."""
+
+    def make(path):
+        unfinished = path.with_name(f"unfinished {path.name}")
+        shutil.rmtree(unfinished, ignore_errors=True)
+        write_datasets(STUDIES[path.name], unfinished)
+        unfinished.rename(path)
+
+    return lambda name: made_once(name, make)
 
 
 @pytest.fixture(scope="session")

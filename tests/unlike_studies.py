@@ -224,20 +224,12 @@ def write_study(content, folder):
 
 
 def write_datasets(content, folder):
-    """Calculate a study as the workflow does, and save its datasets.
-
-    Returns
-    -------
-    dict
-        From the kind of each dataset to its path.
-    """
-    study, paths = load_study(write_study(content, folder)), {}
+    """Calculate a study as the workflow does, and save its datasets."""
+    study = load_study(write_study(content, folder))
     with on_few_surfaces():
         datasets = made(study)
     for kind, dataset in datasets.items():
-        paths[kind] = folder / f"{kind}.nc"
-        save(dataset, paths[kind], kind, study)
-    return paths
+        save(dataset, folder / f"{kind}.nc", kind, study)
 
 
 def _write_scan(path):

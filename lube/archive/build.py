@@ -105,7 +105,7 @@ def archive_contents(
     return {
         **{f"data/{kind}.nc": results / f"{kind}.nc" for kind in kinds},
         **{name: results / name for name in drawn},
-        **({"explorer.html": results / "explorer.html"} if study.has("contact") else {}),
+        "explorer.html": results / "explorer.html",
         **{f"study/{name}": path for name, path in written.items()},
         **{f"lubricants/{name}": path for name, path in _records(study).items()},
         **{f"code/{name}": ROOT / name for name in code_files()},

@@ -57,6 +57,8 @@ STRIPS = 750
 """Strips on each surface."""
 MANY = 30.0
 """Expected number of contacts above which contact is certain, and contacts are counted."""
+CERTAIN = 0.95
+"""Probability of breakthrough above which few strips suffice where contact is certain."""
 FEWER_STRIPS = 30
 """Strips on each surface where contact is certain."""
 COUNTED_STRIPS = 5
@@ -231,10 +233,17 @@ def _contacts(spec, strips, sharp, length, seeds, threads):
     expected = np.array([strip.expected(moments, length, own) for strip, own in known]).T
     certain, found = expected[0] > MANY, {name: np.empty(len(strips)) for name in _SAMPLED}
     for surface, some in _on_alike_grids(spec, strips):
-        own = [strips[point] for point in some]
-        sampled = _sampled(spec, surface, own, certain[some], sharp[some], length, seeds, threads)
-        for name, values in sampled.items():
-            found[name][some] = values
+
+        def sample(some, certain, surface=surface):
+            own = [strips[point] for point in some]
+            sampled = _sampled(spec, surface, own, certain, sharp[some], length, seeds, threads)
+            for name, values in sampled.items():
+                found[name][some] = values
+
+        sample(some, certain[some])
+        holds = certain[some] & (found["breakthrough_probability"][some] < CERTAIN)
+        if holds.any():  # few strips do not tell how often the layer breaks
+            sample(some[holds], np.zeros(holds.sum(), bool))
     passages = [strip.passage(moments, length) for strip in strips]
     perimeter = spec.points[0] * spec.spacing
     shares = zip(found["breakthrough_probability"], passages, strict=True)

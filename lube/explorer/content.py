@@ -45,8 +45,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     Parameters
     ----------
     datasets : dict of str to xarray.Dataset
-        The study's ``lubricant``, ``film``, ``contact``, ``tail`` and ``trace``, and its
-        ``master`` and ``comparison`` if it has them.
+        The study's datasets from `lube.explorer.explored`.
 
     Returns
     -------
@@ -57,32 +56,28 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
           their names for a reader;
         - ``variables``: for each of `SHOWN`, by `page_name`, its dimensions, unit, meaning, and
           values in the order of the dimensions, the last one fastest;
-        - ``marks``: points outside the model, those with less contact than at a thicker film,
-          those where the linear response to roughness is not valid, and those where asperities of
-          the surfaces carry much of the load;
+        - ``marks``: points outside the model and those with less contact than at a thicker film, of
+          lines; those where the linear response to roughness is not valid, and those where
+          asperities of the surfaces carry much of the load;
         - ``sampled``: whether the study has probabilities by importance sampling;
         - ``regimes``: names of the regimes of lubrication;
         - ``validity``: limits of the Moes numbers within which each film formula was validated;
         - ``master``: the master map, or None;
         - ``records``: conditions and contact shares of the rig's records;
         - ``conducts``: whether contact has a resistance;
-        - ``traces``: the traces, each with the indices of its levels.
+        - ``traces``: the traces of lines and of surfaces, each with the indices of its levels.
     """
-    contact, trace = datasets["contact"], datasets["trace"]
-    kept = trace.sizes["operating_point"]
-    levels = {name: contact[name].values.tolist() for name in CHOICES}
-    if MODEL in datasets["tail"].dims:
-        levels[MODEL] = datasets["tail"][MODEL].values.tolist()
-    film = datasets["film"]
-    marks = {
-        "overloaded": overloaded(contact),
-        "merged": merged(contact, film),
-        "deformed": deformed(film),
-        "rubbing": rubbing(film),
-    }
-    load_share = contact["contact_load_share"].mean("realisation", keep_attrs=True)
+    film, tail = datasets["film"], datasets["tail"]
+    levels = {name: tail[name].values.tolist() for name in CHOICES}
+    if MODEL in tail.dims:
+        levels[MODEL] = tail[MODEL].values.tolist()
+    traces = _traces(datasets, levels)
+    marks = {"deformed": deformed(film), "rubbing": rubbing(film)}
+    if "contact" in datasets:
+        contact = datasets["contact"]
+        marks |= {"overloaded": overloaded(contact), "merged": merged(contact, film)}
     return {
-        "study": contact.attrs["study"],
+        "study": film.attrs["study"],
         "levels": {
             name: {"values": values, "names": level_names(name, values)}
             for name, values in levels.items()
@@ -90,9 +85,10 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         "variables": {
             page_name(kind, name): _variable(datasets[kind][name], kind)
             for kind, names in SHOWN.items()
+            if kind in datasets
             for name in names
         }
-        | {"contact_load_share": _variable(load_share, "contact")},
+        | _load_shares(datasets),
         "marks": {
             name: {"dims": list(where.dims), "values": _plain(where.values.ravel())}
             for name, where in marks.items()
@@ -105,8 +101,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         },
         "master": _master(datasets["master"]) if "master" in datasets else None,
         "records": _records(datasets["comparison"]) if "comparison" in datasets else NO_RECORDS,
-        "conducts": bool(trace["contact_resistance"].notnull().any()),
-        "traces": [_trace(trace.isel(operating_point=row), levels) for row in range(kept)],
+        "conducts": any(one["conducts"] for one in traces),
+        "traces": traces,
     }
 
 
@@ -180,22 +176,48 @@ def _records(comparison):
     return {"origin": comparison["origin"].item(), "by_model": by_model, "rows": rows}
 
 
-def _trace(point, levels):
-    """Describe one trace: its operating point, its revolution, and a close-up of its peak."""
+def _load_shares(datasets):
+    """Describe the shares of the load on the asperities, of lines and of surfaces."""
+    shares = {}
+    if "contact" in datasets:
+        share = datasets["contact"]["contact_load_share"].mean("realisation", keep_attrs=True)
+        shares["contact_load_share"] = _variable(share, "contact")
+    if "surface_load_share" in datasets["film"]:
+        shares["surface_load_share"] = _variable(datasets["film"]["surface_load_share"], "film")
+    return shares
+
+
+def _traces(datasets, levels):
+    """Describe the traces of lines and of surfaces, as far as the study asks for their contact."""
+    traces = []
+    for kind, model in (("trace", "line"), ("surface_trace", "surface")):
+        if kind in datasets and model in levels.get(MODEL, ["line"]):
+            points = range(datasets[kind].sizes["operating_point"])
+            rows = (datasets[kind].isel(operating_point=row) for row in points)
+            traces += [_trace(row, levels, model) for row in rows]
+    return traces
+
+
+def _trace(point, levels, model):
+    """Describe one trace: its operating point, all of it, and of lines a close-up of its peak."""
     time, length = point["time"].values, point["contact_length"].values
-    crossing = 2.0 * point["contact_half_width"].item() / point["entrainment_speed"].item()
+    speed = point["entrainment_speed"].item()
+    crossing = 2.0 * point["contact_half_width"].item() / speed
     reach = round(CLOSE_UP * crossing / (time[1] - time[0]))
     peak = int(length.argmax())
     close = slice(max(peak - reach, 0), peak + reach + 1)
     at = {name: levels[name].index(point[name].item()) for name in CHOICES}
-    if MODEL in levels:  # the trace of a line
-        at[MODEL] = levels[MODEL].index("line") if "line" in levels[MODEL] else 0
+    if MODEL in levels:
+        at[MODEL] = levels[MODEL].index(model)
     return {
         "at": at,
         "share": float(np.mean(length > 0.0)),
         "crossing": crossing,
+        "way": float(speed * (time[-1] + time[1])),
+        "contacts": float(point["contacts"].mean()) if model == "surface" else None,
+        "conducts": bool(point["contact_resistance"].notnull().any()),
         "whole": _thinned(point, slice(None)),
-        "close": _thinned(point, close),
+        "close": _thinned(point, close) if model == "line" else None,
     }
 
 

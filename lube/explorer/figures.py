@@ -101,7 +101,9 @@ def draw(
     """
     ratios, shares = _ratio_range(datasets), _share_range(datasets)
     films = _spread(1e6 * datasets["film"]["film_thickness"].values)
-    resistances = _spread(datasets["trace"]["contact_resistance"].values, 1.5)
+    traces = [datasets[kind] for kind in ("trace", "surface_trace") if kind in datasets]
+    resistances = [each["contact_resistance"].values.ravel() for each in traces]
+    resistances = _spread(np.concatenate(resistances), 1.5)
     across = Range1d()
     figures = {
         "film": _film_along(sources, across, films),
@@ -132,11 +134,11 @@ def _ratio_range(datasets):
 
 def _share_range(datasets):
     """Range of the study's probabilities, or of their upper limits where no contact was seen."""
-    sampled = datasets["tail"]["breakthrough_probability"].values.ravel()
-    kinds = [kind for kind in ("contact", "master") if kind in datasets]
-    counted = np.concatenate([_estimate_or_limit(datasets[kind]) for kind in kinds])
-    low, _ = _spread(counted if datasets["tail"].attrs["remarks"] else sampled)
-    return max(low, _RAREST), 1.6
+    shares = datasets["tail"]["breakthrough_probability"].values.ravel()
+    if datasets["tail"].attrs["remarks"]:
+        kinds = [kind for kind in ("contact", "master") if kind in datasets]
+        shares = np.concatenate([_estimate_or_limit(datasets[kind]) for kind in kinds])
+    return max(_spread(shares)[0], _RAREST), 1.6
 
 
 def _estimate_or_limit(dataset):

@@ -125,7 +125,7 @@ def _filled(content, datasets, controls, sources, figures):
     )  # fmt: skip
     return environment.get_template("explorer.html").render(
         arguments,
-        title=datasets["contact"].attrs["title"].rpartition(", ")[0],
+        title=datasets["film"].attrs["title"].rpartition(", ")[0],
         content=content,
         names=_NAMES,
         tints=TINTS,

@@ -206,10 +206,10 @@ class StudyFiles:
             From the step's name in the report to its files.
         """
         steps = {stage: [stage] for stage in self.study.datasets}
-        steps |= {"figures": list(figures)}
+        steps |= {"figures": list(figures), "explorer": ["explorer"]}
         if self.study.has("contact"):
             batches = [f"batch_{first}" for first in self.study.batches]
-            steps = {"batches of realisations": batches} | steps | {"explorer": ["explorer"]}
+            steps = {"batches of realisations": batches} | steps
         file = "benchmarks/{}.tsv".format
         return {step: [self.result(file(job)) for job in jobs] for step, jobs in steps.items()}
 

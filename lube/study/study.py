@@ -242,10 +242,24 @@ class Study(StrictModel):
         return tuple(name for name in DATASETS if self.has(name))
 
     def datasets_in(self, folder: File) -> list[str]:
-        """Names of the study's results, and of those made on request that a folder holds."""
+        """Names of the study's results, and of those made on request that a folder holds.
+
+        Some of the latter are made in every run, since results or the explorer are made from them.
+        """
+        needed = {"surface_trace"} if self.has_surfaces else set()
+        needed = needed.union(*(self._files_before(name) for name in self.datasets))
         extra = [name for name, target in ON_REQUEST.items() if target != "benchmark"]
-        made = [name for name in extra if self.has(name) and Path(folder, f"{name}.nc").is_file()]
+        made = [
+            name
+            for name in extra
+            if self.has(name) and (name in needed or Path(folder, f"{name}.nc").is_file())
+        ]
         return [*self.datasets, *made]
+
+    def _files_before(self, stage):
+        """Names of all stages whose files a stage is made from, directly or through others."""
+        direct = set(self.inputs_of(stage))
+        return direct.union(*(self._files_before(name) for name in direct))
 
     def inputs_of(self, stage: str) -> tuple[str, ...]:
         """Names of the stages whose files a stage reads, of those that the study has."""

@@ -12,6 +12,7 @@ from lube.contact.surface_strip import StripFilm, strip_probability, surface_con
 from lube.errors import StudyError
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
+from lube.stages import film_table
 from lube.stages.tail import pair_probabilities
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.rough_surface import rough_surface
@@ -247,6 +248,23 @@ def test_strips_touch_and_break_as_often_as_on_whole_surfaces(make_spec, film_sh
     spec = make_spec(50_000, **LAYS[lay])
     surface, film = strip_of(spec, film_shape)
     compare(spec, Unchanged(surface), surface, film, SURFACES)
+
+
+def test_a_layer_that_often_holds_is_judged_on_all_strips_where_contact_is_certain(
+    study, make_spec, monkeypatch
+):
+    oil = lubricant_table(study.lubricants, [80.0])
+    film = film_table(oil, study.rollers, [1600.0], [100.0], ["paper"])
+    layer = study.boundary_layer.model_copy(update={"shear_strength": 2e5})
+
+    def found():
+        return surface_contact(make_spec(30_000), 10e-3, film, layer, SEED)
+
+    few = found()
+    monkeypatch.setattr(surface_strip, "MANY", np.inf)  # so that contact is nowhere certain
+    assert few["geometric_contact_probability"] > 0.99
+    assert 0.0 < few["breakthrough_probability"] < 0.9
+    assert few.identical(found())
 
 
 @pytest.mark.parametrize(

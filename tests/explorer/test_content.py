@@ -101,6 +101,35 @@ def test_records_without_a_share_are_left_out_and_conditions_near_no_level_are_n
     assert rows[0]["lambda_ratio"] == one["lambda_ratio"].values.tolist()
 
 
+def test_of_rollers_without_a_line_the_contacts_of_surfaces_are_traced(explored, files):
+    traces = load(files / "surface_trace.nc", "surface_trace").load()
+    shown = {kind: explored[kind] for kind in ("lubricant", "film")}
+    shown |= {"tail": explored["tail"].expand_dims(contact_model=["surface"])}
+    content = read_back(shown | {"surface_trace": traces})
+    assert content["levels"]["contact_model"]["values"] == ["surface"]
+    assert len(content["traces"]) == traces.sizes["operating_point"]
+    for row, trace in enumerate(content["traces"]):
+        point = traces.isel(operating_point=row)
+        assert trace["at"]["contact_model"] == 0 and trace["close"] is None
+        assert trace["contacts"] == point["contacts"].values.mean()
+        assert trace["whole"]["contact_length"] == point["contact_length"].values.tolist()
+        way = point["time"].diff("time").sum() * (1.0 + 1.0 / (point.sizes["time"] - 1))
+        assert trace["way"] == pytest.approx(way.item() * point["entrainment_speed"].item())
+    assert content["marks"].keys() == {"deformed", "rubbing"}
+
+
+def test_of_both_contact_models_lines_and_surfaces_are_traced(explored, files):
+    traces = load(files / "surface_trace.nc", "surface_trace").load()
+    tail = xr.concat(
+        [explored["tail"]] * 2, xr.DataArray(["line", "surface"], dims="contact_model")
+    )
+    tail = tail.assign_coords(contact_model=["line", "surface"])
+    content = read_back(explored | {"tail": tail, "surface_trace": traces})
+    models = [trace["at"]["contact_model"] for trace in content["traces"]]
+    numbers = [each.sizes["operating_point"] for each in (explored["trace"], traces)]
+    assert models == [0] * numbers[0] + [1] * numbers[1]
+
+
 def test_points_outside_the_model_are_marked_and_the_load_share_is_there(explored):
     contact = explored["contact"]
     heavy = contact.assign(contact_load_share=2.0 * xr.ones_like(contact["contact_load_share"]))

@@ -276,6 +276,26 @@ def test_of_an_insulator_the_trace_is_drawn_without_a_resistance(visit, explored
     assert "resistance" not in page.inner_text("body").lower()
 
 
+def test_of_rollers_without_a_line_the_page_shows_contacts_along_the_rollers(
+    visit, explored, files, tmp_path
+):
+    traces = load(files / "surface_trace.nc", "surface_trace").load()
+    study = {kind: explored[kind] for kind in ("lubricant", "film")}
+    study |= {"tail": explored["tail"].expand_dims(contact_model=["surface"])}
+    path = tmp_path / "surfaces.html"
+    path.write_text(explorer_page(study | {"surface_trace": traces}, BAND), encoding="utf-8")
+    page = visit(path)
+    point = traces.isel(operating_point=0)
+    assert f"at {rounded(point['contacts'].values.mean())} places at once" in page.inner_text(
+        "body"
+    )
+    lengths = 1e6 * point["contact_length"].values
+    np.testing.assert_allclose(drawn(page, "whole")["length"], lengths, rtol=1e-15)
+    assert not page.locator("#close-up").is_visible()
+    assert "Contact of: surface" in page.inner_text("body")
+    assert "realisation" not in page.inner_text("body")
+
+
 def test_records_near_the_point_are_told_with_their_intervals(visit, explored, page_file):
     page = visit(page_file, "#force=1600&temperature=80")
     comparison = explored["comparison"].isel(film_formula=0)
@@ -325,7 +345,7 @@ def one_point(explored):
     picked["trace"] = explored["trace"].isel(operating_point=[0])
     picked["master"] = explored["master"].isel(contact_width=[0])
     picked["comparison"] = explored["comparison"].isel(record=[])
-    picked["contact"].attrs["title"] = f"{TITLE}, contact"
+    picked["film"].attrs["title"] = f"{TITLE}, film"
     return picked
 
 

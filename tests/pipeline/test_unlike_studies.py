@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from figure_checks import draw, faults
-from unlike_studies import STUDIES, write_datasets
+from unlike_studies import STUDIES
 
 from lube.pipeline.figure_list import study_figures
 from lube.study.study import load_study
@@ -15,9 +15,10 @@ NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 @pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("name", STUDIES)
-def test_no_figure_has_colliding_text_covered_or_missing_points(name, tmp_path):
-    paths = write_datasets(STUDIES[name], tmp_path / name)
-    figures = study_figures(load_study(tmp_path / name / "study.yaml"), NOTEBOOKS)
+def test_no_figure_has_colliding_text_covered_or_missing_points(name, unlike):
+    folder = unlike(name)
+    paths = {path.stem: path for path in folder.glob("*.nc")}
+    figures = study_figures(load_study(folder / "study.yaml"), NOTEBOOKS)
     found = [
         f"{figure.name}: {fault}"
         for figure in figures.values()

@@ -8,7 +8,7 @@ rule archive:
         written=lambda wildcards: archived_texts(FILES),
         datasets=[result(f"{kind}.nc") for kind in KINDS],
         products=products([*ALWAYS, *EXTRA]),
-        explorer=EXPLORER,
+        explorer=result("explorer.html"),
     output:
         # An old archive stays until the new one is complete.
         zip=update(result(f"archive/{STUDY.name}.zip")),

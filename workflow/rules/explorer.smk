@@ -1,13 +1,10 @@
-from lube.explorer import EXPLORED
-
-# The page shows contact of lines.
-EXPLORER = [result("explorer.html")] if STUDY.has("contact") else []
+from lube.explorer import explored
 
 
 rule explorer:
     """A page that shows any operating point of the study."""
     input:
-        **{kind: result(f"{kind}.nc") for kind in EXPLORED if STUDY.has(kind)},
+        **{kind: result(f"{kind}.nc") for kind in explored(STUDY)},
         sources=script_sources("explorer"),
     output:
         result("explorer.html"),

@@ -48,7 +48,7 @@ rule times:
         # All other jobs come first.
         [result(f"{kind}.nc") for kind in STUDY.datasets],
         products(ALWAYS),
-        EXPLORER,
+        result("explorer.html"),
         sources=script_sources("times"),
     output:
         report(

@@ -80,7 +80,8 @@ const marks = {
     deformed: "the oil changes the roughness by too large a part of the film: the linear response is not valid",
     rubbing: "asperities of the surfaces carry more than a tenth of the load: the film is less certain",
 };
-const isMarked = (name, point) => at(name, point, content.marks) && !(name === "merged" && isSurface(point));
+const ofLines = ["overloaded", "merged"];
+const isMarked = (name, point) => !(ofLines.includes(name) && isSurface(point)) && at(name, point, content.marks);
 const marked = (point) => Object.keys(marks).filter((name) => isMarked(name, point));
 
 // One row of a source of operating points
@@ -261,6 +262,23 @@ function setRange(range, values, room) {
     [range.start, range.end] = [low - more, high + more];
 }
 
+function traceText(trace) {
+    const crossing = `An asperity takes ${rounded(1e3 * trace.crossing)} ms to cross the contact. `;
+    if (!trace.close) {
+        return (
+            `One pair of surfaces while they pass by ${rounded(1e3 * trace.way)} mm, in contact ${percent(trace.share)} of this time, ` +
+            `at ${rounded(trace.contacts)} places at once on average. ${crossing}` +
+            `Drawn: the sum of the contacts' diameters${content.conducts ? ", and the resistance of the contacts in parallel" : ""}.`
+        );
+    }
+    const close = trace.close.steps > 1 ? `within every ${trace.close.steps}` : "in every step";
+    return (
+        `One realisation of the roughness, in contact ${percent(trace.share)} of this revolution. ${crossing}` +
+        `Drawn: the longest contact${content.conducts ? " and the lowest resistance" : ""} ` +
+        `within every ${trace.whole.steps} time steps, and around the peak ${close}.`
+    );
+}
+
 function showTrace(point, sources, figures) {
     const trace = content.traces.find((one) => choices.every((name) => one.at[name] === point[name]));
     element("traces").hidden = trace === undefined;
@@ -269,14 +287,12 @@ function showTrace(point, sources, figures) {
         element("trace-text").textContent = "The study kept no trace at this point, but at these:";
         return;
     }
-    const close = trace.close.steps > 1 ? `within every ${trace.close.steps}` : "in every step";
-    element("trace-text").textContent =
-        `One realisation of the roughness, in contact ${percent(trace.share)} of this revolution. An asperity takes ` +
-        `${rounded(1e3 * trace.crossing)} ms to cross the contact. Drawn: the longest contact${content.conducts ? " and the lowest resistance" : ""} ` +
-        `within every ${trace.whole.steps} time steps, and around the peak ${close}.`;
-    const { time, contact_length } = trace.close;
+    element("trace-text").textContent = traceText(trace);
+    element("whole-title").textContent = trace.close ? "One revolution" : "All contacts along the rollers";
+    element("close-up").hidden = !trace.close;
+    const { time, contact_length } = trace.close ?? trace.whole;
     const peak = time[contact_length.indexOf(Math.max(...contact_length))];
-    for (const [part, scale, zero] of [["whole", 1, 0], ["close", 1e3, peak]]) {
+    for (const [part, scale, zero] of trace.close ? [["whole", 1, 0], ["close", 1e3, peak]] : [["whole", 1, 0]]) {
         const { time, contact_length, contact_resistance } = trace[part];
         const rows = time.map((moment, i) => ({
             time: scale * (moment - zero),
@@ -316,7 +332,8 @@ function showValues(point) {
     if (content.sampled && !isSurface(point)) {
         rows.push(["breakthroughs counted in the realisations", withInterval(counted(point))]);
     }
-    rows.push([variables.contact_load_share.long_name, shown("contact_load_share", point)]);
+    const share = isSurface(point) ? "surface_load_share" : "contact_load_share";
+    if (share in variables) rows.push([variables[share].long_name, shown(share, point)]);
     rows.push(["geometric contact probability", probability(point, "geometric_contact").text]);
     showTable("values", rows.map(([name, value]) => [name[0].toUpperCase() + name.slice(1), value]));
     showTable(
@@ -338,7 +355,7 @@ function showValues(point) {
 function prepareTraceButtons(controls) {
     const buttons = content.traces.map((trace) => {
         const button = document.createElement("button");
-        const several = ["lubricant", "film_formula"].filter((name) => name in controls);
+        const several = ["lubricant", "film_formula", "contact_model"].filter((name) => name in controls);
         button.textContent = named(trace.at, [...grid, ...several]);
         button.addEventListener("click", () => choose(controls, trace.at));
         return button;
