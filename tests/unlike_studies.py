@@ -151,6 +151,7 @@ STUDIES = {
         | {"points": 40_000, "lay_ratio": 4, "lay_angle": "0 deg"},
         operating_grid=_grid([400, 1600], [100], [60, 80], [0, 1]),
         traces=[_trace(1600, 100, 80, slide_to_roll_ratio=1)],
+        experiment=PAPER_CONTENT["experiment"] | {"manifest": "records.csv"},
     ),
     # So fast that at the greater force, 40 degC, the heating is beyond its formula's range.
     "unknown": _small(
@@ -210,6 +211,14 @@ STUDIES = {
 }
 
 
+_STATED = """force [N],speed [rpm],temperature [degC],slide_to_roll_ratio,probability,lower,upper
+400,100,60,0,0.02,0.01,0.03
+1600,100,60,0,0.12,0.10,0.14
+900,100,70,0,0.15,0.08,0.21
+1600,100,80,1,0.31,0.26,0.37
+"""
+
+
 def write_study(content, folder):
     """Write a study and the files that it names, and return its path."""
     folder.mkdir()
@@ -219,7 +228,11 @@ def write_study(content, folder):
     manifest = content["experiment"].get("manifest")
     if manifest:
         (folder / manifest).touch()  # a study must name a file that exists
-        _write_records(load_study(path), folder / manifest)
+        study = load_study(path)
+        if study.line_spec.follows_rolling:
+            _write_records(study, folder / manifest)
+        else:  # the simulated rig runs with lines
+            (folder / manifest).write_text(_STATED, encoding="utf-8")
     return path
 
 

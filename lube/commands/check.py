@@ -106,7 +106,7 @@ def _records(study):
     if not study.conducts:
         return "none: the rollers do not conduct", []
     if not study.has("experiment"):
-        return "none: records are compared with lines", []
+        return "none: the simulated rig runs with lines", []
     manifest = study.experiment.manifest
     if manifest is None:
         return f"simulated, {count(study.rig.pairs, 'pair')} of rollers", []

@@ -12,6 +12,7 @@ import scipy.special
 import xarray as xr
 
 from lube.contact.ensemble import windows_in
+from lube.contact.surface_strip import SURFACES
 from lube.ehl.film_formulas import formula
 from lube.grid.films import FilmGroups
 from lube.inference.record_curves import RecordCurves
@@ -244,38 +245,42 @@ def fit_records(
     contact_model : str, optional
         ``line``; or ``surface``, whose probability is not that of the realisations: records have
         the ``sample_size`` of the ``surface_records`` file, and are correlated as for the line.
+        Where no line stands for the surfaces, records of one pair are taken to deviate alike.
 
     Returns
     -------
     factor, lower, upper : float
         From `lube.statistics.curves.fit_factor`.
     """
-    logits, comparison, probabilities, size = _usable(logits, comparison)
+    logits, comparison = _usable(logits, comparison)
+    logits, count = logits + _pooled_shift(comparison), SURFACES
+    covariance = _pair_scatter(comparison)
+    if "realisation" in comparison.dims:
+        probabilities, size = _of_realisations(comparison)
+        deviations = comparison["record_deviation"].values
+        # Only the first realisations were run as records of several revolutions.
+        deviations = deviations[np.isfinite(deviations).all(axis=1)]
+        covariance = realisation_correlation(deviations) * covariance
+        error, count = np.sqrt(comparison["pooled_error"].values), len(probabilities)
+        of_mean = realisation_correlation(probabilities) * (error[:, None] * error)
+        covariance += of_mean / count
     if contact_model == "surface":
         size = comparison["sample_size"].values
-    logits = logits + _pooled_shift(comparison)
-    deviations = comparison["record_deviation"].values
-    # Only the first realisations were run as records of several revolutions.
-    deviations = deviations[np.isfinite(deviations).all(axis=1)]
-    covariance = realisation_correlation(deviations) * _pair_scatter(comparison)
-    error = np.sqrt(comparison["pooled_error"].values)
-    of_mean = realisation_correlation(probabilities) * (error[:, None] * error)
-    covariance += of_mean / len(probabilities)
     shares, noise = comparison["measured_share"].values, comparison["share_error"].values
-    return fit_factor(log_factors, logits, shares, size, covariance, len(probabilities), noise)
+    return fit_factor(log_factors, logits, shares, size, covariance, count, noise)
 
 
 def _usable(logits, comparison):
-    """Keep the records that have a share and a probability at every factor.
-
-    Returns their logits and rows, the realisations' probabilities and the effective sample size.
-    """
+    """Keep the records that have a share and a probability at every factor."""
     used = np.isfinite(comparison["measured_share"].values) & np.isfinite(logits).all(axis=0)
-    comparison = comparison.isel(record=used)
+    return logits[:, used], comparison.isel(record=used)
+
+
+def _of_realisations(comparison):
+    """Probabilities of the realisations, and their effective sample size."""
     probabilities = comparison["breakthrough_probability"].values
     windows = windows_in(comparison, 2.0 * comparison["contact_half_width"].values)
-    size = effective_sample_size(probabilities, windows)
-    return logits[:, used], comparison, probabilities, size
+    return probabilities, effective_sample_size(probabilities, windows)
 
 
 def _pooled_shift(comparison):
@@ -299,7 +304,8 @@ def _coverage(log_factors, truth, logits, comparison):
     The interval holds all factors that the misfit does not contradict, so it contains the truth
     where the misfit there is within its quantile.
     """
-    logits, comparison, probabilities, size = _usable(logits, comparison)
+    logits, comparison = _usable(logits, comparison)
+    probabilities, size = _of_realisations(comparison)
     count = len(probabilities)
     if count < 3 or not size.size:
         return np.nan

@@ -16,6 +16,7 @@ from scipy.special import expit, logit
 
 from lube.contact.ensemble import windows_in
 from lube.contact.rough_pair import drawn
+from lube.contact.surface_strip import SURFACES
 from lube.contact.windows import study_windows
 from lube.grid.film_profiles import film_at_places
 from lube.statistics.curves import Curve, film_interval, peaked_curve
@@ -309,7 +310,7 @@ def gauged_ratios(curves: Sequence[Curve], comparison: xr.Dataset, noise: Array)
         limit is 0 or infinity.
     """
     columns = comparison["measured_share"].values, comparison["scatter_ratio"].values[0], noise
-    realisations = comparison.sizes["realisation"]
+    realisations = comparison.sizes.get("realisation", SURFACES)
     films = [
         film_interval(curve, share, ratio, realisations, error)
         for curve, share, ratio, error in zip(curves, *columns, strict=True)

@@ -90,6 +90,7 @@ _NEEDED = {
     "conducts": "rollers that conduct, a `resistivity` that is not `insulator`",
     "line_spec.is_drawn": "lines that are drawn from a spectrum",
     "gap.is_on_surfaces": "`roughness_deformation: none` or `computed`",
+    "has_records": "measured records, an `experiment.manifest`: the simulated rig runs with lines",
     "compares_surfaces": "measured records and `contact_model: surface`",
     "compares_lines_only": "records compared with lines alone; `gauge.nc` has films by surfaces",
     "gap.is_plain": "`film_shape: flat` and `roughness_deformation: none`",

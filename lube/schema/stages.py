@@ -214,7 +214,7 @@ _ROWS = (
             "grid": _named("operating_grid.force operating_grid.speed operating_grid.temperature"),
         },
         same_values=("roughness",),  # it draws the lines of the simulated rig's rollers
-        only_with=(*_LINE, "conducts"),
+        only_with=("conducts", "has_records"),
         written="measured_files",
         priority=2,
     ),
@@ -231,7 +231,7 @@ _ROWS = (
         "contact of the surfaces at the films of the records, some minutes",
         inputs=("film", "experiment", "areal"),
         inputs_with={"surface_response": "gap.is_answered"},
-        only_with=(*_LINE, "compares_surfaces"),
+        only_with=("compares_surfaces",),
         parallel=True,
     ),
     Stage(
@@ -240,14 +240,14 @@ _ROWS = (
         inputs=("film", "contact", "experiment"),
         inputs_with={"surface_records": "compares_surfaces"},
         values=_named("contact_model"),
-        only_with=(*_LINE, "conducts"),
+        only_with=("conducts", "has_records"),
     ),
     Stage(
         "gauge",
         "films, pressure-viscosity coefficient and boundary layer from the records",
         inputs=("master", "contact", "comparison"),
-        inputs_with={"surface_records": "compares_surfaces"},
-        only_with=(*_LINE, "conducts"),
+        inputs_with={"film": "compares_surfaces", "surface_records": "compares_surfaces"},
+        only_with=("conducts", "has_records"),
     ),
     Stage(
         "areal_gauge",

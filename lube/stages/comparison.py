@@ -23,7 +23,7 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.contact.surface_strip import SURFACES
-from lube.inference.at_records import model_at_records
+from lube.inference.at_records import model_at_records, surface_model_at_records
 from lube.inference.study_shares import levels_named, log_lines
 from lube.schema import (
     AT_RECORDS,
@@ -44,16 +44,19 @@ log = logging.getLogger(__name__)
 GROUPS = ("force", "speed", "temperature")
 FIGURES = ("bias", "rms_difference", "logit_rms_difference", "overlap_share")
 """Figures of agreement whose range for a correct model is estimated."""
+_SIDES = "lower", "upper"
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``comparison.nc``; see `lube.stages`."""
-    film, contact, experiment = (inputs[kind] for kind in ("film", "contact", "experiment"))
-    model = model_at_records(experiment, film, contact, study)
+    film, contact, experiment = (inputs.get(kind) for kind in ("film", "contact", "experiment"))
+    if contact:
+        model = model_at_records(experiment, film, contact, study)
+    else:
+        model = surface_model_at_records(experiment, study)
     if not study.compares_surfaces:
-        return compare(model, experiment, contact)
-    surfaces = inputs["surface_records"]
-    return compare(model, experiment, contact, study.contact_model, surfaces)
+        return compare(model, experiment, film)
+    return compare(model, experiment, film, study.contact_model, inputs["surface_records"])
 
 
 def compare(
@@ -68,7 +71,8 @@ def compare(
     Parameters
     ----------
     model : xarray.Dataset
-        From `lube.inference.at_records.model_at_records`.
+        From `lube.inference.at_records.model_at_records`, or, of rollers for which no line stands,
+        from `lube.inference.at_records.surface_model_at_records`.
     experiment : xarray.Dataset
         The ``experiment`` dataset that it was made for.
     levels : xarray.Dataset
@@ -90,16 +94,27 @@ def compare(
         correct model. The attribute ``missing`` lists operating points without a record,
         ``remarks`` records of one point that contradict each other.
     """
-    table = _table(model, experiment)
-    found = _judged(table, experiment, _of_lines(table)) | _expected(table)
-    table = table.assign(with_dims("comparison", found)).set_coords([*AT_RECORDS, "origin"])
-    notes = {"missing": _missing(table, levels), "remarks": _contradictions(table)}
+    table = _table(model, experiment).set_coords([*AT_RECORDS, "origin"])
+    sides = {}
+    if "realisation" in table.dims:
+        sides["line"] = _of_lines(table)
+    if surfaces is not None:
+        sides["surface"] = _of_surfaces(table, surfaces)
+    tables = {}
+    for contact_model, of_model in sides.items():
+        found = _judged(table, experiment, of_model) | _expected(table, contact_model)
+        tables[contact_model] = table.assign(with_dims("comparison", found))
+    first = next(iter(tables.values()))
+    notes = {"missing": _missing(first, levels), "remarks": _contradictions(first)}
     for lines in notes.values():
         log_lines(log, lines)
-    table = table.assign_attrs({name: "\n".join(lines) for name, lines in notes.items()})
-    if "surface" in contact_models:
-        table = _by_model(table, experiment, contact_models, surfaces)
-    return label(table, "comparison")
+    first = first.assign_attrs({name: "\n".join(lines) for name, lines in notes.items()})
+    if surfaces is not None:
+        names = model_dependent("comparison")
+        models = xr.DataArray(list(contact_models), dims="contact_model", name="contact_model")
+        by_model = [tables[contact_model][names] for contact_model in contact_models]
+        first = first.drop_vars(names).merge(xr.concat(by_model, models, join="exact"))
+    return label(first, "comparison")
 
 
 def _table(model, experiment):
@@ -131,7 +146,7 @@ def _of_surfaces(table, surfaces):
     """As `_of_lines`, of surfaces by the first film formula; NaN for other formulas.
 
     The scatter of a record between pairs of rollers is to that of one revolution of pure rolling as
-    it is for lines.
+    it is for lines, if lines stand for the surfaces.
     """
     shape = table.sizes["film_formula"] - 1, table.sizes["record"]
     limits = [surfaces[f"breakthrough_probability{limit}"].values for limit in LIMITS]
@@ -140,17 +155,6 @@ def _of_surfaces(table, surfaces):
     predicted = prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
     others = np.full(shape, np.nan)
     return tuple([np.vstack([row, others]) for row in rows] for rows in (limits, predicted))
-
-
-def _by_model(lines, experiment, contact_models, surfaces):
-    """Comparison over contact_model, with lines as given."""
-    names = model_dependent("comparison")
-    judged = with_dims("comparison", _judged(lines, experiment, _of_surfaces(lines, surfaces)))
-    unknown = {name: np.nan * lines[name] for name in names if name not in judged}
-    both = {"line": lines, "surface": lines.assign(judged | unknown)}
-    levels = xr.DataArray(list(contact_models), dims="contact_model", name="contact_model")
-    by_model = xr.concat([both[name][names] for name in contact_models], levels, join="exact")
-    return lines.drop_vars(names).merge(by_model)
 
 
 def _judged(table, experiment, sides):
@@ -243,12 +247,15 @@ def _rank_correlation(first, second):
     return np.sum(first * second) / np.sqrt(np.sum(first**2) * np.sum(second**2))
 
 
-def _expected(table):
+def _expected(table, contact_model):
     """95 % range of each figure of agreement if the model is correct, over film_formula.
 
     Each realisation in turn is left out of the ensemble and compared with the others as the
-    record of a pair of rollers, at all records at once.
+    record of a pair of rollers, at all records at once. NaN for surfaces, which have none.
     """
+    if contact_model == "surface":
+        unknown = np.full(table.sizes["film_formula"], np.nan)
+        return {f"{name}_expected_{side}": unknown for name in FIGURES for side in _SIDES}
     measured = np.isfinite(table["measured_share"].values)
     windows = windows_in(table, 2.0 * table["contact_half_width"].values)
     members = table["breakthrough_probability"].values.swapaxes(0, 1)
@@ -259,7 +266,7 @@ def _expected(table):
     return {
         f"{name}_expected_{side}": np.array(ranges)[:, figure, end]
         for figure, name in enumerate(FIGURES)
-        for end, side in enumerate(("lower", "upper"))
+        for end, side in enumerate(_SIDES)
     }
 
 
@@ -330,7 +337,7 @@ def _contradictions(table):
 
 def _half_widths(table, comparisons):
     """Half-width of each prediction interval of the first formula, for many comparisons at once."""
-    first, count = table.isel(film_formula=0), table.sizes["realisation"]
-    mean = first["pooled_probability"].values
-    sides = [abs(first[f"predicted_share_{side}"].values - mean) for side in ("lower", "upper")]
+    first, count = table.isel(film_formula=0), table.sizes.get("realisation", SURFACES)
+    mean = first.get("pooled_probability", first["simulated_probability"]).values
+    sides = [abs(first[f"predicted_share_{side}"].values - mean) for side in _SIDES]
     return np.maximum(*sides) * quantile(count, comparisons) / quantile(count)

@@ -27,7 +27,8 @@ _KEPT = ("film_thickness", "lambda_ratio", "contact_half_width", "comparison_thr
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``gauge.nc``; see `lube.stages`."""
-    contact, comparison = inputs["contact"], inputs["comparison"]
+    comparison = inputs["comparison"]
+    contact = inputs["contact"] if "contact" in inputs else inputs["film"]
 
     def by_line(comparison):
         if "master" in inputs:
@@ -36,6 +37,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     if not study.compares_surfaces:
         return gauge_records(by_line(comparison), contact, comparison)
+    layer = study.boundary_layer
     inferred = []
     for model in comparison["contact_model"].values:
         records = comparison.sel(contact_model=model, drop=True)
@@ -47,7 +49,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
             of_first = _inferred(curves, contact, records)
             inferred.append(of_first.reindex(film_formula=comparison["film_formula"]))
     by_model = xr.concat(inferred, comparison["contact_model"], join="exact")
-    return _with_records(by_model, contact, comparison)
+    strength = layer.shear_strength / layer.critical_thickness
+    return _with_records(by_model, strength, comparison)
 
 
 def _of_surfaces(comparison, surfaces):
@@ -82,7 +85,8 @@ def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Data
         The ``gauge`` file of `lube.schema`, from `gauge_film`, `gauge_coverage`, `fit_alpha` and
         `fit_layer_strength`.
     """
-    return _with_records(_inferred(curves, contact, comparison), contact, comparison)
+    inferred = _inferred(curves, contact, comparison)
+    return _with_records(inferred, study_strength(contact), comparison)
 
 
 def _inferred(curves, contact, comparison):
@@ -96,14 +100,14 @@ def _inferred(curves, contact, comparison):
     return xr.merge(parts, join="exact", combine_attrs="drop")
 
 
-def _with_records(inferred, contact, comparison):
+def _with_records(inferred, strength, comparison):
     """Add the records' conditions and films to what was inferred from them."""
     records = comparison[[*_KEPT, *AT_RECORDS, "origin", "pairs", "drift"]]
     gauged = xr.merge((records, inferred), join="exact", combine_attrs="drop")
     known = np.isfinite(comparison["measured_share"].values)
     oils = comparison["lubricant"].values[known]
     counts = [np.count_nonzero(oils == oil) for oil in gauged["fitted_lubricant"].values]
-    gauged["study_layer_strength"] = study_strength(contact)
+    gauged["study_layer_strength"] = strength
     gauged["fitted_records"] = "fitted_lubricant", counts
     return label(gauged.drop_attrs(deep=False), "gauge")
 
@@ -160,9 +164,9 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         of intervals with two limits; NaN where there are no such intervals, or the ensemble has
         fewer than three realisations, and for surfaces.
     """
-    members = comparison["breakthrough_probability"].values[:, 0]
-    coverage = np.full((4, members.shape[1]), np.nan)
-    if len(members) > 2 and curves.contact_model == "line":
+    coverage = np.full((4, comparison.sizes["record"]), np.nan)
+    if curves.contact_model == "line" and comparison.sizes["realisation"] > 2:
+        members = comparison["breakthrough_probability"].values[:, 0]
         films = np.log(comparison["lambda_ratio"].values[0])
         for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
             held, closed = _leave_one_out(curve, film, members[:, record])

@@ -191,6 +191,11 @@ class Study(StrictModel):
         return self.resistivity != INSULATOR
 
     @property
+    def has_records(self) -> bool:
+        """Whether there are records: measured, or of the simulated rig, which runs with lines."""
+        return self.experiment.manifest is not None or self.line_spec.follows_rolling
+
+    @property
     def lubricant_values(self) -> list[dict]:
         """The lubricant records as plain data, without their titles: they change no result."""
         return [record.model_dump(exclude={"title"}) for record in self.lubricants]
@@ -400,11 +405,6 @@ class Study(StrictModel):
         if self.has_lines:
             with located(kind=ValueError):
                 check_follows_rolling(self.line_spec)
-        if self.experiment.manifest is not None and not self.line_spec.follows_rolling:
-            raise ValueError(
-                f"experiment.manifest: got {shown(self.experiment.manifest)} for rollers for whose "
-                "surfaces no line stands, need none: how records scatter is known of lines only"
-            )
         if self.has_surfaces:
             self._check_surfaces()
         elif self.rough_surfaces is not None:

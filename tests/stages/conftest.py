@@ -3,6 +3,7 @@
 import pytest
 from experiments import experiment_at, experiment_of, made_up_surfaces, model_of_records
 
+from lube.inference.at_records import surface_model_at_records
 from lube.stages.comparison import compare
 
 
@@ -51,5 +52,17 @@ def on_surfaces(busy):
         model = model_of_records(experiment, busy.film, busy.contact, busy.study)
         surfaces = made_up_surfaces(model["lambda_ratio"].values[0], error)
         return compare(model, experiment, busy.contact, models, surfaces)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def without_lines(busy):
+    """Compare an experiment with made-up surfaces alone, as where no line stands for them."""
+
+    def run(experiment):
+        model = surface_model_at_records(experiment, busy.study)
+        surfaces = made_up_surfaces(model["lambda_ratio"].values[0])
+        return compare(model, experiment, busy.film, ("surface",), surfaces)
 
     return run

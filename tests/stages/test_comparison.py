@@ -316,3 +316,33 @@ def test_other_film_formulas_are_not_compared_with_surfaces(on_surfaces, busy, m
     assert others["simulated_probability"].isnull().all()
     assert not others["within_prediction"].any() and not others["compared_records"].any()
     assert found["bias_expected_lower"].isnull().all()
+
+
+def test_without_lines_surfaces_are_compared_as_with_them(without_lines, on_surfaces, busy, mean):
+    """In pure rolling of equal rollers, whose records repeat themselves in each revolution."""
+    experiment = experiment_at(busy.study.operating_grid.model_dump(), mean, turns=3.0)
+    found, both = without_lines(experiment), on_surfaces(experiment)
+    assert check(found, "comparison") is found
+    assert found["contact_model"].values.tolist() == ["surface"]
+    assert "realisation" not in found.dims and found.attrs["missing"] == both.attrs["missing"]
+    known = both.sel(contact_model=["surface"])
+    for name in set(found.data_vars) - {"scatter_ratio"}:
+        np.testing.assert_allclose(found[name], known[name], rtol=1e-6, err_msg=name)
+    np.testing.assert_array_equal(found["scatter_ratio"], 1.0)
+
+
+def test_without_lines_short_records_scatter_more_in_proportion(without_lines, busy, mean):
+    grid, widths = busy.study.operating_grid.model_dump(), []
+    for turns in (1.0, 0.25):
+        found = without_lines(experiment_at(grid, mean, turns=turns)).isel(film_formula=0)
+        np.testing.assert_array_equal(found["scatter_ratio"], 1.0 / turns)
+        sides = (found[f"predicted_share_{side}"].values for side in ("lower", "upper"))
+        widths.append(np.subtract(*sides))
+    assert (widths[1] / widths[0] > 1.5).any()
+
+
+def test_without_lines_records_that_contradict_each_other_are_named(without_lines):
+    point = {"force": 400.0, "speed": 100.0, "temperature": 60.0}
+    found = without_lines(experiment_of([0.05, 0.95], **point))
+    assert "record 0 and record 1 are of one operating point" in found.attrs["remarks"]
+    assert without_lines(experiment_of([0.05, 0.05], **point)).attrs["remarks"] == ""

@@ -303,6 +303,8 @@ def gauge_on_surfaces(busy, comparison, error=0.0):
     study = busy.study.model_copy(update=changes)
     surfaces = made_up_surfaces(comparison["lambda_ratio"].values[0], error)
     inputs = {"master": busy.master, "contact": busy.contact, "comparison": comparison}
+    if "realisation" not in comparison.dims:
+        inputs = {"film": busy.film, "comparison": comparison}
     return make(study, inputs | {"surface_records": surfaces})
 
 
@@ -344,6 +346,30 @@ def test_the_coefficient_is_fitted_by_surfaces_and_the_layer_is_not(busy, on_sur
     assert first["fitted_layer_strength_upper"] == np.inf
     assert found["alpha_factor"].isel(film_formula=1).isnull().all()
     assert found["interval_coverage"].isnull().all()
+
+
+def test_without_lines_films_are_gauged_as_with_them_and_alpha_less_exactly(
+    busy, on_surfaces, without_lines
+):
+    """Records of one pair are then taken to deviate alike."""
+    _, experiment = surface_experiment(busy, thinner=1.1)
+    comparisons = on_surfaces(experiment), without_lines(experiment)
+    both, alone = (gauge_on_surfaces(busy, one) for one in comparisons)
+    assert check(alone, "gauge") is alone
+    both, alone = (one.sel(contact_model="surface") for one in (both, alone))
+    for limit in LIMITS:
+        name = f"gauged_lambda_ratio{limit}"
+        found, known = alone[name].values, both[name].values
+        np.testing.assert_allclose(found, known, rtol=0.2)
+    films = [one["gauged_film_thickness"].values for one in (both, alone)]
+    np.testing.assert_array_equal(*films)
+    value, lower, upper = (
+        [one[f"alpha_factor{limit}"].values[0, 0] for one in (both, alone)] for limit in LIMITS
+    )
+    assert value[1] == pytest.approx(value[0], rel=0.05)
+    assert lower[1] < lower[0] < upper[0] < upper[1]
+    assert alone["study_layer_strength"] == both["study_layer_strength"]
+    assert alone["fitted_records"] == 12
 
 
 def film_table_with_alpha(busy, factor):
