@@ -90,6 +90,7 @@ def made_up_surfaces(ratios, error=0.0):
     values = {
         "record": [f"record {number}" for number in range(ratios.size)],
         "sample_size": np.full(ratios.size, float(SURFACE_WINDOWS)),
+        "scatter_ratio": np.ones(ratios.size),
         "curve_lambda_ratio": CURVE_RATIOS,
         "curve_sample_size": np.full(curves.shape, float(SURFACE_WINDOWS)),
         **values_with_limits("curve_probability", sides[:, None, None] * curves),

@@ -1,15 +1,8 @@
-r"""The film across the strip 2a x L', and what theory says of contact under it.
+"""The film across the strip 2a x L', and what theory says of contact under it.
 
 Contacts of surfaces are small and far apart where they do not merge. So a contact is in the strip
 while it passes the contact width, and a little longer, as it has an extent of its own: on the way
-w, the *passage width*. Two strips a distance s apart along the circumference have the fraction
-:math:`\rho(s)` of their contacts in common. If groups of contacts come independently of one
-another, :math:`M = -\ln(1 - P)` of them are in the strip on average, and contact of both strips has
-the covariance
-
-.. math:: c(s) = (1 - P)^2 \left( e^{M \rho(s)} - 1 \right)
-
-From it follows how far the share of time of one pair of rollers lies from the mean P over all.
+w, the *passage width*.
 """
 
 from collections.abc import Callable
@@ -234,29 +227,3 @@ def _slopes(spec, roller):
             (ridges - across) * cosine * sine,
         ]
     )
-
-
-def pair_deviation(probability: float, lags: Array, common: Array, perimeter: float) -> float:
-    """Compute how far the share of a revolution scatters between pairs of rollers.
-
-    The rollers are equal and roll without slip, so that a revolution shows all of their alignment.
-
-    Parameters
-    ----------
-    probability : float
-        Mean probability P over pairs of rollers.
-    lags, common : numpy.ndarray
-        From `StripFilm.passage`.
-    perimeter : float
-        Way of a revolution, m.
-
-    Returns
-    -------
-    float
-        Standard deviation of the share.
-    """
-    known = np.clip(probability, 1e-300, 1.0 - 1e-12)
-    correlation = (1.0 - known) / known * np.expm1(-np.log1p(-known) * common)
-    # Both ways along the circumference.
-    windows = perimeter / (2.0 * np.trapezoid(correlation, lags))
-    return np.sqrt(probability * (1.0 - probability) / max(windows, 1.0))

@@ -28,13 +28,8 @@ import scipy
 import scipy.special
 import xarray as xr
 
-from lube.contact.strip_film import (
-    COLUMNS,
-    StripFilm,
-    pair_deviation,
-    surface_moments,
-    surface_motion,
-)
+from lube.contact.pair_scatter import pair_deviation
+from lube.contact.strip_film import COLUMNS, StripFilm, surface_moments, surface_motion
 from lube.contact.surface_answers import COARSEST, surface_answers
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
@@ -129,8 +124,8 @@ def surface_contact(
         that theory expects, ``expected_contacts`` and ``expected_breakthroughs``; the way that the
         rollers move while a contact is in the strip, ``passage_width`` (m), and the scatter of a
         pair's share of breakthrough in a revolution of pure rolling, ``pair_deviation``, as
-        `lube.contact.strip_film` explains; over the dimensions of the films, NaN where the film is
-        not known. Theory neglects the slope of a film with a shape. Where the oil answers the
+        `lube.contact.pair_scatter` explains; over the dimensions of the films, NaN where the film
+        is not known. Theory neglects the slope of a film with a shape. Where the oil answers the
         surfaces, the expected numbers are NaN, and way and scatter those of the surfaces as drawn.
 
     Raises
@@ -201,7 +196,7 @@ def strip_films(
     rms : float
         Rms height of both surfaces together, m.
     """
-    strips = _drawn_strips(film, thickness, half_width, gap, rms)
+    strips = drawn_strips(film, thickness, half_width, gap, rms)
     if not gap.is_answered:
         return strips
     answers = xr.broadcast(surface_answers(film, gap.has_shape), thickness)[0]
@@ -212,8 +207,10 @@ def strip_films(
     ]
 
 
-def _drawn_strips(film, thickness, half_width, gap, rms):
-    """Films across the strips, for surfaces as drawn."""
+def drawn_strips(
+    film: xr.Dataset, thickness: xr.DataArray, half_width: xr.DataArray, gap: Gap, rms: float
+) -> list[StripFilm | None]:
+    """Films across the strips, as `strip_films`, for surfaces as drawn."""
     thickness, half_width = thickness.values.ravel(), half_width.values.ravel()
     if not gap.has_shape:
         points = zip(thickness.tolist(), half_width.tolist(), strict=True)

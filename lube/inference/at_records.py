@@ -66,34 +66,6 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     return model.assign_attrs(attributes)
 
 
-def surface_model_at_records(experiment: Data, study: Study) -> Data:
-    """Films at the conditions of each record, and the scatter of a pair of surfaces there.
-
-    For rollers for which no line stands. Records of less than one revolution scatter more, in
-    proportion to their length: contacts are far shorter than a revolution. The scatter of longer
-    records is that of one revolution. With slip or rollers of different size it is less, by an
-    unknown part, so that their intervals are too wide.
-
-    Parameters
-    ----------
-    experiment : xarray.Dataset
-        An ``experiment`` dataset.
-    study : Study
-        Its oils, rollers and films.
-
-    Returns
-    -------
-    xarray.Dataset
-        The variables of `film_at_records`, and ``scatter_ratio`` over film_formula and record; with
-        attributes as from `model_at_records`.
-    """
-    films, spec = study_films_at_records(study, experiment), study.line_spec
-    ratio = 1.0 / np.minimum(experiment["turns"].values, 1.0)
-    ratio = np.broadcast_to(ratio, films["film_thickness"].shape)
-    films = films.assign(scatter_ratio=(films["film_thickness"].dims, ratio))
-    return films.assign_attrs(travel=spec.travel, longest_wavelength=spec.longest_wavelength)
-
-
 def study_films_at_records(study: Study, experiment: xr.Dataset) -> xr.Dataset:
     """Film thickness at the conditions of each record by a study's films, as `film_at_records`."""
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))

@@ -14,6 +14,7 @@ from lube.contact.windows import study_windows
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, with_surface_responses
 from lube.inference.at_records import table_at_records
 from lube.inference.record_curves import RecordCurves, curve_offsets
+from lube.inference.surface_scatter import surface_scatter
 from lube.physics.excursions import expected_contacts
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import contact_curve
@@ -57,8 +58,9 @@ def surfaces_at_records(
     Returns
     -------
     xarray.Dataset
-        ``breakthrough_probability`` with ``_lower`` and ``_upper`` over record, and
-        ``sample_size``, the effective sample size of one revolution of pure rolling. As
+        ``breakthrough_probability`` with ``_lower`` and ``_upper`` over record;
+        ``sample_size``, the effective sample size of one revolution of pure rolling; and
+        ``scatter_ratio`` from `lube.inference.surface_scatter.surface_scatter`. As
         ``curve_probability`` and ``curve_sample_size`` the same over curve_lambda_ratio and record:
         for the film of the record, made thinner and thicker. The shape of the film, and how the oil
         deforms the surfaces, stay those of the record.
@@ -83,6 +85,7 @@ def surfaces_at_records(
         "curve_lambda_ratio": ratios,
         **values_with_limits("breakthrough_probability", own[:3]),
         "sample_size": own[3],
+        "scatter_ratio": surface_scatter(study, experiment, first, own[0]),
         **values_with_limits("curve_probability", curves[:3]),
         "curve_sample_size": curves[3],
     }

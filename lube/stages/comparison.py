@@ -23,7 +23,7 @@ import xarray as xr
 
 from lube.contact.ensemble import windows_in
 from lube.contact.surface_strip import SURFACES
-from lube.inference.at_records import model_at_records, surface_model_at_records
+from lube.inference.at_records import model_at_records, study_films_at_records
 from lube.inference.study_shares import levels_named, log_lines
 from lube.schema import (
     AT_RECORDS,
@@ -53,7 +53,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     if contact:
         model = model_at_records(experiment, film, contact, study)
     else:
-        model = surface_model_at_records(experiment, study)
+        model, spec = study_films_at_records(study, experiment), study.line_spec
+        model.attrs = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
     if not study.compares_surfaces:
         return compare(model, experiment, film)
     return compare(model, experiment, film, study.contact_model, inputs["surface_records"])
@@ -71,8 +72,8 @@ def compare(
     Parameters
     ----------
     model : xarray.Dataset
-        From `lube.inference.at_records.model_at_records`, or, of rollers for which no line stands,
-        from `lube.inference.at_records.surface_model_at_records`.
+        From `lube.inference.at_records.model_at_records`; of rollers for which no line stands, the
+        films at the records alone, with its attributes.
     experiment : xarray.Dataset
         The ``experiment`` dataset that it was made for.
     levels : xarray.Dataset
@@ -143,15 +144,11 @@ def _of_lines(table):
 
 
 def _of_surfaces(table, surfaces):
-    """As `_of_lines`, of surfaces by the first film formula; NaN for other formulas.
-
-    The scatter of a record between pairs of rollers is to that of one revolution of pure rolling as
-    it is for lines, if lines stand for the surfaces.
-    """
+    """As `_of_lines`, of surfaces by the first film formula; NaN for other formulas."""
     shape = table.sizes["film_formula"] - 1, table.sizes["record"]
     limits = [surfaces[f"breakthrough_probability{limit}"].values for limit in LIMITS]
     noise = np.hypot(table["share_error"].values, 0.25 * (limits[2] - limits[1]))
-    size, ratio = surfaces["sample_size"].values, table["scatter_ratio"].values[0]
+    size, ratio = surfaces["sample_size"].values, surfaces["scatter_ratio"].values
     predicted = prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
     others = np.full(shape, np.nan)
     return tuple([np.vstack([row, others]) for row in rows] for rows in (limits, predicted))

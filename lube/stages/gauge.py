@@ -65,6 +65,7 @@ def _of_surfaces(comparison, surfaces):
         pooled_probability=probability,
         pooled_error=xr.zeros_like(probability),
         share_error=noise.copy(data=np.hypot(noise.values, errors)),
+        scatter_ratio=probability.copy(data=surfaces["scatter_ratio"].values[None]),
         sample_size=surfaces["sample_size"].drop_attrs(),
     )
 

@@ -5,12 +5,8 @@ import pytest
 import xarray as xr
 from scipy import ndimage
 
-from lube.contact.strip_film import (
-    StripFilm,
-    pair_deviation,
-    surface_moments,
-    surface_motion,
-)
+from lube.contact.pair_scatter import pair_deviation
+from lube.contact.strip_film import StripFilm, surface_moments, surface_motion
 from lube.contact.surface_strip import SURFACES as SAMPLED
 from lube.contact.surface_strip import surface_contact
 from lube.grid.operating_points import surface_speeds

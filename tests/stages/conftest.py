@@ -3,7 +3,7 @@
 import pytest
 from experiments import experiment_at, experiment_of, made_up_surfaces, model_of_records
 
-from lube.inference.at_records import surface_model_at_records
+from lube.inference.at_records import study_films_at_records
 from lube.stages.comparison import compare
 
 
@@ -61,7 +61,8 @@ def without_lines(busy):
     """Compare an experiment with made-up surfaces alone, as where no line stands for them."""
 
     def run(experiment):
-        model = surface_model_at_records(experiment, busy.study)
+        model = study_films_at_records(busy.study, experiment)
+        model.attrs = busy.contact.attrs
         surfaces = made_up_surfaces(model["lambda_ratio"].values[0])
         return compare(model, experiment, busy.film, ("surface",), surfaces)
 

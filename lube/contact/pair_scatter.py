@@ -1,0 +1,128 @@
+r"""How far the contact share of one pair of surfaces lies from the mean over all pairs.
+
+Two strips a distance s apart along the circumference have the fraction :math:`\rho(s)` of their
+contacts in common (`lube.contact.strip_film`). If groups of contacts come independently of one
+another, :math:`M = -\ln(1 - P)` of them are in the strip on average, and contact of both strips has
+the covariance
+
+.. math:: c(s) = (1 - P)^2 \left( e^{M \rho(s)} - 1 \right)
+
+From it follows how far the share of time of one pair of rollers lies from the mean P over all.
+
+With slip, or rollers of different size, the surfaces meet in new alignments. A summit of one
+surface that touched then meets other heights of the other, and touches more often than any place
+does. The contacts that two alignments with the surface i in common share beyond chance are the
+fraction
+
+.. math:: \kappa_i = \frac{\int \left( \Phi_2(u, u; w_i \rho_i(r)) - p^2 \right) dr}
+          {\int \left( \Phi_2(u, u; \rho(r)) - p^2 \right) dr}
+
+of those of one alignment. :math:`\Phi_2` is the probability that both of two normal variables
+exceed the film u in rms heights, p that one does, :math:`w_i` the surface's part of the mean square
+height, and :math:`\rho_i` the correlation of its heights over the distance r. The part of the
+variance that new alignments do not average out follows from c(s) with :math:`M \kappa_i`.
+"""
+
+import numpy as np
+import scipy.fft
+
+from lube.surfaces.rough_surface import rough_surface
+from lube.surfaces.synthetic import LineSpecLike
+from lube.types import Array
+
+_LEVELS = np.sin(np.linspace(-0.5 * np.pi, 0.5 * np.pi, 4001))
+"""Correlations at which places of a surface are counted."""
+
+
+def pair_deviation(probability: float, lags: Array, common: Array, perimeter: float) -> float:
+    """Compute how far the share of a revolution scatters between pairs of rollers.
+
+    The rollers are equal and roll without slip, so that a revolution shows all of their alignment.
+
+    Parameters
+    ----------
+    probability : float
+        Mean probability P over pairs of rollers.
+    lags, common : numpy.ndarray
+        From `lube.contact.strip_film.StripFilm.passage`.
+    perimeter : float
+        Way of a revolution, m.
+
+    Returns
+    -------
+    float
+        Standard deviation of the share.
+    """
+    known = np.clip(probability, 1e-300, 1.0 - 1e-12)
+    correlation = (1.0 - known) / known * np.expm1(-np.log1p(-known) * common)
+    # Both ways along the circumference.
+    windows = perimeter / (2.0 * np.trapezoid(correlation, lags))
+    return np.sqrt(probability * (1.0 - probability) / max(windows, 1.0))
+
+
+def persistent_part(probability: float, lags: Array, common: Array, recurring: Array) -> float:
+    r"""Compute the part of the variance between pairs that new alignments do not average out.
+
+    Parameters
+    ----------
+    probability, lags, common
+        As in `pair_deviation`.
+    recurring : numpy.ndarray, shape (roller,)
+        :math:`\kappa_i`, from `RecurringContacts`.
+
+    Returns
+    -------
+    float
+        The part, of both surfaces together.
+    """
+    groups = -np.log1p(-np.clip(probability, 1e-300, 1.0 - 1e-12))
+    alone, whole = (
+        np.trapezoid(np.expm1(groups * part * common), lags)
+        for part in (np.reshape(recurring, (-1, 1)), 1.0)
+    )
+    return np.sum(alone) / whole
+
+
+class RecurringContacts:
+    """The fraction of contacts that recurs if one surface meets another part of the other.
+
+    Parameters
+    ----------
+    spec : LineSpecLike
+        Parameters of the lines that stand for the surfaces.
+    """
+
+    def __init__(self, spec: LineSpecLike) -> None:
+        surface = rough_surface(spec)
+        parts = surface.first_part, 1.0 - surface.first_part, 1.0
+        edges = np.concatenate([[-2.0], 0.5 * (_LEVELS[1:] + _LEVELS[:-1]), [2.0]])
+        self._counts = []
+        for part in parts:
+            variances = surface.variances * part
+            correlation = scipy.fft.irfft2(variances, surface.points, norm="forward")
+            self._counts.append(np.histogram(correlation / surface.rms**2, edges)[0])
+
+    def at(self, film: float) -> Array:
+        """Find the fraction for either surface.
+
+        Parameters
+        ----------
+        film : float
+            Film over the rms height of both surfaces together.
+
+        Returns
+        -------
+        numpy.ndarray, shape (2,)
+        """
+        *alone, both = np.array(self._counts) @ _excess(film)
+        return np.array(alone) / both
+
+
+def _excess(film):
+    """Probability that two normal variables exceed a film, beyond chance, at `_LEVELS`."""
+    # Its derivative with the correlation sin(t) is the density of both at the film (Plackett).
+    angles = np.arcsin(_LEVELS)
+    with np.errstate(divide="ignore"):
+        density = np.exp(-(film**2) / (1.0 + _LEVELS)) / (2.0 * np.pi)
+    sums = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(angles))])
+    return sums - np.interp(0.0, angles, sums)

@@ -1,0 +1,66 @@
+"""Scatter of records between pairs of surfaces: one alignment, several, and short records."""
+
+import numpy as np
+import pytest
+from experiments import experiment_of
+
+from lube.inference.at_records import study_films_at_records
+from lube.inference.surface_scatter import surface_scatter
+
+SHARES = np.array([0.05, 0.4, 0.4])
+
+
+def scatter(study, **records):
+    """Scatter ratios of three records of the busy study."""
+    experiment = experiment_of(SHARES, np.array([400.0, 1600.0, 1600.0]), 100.0, 60.0, **records)
+    films = study_films_at_records(study, experiment).isel(film_formula=0)
+    return surface_scatter(study, experiment, films, SHARES)
+
+
+def with_rollers(study, **second):
+    rollers = study.rollers.second.model_copy(update=second)
+    return study.model_copy(
+        update={"rollers": study.rollers.model_copy(update={"second": rollers})}
+    )
+
+
+def test_equal_rollers_in_pure_rolling_repeat_themselves(busy_study):
+    np.testing.assert_array_equal(scatter(busy_study, turns=1.0), 1.0)
+    np.testing.assert_array_equal(scatter(busy_study, turns=20.0), 1.0)
+
+
+def test_short_records_scatter_in_inverse_proportion_to_their_length(busy_study):
+    np.testing.assert_allclose(scatter(busy_study, turns=0.25), 4.0)
+
+
+def test_slip_shortens_contacts_and_brings_new_alignments(busy_study):
+    one = scatter(busy_study, turns=1.0, slide_to_roll_ratio=0.37)
+    many = scatter(busy_study, turns=100.0, slide_to_roll_ratio=0.37)
+    assert np.all(one < 1.0) and np.all(many < 0.8 * one) and np.all(many > 0.01)
+    assert many[1] == many[2]  # the same film
+    # The effect of either surface alone stays in any number of turns.
+    later = scatter(busy_study, turns=10_000.0, slide_to_roll_ratio=0.37)
+    np.testing.assert_allclose(later, many, rtol=0.3)
+
+
+def test_rollers_of_different_size_meet_in_new_alignments(busy_study):
+    unequal = with_rollers(busy_study, radius=0.0437)
+    found = [scatter(unequal, turns=turns) for turns in (1.0, 50.0)]
+    assert np.all(found[1] < 0.5 * found[0])
+    smooth = with_rollers(unequal, rms_roughness=1e-9)  # then one surface has all the roughness
+    assert np.all(scatter(smooth, turns=50.0) > 0.8)
+
+
+def test_a_film_that_is_not_known_has_no_scatter(busy_study):
+    experiment = experiment_of(SHARES, np.array([400.0, 1600.0, 1600.0]), 100.0, 60.0)
+    films = study_films_at_records(busy_study, experiment).isel(film_formula=0)
+    films["film_thickness"][1] = np.nan
+    shares = np.where([True, False, True], SHARES, np.nan)
+    found = surface_scatter(busy_study, experiment, films, shares)
+    assert np.isnan(found).tolist() == [False, True, False]
+
+
+@pytest.mark.parametrize("film_shape", ["flat", "computed"])
+def test_films_with_a_shape_have_a_scatter_too(busy_study, film_shape):
+    study = busy_study.model_copy(update={"film_shape": film_shape})
+    assert np.all(scatter(study, turns=100.0, slide_to_roll_ratio=0.37) < 0.6)
