@@ -72,7 +72,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
     if MODEL in tail.dims:
         levels[MODEL] = tail[MODEL].values.tolist()
     traces = _traces(datasets, levels)
-    marks = {"deformed": deformed(film), "rubbing": rubbing(film)}
+    marks = {"deformed": _deformed(film, tail), "rubbing": rubbing(film)}
     if "contact" in datasets:
         contact = datasets["contact"]
         marks |= {"overloaded": overloaded(contact), "merged": merged(contact, film)}
@@ -104,6 +104,15 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         "conducts": any(one["conducts"] for one in traces),
         "traces": traces,
     }
+
+
+def _deformed(film, tail):
+    """Points where the linear response to roughness is not valid, of each contact model."""
+    if MODEL not in tail.dims:
+        return deformed(film)
+    by_model = {"line": deformed(film), "surface": deformed(film, tail)}
+    by_model = xr.broadcast(*(by_model[model] for model in tail[MODEL].values))
+    return xr.concat(by_model, tail[MODEL], join="exact")
 
 
 def page_name(kind: str, name: str) -> str:

@@ -9,7 +9,8 @@ from lube.ehl.line_contact import ConvergenceError, one_blas_thread
 from lube.ehl.response import WaveResponse, at_wavelengths
 from lube.grid.film_profiles import film_positions, six_digits
 from lube.grid.operating_points import surface_speeds
-from lube.surfaces.synthetic import wave_amplitudes
+from lube.surfaces.lay import cosine_and_sine
+from lube.surfaces.synthetic import amplitudes_across_lay, wave_amplitudes
 from lube.threads import on_threads
 from lube.types import Datasets
 
@@ -28,8 +29,14 @@ POSITIONS = 0.02, 1.06
 ANGLES = np.arange(0.0, 91.0, 15.0)
 """Angles between rolling and the direction of the waves of a surface, degrees. Between them the
 response is interpolated to 0.4 % of the wave in pure rolling, and to 0.8 % with slip."""
+DIRECTIONS, LENGTHS = 180, 1000
+"""Directions and lengths among which the mean square height of a surface is distributed."""
 VARIABLES = "response_real", "response_imaginary", "interpolation_error", "rms_deformation"
-SURFACE_VARIABLES = "surface_response_real", "surface_response_imaginary"
+SURFACE_VARIABLES = (
+    "surface_response_real",
+    "surface_response_imaginary",
+    "surface_rms_deformation",
+)
 
 
 def wave_responses(
@@ -68,12 +75,10 @@ def wave_responses(
     """
     angles = np.zeros(1)
     response, error = _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads)
+    heights = _line_heights(spec, response["wavelength"].values)[:, None]
+    deformation = error.isel(roller=0, wave_angle=0, drop=True)
+    deformation = deformation.copy(data=_deformation(response, heights))
     response, error = (each.isel(wave_angle=0, drop=True) for each in (response, error))
-    inside = np.abs(response["response_position"]) <= 1.0
-    square = np.mean(np.abs(response.values[..., inside] - 1.0) ** 2, axis=-1)
-    heights = _squared_heights(spec, response["wavelength"].values)
-    deformation = error.isel(roller=0, drop=True)
-    deformation = deformation.copy(data=six_digits(np.sqrt(np.einsum("...rw,rw", square, heights))))
     values = response.real, response.imag, error, deformation
     return xr.Dataset(dict(zip(VARIABLES, values, strict=True)))
 
@@ -91,12 +96,15 @@ def surface_responses(
     Returns
     -------
     xarray.Dataset
-        `SURFACE_VARIABLES` over the dimensions of the films and of the slide-to-roll ratio, roller,
-        wave_angle (degrees, `ANGLES`), wavelength and response_position; NaN where the film is not
-        known.
+        `SURFACE_VARIABLES` over the dimensions of the films and of the slide-to-roll ratio; the
+        real and the imaginary part also over roller, wave_angle (degrees, `ANGLES`), wavelength and
+        response_position; NaN where the film is not known.
     """
-    response, _ = _solved(solved, contact, slide_to_roll_ratio, spec, ANGLES, threads)
-    values = response.real, response.imag
+    response, error = _solved(solved, contact, slide_to_roll_ratio, spec, ANGLES, threads)
+    waves = response["wave_angle"].values, response["wavelength"].values
+    deformation = error.isel(roller=0, wave_angle=0, drop=True)
+    deformation = deformation.copy(data=_deformation(response, _surface_heights(spec, *waves)))
+    values = response.real, response.imag, deformation
     return xr.Dataset(dict(zip(SURFACE_VARIABLES, values, strict=True)))
 
 
@@ -138,19 +146,50 @@ def _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads):
     return xr.DataArray(response, {**slips.coords, **levels}, dims), error
 
 
-def _squared_heights(spec, wavelengths):
+def _deformation(response, heights):
+    """Rms change of surfaces by the oil, from the mean square heights of their waves."""
+    inside = np.abs(response["response_position"]) <= 1.0
+    square = np.mean(np.abs(response.values[..., inside] - 1.0) ** 2, axis=-1)
+    return six_digits(np.sqrt(np.einsum("...raw,raw", square, heights)))
+
+
+def _surface_heights(spec, angles, wavelengths):
+    """Distribute the mean square height of each surface over the angles and wavelengths."""
+    psi = np.pi * (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
+    shares = []
+    for roller, line in enumerate(spec.lines):
+        length, power = _waves(spec, roller, amplitudes_across_lay)
+        power, edges = np.histogram(-np.log(length), LENGTHS, weights=power)
+        # The waves of the isotropic surface run in all directions; see `lube.surfaces.lay`.
+        across_lay, ridges = np.cos(psi), np.sin(psi) / line.lay_ratio
+        cosine, sine = cosine_and_sine(line.lay_angle)
+        along, across = ridges * cosine - across_lay * sine, ridges * sine + across_lay * cosine
+        angle = np.degrees(np.arctan2(np.abs(across), np.abs(along)))
+        places = 0.5 * (edges[1:] + edges[:-1]) + np.log(np.hypot(along, across))[:, None]
+        weights = _weights(angle, angles), _weights(places, -np.log(wavelengths))
+        shares.append(np.einsum("an,wnl,l->aw", *weights, power) / DIRECTIONS)
+    return np.array(shares)
+
+
+def _line_heights(spec, wavelengths):
     """Distribute the mean square height of each line over the wavelengths, which fall."""
     shares = []
     for roller in (0, 1):
-        first, amplitudes = wave_amplitudes(spec, roller)
-        length = spec.points[roller] * spec.spacing / (first + np.arange(amplitudes.size))
-        # Between two wavelengths the response is linear in the logarithm of the wavelength.
-        weights = [
-            np.interp(-np.log(length), -np.log(wavelengths), each)
-            for each in np.eye(wavelengths.size)
-        ]
-        shares.append(np.einsum("wk,k", weights, amplitudes**2) / 2.0)
-    return shares
+        length, power = _waves(spec, roller, wave_amplitudes)
+        shares.append(np.einsum("wk,k", _weights(-np.log(length), -np.log(wavelengths)), power))
+    return np.array(shares)
+
+
+def _waves(spec, roller, amplitudes_of):
+    """Lengths of the waves of a line, and their mean square heights."""
+    first, amplitudes = amplitudes_of(spec, roller)
+    length = spec.points[roller] * spec.spacing / (first + np.arange(amplitudes.size))
+    return length, amplitudes**2 / 2.0
+
+
+def _weights(places, nodes):
+    """Weights of values at nodes for linear interpolation at some places, nodes first."""
+    return np.array([np.interp(places, nodes, each) for each in np.eye(nodes.size)])
 
 
 def _of_film(profile, wavelengths, speeds, positions, angle):

@@ -73,7 +73,7 @@ def _falls(film, breakthrough, geometric):
     return falls.any(axis=1).reshape(film.shape)
 
 
-def deformed(film: xr.Dataset) -> xr.DataArray:
+def deformed(film: xr.Dataset, surfaces: xr.Dataset | None = None) -> xr.DataArray:
     """Find the points where the oil changes the roughness by too large a part of the film.
 
     The linear response to roughness is not valid there.
@@ -82,15 +82,20 @@ def deformed(film: xr.Dataset) -> xr.DataArray:
     ----------
     film : xarray.Dataset
         A ``film`` dataset.
+    surfaces : xarray.Dataset, optional
+        A ``tail`` dataset, for the points of surfaces; by default those of lines.
 
     Returns
     -------
     xarray.DataArray
-        Whether `rms_deformation` is above `LARGEST_DEFORMATION` times the film. False where the
-        film is not known, or the oil does not answer the lines.
+        Whether `rms_deformation`, of surfaces `surface_rms_deformation`, is above
+        `LARGEST_DEFORMATION` times the film. False where the film is not known, or the oil does not
+        answer the roughness.
     """
-    thickness = film["film_thickness"]
-    return film.get("rms_deformation", 0.0) > LARGEST_DEFORMATION * thickness
+    change = film.get("rms_deformation", 0.0)
+    if surfaces is not None:
+        change = surfaces.get("surface_rms_deformation", 0.0)
+    return change > LARGEST_DEFORMATION * film["film_thickness"]
 
 
 def rubbing(film: xr.Dataset) -> xr.DataArray:

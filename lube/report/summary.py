@@ -119,7 +119,7 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         contact=_contact(contact.sel(first)),
         trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
         spread=_spread(film, contact, first),
-        held=_held(film, contact if counted else None, first),
+        held=_held(film, contact if counted else None, results["tail"], first),
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
         traces=[_trace(point, film, contact, comparison) for point in study.trace_points],
         notes={
@@ -233,9 +233,9 @@ def _of_surfaces(tail):
     return xr.Dataset(found | {name: xr.full_like(found[f"{name}_mean"], np.nan)})
 
 
-def _held(film, contact, first):
+def _held(film, contact, tail, first):
     """Load on the line's asperities, and the numbers of points where the model does not hold."""
-    film = film.sel(first)
+    film, surfaces = film.sel(first), tail.sel(first) if contact is None else None
     found = {"share": math.nan, "overloaded": 0, "merged": 0}
     if contact is not None:
         contact = contact.sel(first)
@@ -245,7 +245,7 @@ def _held(film, contact, first):
             "merged": int(merged(contact, film).sum()),
         }
     return found | {
-        "deformed": int(deformed(film).sum()),
+        "deformed": int(deformed(film, surfaces).sum()),
         "small": LARGEST_DEFORMATION,
         "surface_share": (
             film["surface_load_share"].max().item() if "surface_load_share" in film else None

@@ -36,4 +36,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     found = surface_contact(study.line_spec, length, film, *choices, slide_to_roll_ratio=slips)
     # If the film is the same at all slips, so is the probability.
     found = xr.broadcast(found.drop_attrs())[0]
-    return label(found.transpose(*CONTACT_DIMS).copy(deep=True).assign(length=length), "areal")
+    found = found.transpose(*CONTACT_DIMS).copy(deep=True).assign(length=length)
+    if study.gap.is_answered:
+        found = found.assign(surface_rms_deformation=film["surface_rms_deformation"].drop_attrs())
+    return label(found, "areal")

@@ -123,7 +123,8 @@ def _by_model(study, film, lines, areal):
     models = list(study.contact_model)
     levels = xr.DataArray(models, dims="contact_model", name="contact_model")
     found = xr.concat([tables[name] for name in models], levels, join="exact")
-    return found.assign(theory)
+    deformation = [name for name in ("surface_rms_deformation",) if name in areal]
+    return found.assign(theory).assign(areal[deformation])
 
 
 def _on_surfaces(study, speed, areal):
@@ -246,6 +247,7 @@ def _unknown(film, slide_to_roll_ratio, remark):
     empty = {
         name: xr.DataArray(np.nan, {dim: levels[dim] for dim in row.dims}, row.dims)
         for name, row in FILES["tail"].items()
+        if not row.optional
     }
     return label(xr.Dataset(empty, attrs={"remarks": remark}), "tail")
 

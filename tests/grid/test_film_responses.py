@@ -5,9 +5,15 @@ import pytest
 import xarray as xr
 
 from lube.ehl.response import WaveResponse
-from lube.grid.film_responses import ANGLES, SURFACE_VARIABLES
+from lube.grid.film_responses import (
+    ANGLES,
+    SURFACE_VARIABLES,
+    _line_heights,
+    _surface_heights,
+)
 from lube.grid.films import FilmGroups, film_at, hertz_contact
 from lube.study.oil_properties import lubricant_table
+from lube.surfaces.rough_surface import rough_surface
 
 FORCE, SPEED = 1600.0, 100.0
 
@@ -28,7 +34,7 @@ def responses(request, study, make_spec):
 
 def test_waves_across_rolling_have_the_response_of_lines(responses):
     film, _, _ = responses
-    for name in SURFACE_VARIABLES:
+    for name in SURFACE_VARIABLES[:2]:
         across = film[name].sel(wave_angle=0.0, drop=True)
         np.testing.assert_array_equal(across, film[name.removeprefix("surface_")])
 
@@ -41,7 +47,7 @@ def test_each_wave_is_solved_for(responses):
     wave = WaveResponse.of(profile, scaled.item(), angle=60.0)
     for roller, speed in ((1, 1.0 + slip / 2.0), (2, 1.0 - slip / 2.0)):
         expected = wave.transfer(speed, film["response_position"].values)
-        parts = (one[name].sel(roller=roller) for name in SURFACE_VARIABLES)
+        parts = (one[name].sel(roller=roller) for name in SURFACE_VARIABLES[:2])
         for part, other in zip(parts, (expected.real, expected.imag), strict=True):
             np.testing.assert_allclose(part, other, rtol=1e-5, atol=1e-9)
 
@@ -50,3 +56,52 @@ def test_without_slip_both_surfaces_have_the_same_response(responses):
     film, _, slip = responses
     first, second = (film[SURFACE_VARIABLES[0]].sel(roller=roller) for roller in (1, 2))
     assert np.array_equal(first, second) == (slip == 0.0)
+
+
+def test_waves_of_an_isotropic_surface_change_as_those_of_its_line_if_alike_at_all_angles(
+    make_spec,
+):
+    spec = make_spec(20_000, second_roughness=1e-7)
+    wavelengths = np.geomspace(spec.longest_wavelength, 2e-5, 20)
+    lines = _line_heights(spec, wavelengths)
+    surfaces = _surface_heights(spec, ANGLES, wavelengths)
+    np.testing.assert_allclose(surfaces.sum(axis=1), lines, rtol=0.01, atol=1e-3 * lines.max())
+    np.testing.assert_allclose(lines.sum(axis=1), np.square(spec.rms_height), rtol=1e-6)
+    # As many waves run at any angle; at the ends are half as many nearest.
+    shares = surfaces.sum(axis=2) / lines.sum(axis=1)[:, None]
+    np.testing.assert_allclose(shares, [np.r_[0.5, np.ones(5), 0.5] / 6.0] * 2, rtol=0.01)
+
+
+@pytest.mark.parametrize("lay_angle", [0.0, 30.0, 90.0])
+def test_waves_of_a_surface_with_a_lay_are_those_of_the_surface_drawn(make_spec, lay_angle):
+    lay = {"lay_ratio": 3.0, "lay_angle": lay_angle}
+    spec = make_spec(20_000, **lay)
+    wavelengths = np.geomspace(spec.longest_wavelength, 2e-5, 20)
+    weights = _surface_heights(spec, ANGLES, wavelengths)[0]
+    surface = rough_surface(spec, waves=12)
+    units = [2.0 * np.pi / side for side in surface.sides]
+    down = units[0] * np.fft.fftfreq(surface.points[0], 1.0 / surface.points[0])[:, None]
+    along = units[1] * np.arange(surface.points[1] // 2 + 1)
+    power = surface.variances * surface.first_part * np.where(along > 0.0, 2.0, 1.0)
+    power *= spec.height_step**2
+    length = 2.0 * np.pi / np.maximum(np.hypot(along, down), units[0])
+    angle = np.degrees(np.arctan2(np.abs(down), along))
+    known = np.sum(power * (1.0 + np.cos(np.radians(2.0 * angle))))
+    at_nodes = 1.0 + np.cos(np.radians(2.0 * ANGLES))
+    assert np.sum(weights * at_nodes[:, None]) == pytest.approx(known, rel=0.03)
+    expected = np.sum(power * np.log(length)) / np.sum(power)
+    found = np.sum(weights * np.log(wavelengths)) / np.sum(weights)
+    assert found == pytest.approx(expected, abs=0.05)
+
+
+def test_the_deformation_is_that_of_all_waves_together(responses, make_spec):
+    film, _, _ = responses
+    change = film[SURFACE_VARIABLES[0]] + 1j * film[SURFACE_VARIABLES[1]] - 1.0
+    change = change.where(abs(film["response_position"]) <= 1.0, drop=True)
+    square = np.mean(abs(change) ** 2, axis=change.dims.index("response_position"))
+    square = square.transpose("roller", "wave_angle", "wavelength")
+    levels = film["wave_angle"].values, film["wavelength"].values
+    heights = _surface_heights(make_spec(20_000), *levels)
+    found = film["surface_rms_deformation"].item()
+    assert found == pytest.approx(np.sqrt(np.sum(square.values * heights)), rel=1e-5)
+    assert 0.2 < found / film["rms_deformation"].item() < 5.0

@@ -82,6 +82,9 @@ def test_the_oil_deforms_roughness_strongly_where_it_adds_more_than_a_tenth_of_t
     assert not deformed(film).any()  # lines as drawn
     film["rms_deformation"] = "force", [0.09e-6, 0.11e-6, np.nan]
     assert deformed(film).values.tolist() == [False, True, False]
+    tail = xr.Dataset({"surface_rms_deformation": ("force", [0.11e-6, 0.09e-6, np.nan])})
+    assert deformed(film, tail).values.tolist() == [True, False, False]
+    assert not deformed(film, xr.Dataset()).any()  # surfaces as drawn
 
 
 def test_asperities_rub_where_they_carry_more_than_a_tenth_of_the_load():
