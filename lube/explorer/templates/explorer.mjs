@@ -292,7 +292,8 @@ function showTrace(point, sources, figures) {
     element("close-up").hidden = !trace.close;
     const { time, contact_length } = trace.close ?? trace.whole;
     const peak = time[contact_length.indexOf(Math.max(...contact_length))];
-    for (const [part, scale, zero] of trace.close ? [["whole", 1, 0], ["close", 1e3, peak]] : [["whole", 1, 0]]) {
+    const parts = trace.close ? [["whole", 1, 0], ["close", 1e3, peak]] : [["whole", 1e3, 0]];
+    for (const [part, scale, zero] of parts) {
         const { time, contact_length, contact_resistance } = trace[part];
         const rows = time.map((moment, i) => ({
             time: scale * (moment - zero),
@@ -302,6 +303,7 @@ function showTrace(point, sources, figures) {
         fill(sources[part], rows);
         for (const name of [`${part}_length`, `${part}_resistance`].filter((name) => name in figures)) {
             setRange(figures[name].x_range, rows.map((one) => one.time), 0.01);
+            if (part === "whole") figures[name].below[0].axis_label = trace.close ? "Time (s)" : "Time (ms)";
         }
         figures[`${part}_length`].y_range.setv({ start: 0, end: 1.08 * Math.max(...rows.map((one) => one.length)) || 1 });
     }
