@@ -7,7 +7,17 @@ import pytest
 
 from lube.contact.rough_pair import roughness_batch
 from lube.schema import STAGES
-from lube.stages import maker
+from lube.stages import maker, passage
+
+
+@contextlib.contextmanager
+def with_few_passages():
+    """Let rough lines pass at few operating points, and few single waves."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(passage, "LAMBDA_RATIOS", passage.LAMBDA_RATIOS[::2])
+        few = {name: values[::2] for name, values in passage.WAVES.items()}
+        patch.setattr(passage, "WAVES", few)
+        yield
 
 
 @contextlib.contextmanager

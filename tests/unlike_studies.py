@@ -2,7 +2,7 @@
 
 import numpy as np
 import yaml
-from made import made, on_few_surfaces
+from made import made, on_few_surfaces, with_few_passages
 from studies import CONFIG, PAPER_CONTENT
 
 from lube.contact.rough_pair import roughness_batch
@@ -239,7 +239,7 @@ def write_study(content, folder):
 def write_datasets(content, folder):
     """Calculate a study as the workflow does, and save its datasets."""
     study = load_study(write_study(content, folder))
-    with on_few_surfaces():
+    with on_few_surfaces(), with_few_passages():
         datasets = made(study)
     for kind, dataset in datasets.items():
         save(dataset, folder / f"{kind}.nc", kind, study)

@@ -1,5 +1,6 @@
 """Kill the smoke study at some moment, and recover as the documentation says."""
 
+import math
 import os
 import random
 import re
@@ -86,7 +87,8 @@ def begin_with(repository, whole, kill, chance):
         return []
     figures, targets = repository.notebooks, []
     chance.shuffle(figures)
-    gone = figures[: int(kill.share * len(figures))] if kill.begin == "figures" else figures
+    few = math.ceil(kill.share * len(figures))
+    gone = figures[:few] if kill.begin == "figures" else figures
     gone = [name for figure in gone for name in products_of(figure)]
     if kill.begin == "datasets":
         datasets = [name for name in whole.products if name.endswith(".nc")]
