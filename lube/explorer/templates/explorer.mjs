@@ -266,7 +266,7 @@ function traceText(trace) {
     const crossing = `An asperity takes ${rounded(1e3 * trace.crossing)} ms to cross the contact. `;
     if (!trace.close) {
         return (
-            `One pair of surfaces while they pass by ${rounded(1e3 * trace.way)} mm, in contact ${percent(trace.share)} of this time, ` +
+            `One pair of surfaces, followed over ${rounded(1e3 * trace.way)} mm of rolling: in contact ${percent(trace.share)} of this time, ` +
             `at ${rounded(trace.contacts)} places at once on average. ${crossing}` +
             `Drawn: the sum of the contacts' diameters${content.conducts ? ", and the resistance of the contacts in parallel" : ""}.`
         );
