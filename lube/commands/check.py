@@ -82,8 +82,8 @@ def _expected_run(study, points):
     """Estimate time and memory from those of the paper's study.
 
     A million points of a line take some 0.7 ms at an operating point in pure rolling, and 0.9 s at
-    a slide-to-roll ratio of 1; surfaces 2 s at each point, 9 s where the oil answers them; the other
-    jobs, most of all figures, 90 s.
+    a slide-to-roll ratio of 1. Surfaces take 2 s at each point, or 9 s where the oil answers them,
+    and the other jobs, most of all figures, 90 s.
     """
     size = study.roughness.points / 1e6
     slips = sum(7e-4 + 0.9 * abs(ratio) for ratio in study.slips) / len(study.slips)
