@@ -4,6 +4,7 @@ import fcntl
 import pickle
 import shutil
 import subprocess
+import warnings
 from types import SimpleNamespace
 
 import pytest
@@ -229,7 +230,9 @@ def unlike(made_once):
     def make(path):
         unfinished = path.with_name(f"unfinished {path.name}")
         shutil.rmtree(unfinished, ignore_errors=True)
-        write_datasets(STUDIES[path.name], unfinished)
+        with warnings.catch_warnings():  # of libraries; tests of figures refuse their own
+            warnings.simplefilter("default")
+            write_datasets(STUDIES[path.name], unfinished)
         unfinished.rename(path)
 
     return lambda name: made_once(name, make)
