@@ -24,7 +24,8 @@ def areal(busy):
     first = busy.film.isel(film_formula=[0])
     found = probability(first["lambda_ratio"], 2.0 * first["contact_half_width"])
     found = found.expand_dims(slide_to_roll_ratio=[0.0]).transpose(*CONTACT_DIMS)
-    values = {name: found for name in FILES["areal"] if name != "length"}
+    names = [name for name, row in FILES["areal"].items() if not row.optional]
+    values = {name: found for name in names if name != "length"}
     values["pair_deviation"] = np.sqrt(found * (1.0 - found) / 300.0)
     return label(xr.Dataset(values).assign(length=0.01), "areal")
 
