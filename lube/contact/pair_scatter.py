@@ -114,7 +114,7 @@ class RecurringContacts:
         -------
         numpy.ndarray, shape (2,)
         """
-        *alone, both = np.array(self._counts) @ _excess(film)
+        *alone, both = np.einsum("pl,l->p", self._counts, _excess(film))
         return np.array(alone) / both
 
 
