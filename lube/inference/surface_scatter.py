@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from lube.contact.pair_scatter import RecurringContacts, persistent_part
-from lube.contact.strip_film import StripFilm, surface_moments, surface_motion
+from lube.contact.strip_film import COLUMNS, surface_moments, surface_motion
 from lube.contact.surface_strip import drawn_strips
 from lube.grid.discretise import speed_ratios
 from lube.statistics.one_pair import scatter_ratio
@@ -40,11 +40,11 @@ def surface_scatter(
         Variance of the record's share over that of one revolution of pure rolling of equal rollers;
         NaN where the film is not known. What the oil does to the surfaces has no effect on it.
     """
-    moments = surface_moments(study.line_spec)
-    rms = math.sqrt(moments.height)
+    spec, length = study.line_spec, study.rollers.length
+    moments, recurring = surface_moments(spec), RecurringContacts(spec)
+    reach, rms = spec.longest_wavelength / spec.spacing, math.sqrt(moments.height)
     widths = films["film_thickness"], films["contact_half_width"]
     strips = drawn_strips(films, *widths, study.gap, rms)
-    recurring = RecurringContacts(study.line_spec)
     records = zip(
         *(experiment[name].values.tolist() for name in ("slide_to_roll_ratio", "turns")),
         shares,
@@ -55,26 +55,12 @@ def surface_scatter(
     def of_record(slip, turns, share, strip):
         if strip is None or np.isnan(share):
             return np.nan
-        thinnest = strip.films(strip.width / 100).min() / rms
-        _, lags, common = strip.passage(moments, study.rollers.length)
-        part = persistent_part(share, lags, common, recurring.at(thinnest))
-        return _ratio(study, slip, turns, part, _shortened(study, strip, slip))
+        thinnest = strip.films(strip.width / COLUMNS).min() / rms
+        _, *common = strip.passage(moments, length)
+        part, shorter = persistent_part(share, *common, recurring.at(thinnest)), 1.0
+        if slip:  # contacts pass in a shorter time
+            shorter /= strip.appearing(moments, surface_motion(spec, slip), length)
+        motion = speed_ratios(slip), spec.points, reach
+        return shorter * scatter_ratio(turns, *motion, min(part / shorter, 1.0), study.rig.drift)
 
     return np.array([of_record(*record) for record in records])
-
-
-def _shortened(study: Study, strip: StripFilm, slip: float) -> float:
-    """Passage of a contact through the strip, over that in pure rolling."""
-    if slip == 0.0:
-        return 1.0
-    spec = study.line_spec
-    motion = surface_motion(spec, slip)
-    return 1.0 / strip.appearing(surface_moments(spec), motion, study.rollers.length)
-
-
-def _ratio(study, slip, turns, persistent, shortened):
-    """Variance of the share of a record over that of one revolution of pure rolling."""
-    spec, persistent = study.line_spec, min(persistent / shortened, 1.0)
-    reach = spec.longest_wavelength / spec.spacing
-    motion = speed_ratios(slip), spec.points, reach
-    return shortened * scatter_ratio(turns, *motion, persistent, study.rig.drift)

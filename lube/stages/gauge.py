@@ -28,6 +28,7 @@ _KEPT = ("film_thickness", "lambda_ratio", "contact_half_width", "comparison_thr
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``gauge.nc``; see `lube.stages`."""
     comparison = inputs["comparison"]
+    # Without lines, which alone are fitted with contact, only the names of the oils are needed.
     contact = inputs["contact"] if "contact" in inputs else inputs["film"]
 
     def by_line(comparison):
@@ -37,7 +38,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
     if not study.compares_surfaces:
         return gauge_records(by_line(comparison), contact, comparison)
-    layer = study.boundary_layer
     inferred = []
     for model in comparison["contact_model"].values:
         records = comparison.sel(contact_model=model, drop=True)
@@ -49,6 +49,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
             of_first = _inferred(curves, contact, records)
             inferred.append(of_first.reindex(film_formula=comparison["film_formula"]))
     by_model = xr.concat(inferred, comparison["contact_model"], join="exact")
+    layer = study.boundary_layer
     strength = layer.shear_strength / layer.critical_thickness
     return _with_records(by_model, strength, comparison)
 

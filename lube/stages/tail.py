@@ -123,8 +123,9 @@ def _by_model(study, film, lines, areal):
     models = list(study.contact_model)
     levels = xr.DataArray(models, dims="contact_model", name="contact_model")
     found = xr.concat([tables[name] for name in models], levels, join="exact")
-    deformation = [name for name in ("surface_rms_deformation",) if name in areal]
-    return found.assign(theory).assign(areal[deformation])
+    if study.gap.is_answered:
+        found = found.assign(surface_rms_deformation=areal["surface_rms_deformation"])
+    return found.assign(theory)
 
 
 def _on_surfaces(study, speed, areal):
