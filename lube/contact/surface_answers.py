@@ -254,4 +254,6 @@ class AnsweredStrip:
                 fields.append(np.pad(scipy.fft.irfft2(changed, shape), (0, 1), mode="wrap"))
         shapes = np.hstack(self._shapes).astype(np.float32)
         first = self._first_lag
-        return Answered(np.stack(fields, axis=-1), shapes, self._covariances, first, self.shift)
+        # For another layout in memory Numba would compile the kernels once more.
+        stacked = np.ascontiguousarray(np.stack(fields, axis=-1))
+        return Answered(stacked, shapes, self._covariances, first, self.shift)

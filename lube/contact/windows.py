@@ -295,7 +295,8 @@ class ContactWindows:
         reached = self._window(points)
         if self._gap.has_shape:
             reached = reached.below(highest)
-        window = Window(reached.film, reached.before, shift)
+        # For another layout in memory Numba would compile the kernel once more.
+        window = Window(np.ascontiguousarray(reached.film), reached.before, shift)
         nodes = (np.arange(node_count(window)) << shift) - phase_of(window)
         surfaces = list(drawn)
         for roller, (lines, answer) in enumerate(zip(filtered, answers, strict=True)):

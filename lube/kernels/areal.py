@@ -143,8 +143,7 @@ def touching_strips(
     for k in range(places[0].size):
         origin = touching[0][k]
         node, part = _node(origin, answered.shift)
-        by_known[:] = answered.covariances[:, node]
-        by_known += part * (answered.covariances[:, node + 1] - by_known)
+        _fill_by_known(by_known, answered, node, part)
         highest[:] = np.nan
         oil = answered, by_known, nodes, highest
         drawn = fields, covariances, reach, places[0][k], places[1][k], origin, unmoved, oil
@@ -187,6 +186,18 @@ def touching_strips(
             if alone == 0 and alone_broken == 0:
                 break
     return contact, breakthrough, contacts
+
+
+@kernel
+def _fill_by_known(by_known, answered, node, part):
+    """Fill in what the oil adds to the covariances with the known point, between two nodes."""
+    # Numba takes seconds to compile the same with whole arrays, whose shapes it compares.
+    for surface in range(2):
+        for lag in range(by_known.shape[1]):
+            for at in range(by_known.shape[2]):
+                here = answered.covariances[surface, node, lag, at]
+                there = answered.covariances[surface, node + 1, lag, at]
+                by_known[surface, lag, at] = here + part * (there - here)
 
 
 @kernel
@@ -257,7 +268,7 @@ def _row(moved, search, heights, row):
     return contacts, broken, earliest
 
 
-@inlined
+@kernel
 def _fill_row(moved, row, heights):
     """Fill in the heights of a row, counted from the known one."""
     fields, covariances, reach, first_row, first_column, origin, rise, oil = moved
@@ -273,7 +284,7 @@ def _fill_row(moved, row, heights):
             heights[column] += _along(oil[2], column, oil[0].shift)
 
 
-@inlined
+@kernel
 def _least_by_block(first_column, film, least):
     """Find the thinnest film, less some rounding, in each block of the surface's columns."""
     least[:] = np.inf
@@ -325,7 +336,7 @@ def _moved(surface, moved, row, column):
     return found
 
 
-@inlined
+@kernel
 def _most_added(moved, before):
     """Find the most that the oil adds in a row of nodes."""
     answered, _, nodes, highest = moved[7]
@@ -335,7 +346,7 @@ def _most_added(moved, before):
     return highest[before]
 
 
-@inlined
+@kernel
 def _fill_nodes(moved, row):
     """Fill in what the oil adds to a row at the nodes."""
     nodes = moved[7][2]
@@ -343,7 +354,7 @@ def _fill_nodes(moved, row):
         nodes[node] = _at_node(0, moved, row, node)
 
 
-@inlined
+@kernel
 def _at_node(surface, moved, row, node):
     """Find what the oil adds to `_moved` at a node of the strip."""
     _, _, _, first_row, first_column, _, rise, (answered, by_known, _, _) = moved

@@ -231,18 +231,19 @@ def shaped_trace(
         if is_answered:
             if part == 0:
                 _answer(surfaces, speed_ratios, step, window, now)
-                lift[:] = now
             if part == 1:
                 _answer(surfaces, speed_ratios, step - 1 + (1 << window.shift), window, then)
-            if part > 0:
-                lift[:] = now + ((then - now) * part >> window.shift)
+            # Numba takes seconds to compile the same with whole arrays, whose shapes it compares.
+            for node in range(lift.size):
+                lift[node] = now[node] + ((then[node] - now[node]) * part >> window.shift)
             _highest_by_block(lift, window.shift, highest)
         first_1 = surface_position(step, speed_ratios[0]) - window.before
         first_2 = surface_position(step, speed_ratios[1]) - window.before
         first_1, first_2 = first_1 % surfaces[0].line.size, first_2 % surfaces[1].line.size
         for f in range(len(window.films)):
             own = window.films[f], least[f], answers, factors[f]
-            trace[f, number] = _window(lines, ahead, first_1, first_2, *own)
+            for which, found in enumerate(_window(lines, ahead, first_1, first_2, *own)):
+                trace[f, number, which] = found
     return trace
 
 

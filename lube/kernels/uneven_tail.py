@@ -6,7 +6,7 @@ vary along the window, and the oil may answer the lines, as in `lube.kernels.sha
 
 import numpy as np
 
-from lube.kernels.compiler import inlined, kernel
+from lube.kernels.compiler import kernel
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.kernels.shaped import Surface, answer_at
@@ -145,7 +145,7 @@ def touching_runs_under(
     return sums
 
 
-@inlined
+@kernel
 def _times_broken(around, window, motion, start, stop):
     """Count the looks, before or after the present time step, at which a run breaks.
 
@@ -174,7 +174,7 @@ def _times_broken(around, window, motion, start, stop):
     return times
 
 
-@inlined
+@kernel
 def _correlate(with_known, surfaces, covariances, known, shift):
     """Fill in the covariance of the lines and filtered lines with the gap at a known point.
 
@@ -193,7 +193,7 @@ def _correlate(with_known, surfaces, covariances, known, shift):
                 with_known[roller, lag, line] = total
 
 
-@inlined
+@kernel
 def _added(with_known, surface, node, lag, shift):
     """Return what the oil adds to the covariance of a line at a node with a point a lag behind."""
     row = (lag >> shift) + with_known.shape[0] // 2
@@ -207,7 +207,7 @@ def _added(with_known, surface, node, lag, shift):
     return total
 
 
-@inlined
+@kernel
 def _answer(answers, surfaces, with_known, offset, known, first, second, shift):
     """Fill in the answers to each line, and what they add to its covariance with the known point.
 
@@ -221,14 +221,14 @@ def _answer(answers, surfaces, with_known, offset, known, first, second, shift):
             answers[1, roller, node] = _added(with_known[roller], surface, node, lag, shift)
 
 
-@inlined
+@kernel
 def _answers_at(answers, kind, point, shift):
     """Sum the answers to both lines (0), or what they add to the covariance (1), at a point."""
     first = _between_nodes(answers[kind, 0], point, shift)
     return first + _between_nodes(answers[kind, 1], point, shift)
 
 
-@inlined
+@kernel
 def _overlap_under(around, point, first, second):
     """Overlap at a point of the window before the lines moved; negative where it is unknown."""
     lines, offset, correlations, centre, rise, film, answers, shift = around
@@ -241,7 +241,7 @@ def _overlap_under(around, point, first, second):
     return sum_of_both + _answers_at(answers, 0, point, shift) + known * rise - film[point]
 
 
-@inlined
+@kernel
 def _run_under(around, point, first, second):
     """First point, point after the last and sum of the overlaps of the run at a point."""
     start = stop = point
@@ -260,7 +260,7 @@ def _run_under(around, point, first, second):
     return start, stop, total
 
 
-@inlined
+@kernel
 def _between_nodes(values, point, shift):
     """Interpolate linearly between nodes, in single precision."""
     node = point >> shift

@@ -273,8 +273,10 @@ def rare_contact_under(
         if not levels:
             continue
         some = slice(0, RUNS, RUNS // FOLLOWED)
-        above = part.start + known[some], touching[1][some]
-        around = answered, pair.places[some], pair.covariances, above, film
+        # For another layout in memory Numba would compile the kernel once more.
+        places, heights = map(np.ascontiguousarray, (pair.places[some], touching[1][some]))
+        above = part.start + known[some], heights
+        around = answered, places, pair.covariances, above, film
         around += window.covariances, window.shift
         # From one look to the next the surfaces shift against each other by a point at most.
         shift = np.abs(np.diff(speed_ratios[i])[:, 0])

@@ -37,7 +37,7 @@ def random_answer(rng, size):
     covariances = (0.1 * node[:, None, None] - 0.3) * np.exp(-0.1 * distance)
     covariances = np.stack([covariances, 0.4 * covariances[::-1]])
     values = np.moveaxis(fields, 0, -1), shapes, covariances
-    return Answered(*(each.astype(np.float32) for each in values), FIRST, SHIFT)
+    return Answered(*(each.astype(np.float32, order="C") for each in values), FIRST, SHIFT)
 
 
 def interpolated(values, *places):
