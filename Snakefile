@@ -63,6 +63,14 @@ rule rough_passage:
         f"Done: passage.nc and its figure are in {RESULTS}"
 
 
+rule sensitivity:
+    """What the probability of contact rests on."""
+    input:
+        products(made_by("sensitivity", FIGURES)),
+    message:
+        f"Done: sensitivity.nc and its figure are in {RESULTS}"
+
+
 rule benchmark:
     """Measured times and coverage of intervals."""
     input:

@@ -8,10 +8,11 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from lube.errors import LubeError
+from lube.errors import LubeError, located
 from lube.schema import STAGES
 from lube.study.resolve import study_files
 from lube.study.study import Study
+from lube.study.uncertainty import check_uncertainty
 from lube.types import File, Files
 
 
@@ -93,6 +94,8 @@ _NEEDED = {
     "has_records": "measured records, an `experiment.manifest`: the simulated rig runs with lines",
     "compares_surfaces": "measured records and `contact_model: surface`",
     "compares_lines_only": "records compared with lines alone; `gauge.nc` has films by surfaces",
+    "uncertainty": "a section `uncertainty`",
+    "is_sampled": "Gaussian roughness lines that no formula flattens",
     "gap.is_plain": "`film_shape: flat` and `roughness_deformation: none`",
 }
 """What a study needs for the stages that are `only_with` it, in words."""
@@ -228,6 +231,9 @@ class StudyFiles:
                 names = stage, self.result(f"{stage}.nc"), row.target
                 if os.path.normpath(target) in names and not self.study.has(stage):
                     self._check_stage(target, row)
+                elif target in names and row.target == "sensitivity":
+                    with located(f"{self.path}: uncertainty"):
+                        check_uncertainty(self.study)
 
     def _check_stage(self, target, row):
         """Refuse a file, or a target that makes no other file."""

@@ -64,6 +64,11 @@ class Stage:
     in_batches: bool = False
 
     @property
+    def rule(self) -> str:
+        """Name of its rule, other than that of its target."""
+        return self.name if self.name != self.target else f"{self.name}_file"
+
+    @property
     def message(self) -> str:
         """Message of its jobs."""
         return f"{self.name.replace('_', ' ').capitalize()}: {self.says}"
@@ -316,6 +321,23 @@ _ROWS = (
         inputs=("lubricant",),
         values=_named("rollers.reduced_modulus"),
         target="computed",
+    ),
+    Stage(
+        "sensitivity_runs",
+        "probabilities for random values of what is uncertain, several minutes",
+        values=_LINES | _CONTACT | _named("rollers.length contact_model uncertainty"),
+        same_values=("film",),
+        target="sensitivity",
+        only_with=("uncertainty", "is_sampled", *_LINE),
+        parallel=True,
+    ),
+    Stage(
+        "sensitivity",
+        "what the probability rests on, by Morris and Sobol, some minutes",
+        inputs=("sensitivity_runs",),
+        target="sensitivity",
+        only_with=("uncertainty", "is_sampled", *_LINE),
+        parallel=True,
     ),
     Stage(
         "coverage",

@@ -14,7 +14,6 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, StrictInt, WithJsonSchema, field_validator, model_validator
 from pydantic_core import to_jsonable_python
 
-from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import StudyError, located, shown
 from lube.grid.gap import Gap
 from lube.grid.levels import SAME, level_index
@@ -26,7 +25,6 @@ from lube.study.field_types import (
     StrictModel,
     each_once,
     quantity_or_words,
-    read_by,
     validate,
 )
 from lube.study.line_spec import (
@@ -48,16 +46,10 @@ from lube.study.rig_settings import RIG_REALISATIONS, Experiment, Rig
 from lube.study.roller_topography import RollerTopography
 from lube.study.rollers import INSULATOR, ROLLERS, BoundaryLayer, RollerPair, Roughness
 from lube.study.size_limits import check_sizes
+from lube.study.uncertainty import FilmFormula, Uncertainty
 from lube.types import File
 from lube.units import with_unit
 
-_Formula = Annotated[
-    str,
-    read_by(
-        lambda name: formula(f"{name}").name,
-        {"type": "string", "format": "text", "enum": list(FORMULAS)},
-    ),
-]
 _Meniscus = Annotated[float | str, quantity_or_words("m", "none", "^none$")]
 _Resistivity = Annotated[float | str, quantity_or_words("ohm*m", INSULATOR, f"^{INSULATOR}$")]
 
@@ -92,7 +84,7 @@ class Study(StrictModel):
         WithJsonSchema({"form": "records", "format": "list of names or paths"}),
     ]
     """names of shipped records, or paths of your own YAML records"""
-    film_formulas: tuple[_Formula, ...] = Field(min_length=1)
+    film_formulas: tuple[FilmFormula, ...] = Field(min_length=1)
     """names from the registry of film formulas"""
     film_shape: Literal["flat", "computed"] = "flat"
     """flat, and cut off at the edges of the contact, as in the paper; or computed by Reynolds'
@@ -134,6 +126,8 @@ class Study(StrictModel):
     """the simulated rig, and the drift assumed for measured records"""
     experiment: Experiment = Field(default_factory=Experiment)
     """records of the rig and their evaluation"""
+    uncertainty: Uncertainty | None = None
+    """what is not known exactly, for the sensitivity study"""
 
     _each_once = field_validator("kept_realisations", "film_formulas", "contact_model")(each_once)
 

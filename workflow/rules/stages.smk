@@ -6,7 +6,7 @@ for stage in STAGES.values():
 
         rule:
             name:
-                stage.name
+                stage.rule
             input:
                 **FILES.stage_files(stage.name),
                 batches=FILES.batches_of(stage.name) if stage.in_batches else [],
@@ -33,7 +33,7 @@ for stage in STAGES.values():
 
         rule:
             name:
-                stage.name
+                stage.rule
             input:
                 script=from_here(f"benchmarks/bench_{stage.name}.py"),
                 study=ancient(result("study.yaml")),

@@ -1,0 +1,1 @@
+"""Sensitivity of the probability of contact to what a study does not know exactly."""

@@ -1,0 +1,192 @@
+"""Films, lines and boundary layers of a study whose uncertain quantities deviate."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+import scipy.fft
+import xarray as xr
+
+from lube.errors import located
+from lube.grid.films import film_at
+from lube.grid.levels import rolling
+from lube.schema import POINT_DIMS
+from lube.study.line_spec import LineSpec
+from lube.study.oil_properties import lubricant_table
+from lube.study.rollers import BoundaryLayer
+from lube.study.study import Study
+from lube.study.uncertainty import Factor, check_uncertainty, deviating_lines
+
+OIL = (
+    *("dynamic_viscosity", "pressure_viscosity_coefficient"),
+    *("temperature_viscosity_coefficient", "thermal_conductivity"),
+)
+NODES = 500
+"""Temperatures between which properties of the oils are interpolated: to some 1e-6."""
+TRAVEL = 100.0
+"""Length of a drawn line over its longest wavelength: more contact windows than are sampled."""
+
+
+@dataclass(frozen=True)
+class Deviating:
+    """A study whose uncertain quantities deviate.
+
+    Attributes
+    ----------
+    study : Study
+        The study.
+    oils : xarray.Dataset
+        Logarithms of the properties of its lubricants over a range of temperatures.
+    """
+
+    study: Study
+    oils: xr.Dataset
+
+    @classmethod
+    def of(cls, study: Study) -> "Deviating":
+        """Tabulate the oils over the temperatures that occur, as far as their data reach.
+
+        Raises
+        ------
+        LubeError
+            As from `lube.study.uncertainty.check_uncertainty`.
+        """
+        with located("uncertainty"):
+            check_uncertainty(study)
+        levels, uncertain = study.operating_grid.temperature, study.uncertainty.temperature
+        lower, upper = uncertain.range if uncertain else (0.0, 0.0)
+        ranges = [record.valid_temperatures for record in study.lubricants]
+        coldest = max(min(levels) + lower, *(one[0] for one in ranges))
+        hottest = min(max(levels) + upper, *(one[1] for one in ranges))
+        temperature = np.linspace(coldest, max(hottest, coldest + 1.0), NODES)
+        table = lubricant_table(study.lubricants, temperature)[list(OIL)].drop_attrs()
+        return cls(study, np.log(table))
+
+    def choices(self, name: str, own: str) -> tuple[str, ...]:
+        """Return the choices of a factor, or the study's own if it is not uncertain."""
+        given = getattr(self.study.uncertainty, name)
+        return given.choices if given else (own,)
+
+    @property
+    def levels(self) -> dict[str, list]:
+        """Levels of the study's operating points: lubricant, temperature, speed and force."""
+        grid = self.study.operating_grid
+        names = {"lubricant": [record.name for record in self.study.lubricants]}
+        return names | {name: list(getattr(grid, name)) for name in POINT_DIMS[1:]}
+
+    @property
+    def factors(self) -> list[Factor]:
+        """Factors of the study."""
+        return self.study.uncertainty.factors()
+
+    @property
+    def formulas(self) -> tuple[str, ...]:
+        """Film formulas that the study leaves open."""
+        return self.choices("film_formula", self.study.film_formulas[0])
+
+    @property
+    def heating(self) -> tuple[str, ...]:
+        """Models of inlet heating that the study leaves open."""
+        return self.choices("inlet_shear_heating", self.study.inlet_shear_heating)
+
+    def films(self, values: dict, points: xr.Dataset, of_film: Callable, **shape) -> xr.Dataset:
+        """Compute something of the films of some samples at some operating points.
+
+        Parameters
+        ----------
+        values : dict of str to xarray.DataArray
+            From `lube.sensitivity.samples.deviations`, over run, at least one.
+        points : xarray.Dataset
+            ``lubricant``, ``temperature``, ``speed`` and ``force``, over run too, or over point.
+        of_film : callable
+            From the films of some runs, as from `lube.grid.films.film_at`, and the runs' numbers
+            to variables over run. It is called for each film formula and model of inlet heating.
+        **shape
+            Further arguments of `film_at`.
+
+        Returns
+        -------
+        xarray.Dataset
+            What `of_film` returned, in the order of the runs. Where a run chooses the computed
+            film, and no shape is asked for, the film of Moes' formula stands in for it.
+        """
+        formulas = np.array([*self.formulas, self.study.film_formulas[0]])
+        heating = np.array([*self.heating, self.study.inlet_shear_heating])
+        count = next(iter(values.values())).sizes["run"]
+        names = "film_formula", "inlet_shear_heating"
+        chosen = np.array([np.broadcast_to(values.get(name, -1), count) for name in names])
+        tables, places = [], []
+        for pair in np.unique(chosen, axis=1).T:
+            here = np.flatnonzero((pair == chosen.T).all(axis=1))
+            own = {name: value.isel(run=here) for name, value in values.items()}
+            at = points.isel(run=here, missing_dims="ignore")
+            film = self._film(own, at, formulas[pair[0]].item(), heating[pair[1]].item(), **shape)
+            tables.append(of_film(film, here))
+            places.append(here)
+        table = xr.concat(tables, "run", data_vars="minimal", coords="minimal", join="exact")
+        return table.isel(run=np.argsort(np.concatenate(places)))
+
+    def _film(self, values, points, formula, heating, **shape):
+        """Film of samples with the same film formula and model of inlet heating."""
+        study = self.study
+        # Beyond the data the logarithms go on in a straight line, over a few kelvin at most.
+        beyond = {"fill_value": "extrapolate"}
+        temperature = points["temperature"] + values.get("temperature", 0.0)
+        oil = self.oils.interp(temperature=temperature, kwargs=beyond).drop_vars("temperature")
+        oil = np.exp(oil.sel(lubricant=points["lubricant"]))
+        for name, key in (("viscosity", OIL[0]), ("pressure_viscosity_coefficient", OIL[1])):
+            oil[key] = oil[key] * (1.0 + values.get(name, 0.0))
+        loads = points["force"] * (1.0 + values.get("force", 0.0))
+        speeds = points["speed"] * (1.0 + values.get("speed", 0.0))
+        table = film_at(
+            *(oil, self._rollers(values), loads, speeds),
+            [formula if shape else STAND_IN.get(formula, formula)],
+            slide_to_roll_ratio=rolling(study.slips),
+            inlet_shear_heating=heating,
+            inlet_meniscus=study.film_model["inlet_meniscus"],
+            **shape,
+        )
+        return table.isel(film_formula=0, drop=True)
+
+    def _rollers(self, values):
+        """Return the rollers, as far as films depend on them."""
+        study, scale = self.study, 1.0 + values.get("young_modulus", 0.0)
+        return SimpleNamespace(
+            first=study.rollers.first,
+            length=study.rollers.length,
+            reduced_radius=study.rollers.reduced_radius,
+            reduced_modulus=study.rollers.reduced_modulus * scale,
+            composite_rms_roughness=self.rms_roughness(values),
+        )
+
+    def rms_roughness(self, values: dict):
+        """Rms height of both lines together, m."""
+        names = "first_rms_roughness", "second_rms_roughness"
+        each = zip(names, self.study.line_spec.rms_height, strict=True)
+        return np.sqrt(sum((rms * (1.0 + values.get(name, 0.0))) ** 2 for name, rms in each))
+
+    def lines(self, values: dict[str, float]) -> LineSpec:
+        """Parameters of the lines of one sample, no longer than needed."""
+        spec = deviating_lines(self.study.line_spec, values)
+        needed = math.ceil(TRAVEL * spec.longest_wavelength / spec.spacing)
+        points = min(scipy.fft.next_fast_len(needed, real=True), *spec.points)
+        lines = tuple(line.model_copy(update={"points": points}) for line in spec.lines)
+        return spec.model_copy(update={"lines": lines})
+
+    def layer(self, values: dict[str, float]) -> BoundaryLayer:
+        """Boundary layer of one sample."""
+        layer = self.study.boundary_layer
+        names = "critical_thickness", "shear_strength"
+        scaled = {name: getattr(layer, name) * (1.0 + values.get(name, 0.0)) for name in names}
+        return layer.model_copy(update=scaled)
+
+
+FILM = (
+    *("film_thickness", "contact_half_width", "reduced_modulus"),
+    *("moes_load", "moes_material", "lambda_ratio"),
+)
+"""Variables of films on which the probability depends."""
+STAND_IN = {"computed": "moes"}
+"""Film formulas that stand in for films that are too slow to compute."""

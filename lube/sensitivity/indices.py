@@ -1,0 +1,117 @@
+"""Sensitivity indices of the logarithm of the probability, by SALib.
+
+References
+----------
+A. Saltelli and others, Variance based sensitivity analysis of model output, Comput. Phys. Commun.
+181 (2010) 259-270.
+M. D. Morris, Factorial sampling plans for preliminary computational experiments, Technometrics 33
+(1991) 161-174.
+T. Iwanaga, W. Usher and J. Herman, Toward SALib 2.0, SESMO 4 (2022) 18155.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+from SALib.analyze import morris as morris_analysis
+from SALib.analyze import sobol as sobol_analysis
+from SALib.sample import morris as morris_sample
+from SALib.sample import sobol as sobol_sample
+
+from lube.threads import on_threads
+from lube.types import Array
+
+BASE_SAMPLES = 1024
+TRAJECTORIES = 50
+"""Paths of Morris' design; each changes every factor once."""
+LEVELS = 10
+"""Levels of each factor in Morris' design."""
+RESAMPLES = 100
+"""Samples drawn anew for the intervals."""
+
+
+def _problem(names, groups=None):
+    found = {"num_vars": len(names), "names": list(names), "bounds": [[0.0, 1.0]] * len(names)}
+    return found | ({"groups": list(groups)} if groups else {})
+
+
+def sobol(
+    names: Sequence[str],
+    predict: Callable[[Array], Array],
+    seed: int,
+    groups: Sequence[str] | None = None,
+    base_samples: int = BASE_SAMPLES,
+) -> tuple[dict[str, Array], Array]:
+    """Compute Sobol' indices of all operating points.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the factors.
+    predict : callable
+        From samples, numbers from 0 to 1 of shape (samples, factors), to shape (samples, points).
+    seed : int
+        Seed of the samples and of the intervals.
+    groups : sequence of str, optional
+        Group of each factor; the indices are then those of groups, in the order of their names'
+        first use.
+    base_samples : int, optional
+        Number of base samples, a power of 2.
+
+    Returns
+    -------
+    indices : dict of str to numpy.ndarray
+        ``first_order``, ``total_effect`` and the half-widths of their 95 % intervals,
+        ``first_order_error`` and ``total_effect_error``, of shape (factors or groups, points);
+        NaN where the film of a sample is not known, or nothing changes.
+    values : numpy.ndarray
+        Values of independent samples among them, shape (2 base samples, points).
+    """
+    problem = _problem(names, groups)
+    design = partial(sobol_sample.sample, calc_second_order=False, seed=seed)
+    values = predict(design(problem, base_samples))
+    keys = {"first_order": "S1", "first_order_error": "S1_conf"}
+    keys |= {"total_effect": "ST", "total_effect_error": "ST_conf"}
+    options = {"calc_second_order": False, "num_resamples": RESAMPLES, "seed": seed}
+    sizes = len(dict.fromkeys(groups)) if groups else len(names)
+
+    def of_point(column):
+        if not np.isfinite(column).all() or np.ptp(column) == 0.0:
+            return np.full((len(keys), sizes), np.nan)
+        found = sobol_analysis.analyze(problem, column, **options)
+        return np.array([found[key] for key in keys.values()])
+
+    found = np.stack([of_point(column) for column in values.T], axis=-1)
+    blocks = values.reshape(base_samples, -1, values.shape[1])
+    return dict(zip(keys, found, strict=True)), np.concatenate([blocks[:, 0], blocks[:, -1]])
+
+
+def morris(names: Sequence[str], predict: Callable[[Array], Array], seed: int) -> dict[str, Array]:
+    """Screen the factors by Morris' method.
+
+    Parameters
+    ----------
+    names, predict, seed
+        As in `sobol`.
+
+    Returns
+    -------
+    dict of str to numpy.ndarray
+        ``elementary_effect``, the mean of the absolute effects of a step through the whole range,
+        ``elementary_effect_error`` and ``elementary_effect_deviation``, shape (factors, points).
+    """
+    problem = _problem(names)
+    unit = morris_sample.sample(problem, TRAJECTORIES, num_levels=LEVELS, seed=seed)
+    values = predict(unit)
+    keys = {"elementary_effect": "mu_star", "elementary_effect_error": "mu_star_conf"}
+    keys |= {"elementary_effect_deviation": "sigma"}
+    options = {"num_levels": LEVELS, "num_resamples": RESAMPLES, "seed": seed}
+
+    def of_point(column):
+        if not np.isfinite(column).all():
+            return np.full((len(keys), len(names)), np.nan)
+        found = morris_analysis.analyze(problem, unit, column, **options)
+        return np.array([np.ma.filled(found[key], np.nan) for key in keys.values()], float)
+
+    found = np.stack(on_threads(of_point, values.T), axis=-1)
+    return dict(zip(keys, found, strict=True))

@@ -1,0 +1,207 @@
+"""Probabilities of many samples at all operating points, by surrogates of films and contact."""
+
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+import xarray as xr
+
+from lube.grid.film_profiles import six_digits
+from lube.schema import POINT_DIMS
+from lube.sensitivity.conditions import FILM, Deviating
+from lube.sensitivity.runs import SEEDS, Model, models
+from lube.sensitivity.samples import deviations
+from lube.sensitivity.surrogate import Polynomial, Surrogate, groups, held_out
+from lube.types import Array
+
+AT_ONCE = 400
+"""Samples whose films are computed together, for the sake of memory."""
+COMPUTED = "computed"
+FILM_DEGREE = 5
+"""Degree of the polynomial for the computed film."""
+
+
+def stacked_points(deviating: Deviating) -> xr.Dataset:
+    """Return the operating points of a study, one after the other, over point."""
+    levels = deviating.levels
+    each = zip(levels, np.meshgrid(*levels.values(), indexing="ij"), strict=True)
+    return xr.Dataset({name: ("point", values.ravel()) for name, values in each})
+
+
+@dataclass(frozen=True)
+class Predictor:
+    """Surrogates of a study.
+
+    Attributes
+    ----------
+    deviating : Deviating
+        The study.
+    surrogates : dict
+        Surrogate of each `lube.sensitivity.runs.Model`.
+    film : Polynomial or None
+        Logarithm of the computed film over that of Moes' formula, over the logarithms of M and L;
+        None if the study does not choose it.
+    film_error : float
+        Its rms error at runs that were left out of the fit.
+    """
+
+    deviating: Deviating
+    surrogates: dict[Model, Surrogate]
+    film: Polynomial | None
+    film_error: float
+
+    @classmethod
+    def of(cls, deviating: Deviating, runs: xr.Dataset) -> "Predictor":
+        """Fit surrogates to the runs of all models.
+
+        Parameters
+        ----------
+        deviating : Deviating
+            The study.
+        runs : xarray.Dataset
+            A ``sensitivity_runs`` dataset.
+        """
+        surrogates = {}
+        for model in sorted(models(deviating), key=Model.deviations):
+            own = _of_model(runs, model)
+            values = _by(deviations(deviating.factors, own["factor_quantile"].values), "run")
+            variables = groups(deviating, own, values, not model.gap.is_plain)
+            variables = variables.transpose("group", "run").values
+            found = own["breakthrough_probability"].transpose("run", "seed").values
+            nearer = [one.parts for other, one in surrogates.items() if other.is_nearer(model)]
+            parts = tuple(dict.fromkeys(chain.from_iterable(nearer)))
+            surrogates[model] = Surrogate.of(model.sizes.degree, variables, found, parts)
+        return cls(deviating, surrogates, *_film(deviating, runs))
+
+    def errors(self, runs: xr.Dataset, deviation: Array) -> dict:
+        """Find the errors of the surrogates at runs that were left out of their fits.
+
+        Parameters
+        ----------
+        runs : xarray.Dataset
+            A ``sensitivity_runs`` dataset.
+        deviation : numpy.ndarray
+            Standard deviation of the logarithm of the probability at each point, shape (points,).
+
+        Returns
+        -------
+        dict
+            Variables of ``sensitivity.nc``.
+        """
+        points = stacked_points(self.deviating).to_dataframe().assign(deviation=deviation)
+        known = points.set_index(list(POINT_DIMS))["deviation"]
+        absolute, relative, counts = [], [], []
+        for model, surrogate in self.surrogates.items():
+            own = _of_model(runs, model)
+            left_out = np.isfinite(surrogate.missed)
+            at = own[list(POINT_DIMS)].isel(run=left_out).to_dataframe()[list(POINT_DIMS)]
+            missed = surrogate.missed[left_out]
+            scaled = missed / known.loc[list(at.itertuples(index=False, name=None))].to_numpy()
+            absolute.append(np.sqrt(np.mean(missed**2)))
+            relative.append(np.sqrt(np.mean(scaled**2)))
+            counts.append(left_out.size)
+        names = np.array([", ".join(model) for model in self.surrogates])
+        return {
+            "surrogate_model": ("surrogate_model", names),
+            "surrogate_error": ("surrogate_model", six_digits(np.array(absolute))),
+            "relative_surrogate_error": ("surrogate_model", six_digits(np.array(relative))),
+            "run_count": ("surrogate_model", counts),
+            "film_surrogate_error": ((), six_digits(np.array(self.film_error)).item()),
+        }
+
+    def log_probability(self, unit: Array) -> Array:
+        """Predict the logarithm of the probability of breakthrough.
+
+        Parameters
+        ----------
+        unit : numpy.ndarray
+            Samples of the study's factors and, as the last column, of the seed; shape
+            (samples, factors + 1), numbers from 0 to 1.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (samples, points); NaN where the film is not known.
+        """
+        parts = np.array_split(unit, -(-len(unit) // AT_ONCE))
+        return np.concatenate([self._of_part(part) for part in parts])
+
+    def _of_part(self, unit):
+        deviating, points = self.deviating, stacked_points(self.deviating)
+        seed = np.minimum((unit[:, -1] * SEEDS).astype(int), SEEDS - 1)
+        numbers = deviations(deviating.factors, unit[:, :-1])
+        values = _by(numbers, "run")
+        film = self._with_computed(deviating.films(values, points, _known), numbers)
+        found = np.full((len(unit), points.sizes["point"]), np.nan)
+        for model, surrogate in self.surrogates.items():
+            some = np.flatnonzero(_is_chosen(deviating, model, numbers, len(unit)))
+            if some.size == 0:
+                continue
+            own = {name: each.isel(run=some) for name, each in values.items()}
+            here = film.isel(run=some)
+            variables = groups(deviating, here, own, not model.gap.is_plain)
+            variables = variables.transpose("group", "run", "point").values
+            shape = variables.shape[1:]
+            logarithm = surrogate.log_probability(variables.reshape(len(variables), -1))
+            by_seed = logarithm.reshape(*shape, SEEDS)
+            found[some] = by_seed[np.arange(some.size), :, seed[some]]
+        return found
+
+    def _with_computed(self, film, numbers):
+        """Replace Moes' film by the computed one, where it is chosen."""
+        if self.film is None:
+            return film
+        formulas = self.deviating.formulas
+        number = numbers.get("film_formula", np.zeros(1, int))
+        is_computed = xr.DataArray(np.array(formulas)[number] == COMPUTED, dims="run")
+        names = "moes_load", "moes_material"
+        variables = np.log(xr.broadcast(*(film[name] for name in names)))
+        ratio = np.exp(self.film(np.reshape(variables, (2, -1)))[:, 0])
+        ratio = film["moes_load"].copy(data=ratio.reshape(film["moes_load"].shape))
+        film["film_thickness"] = film["film_thickness"] * xr.where(is_computed, ratio, 1.0)
+        return film
+
+
+def _known(film, runs):
+    """Select the variables of films on which the probability depends."""
+    return film[list(FILM)]
+
+
+def _of_model(runs, model):
+    """Select the runs of a model."""
+    same = [runs[name].values == choice for name, choice in model._asdict().items()]
+    return runs.isel(run=np.all(same, axis=0))
+
+
+def _by(values, dim):
+    return {name: xr.DataArray(column, dims=dim) for name, column in values.items()}
+
+
+def _is_chosen(deviating, model, numbers, count):
+    """Whether each of some samples chooses a model."""
+    chosen = np.ones(count, bool)
+    for name, choice in model._asdict().items():
+        if name in numbers:
+            choices = getattr(deviating.study.uncertainty, name).choices
+            chosen &= numbers[name] == choices.index(choice)
+    return chosen
+
+
+def _film(deviating, runs):
+    """Polynomial for the computed film, and its error."""
+    formulas = np.array(deviating.formulas)
+    if COMPUTED not in formulas:
+        return None, 0.0
+    values = deviations(deviating.factors, runs["factor_quantile"].values)
+    number = values.get("film_formula", np.zeros(runs.sizes["run"], int))
+    computed = runs.isel(run=(formulas[number] == COMPUTED) & runs["film_thickness"].notnull())
+    values = _by(deviations(deviating.factors, computed["factor_quantile"].values), "run")
+    points = computed.reset_coords()[list(POINT_DIMS)]
+    moes = deviating.films(values, points, _known)["film_thickness"]
+    ratio = np.log(computed["film_thickness"] / moes).values[:, None]
+    variables = np.log([computed[name].values for name in ("moes_load", "moes_material")])
+    last = slice(-held_out(len(ratio)), None)
+    trial = Polynomial.fitted(FILM_DEGREE, variables[:, : last.start], ratio[: last.start])
+    missed = trial(variables[:, last]) - ratio[last]
+    fitted = Polynomial.fitted(FILM_DEGREE, variables, ratio)
+    return fitted, float(np.sqrt(np.mean(missed**2)))

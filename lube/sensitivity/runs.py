@@ -1,0 +1,192 @@
+"""Direct runs: the probability of breakthrough for samples of the uncertain quantities.
+
+All runs draw the same random numbers, so that they differ by the quantities alone.
+"""
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.stats import qmc
+
+from lube.contact.surface_strip import surface_contact
+from lube.contact.windows import ContactWindows
+from lube.grid.gap import Gap
+from lube.sensitivity.conditions import FILM, Deviating
+from lube.sensitivity.samples import deviations
+from lube.threads import on_threads
+from lube.types import Array
+
+SEEDS = 4
+"""Independent sets of random numbers."""
+PAIRS = 3
+"""Pairs of lines in each set."""
+SURFACE_SEEDS = 2
+"""Sets that have surfaces of their own; the others share these."""
+FEWER_SURFACES = 16
+"""Surfaces in each set are this many times fewer than elsewhere."""
+
+
+class Sizes(NamedTuple):
+    """Number of samples of a model, of operating points of each, and degree of its polynomial."""
+
+    samples: int
+    points: int
+    degree: int
+
+
+SIZES = {
+    ("line", True): Sizes(1024, 3, 4),
+    ("line", False): Sizes(1024, 3, 4),
+    ("surface", True): Sizes(16, 24, 2),
+    ("surface", False): Sizes(8, 16, 1),
+}
+"""By contact model and whether the film is flat and the roughness as drawn. Surfaces are slow to
+draw, but once drawn they serve many operating points."""
+
+
+class Model(NamedTuple):
+    """A way from film to probability.
+
+    Attributes
+    ----------
+    contact_model, film_shape, roughness_deformation : str
+        As in a study.
+    """
+
+    contact_model: str
+    film_shape: str
+    roughness_deformation: str
+
+    @property
+    def sizes(self) -> Sizes:
+        """Extent of its runs."""
+        return SIZES[self.contact_model, self.gap.is_plain]
+
+    def deviations(self) -> int:
+        """Count the choices that are not the paper's."""
+        return sum(one != other for one, other in zip(self, PLAIN_LINE, strict=True))
+
+    def is_nearer(self, other: "Model") -> bool:
+        """Whether its choices are those of another model or the paper's."""
+        each = zip(self, other, PLAIN_LINE, strict=True)
+        return self != other and all(own in choices for own, *choices in each)
+
+    @property
+    def gap(self) -> Gap:
+        """How film and roughness make up the gap."""
+        return Gap(self.film_shape, self.roughness_deformation)
+
+    def shape(self, spec) -> dict:
+        """Arguments of `lube.grid.films.film_at` for the films of these lines or surfaces."""
+        answered = f"answered_{'surfaces' if self.contact_model == 'surface' else 'lines'}"
+        found = {"with_shape": self.gap.has_shape}
+        return found | ({answered: spec} if self.gap.is_answered else {})
+
+
+PLAIN_LINE = Model("line", "flat", "none")
+"""The paper's way."""
+
+
+def models(deviating: Deviating) -> list[Model]:
+    """Return all ways from film to probability that a study leaves open."""
+    study = deviating.study
+    return [
+        Model(contact, shape, deformation)
+        for contact in deviating.choices("contact_model", study.contact_model[0])
+        for shape in deviating.choices("film_shape", study.film_shape)
+        for deformation in deviating.choices("roughness_deformation", study.roughness_deformation)
+    ]
+
+
+def design(deviating: Deviating, model: Model) -> tuple[Array, xr.Dataset]:
+    """Choose samples and operating points at random, for the runs of a model.
+
+    Parameters
+    ----------
+    deviating : Deviating
+        The study.
+    model : Model
+        The way from film to probability.
+
+    Returns
+    -------
+    unit : numpy.ndarray
+        Samples of the study's factors, numbers from 0 to 1, shape (runs, factors). Runs of the same
+        sample follow one another.
+    points : xarray.Dataset
+        As for `run`.
+    """
+    study, (samples, points, _) = deviating.study, model.sizes
+    factors = len(deviating.factors)
+    unit = qmc.Sobol(factors, seed=np.random.default_rng(study.seed)).random(samples)
+    generator = np.random.default_rng((study.seed, samples))
+    chosen = {
+        name: ("run", np.array(each)[generator.integers(len(each), size=samples * points)])
+        for name, each in deviating.levels.items()
+    }
+    return np.repeat(unit, points, axis=0), xr.Dataset(chosen)
+
+
+def run(
+    deviating: Deviating, model: Model, unit: Array, points: xr.Dataset, threads: int | None = None
+) -> xr.Dataset:
+    """Compute the probability of breakthrough for some samples, each at an operating point.
+
+    Parameters
+    ----------
+    deviating : Deviating
+        The study.
+    model : Model
+        The way from film to probability.
+    unit : numpy.ndarray
+        As from `design`.
+    points : xarray.Dataset
+        ``lubricant``, ``temperature``, ``speed`` and ``force`` of each run, over run.
+    threads : int, optional
+        Threads that share the work; they do not change the results.
+
+    Returns
+    -------
+    xarray.Dataset
+        Variables `FILM` over run, and ``breakthrough_probability`` over run and seed; NaN where
+        the film is not known, or the layer holds in all contacts that were sampled.
+    """
+    values = deviations(deviating.factors, unit)
+    by_run = {name: xr.DataArray(column, dims="run") for name, column in values.items()}
+
+    def probabilities(film, runs):
+        def of_sample(some):
+            own = {name: column[runs[some.start]].item() for name, column in values.items()}
+            return _probabilities(deviating, model, own, film.isel(run=some))
+
+        first = np.flatnonzero(np.diff(unit[runs], axis=0, prepend=-1.0).any(axis=1)).tolist()
+        same = [slice(*ends) for ends in pairwise([*first, len(runs)])]
+        found = np.concatenate(on_threads(of_sample, same, threads, "direct runs"))
+        known = np.where(found > 0.0, found, np.nan)
+        table = film[list(FILM)].broadcast_like(film["film_thickness"])
+        return table.assign(breakthrough_probability=(("run", "seed"), known))
+
+    shape = model.shape(deviating.study.line_spec)
+    return deviating.films(by_run, points, probabilities, **shape)
+
+
+def _probabilities(deviating, model, values, film):
+    """Probability of breakthrough at some points, by each set of random numbers."""
+    study, spec, layer = deviating.study, deviating.lines(values), deviating.layer(values)
+    film["reduced_modulus"] = film["reduced_modulus"].values.flat[0]
+    if model.contact_model == "surface":
+        choices = {"gap": model.gap, "threads": 1, "fewer": FEWER_SURFACES}
+        found = []
+        for seed in range(SURFACE_SEEDS):
+            # The scatter between so few surfaces is not needed.
+            with np.errstate(invalid="ignore", divide="ignore"):
+                contact = surface_contact(
+                    spec, study.rollers.length, film, layer, study.seed + seed, **choices
+                )
+            found.append(contact["breakthrough_probability"].values)
+        return np.stack([found[seed % SURFACE_SEEDS] for seed in range(SEEDS)], axis=1)
+    windows = ContactWindows(spec, film, layer, model.gap)
+    found = [windows.sample(spec, study.seed, number)[0][1] for number in range(SEEDS * PAIRS)]
+    return np.transpose(found).reshape(-1, SEEDS, PAIRS).mean(axis=2)

@@ -1,0 +1,54 @@
+"""Samples of uncertain quantities: from numbers between 0 and 1 to deviations and choices."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.special
+
+from lube.study.uncertainty import Factor
+from lube.types import Array
+
+FARTHEST = 1.5
+"""Normal deviations are cut off at this many half-ranges."""
+SEED = "seed"
+"""Name of the factor that stands for the random numbers of the lines."""
+
+
+def deviations(factors: Sequence[Factor], unit: Array) -> dict[str, Array]:
+    """Find the value of each factor in some samples.
+
+    Parameters
+    ----------
+    factors : sequence of Factor
+        Factors of a study.
+    unit : numpy.ndarray
+        Numbers from 0 to 1, shape (samples, factors): the probability of a smaller value.
+
+    Returns
+    -------
+    dict of str to numpy.ndarray
+        Deviation, or value, of each quantity in the unit of its range; of a choice its number.
+        Shape (samples,) each.
+
+    Examples
+    --------
+    >>> from lube.study.uncertainty import Uncertainty
+    >>> section = {"force": {"range": "+- 2 %", "source": "assumed"}}
+    >>> factors = Uncertainty.model_validate(section).factors()
+    >>> deviations(factors, np.array([[0.0], [0.75]]))["force"].tolist()
+    [-0.02, 0.01]
+    """
+    columns = zip(factors, np.transpose(unit), strict=True)
+    return {factor.name: _at(factor, column) for factor, column in columns}
+
+
+def _at(factor, unit):
+    given = factor.given
+    if factor.is_choice:
+        return np.minimum((unit * len(given.choices)).astype(int), len(given.choices) - 1)
+    lower, upper = given.range
+    if given.distribution == "uniform":
+        return lower + (upper - lower) * unit
+    # 95 % of a normal distribution lie within 1.96 standard deviations.
+    normal = np.clip(scipy.special.ndtri(unit) / scipy.special.ndtri(0.975), -FARTHEST, FARTHEST)
+    return 0.5 * (lower + upper) + 0.5 * (upper - lower) * normal

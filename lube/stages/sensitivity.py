@@ -1,0 +1,72 @@
+"""The sensitivity stage: what the probability of breakthrough rests on."""
+
+import numpy as np
+import xarray as xr
+
+from lube.grid.film_profiles import six_digits
+from lube.schema import POINT_DIMS, label
+from lube.sensitivity.conditions import Deviating
+from lube.sensitivity.indices import morris, sobol
+from lube.sensitivity.predictor import Predictor
+from lube.sensitivity.samples import SEED
+from lube.study.study import Study
+from lube.types import Datasets
+
+BAND = 0.05, 0.5, 0.95
+"""Quantiles of the probability over the samples."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``sensitivity.nc``; see `lube.stages`.
+
+    The indices are those of the logarithm of the probability of breakthrough, whose values come
+    from surrogates that are fitted to ``sensitivity_runs.nc``. The seed of the random numbers is a
+    factor, too: what it does is noise, and smaller indices than its own mean nothing.
+    """
+    deviating = Deviating.of(study)
+    predictor = Predictor.of(deviating, inputs["sensitivity_runs"])
+    factors = deviating.factors
+    names = [*(factor.name for factor in factors), SEED]
+    of_factor = [*(factor.group for factor in factors), SEED]
+    predict = predictor.log_probability
+    sizes = [len(each) for each in deviating.levels.values()]
+
+    single, values = sobol(names, predict, study.seed)
+    grouped, _ = sobol(names, predict, study.seed, of_factor)
+    table = _limits(single, "factor") | _limits(grouped, "factor_group", "group_")
+    table |= _limits(morris(names, predict, study.seed), "factor")
+    with np.errstate(invalid="ignore"):
+        lower, median, upper = np.exp(np.quantile(values, BAND, axis=0))
+    table |= {
+        "log_probability_deviation": ((), values.std(axis=0)),
+        "breakthrough_probability_median": ((), median),
+        "breakthrough_probability_lower": ((), lower),
+        "breakthrough_probability_upper": ((), upper),
+    }
+    found = {
+        name: ((*dims, *POINT_DIMS), six_digits(each.reshape(*each.shape[:-1], *sizes)))
+        for name, (dims, each) in table.items()
+    }
+    found |= predictor.errors(inputs["sensitivity_runs"], values.std(axis=0))
+    given = [factor.given for factor in factors]
+    found |= {
+        "group_of_factor": ("factor", of_factor),
+        "range_of_factor": ("factor", [*(one.in_words for one in given), "any"]),
+        "source_of_factor": ("factor", [*(one.source for one in given), "the study's seed"]),
+    }
+    groups = list(dict.fromkeys(of_factor))
+    coordinates = deviating.levels | {"factor": names, "factor_group": groups}
+    return label(xr.Dataset(found, coordinates), "sensitivity")
+
+
+def _limits(found, dim, prefix=""):
+    """Values with their limits, and what has none, with their first dimension."""
+    table = {}
+    for name, values in found.items():
+        if name.endswith("_error"):
+            of, error = name.removesuffix("_error"), values
+            table[f"{prefix}{of}_lower"] = (dim,), found[of] - error
+            table[f"{prefix}{of}_upper"] = (dim,), found[of] + error
+        else:
+            table[f"{prefix}{name}"] = (dim,), values
+    return table

@@ -1,0 +1,314 @@
+"""What a study does not know exactly: ranges of its quantities, and choices of its model.
+
+Each uncertain quantity or choice is a *factor* of a sensitivity study. Factors of a kind form a
+group.
+"""
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Generic, Literal, TypeVar
+
+from pydantic import Field, model_validator
+
+from lube.ehl.film_formulas import FORMULAS, formula
+from lube.errors import LubeError, StudyError, located, shown
+from lube.physics.inlet_heating import INLET_HEATING
+from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import ROLLERS
+from lube.units import parse_number, parse_quantity, with_unit
+
+BEYOND = 5.0
+"""Kelvin by which deviating temperatures may leave the range of an oil's data."""
+GROUPS = "oil", "conditions", "surface", "layer", "film", "contact model"
+"""Groups of factors."""
+
+
+def _end(text, units):
+    """Read an end of a range: percent become a fraction."""
+    if units == "%":
+        if not text.endswith("%"):
+            raise LubeError(f"got {text!r}, need a number of %")
+        return parse_number(text.removesuffix("%").strip()) / 100.0
+    return parse_quantity(text, units) if units else parse_number(text)
+
+
+def _range(units, example, **limits):
+    """Say how to read a range, ``A to B`` or ``+- A``, whose ends are kept in `units`."""
+    needed = f"range such as {example}"
+
+    def parse(value):
+        match = re.fullmatch(r"\s*(?:\+-\s*(\S.*)|(\S.*?)\s+to\s+(\S.*))", str(value))
+        if match is None or (match[1] and not units):
+            raise LubeError(f"got {shown(value)}, need a {needed}")
+        ends = [f"-{match[1]}", match[1]] if match[1] else [match[2], match[3]]
+        lower, upper = (bounded(_end(end.strip(), units), None, end, **limits) for end in ends)
+        if lower >= upper:
+            raise LubeError(f"got {shown(value)}, need the lower end first")
+        return lower, upper
+
+    return read_by(parse, {"type": "string", "format": needed})
+
+
+class _Uncertain(StrictModel):
+    """A quantity that is not known exactly."""
+
+    distribution: Literal["uniform", "normal"] = "uniform"
+    """uniform over the range, or normal, with 95 % of it in the range"""
+    source: Text
+    """where the range comes from, or `assumed`"""
+
+    @property
+    def in_words(self) -> str:
+        """The range in words."""
+        unit = type(self)._UNITS
+        scale = 100.0 if unit == " %" else 1.0
+        lower, upper = (f"{scale * end:g}{unit}" for end in self.range)
+        return f"{lower} to {upper}"
+
+
+class Relative(_Uncertain):
+    """A quantity whose deviation is given in per cent of its value."""
+
+    _UNITS: ClassVar[str] = " %"
+
+    range: Annotated[tuple[float, float], _range("%", "+- 10 %", above=-1.0, most=10.0)]
+    """deviation from the study's value"""
+
+
+class OfTemperature(_Uncertain):
+    """A temperature that is not known exactly."""
+
+    _UNITS: ClassVar[str] = " K"
+
+    range: Annotated[tuple[float, float], _range("K", "+- 1 K", least=-50.0, most=50.0)]
+    """deviation from the study's value"""
+
+
+class OfExponent(_Uncertain):
+    """A Hurst exponent that is not known exactly."""
+
+    _UNITS: ClassVar[str] = ""
+
+    range: Annotated[tuple[float, float], _range("", "0.6 to 0.8", above=0.0, below=1.0)]
+    """least and greatest value of the rougher lines' exponent"""
+
+
+Name = TypeVar("Name")
+FilmFormula = Annotated[
+    str,
+    read_by(
+        lambda name: formula(f"{name}").name,
+        {"type": "string", "format": "text", "enum": list(FORMULAS)},
+    ),
+]
+"""Name of a film formula."""
+
+
+class Choice(StrictModel, Generic[Name]):
+    """A choice of the model that may be made otherwise; all are equally likely."""
+
+    choices: Annotated[tuple[Name, ...], Field(min_length=2)]
+    """the choices"""
+    source: Text
+    """why each of them may be right, or `assumed`"""
+
+    @property
+    def in_words(self) -> str:
+        """The choices in words."""
+        return ", ".join(self.choices)
+
+    @model_validator(mode="after")
+    def _check_once(self):
+        each_once(self.choices)
+        return self
+
+
+@dataclass(frozen=True)
+class Factor:
+    """One factor.
+
+    Attributes
+    ----------
+    name : str
+        Key in the study's section ``uncertainty``.
+    group : str
+        One of `GROUPS`.
+    given : _Uncertain or Choice
+        Range or choices.
+    """
+
+    name: str
+    group: str
+    given: Any
+
+    @property
+    def is_choice(self) -> bool:
+        """Whether it is a choice of the model."""
+        return isinstance(self.given, Choice)
+
+
+def _of(group):
+    """Say to which group a field belongs."""
+    return Field(None, json_schema_extra={"group": group})
+
+
+class Uncertainty(StrictModel):
+    """What the study does not know exactly, and on what its answer therefore rests."""
+
+    viscosity: Relative | None = _of("oil")
+    """viscosity of the oils"""
+    pressure_viscosity_coefficient: Relative | None = _of("oil")
+    """pressure-viscosity coefficient of the oils"""
+    temperature: OfTemperature | None = _of("conditions")
+    """temperature of the oil at the inlet"""
+    force: Relative | None = _of("conditions")
+    """normal force"""
+    speed: Relative | None = _of("conditions")
+    """speed of both rollers"""
+    young_modulus: Relative | None = _of("conditions")
+    """Young's modulus of both rollers"""
+    first_rms_roughness: Relative | None = _of("surface")
+    """rms height of the first roller's roughness"""
+    second_rms_roughness: Relative | None = _of("surface")
+    """rms height of the second roller's roughness"""
+    hurst_exponent: OfExponent | None = _of("surface")
+    """Hurst exponent of both rollers"""
+    longest_wavelength: Relative | None = _of("surface")
+    """longest wavelength of both rollers' roughness"""
+    shortest_wavelength: Relative | None = _of("surface")
+    """shortest wavelength of both rollers' roughness"""
+    critical_thickness: Relative | None = _of("layer")
+    """critical thickness of the boundary layer"""
+    shear_strength: Relative | None = _of("layer")
+    """limiting shear stress of the boundary layer"""
+    film_formula: Choice[FilmFormula] | None = _of("film")
+    """film formula, of which the study takes its first"""
+    film_shape: Choice[Literal["flat", "computed"]] | None = _of("film")
+    """shape of the film"""
+    inlet_shear_heating: Choice[Literal[INLET_HEATING]] | None = _of("film")
+    """heating of the oil at the inlet"""
+    roughness_deformation: Choice[Literal["none", "computed"]] | None = _of("film")
+    """deformation of the roughness"""
+    contact_model: Choice[Literal["line", "surface"]] | None = _of("contact model")
+    """what touches"""
+
+    def factors(self) -> list[Factor]:
+        """Return all factors that are given, in the order of the keys above."""
+        return list(self._given())
+
+    def _given(self) -> Iterator[Factor]:
+        for name, field in type(self).model_fields.items():
+            if (given := getattr(self, name)) is not None:
+                yield Factor(name, field.json_schema_extra["group"], given)
+
+
+def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:
+    """Return roughness lines whose parameters deviate.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        The lines of the study.
+    values : dict of str to float
+        Deviations, and the Hurst exponent, by the keys of `Uncertainty`; others are ignored.
+
+    Returns
+    -------
+    LineSpec
+        The lines, on the same grid.
+    """
+    longer = 1.0 + values.get("longest_wavelength", 0.0)
+    shorter = 1.0 + values.get("shortest_wavelength", 0.0)
+    lines = []
+    for line, name in zip(spec.lines, ROLLERS, strict=True):
+        update = {
+            "rms_height": line.rms_height * (1.0 + values.get(f"{name}_rms_roughness", 0.0)),
+            "q_min": line.q_min / longer,
+            "q_roll_off": line.q_roll_off / longer,
+            "q_max": line.q_max / shorter,
+            "hurst_exponent": values.get("hurst_exponent", line.hurst_exponent),
+        }
+        lines.append(line.model_copy(update=update))
+    return spec.model_copy(update={"lines": tuple(lines)})
+
+
+def check_uncertainty(study) -> None:
+    """Refuse ranges and choices for which the model has no answer.
+
+    Parameters
+    ----------
+    study : Study
+        A study with the section ``uncertainty``.
+
+    Raises
+    ------
+    LubeError
+        Which key, what came, and what is needed.
+    """
+    uncertain, spec = study.uncertainty, study.line_spec
+    if study.load_sharing != "none":
+        raise StudyError(f"got one with load_sharing {study.load_sharing}, need load_sharing none")
+    if not uncertain.factors():
+        raise StudyError("got none, need an uncertain quantity or choice")
+    if uncertain.temperature:
+        _check_temperatures(study, uncertain.temperature.range)
+    if uncertain.hurst_exponent and not all(line.hurst_exponent for line in spec.lines):
+        raise StudyError(
+            "hurst_exponent: got a range for lines with a measured spectrum, on which nothing "
+            "depends, need none"
+        )
+    if uncertain.inlet_shear_heating:
+        for record in study.lubricants:
+            if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:
+                raise StudyError(
+                    "inlet_shear_heating: got choices, need the thermal_conductivity of the "
+                    f"lubricant {record.name}"
+                )
+    _check_bands(study)
+
+
+def _check_temperatures(study, ends):
+    levels = study.operating_grid.temperature
+    for record in study.lubricants:
+        coldest, hottest = record.valid_temperatures
+        for level, end in ((min(levels), ends[0]), (max(levels), ends[1])):
+            if not coldest - BEYOND <= level + end <= hottest + BEYOND:
+                raise StudyError(
+                    f"temperature.range: got {level + end:g} degC, need {coldest - BEYOND:g} to "
+                    f"{hottest + BEYOND:g} degC for {record.name}"
+                )
+
+
+def _check_bands(study):
+    """Refuse bands of wavelengths that the grid of lines or surfaces cannot have."""
+    uncertain, spec = study.uncertainty, study.line_spec
+    ends = [
+        given.range if given else (0.0, 0.0)
+        for given in (uncertain.longest_wavelength, uncertain.shortest_wavelength)
+    ]
+    narrow = {"longest_wavelength": ends[0][0], "shortest_wavelength": ends[1][1]}
+    wide = {"longest_wavelength": ends[0][1], "shortest_wavelength": ends[1][0]}
+    shorter = min(line.longest_wavelength for line in deviating_lines(spec, narrow).lines)
+    longer = max(line.shortest_wavelength for line in deviating_lines(spec, narrow).lines)
+    if longer >= shorter:
+        raise StudyError(
+            f"shortest_wavelength.range: got up to {with_unit(longer, 'm', 3)}, need less than "
+            f"the longest wavelength, {with_unit(shorter, 'm', 3)}"
+        )
+    wide = deviating_lines(spec, wide)
+    least = 2.0 * math.pi / wide.q_max
+    if least < 2.0 * spec.spacing:
+        raise StudyError(
+            f"shortest_wavelength.range: got down to {with_unit(least, 'm', 3)}, need two points "
+            f"of the grid or more, {with_unit(2.0 * spec.spacing, 'm', 3)}"
+        )
+    models = uncertain.contact_model.choices if uncertain.contact_model else study.contact_model
+    if "surface" in models:
+        from lube.study.surface_checks import check_surfaces  # which loads scipy
+
+        width = 2.0 * study.rollers.contact_half_width(max(study.operating_grid.force))
+        with located("contact_model: surface"):
+            check_surfaces(wide, study.rollers.length, width, study.gap)

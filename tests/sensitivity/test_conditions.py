@@ -1,0 +1,104 @@
+import numpy as np
+import pytest
+import xarray as xr
+from repository import ROOT
+
+from lube.sensitivity.conditions import Deviating
+from lube.stages import film_table, lubricant_table
+from lube.study.study import load_study
+from lube.surfaces.spectra import pair_moments
+
+PAPER = ROOT / "workflow/config/paper.yaml"
+POINT = {"lubricant": "mobilgear-shc-xmp-320", "temperature": 60.0, "speed": 120.0, "force": 400.0}
+CHANGED = {
+    "rollers": {
+        roller: {"young_modulus": "214.2 GPa", "rms_roughness": f"{rms} um"}
+        for roller, rms in (("first", 0.22), ("second", 0.18))
+    },
+    "roughness": {
+        "hurst_exponent": 0.65,
+        "longest_wavelength": "0.6 mm",
+        "shortest_wavelength": "4 um",
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def study():
+    return load_study(PAPER)
+
+
+def one(values):
+    return {name: xr.DataArray([value], dims="run") for name, value in values.items()}
+
+
+def films(study, values, at=None, **shape):
+    at = points() if at is None else at
+    return Deviating.of(study).films(one(values), at, lambda film, runs: film, **shape)
+
+
+def points():
+    return xr.Dataset({name: ("point", [value]) for name, value in POINT.items()})
+
+
+@pytest.mark.parametrize("formula", ["paper", "dowson-toyoda", "computed"])
+@pytest.mark.parametrize("heating", ["none", "wilson-sheu-1983"])
+def test_deviating_films_are_those_of_a_study_with_these_values(study, formula, heating):
+    uncertain = study.uncertainty
+    deviations = {
+        **{"viscosity": 0.08, "pressure_viscosity_coefficient": -0.1, "temperature": 0.7},
+        **{"force": 0.01, "speed": -0.02, "young_modulus": 0.02},
+        **{"first_rms_roughness": 0.1, "second_rms_roughness": -0.1},
+        "film_formula": uncertain.film_formula.choices.index(formula),
+        "inlet_shear_heating": uncertain.inlet_shear_heating.choices.index(heating),
+    }
+    found = films(study, deviations, with_shape=False).squeeze()
+    oil = lubricant_table(study.lubricants, [60.7])
+    oil["dynamic_viscosity"] *= 1.08
+    oil["pressure_viscosity_coefficient"] *= 0.9
+    rollers = load_study(PAPER, {"name": "changed", **CHANGED}).rough_rollers
+    levels = [400.0 * 1.01], [120.0 * 0.98], [formula]
+    expected = film_table(oil, rollers, *levels, inlet_shear_heating=heating).squeeze()
+    for name in ("film_thickness", "lambda_ratio", "contact_half_width", "moes_load"):
+        assert found[name].item() == pytest.approx(expected[name].item(), rel=1e-5), name
+
+
+def test_without_deviations_films_are_those_of_the_study(study):
+    found = films(study, {"force": 0.0}).squeeze()
+    oil = lubricant_table(study.lubricants, [60.0])
+    expected = film_table(oil, study.rollers, [400.0], [120.0], ["paper"]).squeeze()
+    assert found["film_thickness"].item() == pytest.approx(expected["film_thickness"].item(), 1e-6)
+
+
+def test_deviating_lines_are_those_of_a_study_with_these_values(study):
+    own = study.line_spec
+    deviations = {
+        **{"first_rms_roughness": 0.1, "second_rms_roughness": -0.1, "hurst_exponent": 0.65},
+        "longest_wavelength": 0.6e-3 / own.longest_wavelength - 1.0,
+        "shortest_wavelength": 4e-6 / own.lines[0].shortest_wavelength - 1.0,
+    }
+    found = Deviating.of(study).lines(deviations)
+    expected = load_study(PAPER, {"name": "changed", **CHANGED}).line_spec
+    assert found.spacing == expected.spacing
+    assert found.points[0] < expected.points[0]  # shorter, so that runs are fast
+    assert found.rms_height == pytest.approx(expected.rms_height)
+    for name in ("q_min", "q_max", "longest_wavelength"):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name))
+    # Fewer waves make up the same spectrum.
+    np.testing.assert_allclose(pair_moments(found), pair_moments(expected), rtol=0.03)
+
+
+def test_layers_deviate(study):
+    found = Deviating.of(study).layer({"critical_thickness": -0.5, "shear_strength": 0.5})
+    assert found.critical_thickness == pytest.approx(2.5e-9)
+    assert found.shear_strength == pytest.approx(1.5e6)
+
+
+def test_a_little_beyond_the_data_the_viscosity_goes_on(study):
+    colder = points().assign(temperature=("point", [40.0]))
+    found = [
+        films(study, {"temperature": shift}, colder)["film_thickness"].item()
+        for shift in (-1.0, 0.0, 1.0)
+    ]
+    steps = np.diff(np.log(found))
+    assert steps[0] == pytest.approx(steps[1], rel=0.05) and steps[0] < 0.0
