@@ -28,7 +28,7 @@ FLOORS = [
     {"grid"},
     {"study"},
     {"contact"},
-    {"rig", "inference", "storage"},
+    {"rig", "inference", "sensitivity", "storage"},
     {"recordings"},
     {"stages"},
     {"report"},

@@ -1,7 +1,6 @@
 """Films, lines and boundary layers of a study whose uncertain quantities deviate."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -18,6 +17,7 @@ from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.study.uncertainty import Factor, check_uncertainty, deviating_lines
+from lube.types import Array
 
 OIL = (
     *("dynamic_viscosity", "pressure_viscosity_coefficient"),
@@ -91,8 +91,8 @@ class Deviating:
         """Models of inlet heating that the study leaves open."""
         return self.choices("inlet_shear_heating", self.study.inlet_shear_heating)
 
-    def films(self, values: dict, points: xr.Dataset, of_film: Callable, **shape) -> xr.Dataset:
-        """Compute something of the films of some samples at some operating points.
+    def films(self, values: dict, points: xr.Dataset, **shape) -> list[tuple[Array, xr.Dataset]]:
+        """Compute the films of some samples at some operating points.
 
         Parameters
         ----------
@@ -100,33 +100,29 @@ class Deviating:
             From `lube.sensitivity.samples.deviations`, over run, at least one.
         points : xarray.Dataset
             ``lubricant``, ``temperature``, ``speed`` and ``force``, over run too, or over point.
-        of_film : callable
-            From the films of some runs, as from `lube.grid.films.film_at`, and the runs' numbers
-            to variables over run. It is called for each film formula and model of inlet heating.
         **shape
-            Further arguments of `film_at`.
+            Further arguments of `lube.grid.films.film_at`.
 
         Returns
         -------
-        xarray.Dataset
-            What `of_film` returned, in the order of the runs. Where a run chooses the computed
-            film, and no shape is asked for, the film of Moes' formula stands in for it.
+        list of tuple
+            For each film formula and model of inlet heating the numbers of the runs that choose
+            both, and their films as from `film_at`. Where a run chooses the computed film, and no
+            shape is asked for, the film of Moes' formula stands in for it.
         """
         formulas = np.array([*self.formulas, self.study.film_formulas[0]])
         heating = np.array([*self.heating, self.study.inlet_shear_heating])
         count = next(iter(values.values())).sizes["run"]
         names = "film_formula", "inlet_shear_heating"
         chosen = np.array([np.broadcast_to(values.get(name, -1), count) for name in names])
-        tables, places = [], []
+        found = []
         for pair in np.unique(chosen, axis=1).T:
-            here = np.flatnonzero((pair == chosen.T).all(axis=1))
+            here = np.flatnonzero((chosen == pair[:, None]).all(axis=0))
             own = {name: value.isel(run=here) for name, value in values.items()}
             at = points.isel(run=here, missing_dims="ignore")
             film = self._film(own, at, formulas[pair[0]].item(), heating[pair[1]].item(), **shape)
-            tables.append(of_film(film, here))
-            places.append(here)
-        table = xr.concat(tables, "run", data_vars="minimal", coords="minimal", join="exact")
-        return table.isel(run=np.argsort(np.concatenate(places)))
+            found.append((here, film))
+        return found
 
     def _film(self, values, points, formula, heating, **shape):
         """Film of samples with the same film formula and model of inlet heating."""
@@ -190,3 +186,10 @@ FILM = (
 """Variables of films on which the probability depends."""
 STAND_IN = {"computed": "moes"}
 """Film formulas that stand in for films that are too slow to compute."""
+
+
+def joined(films: list[tuple[Array, xr.Dataset]]) -> xr.Dataset:
+    """Join the variables `FILM` of films by `Deviating.films`, in the order of the runs."""
+    tables = [film[list(FILM)].broadcast_like(film["film_thickness"]) for _, film in films]
+    table = xr.concat(tables, "run", coords="minimal", compat="override", join="exact")
+    return table.isel(run=np.argsort(np.concatenate([runs for runs, _ in films])))

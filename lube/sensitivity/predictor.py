@@ -8,7 +8,7 @@ import xarray as xr
 
 from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
-from lube.sensitivity.conditions import FILM, Deviating
+from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, models
 from lube.sensitivity.samples import deviations
 from lube.sensitivity.surrogate import Polynomial, Surrogate, groups, held_out
@@ -131,7 +131,7 @@ class Predictor:
         seed = np.minimum((unit[:, -1] * SEEDS).astype(int), SEEDS - 1)
         numbers = deviations(deviating.factors, unit[:, :-1])
         values = _by(numbers, "run")
-        film = self._with_computed(deviating.films(values, points, _known), numbers)
+        film = self._with_computed(joined(deviating.films(values, points)), numbers)
         found = np.full((len(unit), points.sizes["point"]), np.nan)
         for model, surrogate in self.surrogates.items():
             some = np.flatnonzero(_is_chosen(deviating, model, numbers, len(unit)))
@@ -160,11 +160,6 @@ class Predictor:
         ratio = film["moes_load"].copy(data=ratio.reshape(film["moes_load"].shape))
         film["film_thickness"] = film["film_thickness"] * xr.where(is_computed, ratio, 1.0)
         return film
-
-
-def _known(film, runs):
-    """Select the variables of films on which the probability depends."""
-    return film[list(FILM)]
 
 
 def _of_model(runs, model):
@@ -197,7 +192,7 @@ def _film(deviating, runs):
     computed = runs.isel(run=(formulas[number] == COMPUTED) & runs["film_thickness"].notnull())
     values = _by(deviations(deviating.factors, computed["factor_quantile"].values), "run")
     points = computed.reset_coords()[list(POINT_DIMS)]
-    moes = deviating.films(values, points, _known)["film_thickness"]
+    moes = joined(deviating.films(values, points))["film_thickness"]
     ratio = np.log(computed["film_thickness"] / moes).values[:, None]
     variables = np.log([computed[name].values for name in ("moes_load", "moes_material")])
     last = slice(-held_out(len(ratio)), None)

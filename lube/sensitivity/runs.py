@@ -13,7 +13,7 @@ from scipy.stats import qmc
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.gap import Gap
-from lube.sensitivity.conditions import FILM, Deviating
+from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.samples import deviations
 from lube.threads import on_threads
 from lube.types import Array
@@ -150,26 +150,36 @@ def run(
     Returns
     -------
     xarray.Dataset
-        Variables `FILM` over run, and ``breakthrough_probability`` over run and seed; NaN where
-        the film is not known, or the layer holds in all contacts that were sampled.
+        Variables of the films over run, and ``breakthrough_probability`` over run and seed; NaN
+        where the film is not known, or the layer holds in all contacts that were sampled.
     """
     values = deviations(deviating.factors, unit)
     by_run = {name: xr.DataArray(column, dims="run") for name, column in values.items()}
 
-    def probabilities(film, runs):
-        def of_sample(some):
-            own = {name: column[runs[some.start]].item() for name, column in values.items()}
-            return _probabilities(deviating, model, own, film.isel(run=some))
+    films = deviating.films(by_run, points, **model.shape(deviating.study.line_spec))
+    of_samples = [
+        (runs[same], film.isel(run=same))
+        for runs, film in films
+        for same in _same_samples(unit[runs])
+    ]
 
-        first = np.flatnonzero(np.diff(unit[runs], axis=0, prepend=-1.0).any(axis=1)).tolist()
-        same = [slice(*ends) for ends in pairwise([*first, len(runs)])]
-        found = np.concatenate(on_threads(of_sample, same, threads, "direct runs"))
-        known = np.where(found > 0.0, found, np.nan)
-        table = film[list(FILM)].broadcast_like(film["film_thickness"])
-        return table.assign(breakthrough_probability=(("run", "seed"), known))
+    def of_sample(sample):
+        runs, film = sample
+        own = {name: column[runs[0]].item() for name, column in values.items()}
+        return _probabilities(deviating, model, own, film)
 
-    shape = model.shape(deviating.study.line_spec)
-    return deviating.films(by_run, points, probabilities, **shape)
+    found = np.empty((len(unit), SEEDS))
+    each = on_threads(of_sample, of_samples, threads, "direct runs")
+    for (runs, _), probabilities in zip(of_samples, each, strict=True):
+        found[runs] = probabilities
+    known = np.where(found > 0.0, found, np.nan)
+    return joined(films).assign(breakthrough_probability=(("run", "seed"), known))
+
+
+def _same_samples(unit):
+    """Slices of rows that are alike and follow one another."""
+    first = np.flatnonzero(np.diff(unit, axis=0, prepend=-1.0).any(axis=1)).tolist()
+    return [slice(*ends) for ends in pairwise([*first, len(unit)])]
 
 
 def _probabilities(deviating, model, values, film):

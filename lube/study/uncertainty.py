@@ -93,7 +93,7 @@ class OfExponent(_Uncertain):
     _UNITS: ClassVar[str] = ""
 
     range: Annotated[tuple[float, float], _range("", "0.6 to 0.8", above=0.0, below=1.0)]
-    """least and greatest value of the rougher lines' exponent"""
+    """least and greatest value"""
 
 
 Name = TypeVar("Name")

@@ -34,7 +34,8 @@ def one(values):
 
 def films(study, values, at=None, **shape):
     at = points() if at is None else at
-    return Deviating.of(study).films(one(values), at, lambda film, runs: film, **shape)
+    ((_, found),) = Deviating.of(study).films(one(values), at, **shape)
+    return found
 
 
 def points():

@@ -131,12 +131,14 @@ def changed_stages(paper_with):
 
 
 MECHANICS = {"contact", "tail", "areal", "trace", "surface_trace", "experiment"}
+MECHANICS |= {"sensitivity_runs"}
 # Those that are for pure rolling too.
 LAYER = MECHANICS | {"master", "height_distribution", "variants", "passage"}
 DEFORMED = {"variants", "height_distribution"}
 LINES = LAYER | {"roughness", "patch"}
 SPECTRUM = LINES | {"surface", "film_response", "surface_response"}
 SLIDING = {"film", "film_response", "surface_response", "passage"}
+SENSITIVITY = "sensitivity_runs", "sensitivity"
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 
 
@@ -159,7 +161,8 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("roughness_deformation", "computed", MECHANICS | DEFORMED | {"film"}),
         ("operating_grid.speed", {"values": [100, 110], "units": "rpm"}, GRID | {"film"}),
         ("operating_grid.temperature", {"values": [40, 80], "units": "degC"}, GRID | {"lubricant"}),
-        ("contact_model", ["line", "surface"], {"tail", "film", "comparison"}),
+        ("contact_model", ["line", "surface"], {"tail", "film", "comparison", "sensitivity_runs"}),
+        ("uncertainty.force.range", "+- 3 %", {"sensitivity_runs"}),
         ("load_sharing", "iterated", {"film"}),
         ("traces.1.temperature", "60 degC", {"trace", "surface_trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"experiment"}),
@@ -180,7 +183,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
     ("key", "value", "lost"),
     [
         ("film_shape", "computed", set()),
-        ("roughness_deformation", "venner-1997", {"areal", "surface_trace"}),
+        ("roughness_deformation", "venner-1997", {"areal", "surface_trace", *SENSITIVITY}),
         ("roughness_deformation", "computed", set()),
     ],
 )

@@ -1,0 +1,170 @@
+"""Runs and indices of a small study, on few samples."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from studies import CONFIG
+
+from lube.contact.windows import study_windows
+from lube.schema import POINT_DIMS
+from lube.sensitivity import indices, runs
+from lube.sensitivity.conditions import Deviating
+from lube.sensitivity.indices import sobol
+from lube.sensitivity.predictor import Predictor
+from lube.sensitivity.runs import PAIRS, PLAIN_LINE, SEEDS, Sizes, models, run
+from lube.sensitivity.samples import SEED
+from lube.stages import sensitivity, sensitivity_runs
+from lube.stages.film import make as make_film
+from lube.stages.lubricant import make as make_lubricant
+from lube.study.study import load_study
+from lube.study.uncertainty import Uncertainty
+
+SOURCE = {"source": "assumed"}
+SMALL = {
+    "viscosity": {"range": "+- 10 %"} | SOURCE,
+    "first_rms_roughness": {"range": "-29 % to 25 %"} | SOURCE,
+    "hurst_exponent": {"range": "0.6 to 0.8"} | SOURCE,
+    "critical_thickness": {"range": "-50 % to 0 %"} | SOURCE,
+    "film_formula": {"choices": ["paper", "computed"]} | SOURCE,
+    "film_shape": {"choices": ["flat", "computed"]} | SOURCE,
+}
+
+
+@pytest.fixture(scope="module")
+def study():
+    own = load_study(CONFIG / "smoke.yaml")
+    roughness = own.roughness.model_copy(update={"points": 300_000})
+    update = {"roughness": roughness, "uncertainty": Uncertainty.model_validate(SMALL)}
+    return own.model_copy(update=update)
+
+
+@pytest.fixture(scope="module")
+def few():
+    patch = pytest.MonkeyPatch()
+    patch.setattr(runs, "SIZES", dict.fromkeys(runs.SIZES, Sizes(64, 2, 2)))
+    patch.setattr(indices, "BASE_SAMPLES", 256)
+    yield
+    patch.undo()
+
+
+@pytest.fixture(scope="module")
+def direct(study, few):
+    return sensitivity_runs.make(study, {}, threads=2)
+
+
+@pytest.fixture(scope="module")
+def result(study, direct):
+    return sensitivity.make(study, {"sensitivity_runs": direct})
+
+
+def test_runs_do_not_depend_on_the_number_of_threads(study, direct):
+    assert sensitivity_runs.make(study, {}, threads=1).identical(direct)
+
+
+def test_a_run_without_deviations_samples_what_the_study_samples(study):
+    """Lines are shorter in a run, so the pairs are others."""
+    factor = Uncertainty.model_validate({"force": {"range": "+- 1 %"} | SOURCE})
+    own = study.model_copy(update={"uncertainty": factor})
+    deviating, film = Deviating.of(own), make_film(own, {"lubricant": make_lubricant(own, {})})
+    film = film.isel(film_formula=0).transpose(*POINT_DIMS, ...)
+    points = film["film_thickness"].stack(run=POINT_DIMS).reset_index("run").coords.to_dataset()
+    points = points.reset_coords()[list(POINT_DIMS)]
+    count = points.sizes["run"]
+    found = run(deviating, PLAIN_LINE, np.full((count, 1), 0.5), points)
+    whole, windows = study_windows(own, film), SEEDS * PAIRS
+    expected = [whole.sample(own.line_spec, own.seed, number)[0][1] for number in range(windows)]
+    shorter = found["breakthrough_probability"].mean("seed").values
+    assert shorter == pytest.approx(np.mean(expected, axis=0), rel=0.15)
+    assert (shorter > 0.0).all()
+
+
+def test_indices_are_parts_of_the_variance(result):
+    assert result["factor"].values.tolist() == [*SMALL, SEED]
+    assert result["factor_group"].values.tolist() == ["oil", "surface", "layer", "film", SEED]
+    first, total = result["first_order"], result["total_effect"]
+    error = total - result["total_effect_lower"]
+    assert ((first <= total + 2.0 * error) & (total > -2.0 * error)).all()
+    together = first.sum("factor")
+    assert ((together > 0.6) & (together < 1.15)).all()
+    groups = result["group_first_order"]
+    for group in ("surface", "film"):
+        members = first.sel(factor=first["factor"][result["group_of_factor"] == group])
+        assert (abs(groups.sel(factor_group=group) - members.sum("factor")) < 0.2).all()
+
+
+def test_what_matters_is_told_from_what_does_not(result):
+    total = result["total_effect"].mean(POINT_DIMS)
+    assert total.sel(factor="first_rms_roughness") > 5.0 * total.sel(factor="viscosity")
+    assert total.sel(factor=SEED) < 0.1
+    effect = result["elementary_effect"].mean(POINT_DIMS)
+    assert effect.sel(factor="hurst_exponent") > 2.0 * effect.sel(factor=SEED)
+
+
+def test_the_band_holds_its_median_and_is_as_wide_as_the_deviation_says(result):
+    lower, median, upper = (
+        np.log(result[f"breakthrough_probability_{end}"]) for end in ("lower", "median", "upper")
+    )
+    assert ((lower < median) & (median < upper)).all()
+    width = (upper - lower) / (2.0 * 1.645 * result["log_probability_deviation"])
+    assert ((width > 0.7) & (width < 1.2)).all()
+
+
+def test_surrogates_miss_runs_that_they_have_not_seen_by_little(result):
+    assert result["surrogate_model"].values.tolist() == [
+        *("line, flat, none", "line, computed, none")
+    ]
+    assert (result["surrogate_error"] < 0.15).all()
+    assert (result["relative_surrogate_error"] < 0.15).all()
+    assert result["film_surrogate_error"] < 0.005
+    assert result["run_count"].values.tolist() == [128, 128]
+
+
+def test_each_sample_has_the_model_film_and_random_numbers_that_it_chooses(study, direct):
+    """The surrogate's values against direct runs of the same samples."""
+    deviating = Deviating.of(study)
+    predictor = Predictor.of(deviating, direct)
+    for number, model in enumerate(models(deviating)):
+        own = direct.isel(run=slice(128 * number, 128 * number + 12))
+        unit = np.column_stack([own["factor_quantile"], np.full(12, 0.3)])  # the second seed
+        unit[:, -2] = 0.25 + 0.5 * number
+        predicted = predictor.log_probability(unit)
+        points = own.reset_coords()[list(POINT_DIMS)].to_dataframe()
+        known = [
+            deviating.levels[name].index(value)
+            for row in points[list(POINT_DIMS)].itertuples(index=False)
+            for name, value in zip(POINT_DIMS, row, strict=True)
+        ]
+        shape = [len(each) for each in deviating.levels.values()]
+        at = np.ravel_multi_index(np.reshape(known, (-1, 4)).T, shape)
+        found = predicted[np.arange(12), at]
+        expected = np.log(own["breakthrough_probability"].isel(seed=1).values)
+        assert found == pytest.approx(expected, abs=0.35), model
+
+
+@pytest.mark.slow
+def test_indices_of_the_flat_line_agree_with_those_of_direct_runs(study):
+    """128 base samples without any surrogate, at all operating points of the small study."""
+    section = {key: SMALL[key] for key in list(SMALL)[:4]}
+    own = study.model_copy(update={"uncertainty": Uncertainty.model_validate(section)})
+    deviating = Deviating.of(own)
+    predictor = Predictor.of(deviating, sensitivity_runs.make(own, {}, threads=2))
+    names = [*section, SEED]
+    levels = np.meshgrid(*deviating.levels.values(), indexing="ij")
+
+    def directly(unit):
+        points = {
+            name: ("run", np.tile(values.ravel(), len(unit)))
+            for name, values in zip(POINT_DIMS, levels, strict=True)
+        }
+        count, size = len(unit), levels[0].size
+        found = run(
+            deviating, PLAIN_LINE, np.repeat(unit[:, :-1], size, axis=0), xr.Dataset(points)
+        )["breakthrough_probability"].values.reshape(count, size, SEEDS)
+        seed = np.minimum((unit[:, -1] * SEEDS).astype(int), SEEDS - 1)
+        return np.log(found[np.arange(count), :, seed])
+
+    exact, _ = sobol(names, directly, own.seed, base_samples=128)
+    found, _ = sobol(names, predictor.log_probability, own.seed, base_samples=128)
+    for name in ("first_order", "total_effect"):
+        error = np.hypot(exact[f"{name}_error"], found[f"{name}_error"])
+        assert (np.abs(exact[name] - found[name]) < error).mean() > 0.9
