@@ -29,6 +29,8 @@ def job_groups() -> dict[str, str]:
     # Rules that are not stages, such as `explorer`, follow the stages.
     scripts = {path.stem for path in ROOT.glob("workflow/scripts/*.py")} - {"stage"}
     groups = dict.fromkeys(scripts, "figures")
-    groups |= {name: "figures" if name in after else "beside" for name in STAGES}
+    groups |= {
+        stage.rule: "figures" if name in after else "beside" for name, stage in STAGES.items()
+    }
     groups |= dict.fromkeys(before.difference(_BATCHED) | {"resolved_study"}, "tables")
     return groups | {"batch": "batches"}

@@ -144,7 +144,8 @@ class Deviating:
             inlet_meniscus=study.film_model["inlet_meniscus"],
             **shape,
         )
-        return table.isel(film_formula=0, drop=True)
+        viscosity = oil["dynamic_viscosity"]
+        return table.isel(film_formula=0, drop=True).assign(dynamic_viscosity=viscosity)
 
     def _rollers(self, values):
         """Return the rollers, as far as films depend on them."""
@@ -181,7 +182,7 @@ class Deviating:
 
 FILM = (
     *("film_thickness", "contact_half_width", "reduced_modulus"),
-    *("moes_load", "moes_material", "lambda_ratio"),
+    *("moes_load", "moes_material", "dynamic_viscosity", "lambda_ratio"),
 )
 """Variables of films on which the probability depends."""
 STAND_IN = {"computed": "moes"}

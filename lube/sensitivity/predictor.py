@@ -9,16 +9,16 @@ import xarray as xr
 from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
-from lube.sensitivity.runs import SEEDS, Model, models
+from lube.sensitivity.runs import SEEDS, Model, is_sum, models
 from lube.sensitivity.samples import deviations
-from lube.sensitivity.surrogate import Polynomial, Surrogate, groups, held_out
+from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
 from lube.types import Array
 
 AT_ONCE = 400
 """Samples whose films are computed together, for the sake of memory."""
 COMPUTED = "computed"
-FILM_DEGREE = 5
-"""Degree of the polynomial for the computed film."""
+FILM_GROUPS = "moes_load", "moes_material", "dynamic_viscosity"
+"""On which the ratio of the computed film to that of Moes' formula depends."""
 
 
 def stacked_points(deviating: Deviating) -> xr.Dataset:
@@ -38,16 +38,16 @@ class Predictor:
         The study.
     surrogates : dict
         Surrogate of each `lube.sensitivity.runs.Model`.
-    film : Polynomial or None
-        Logarithm of the computed film over that of Moes' formula, over the logarithms of M and L;
-        None if the study does not choose it.
+    film : Interpolant or None
+        Logarithm of the computed film over that of Moes' formula, over the logarithms of M, L and
+        the viscosity; None if the study does not choose it.
     film_error : float
         Its rms error at runs that were left out of the fit.
     """
 
     deviating: Deviating
     surrogates: dict[Model, Surrogate]
-    film: Polynomial | None
+    film: Interpolant | None
     film_error: float
 
     @classmethod
@@ -70,7 +70,8 @@ class Predictor:
             found = own["breakthrough_probability"].transpose("run", "seed").values
             nearer = [one.parts for other, one in surrogates.items() if other.is_nearer(model)]
             parts = tuple(dict.fromkeys(chain.from_iterable(nearer)))
-            surrogates[model] = Surrogate.of(model.sizes.degree, variables, found, parts)
+            known = is_sum(deviating, model)
+            surrogates[model] = Surrogate.of(variables, found, parts, known)
         return cls(deviating, surrogates, *_film(deviating, runs))
 
     def errors(self, runs: xr.Dataset, deviation: Array) -> dict:
@@ -152,14 +153,16 @@ class Predictor:
         if self.film is None:
             return film
         formulas = self.deviating.formulas
-        number = numbers.get("film_formula", np.zeros(1, int))
-        is_computed = xr.DataArray(np.array(formulas)[number] == COMPUTED, dims="run")
-        names = "moes_load", "moes_material"
-        variables = np.log(xr.broadcast(*(film[name] for name in names)))
-        ratio = np.exp(self.film(np.reshape(variables, (2, -1)))[:, 0])
-        ratio = film["moes_load"].copy(data=ratio.reshape(film["moes_load"].shape))
-        film["film_thickness"] = film["film_thickness"] * xr.where(is_computed, ratio, 1.0)
-        return film
+        number = numbers.get("film_formula", np.zeros(film.sizes["run"], int))
+        is_computed = np.flatnonzero(np.array(formulas)[number] == COMPUTED)
+        if is_computed.size == 0:
+            return film
+        some = film.isel(run=is_computed)
+        variables = np.log([some[name].values.ravel() for name in FILM_GROUPS])
+        ratio = np.exp(self.film(variables)[:, 0])
+        thickness = film["film_thickness"].copy()
+        thickness[{"run": is_computed}] *= ratio.reshape(some["film_thickness"].shape)
+        return film.assign(film_thickness=thickness)
 
 
 def _of_model(runs, model):
@@ -183,7 +186,7 @@ def _is_chosen(deviating, model, numbers, count):
 
 
 def _film(deviating, runs):
-    """Polynomial for the computed film, and its error."""
+    """Interpolate the ratio of the computed film, and find its error."""
     formulas = np.array(deviating.formulas)
     if COMPUTED not in formulas:
         return None, 0.0
@@ -194,9 +197,8 @@ def _film(deviating, runs):
     points = computed.reset_coords()[list(POINT_DIMS)]
     moes = joined(deviating.films(values, points))["film_thickness"]
     ratio = np.log(computed["film_thickness"] / moes).values[:, None]
-    variables = np.log([computed[name].values for name in ("moes_load", "moes_material")])
+    variables = np.log([computed[name].values for name in FILM_GROUPS])
     last = slice(-held_out(len(ratio)), None)
-    trial = Polynomial.fitted(FILM_DEGREE, variables[:, : last.start], ratio[: last.start])
+    trial = Interpolant.of(variables[:, : last.start], ratio[: last.start])
     missed = trial(variables[:, last]) - ratio[last]
-    fitted = Polynomial.fitted(FILM_DEGREE, variables, ratio)
-    return fitted, float(np.sqrt(np.mean(missed**2)))
+    return Interpolant.of(variables, ratio), float(np.sqrt(np.mean(missed**2)))

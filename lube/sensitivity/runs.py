@@ -29,21 +29,20 @@ FEWER_SURFACES = 16
 
 
 class Sizes(NamedTuple):
-    """Number of samples of a model, of operating points of each, and degree of its polynomial."""
+    """Number of samples of a model, and of operating points of each."""
 
     samples: int
     points: int
-    degree: int
 
 
 SIZES = {
-    ("line", True): Sizes(1024, 3, 4),
-    ("line", False): Sizes(1024, 3, 4),
-    ("surface", True): Sizes(16, 24, 2),
-    ("surface", False): Sizes(8, 16, 1),
+    "plain line": Sizes(1024, 2),
+    "line": Sizes(1024, 4),
+    "surface": Sizes(16, 24),
+    "sum": Sizes(4, 24),
 }
-"""By contact model and whether the film is flat and the roughness as drawn. Surfaces are slow to
-draw, but once drawn they serve many operating points."""
+"""Surfaces are slow to draw, but once drawn they serve many operating points. Runs of a sum, as in
+`is_sum`, only test it."""
 
 
 class Model(NamedTuple):
@@ -58,11 +57,6 @@ class Model(NamedTuple):
     contact_model: str
     film_shape: str
     roughness_deformation: str
-
-    @property
-    def sizes(self) -> Sizes:
-        """Extent of its runs."""
-        return SIZES[self.contact_model, self.gap.is_plain]
 
     def deviations(self) -> int:
         """Count the choices that are not the paper's."""
@@ -100,6 +94,22 @@ def models(deviating: Deviating) -> list[Model]:
     ]
 
 
+def is_sum(deviating: Deviating, model: Model) -> bool:
+    """Whether the surrogate of a model is the sum of those of models nearer to the paper's.
+
+    It is for surfaces with further choices made otherwise, if the study leaves all of them open.
+    """
+    nearer = [other for other in models(deviating) if other.is_nearer(model)]
+    others = model.deviations()
+    return model.contact_model == "surface" and others > 1 and len(nearer) == 2**others - 1
+
+
+def _sizes(deviating, model):
+    if is_sum(deviating, model):
+        return SIZES["sum"]
+    return SIZES["plain line" if model == PLAIN_LINE else model.contact_model]
+
+
 def design(deviating: Deviating, model: Model) -> tuple[Array, xr.Dataset]:
     """Choose samples and operating points at random, for the runs of a model.
 
@@ -118,7 +128,7 @@ def design(deviating: Deviating, model: Model) -> tuple[Array, xr.Dataset]:
     points : xarray.Dataset
         As for `run`.
     """
-    study, (samples, points, _) = deviating.study, model.sizes
+    study, (samples, points) = deviating.study, _sizes(deviating, model)
     factors = len(deviating.factors)
     unit = qmc.Sobol(factors, seed=np.random.default_rng(study.seed)).random(samples)
     generator = np.random.default_rng((study.seed, samples))

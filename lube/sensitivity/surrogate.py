@@ -1,24 +1,24 @@
-"""A polynomial that stands for the probability of breakthrough between direct runs.
+"""Interpolation of the probability of breakthrough, and of films, between direct runs.
 
 Under flat films the probability depends on few dimensionless groups: the lambda ratio, the contact
 width over the longest wavelength, the Hurst exponent, the width of the band and the strength of the
 layer; with a shape or an answer of the oil also on Moes' numbers. Its normal quantile is nearly
-linear in the lambda ratio, so a polynomial of these groups serves all operating points at once.
+linear in the lambda ratio, so one function of these groups serves all operating points.
 """
 
 from dataclasses import dataclass, replace
-from itertools import chain, combinations_with_replacement
 
 import numpy as np
-import scipy.linalg
 import scipy.special
 import xarray as xr
+from scipy.interpolate import RBFInterpolator
 
 from lube.sensitivity.conditions import Deviating
 from lube.types import Array
 
-NEGLIGIBLE = 1e-6
-"""Combinations of terms that vary less than this, relative to the most varied, are left out."""
+SMOOTHING = 0.1
+"""How much less than exactly runs are met, since they are not exact either."""
+LEAST_WEIGHT = 1e-4
 
 
 def held_out(count: int) -> int:
@@ -66,110 +66,101 @@ def groups(deviating: Deviating, film: xr.Dataset, values: dict, is_shaped: bool
 
 
 @dataclass(frozen=True, eq=False)
-class Polynomial:
-    """A polynomial of some variables.
+class Interpolant:
+    """Radial basis functions between some points, with variables of alike scatter.
 
     Attributes
     ----------
     middle, scale : numpy.ndarray, shape (variables, 1)
         By which the variables are moved and divided.
-    powers : list of tuple of int
-        Variables that each term multiplies.
-    coefficients : numpy.ndarray, shape (terms, columns)
-        Coefficients of several polynomials.
+    functions : scipy.interpolate.RBFInterpolator
+        Cubic functions of the distance, and a linear one.
     """
 
     middle: Array
     scale: Array
-    powers: list
-    coefficients: Array
+    functions: RBFInterpolator
 
     @classmethod
-    def fitted(
-        cls, degree: int, variables: Array, values: Array, weight: Array | float = 1.0
-    ) -> "Polynomial":
-        """Fit by least squares.
+    def of(cls, variables: Array, values: Array, weight: Array | float = 1.0) -> "Interpolant":
+        """Interpolate between known values.
 
         Parameters
         ----------
-        degree : int
-            Total degree.
         variables : numpy.ndarray
-            Shape (variables, points).
+            Shape (variables, points); those that do not vary are left out. Of equal points the
+            first counts.
         values : numpy.ndarray
             Shape (points, columns).
         weight : numpy.ndarray or float, optional
-            Weight of each point's deviation, shape (points,).
+            How much a deviation counts at each point, shape (points,).
 
         Returns
         -------
-        Polynomial
-            The polynomial.
+        Interpolant
+            The function.
         """
-        varied = np.ptp(variables, axis=1) > 1e-9 * np.abs(variables).max(axis=1)
-        lowest, highest = variables.min(axis=1), variables.max(axis=1)
-        middle, scale = 0.5 * (lowest + highest), np.where(varied, 0.5 * (highest - lowest), np.inf)
-        numbers = np.flatnonzero(varied).tolist()
-        orders = (combinations_with_replacement(numbers, order) for order in range(degree + 1))
-        powers = list(chain.from_iterable(orders))
-        empty = cls(middle[:, None], scale[:, None], powers, np.empty((len(powers), 0)))
-        terms = empty.terms(variables) * np.broadcast_to(weight, len(values))
-        weighted = values * np.broadcast_to(weight, len(values))[:, None]
-        coefficients = scipy.linalg.lstsq(terms.T, weighted, cond=NEGLIGIBLE)[0]
-        return cls(middle[:, None], scale[:, None], powers, coefficients)
-
-    def terms(self, variables: Array) -> Array:
-        """Compute the terms at some points, shape (terms, points)."""
-        scaled, terms = (variables - self.middle) / self.scale, {}
-        for power in self.powers:
-            terms[power] = (
-                terms[power[:-1]] * scaled[power[-1]] if power else np.ones(variables.shape[1])
-            )
-        return np.stack(list(terms.values()))
+        middle, scale = variables.mean(axis=1), variables.std(axis=1)
+        varied = scale > 1e-9 * np.abs(middle)
+        scale = np.where(varied, scale, np.inf)[:, None]
+        points = (variables - middle[:, None]) / scale
+        # Points that differ by rounding alone would make the equations singular.
+        first = np.unique(points.round(9), axis=1, return_index=True)[1]
+        weight = np.maximum(np.broadcast_to(weight, len(values)), LEAST_WEIGHT)[first]
+        functions = RBFInterpolator(
+            points[varied][:, first].T,
+            values[first],
+            kernel="cubic",
+            degree=1,
+            smoothing=SMOOTHING / weight**2,
+        )
+        return cls(middle[:, None], scale, functions)
 
     def __call__(self, variables: Array) -> Array:
         """Evaluate all columns at some points, shape (points, columns)."""
-        return np.einsum("tp,tc->pc", self.terms(variables), self.coefficients)
+        points = (variables - self.middle) / self.scale
+        return self.functions(points[np.isfinite(self.scale[:, 0])].T)
 
 
 @dataclass(frozen=True)
 class Surrogate:
     """The probability of breakthrough by one model.
 
-    Its normal quantile is the sum of polynomials. The first is that of lines under flat films.
-    Every choice that is made otherwise adds one, which is smoother than the whole, and so do two
-    such choices together.
+    Its normal quantile is a sum. The first part is that of lines under flat films. Every choice
+    that is made otherwise adds one, which is smoother than the whole.
 
     Attributes
     ----------
-    parts : tuple of Polynomial
-        Polynomials of as many of the groups as each has variables.
+    parts : tuple of Interpolant
+        Functions of as many of the groups as each has variables.
     missed : numpy.ndarray
         Error of the logarithm of the probability of each run, if the run is left out of the fit;
         NaN if it never was.
     """
 
-    parts: tuple[Polynomial, ...]
+    parts: tuple[Interpolant, ...]
     missed: Array | None = None
 
     @classmethod
     def of(
-        cls, degree: int, variables: Array, probability: Array, parts: tuple[Polynomial, ...] = ()
+        cls, variables: Array, probability: Array, parts: tuple[Interpolant, ...], is_sum: bool
     ) -> "Surrogate":
         """Fit the runs of a model.
 
-        Errors count as much as they change the logarithm of the probability.
+        Errors count as much as they change the logarithm of the probability, in proportion to its
+        scatter, which grows with the quantile.
 
         Parameters
         ----------
-        degree : int
-            Degree of the last polynomial.
         variables : numpy.ndarray
             Groups of each run, shape (groups, runs).
         probability : numpy.ndarray
             Shape (runs, seeds); runs with NaN are left out.
-        parts : tuple of Polynomial, optional
-            The other polynomials.
+        parts : tuple of Interpolant
+            Parts that are known already.
+        is_sum : bool
+            Whether these parts are all; the runs then only show the error. Otherwise one part is
+            fitted to what they leave.
 
         Returns
         -------
@@ -186,17 +177,17 @@ class Surrogate:
         rest = quantile - cls(parts).quantile(variables)
 
         def fit(some):
-            fitted = Polynomial.fitted(degree, variables[:, some], rest[some], weight[some])
-            return cls((*parts, fitted))
+            return cls((*parts, Interpolant.of(variables[:, some], rest[some], weight[some])))
 
-        last = slice(-held_out(len(typical)), None)
-        trial = fit(slice(last.start)).log_probability(variables[:, last])
+        last = slice(0 if is_sum else -held_out(len(typical)), None)
+        trial = cls(parts) if is_sum else fit(slice(last.start))
         missed = np.full(known.shape, np.nan)
         found = np.log(probability[last]).mean(axis=1)
-        missed[np.flatnonzero(known)[last]] = trial.mean(axis=1) - found
-        return replace(fit(slice(None)), missed=missed)
+        predicted = trial.log_probability(variables[:, last]).mean(axis=1)
+        missed[np.flatnonzero(known)[last]] = predicted - found
+        return replace(trial if is_sum else fit(slice(None)), missed=missed)
 
-    def quantile(self, variables: Array) -> Array:
+    def quantile(self, variables: Array) -> Array | float:
         """Compute the normal quantile at some groups, shape (points, seeds)."""
         return sum(part(variables[: len(part.middle)]) for part in self.parts)
 

@@ -14,7 +14,8 @@ from snakemake.settings import types
 
 from lube.stages import load_study
 
-TARGETS = "all areal_contact patch_contact computed rough_passage benchmark archive report".split()
+TARGETS = "all areal_contact patch_contact computed rough_passage sensitivity benchmark".split()
+TARGETS += ["archive", "report"]
 
 
 def followers(study):

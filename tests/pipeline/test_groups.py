@@ -13,7 +13,8 @@ from repository import ROOT
 from lube.schema import STAGES
 
 LOCAL = {"report"}  # runs where Snakemake itself does
-TARGETS = {"all", "areal_contact", "patch_contact", "computed", "rough_passage", "benchmark"}
+TARGETS = {"all", "areal_contact", "patch_contact", "computed", "rough_passage"}
+TARGETS |= {"sensitivity", "benchmark"}
 
 
 @pytest.fixture

@@ -41,7 +41,7 @@ def study():
 @pytest.fixture(scope="module")
 def few():
     patch = pytest.MonkeyPatch()
-    patch.setattr(runs, "SIZES", dict.fromkeys(runs.SIZES, Sizes(64, 2, 2)))
+    patch.setattr(runs, "SIZES", dict.fromkeys(runs.SIZES, Sizes(64, 2)))
     patch.setattr(indices, "BASE_SAMPLES", 256)
     yield
     patch.undo()
