@@ -2,8 +2,9 @@
 
 Under flat films the probability depends on few dimensionless groups: the lambda ratio, the contact
 width over the longest wavelength, the Hurst exponent, the width of the band and the strength of the
-layer; with a shape or an answer of the oil also on Moes' numbers. Its normal quantile is nearly
-linear in the lambda ratio, so one function of these groups serves all operating points.
+layer. It also depends on the first roller's share of the roughness if the rollers differ in more
+than its height, and on Moes' numbers with a shape or an answer of the oil. Its normal quantile is
+nearly linear in the lambda ratio, so one function of these groups serves all operating points.
 """
 
 from dataclasses import dataclass, replace
@@ -50,8 +51,10 @@ def groups(deviating: Deviating, film: xr.Dataset, values: dict, is_shaped: bool
     longest = spec.longest_wavelength * (1.0 + values.get("longest_wavelength", 0.0))
     shortest = 2.0 * np.pi / spec.q_max * (1.0 + values.get("shortest_wavelength", 0.0))
     hurst = values.get("hurst_exponent", spec.lines[0].hurst_exponent or 0.5)
-    layer = deviating.layer(values)
+    layer = deviating.study.boundary_layer
     strength = layer.shear_strength / layer.critical_thickness / film["reduced_modulus"]
+    strength = strength * (1.0 + values.get("shear_strength", 0.0))
+    strength = strength / (1.0 + values.get("critical_thickness", 0.0))
     found = [
         film["film_thickness"] / rms,
         np.log(film["contact_half_width"] / longest),
@@ -59,6 +62,9 @@ def groups(deviating: Deviating, film: xr.Dataset, values: dict, is_shaped: bool
         np.log(strength * shortest ** (2.0 - hurst) * longest**hurst / rms),
         hurst,
     ]
+    if not spec.has_like_lines:
+        first = spec.rms_height[0] * (1.0 + values.get("first_rms_roughness", 0.0))
+        found += [(first / rms) ** 2]
     if is_shaped:
         found += [np.log(film["moes_load"]), np.log(film["moes_material"])]
     each = xr.broadcast(*(xr.DataArray(one, name="groups") for one in found))

@@ -133,6 +133,14 @@ class LineSpec(StrictModel):
         return all(line.follows_rolling for line in self.lines)
 
     @property
+    def has_like_lines(self) -> bool:
+        """Whether both lines differ by their rms height and their number of points alone."""
+        first, second = self.lines
+        return first == second.model_copy(
+            update={"rms_height": first.rms_height, "points": first.points}
+        )
+
+    @property
     def is_isotropic(self) -> bool:
         """Whether both lines stand for isotropic surfaces."""
         return self.has_surface and all(line.lay_ratio == 1.0 for line in self.lines)

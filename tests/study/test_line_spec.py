@@ -46,6 +46,16 @@ def test_the_longest_wavelength_of_both_is_that_of_the_pair(study_with):
     assert not study_with(("roughness.skewness", -0.1)).line_spec.is_gaussian
 
 
+def test_lines_are_alike_if_they_differ_in_height_alone(study_with):
+    assert load_study(PAPER).line_spec.has_like_lines
+    other = study_with(
+        ("rollers.second.rms_roughness", "0.3 um"), ("rollers.second.radius", "40 mm")
+    )
+    assert other.line_spec.has_like_lines
+    for key, value in ("hurst_exponent", 0.8), ("longest_wavelength", "0.2 mm"):
+        assert not study_with(("rollers.second.roughness", {key: value})).line_spec.has_like_lines
+
+
 def test_a_rollers_own_roughness_is_an_input_of_its_lines_but_not_of_the_film(study_with):
     before, after = load_study(PAPER), study_with(("rollers.first.roughness", {"kurtosis": 4}))
     assert before.stage_inputs("film") == after.stage_inputs("film")

@@ -15,6 +15,8 @@ rule pages:
     """Text of the report."""
     input:
         **{kind: result(f"{kind}.nc") for kind in SUMMARISED if STUDY.has(kind)},
+        # Once it has been made.
+        **{kind: result(f"{kind}.nc") for kind in KINDS if kind == "sensitivity"},
         study=FILES.study_file,
         paper=from_here(PAPER),
         docs=[from_here(f"docs/{page}.md") for page in ("limits", "assumptions", "architecture")],

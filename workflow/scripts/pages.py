@@ -8,6 +8,7 @@ from lube.report.configuration import configuration
 from lube.report.key_tables import files_table
 from lube.report.markdown import title_and_text, to_html
 from lube.report.pages import render
+from lube.report.sensitivity import rests_on
 from lube.report.statements import assumptions_of, limits_of
 from lube.report.summary import facts, findings, made
 from lube.storage.files import write_text
@@ -20,6 +21,8 @@ written = Path(snakemake.input.study).read_text(encoding="utf-8")
 docs = {Path(file).stem: Path(file).read_text(encoding="utf-8") for file in snakemake.input.docs}
 title, assumptions = title_and_text(assumptions_of(study, paper, docs["assumptions"]))
 _, limits = title_and_text(limits_of(study, paper, docs["limits"]))
+if sensitivity := snakemake.input.get("sensitivity"):
+    assumptions += rests_on(load(sensitivity, "sensitivity", study))
 drawing = docs["architecture"].split("```")[1]
 parts = {
     "facts": to_html(f"{facts(study, results['lubricant'])}\n\n{made(study)}"),

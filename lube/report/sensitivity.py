@@ -1,0 +1,66 @@
+"""What the probability of a study rests on, as a table of the report."""
+
+import numpy as np
+import xarray as xr
+
+from lube.report.key_tables import markdown_table
+from lube.report.pages import rounded
+from lube.schema import POINT_DIMS
+from lube.sensitivity.samples import SEED
+
+_SHARES = 0.9, 0.5, 0.1
+"""Places of the operating points shown, in the order of their probability."""
+
+
+def rests_on(found: xr.Dataset) -> str:
+    """Tabulate what each factor does to the probability.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        A ``sensitivity`` dataset.
+
+    Returns
+    -------
+    str
+        Markdown: a section with a table, for the first lubricant; nothing if no film is known.
+    """
+    points = found.isel(lubricant=0).stack(point=POINT_DIMS[1:])
+    known = np.flatnonzero(points["elementary_effect"].notnull().all("factor"))
+    if known.size == 0:
+        return ""
+    points = points.isel(point=known)
+    order = np.argsort(points["breakthrough_probability_median"].values)
+    places = (np.array(_SHARES) * (order.size - 1)).round().astype(int)
+    shown = points.isel(point=order[places]).reset_index("point")
+    factors = [name for name in shown["factor"].values.tolist() if name != SEED]
+    strongest = shown["elementary_effect"].sel(factor=factors).mean("point")
+    names = np.array(factors)[np.argsort(-strongest.values)].tolist()
+    conditions = [
+        ", ".join(f"{one[name].item():.4g} {unit}" for name, unit in _UNITS.items())
+        for one in (points.isel(point=order[place]) for place in places)
+    ]
+    rows = []
+    for name in names:
+        one = shown.sel(factor=name)
+        changes = [f"{rounded(change):g}" for change in np.exp(one["elementary_effect"].values)]
+        words = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
+        rows.append((name.replace("_", " "), *words, *changes))
+    band = (
+        f"{rounded(one['breakthrough_probability_lower']):g} to "
+        f"{rounded(one['breakthrough_probability_upper']):g}"
+        for one in (shown.isel(point=number) for number in range(len(places)))
+    )
+    rows.append(("probability, 5 to 95 % of the samples", "", "", *band))
+    table = markdown_table(("uncertain", "range or choices", "source", *conditions), rows)
+    return f"{_WORDS}\n{table}\n"
+
+
+_UNITS = {"force": "N", "speed": "r/min", "temperature": "°C"}
+_WORDS = """
+## What this does to the probability
+
+By what the probability of breakthrough is multiplied, or divided, as each quantity goes through its
+range, or a choice is made otherwise: means over random values of all others, at three operating
+points (`sensitivity.nc`). Deviations are from the study's values.
+"""

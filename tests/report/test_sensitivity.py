@@ -1,0 +1,45 @@
+import numpy as np
+import xarray as xr
+
+from lube.report.sensitivity import rests_on
+
+
+def dataset(**changes):
+    forces = [100.0, 200.0, 400.0]
+    probability = np.array([1e-5, 1e-3, 0.1])
+    shape = {"lubricant": ["oil"], "temperature": [40.0], "speed": [600 / 7], "force": forces}
+    dims = tuple(shape)
+    effects = np.log([[2.0, 3.0, 4.0], [20.0, 30.0, 40.0], [1.01, 1.01, 1.01]])
+    table = {
+        "elementary_effect": (("factor", *dims), effects.reshape(3, 1, 1, 1, 3)),
+        "range_of_factor": ("factor", ["-1 K to 1 K", "line, surface", "any"]),
+        "source_of_factor": ("factor", ["assumed", "the model", "the study's seed"]),
+    }
+    for end, times in (("median", 1.0), ("lower", 0.1), ("upper", 2.0)):
+        values = (probability * times).reshape(1, 1, 1, 3)
+        table[f"breakthrough_probability_{end}"] = dims, values
+    coordinates = shape | {"factor": ["temperature", "contact_model", "seed"]}
+    return xr.Dataset(table, coordinates).assign(changes)
+
+
+def test_what_matters_most_comes_first_with_its_range_and_source():
+    lines = rests_on(dataset()).strip().splitlines()
+    rows = [line for line in lines if line.startswith("|")]
+    assert [row.split(" | ")[0] for row in rows[2:]] == [
+        *("| contact model", "| temperature", "| probability, 5 to 95 % of the samples")
+    ]
+    assert rows[2] == "| contact model | line, surface | the model | 40 | 30 | 20 |"
+    assert rows[3] == "| temperature | -1 K to 1 K | assumed | 4 | 3 | 2 |"
+    assert rows[4].endswith("| 0.01 to 0.2 | 0.0001 to 0.002 | 1e-06 to 2e-05 |")
+    assert rows[0].endswith(
+        "| 400 N, 85.71 r/min, 40 °C | 200 N, 85.71 r/min, 40 °C | 100 N, 85.71 r/min, 40 °C |"
+    )
+
+
+def test_points_without_a_film_are_left_out():
+    found = dataset()
+    unknown = found["elementary_effect"].where(found["force"] < 300.0)
+    rows = rests_on(found.assign(elementary_effect=unknown)).splitlines()
+    assert "400 N" not in "".join(rows) and "200 N" in "".join(rows)
+    nothing = found.assign(elementary_effect=xr.full_like(unknown, np.nan))
+    assert rests_on(nothing) == ""
