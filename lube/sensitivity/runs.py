@@ -38,11 +38,12 @@ class Sizes(NamedTuple):
 SIZES = {
     "plain line": Sizes(1024, 2),
     "line": Sizes(1024, 4),
+    "answered line": Sizes(256, 2),
     "surface": Sizes(16, 24),
     "sum": Sizes(4, 24),
 }
-"""Surfaces are slow to draw, but once drawn they serve many operating points. Runs of a sum, as in
-`is_sum`, only test it."""
+"""Surfaces are slow to draw, but once drawn they serve many operating points. The response of the
+film takes half a second a run. Runs of a sum, as in `is_sum`, only test it."""
 
 
 class Model(NamedTuple):
@@ -107,7 +108,10 @@ def is_sum(deviating: Deviating, model: Model) -> bool:
 def _sizes(deviating, model):
     if is_sum(deviating, model):
         return SIZES["sum"]
-    return SIZES["plain line" if model == PLAIN_LINE else model.contact_model]
+    if model == PLAIN_LINE:
+        return SIZES["plain line"]
+    is_answered_line = model.gap.is_answered and model.contact_model == "line"
+    return SIZES["answered line" if is_answered_line else model.contact_model]
 
 
 def design(deviating: Deviating, model: Model) -> tuple[Array, xr.Dataset]:
