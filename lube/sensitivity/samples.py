@@ -35,8 +35,8 @@ def deviations(factors: Sequence[Factor], unit: Array) -> dict[str, Array]:
     >>> from lube.study.uncertainty import Uncertainty
     >>> section = {"force": {"range": "+- 2 %", "source": "assumed"}}
     >>> factors = Uncertainty.model_validate(section).factors()
-    >>> deviations(factors, np.array([[0.0], [0.75]]))["force"].tolist()
-    [-0.02, 0.01]
+    >>> deviations(factors, np.array([[0.0], [1.0]]))["force"].tolist()
+    [-0.02, 0.02]
     """
     columns = zip(factors, np.transpose(unit), strict=True)
     return {factor.name: _at(factor, column) for factor, column in columns}

@@ -2,7 +2,7 @@
 
 Under flat films the probability depends on few dimensionless groups: the lambda ratio, the contact
 width over the longest wavelength, the Hurst exponent, the width of the band and the strength of the
-layer. It also depends on the first roller's share of the roughness if the rollers differ in more
+layer. It also depends on the first roller's part of the roughness if the rollers differ in more
 than its height, and on Moes' numbers with a shape or an answer of the oil. Its normal quantile is
 nearly linear in the lambda ratio, so one function of these groups serves all operating points.
 """
