@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from lube.report.key_tables import markdown_table
-from lube.report.pages import rounded
+from lube.report.pages import percent, rounded
 from lube.schema import POINT_DIMS
 from lube.sensitivity.samples import SEED
 
@@ -53,9 +53,30 @@ def rests_on(found: xr.Dataset) -> str:
     )
     rows.append(("probability, 5 to 95 % of the samples", "", "", *band))
     table = markdown_table(("uncertain", "range or choices", "source", *conditions), rows)
-    return f"{_WORDS}\n{table}\n"
+    return f"{_WORDS}\n{table}\n\n{_to_measure(shown, factors, conditions)}\n"
 
 
+def _to_measure(shown, factors, conditions):
+    """Say which quantity, if it were known, would narrow the band most."""
+    groups = shown["group_of_factor"].sel(factor=factors)
+    measurable = groups["factor"][~groups.isin(CHOSEN_GROUPS)].values
+    if measurable.size == 0:
+        return ""
+    parts = np.clip(shown["first_order"].sel(factor=measurable).transpose("point", ...), 0.0, 1.0)
+    said = [
+        f"the {measurable[of_point.argmax()].replace('_', ' ')} at {where}, "
+        f"by {percent(1.0 - np.sqrt(1.0 - of_point.max()))}"
+        for of_point, where in zip(parts.values, conditions, strict=True)
+    ]
+    return f"{_MEASURED} {'; '.join(said)}."
+
+
+CHOSEN_GROUPS = "film", "contact model"
+"""Groups of choices, which cannot be measured."""
+_MEASURED = (
+    "Of the quantities, this is the one that, if it were known exactly, would make the standard "
+    "deviation of the logarithm of the probability less than any other would:"
+)
 _UNITS = {"force": "N", "speed": "r/min", "temperature": "°C"}
 _WORDS = """
 ## What this does to the probability

@@ -3,6 +3,8 @@ import xarray as xr
 
 from lube.report.sensitivity import rests_on
 
+FIRST = [[0.19, 0.36, 0.51], [0.7, 0.5, 0.4], [0.0, 0.0, 0.0]]
+
 
 def dataset(**changes):
     forces = [100.0, 200.0, 400.0]
@@ -12,6 +14,8 @@ def dataset(**changes):
     effects = np.log([[2.0, 3.0, 4.0], [20.0, 30.0, 40.0], [1.01, 1.01, 1.01]])
     table = {
         "elementary_effect": (("factor", *dims), effects.reshape(3, 1, 1, 1, 3)),
+        "first_order": (("factor", *dims), np.reshape(FIRST, (3, 1, 1, 1, 3))),
+        "group_of_factor": ("factor", ["conditions", "contact model", "seed"]),
         "range_of_factor": ("factor", ["-1 K to 1 K", "line, surface", "any"]),
         "source_of_factor": ("factor", ["assumed", "the model", "the study's seed"]),
     }
@@ -43,3 +47,10 @@ def test_points_without_a_film_are_left_out():
     assert "400 N" not in "".join(rows) and "200 N" in "".join(rows)
     nothing = found.assign(elementary_effect=xr.full_like(unknown, np.nan))
     assert rests_on(nothing) == ""
+
+
+def test_what_to_measure_first_is_said_with_what_it_gains():
+    last = rests_on(dataset()).strip().splitlines()[-1]
+    assert "the temperature at 400 N, 85.71 r/min, 40 °C, by 30 %" in last
+    assert "the temperature at 100 N, 85.71 r/min, 40 °C, by 10 %" in last
+    assert "contact model" not in last
