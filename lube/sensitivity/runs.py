@@ -183,7 +183,9 @@ def run(
         return _probabilities(deviating, model, own, film)
 
     found = np.empty((len(unit), SEEDS))
-    each = on_threads(of_sample, of_samples, threads, "direct runs")
+    # Options of xarray are those of all threads: set here, none changes them for the others.
+    with xr.set_options(arithmetic_join="exact", keep_attrs=False):
+        each = on_threads(of_sample, of_samples, threads, "direct runs")
     for (runs, _), probabilities in zip(of_samples, each, strict=True):
         found[runs] = probabilities
     known = np.where(found > 0.0, found, np.nan)

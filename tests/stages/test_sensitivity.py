@@ -70,6 +70,11 @@ def test_runs_do_not_depend_on_the_number_of_threads(study, direct):
             np.testing.assert_array_equal(six_digits(found[name].values), expected[name])
 
 
+def test_runs_leave_xarrays_options_as_they_were(direct):
+    assert xr.get_options()["keep_attrs"] == "default"
+    assert xr.get_options()["arithmetic_join"] == "inner"
+
+
 def test_a_run_without_deviations_samples_what_the_study_samples(study):
     """Lines are shorter in a run, so the pairs are others."""
     factor = Uncertainty.model_validate({"force": {"range": "+- 1 %"} | SOURCE})
