@@ -7,9 +7,24 @@ from lube.report.key_tables import markdown_table
 from lube.report.pages import percent, rounded
 from lube.schema import POINT_DIMS
 from lube.sensitivity.samples import SEED
+from lube.study.uncertainty import spoken
 
-_SHARES = 0.9, 0.5, 0.1
+_PLACES = 0.9, 0.5, 0.1
 """Places of the operating points shown, in the order of their probability."""
+_CHOSEN_GROUPS = "film", "contact model"
+"""Groups of choices, which cannot be measured."""
+_MEASURED = (
+    "Of the quantities, this is the one that, if it were known exactly, would make the standard "
+    "deviation of the logarithm of the probability less than any other would:"
+)
+_UNITS = {"force": "N", "speed": "r/min", "temperature": "°C"}
+_WORDS = """
+## What this does to the probability
+
+By what the probability of breakthrough is multiplied, or divided, as each quantity goes through its
+range, or a choice is made otherwise: means over random values of all others, at three operating
+points (`sensitivity.nc`). Deviations are from the study's values.
+"""
 
 
 def rests_on(found: xr.Dataset) -> str:
@@ -31,7 +46,7 @@ def rests_on(found: xr.Dataset) -> str:
         return ""
     points = points.isel(point=known)
     order = np.argsort(points["breakthrough_probability_median"].values)
-    places = (np.array(_SHARES) * (order.size - 1)).round().astype(int)
+    places = (np.array(_PLACES) * (order.size - 1)).round().astype(int)
     shown = points.isel(point=order[places]).reset_index("point")
     factors = [name for name in shown["factor"].values.tolist() if name != SEED]
     strongest = shown["elementary_effect"].sel(factor=factors).mean("point")
@@ -45,7 +60,7 @@ def rests_on(found: xr.Dataset) -> str:
         one = shown.sel(factor=name)
         changes = [f"{rounded(change):g}" for change in np.exp(one["elementary_effect"].values)]
         words = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
-        rows.append((name.replace("_", " "), *words, *changes))
+        rows.append((spoken(name), *words, *changes))
     band = (
         f"{rounded(one['breakthrough_probability_lower']):g} to "
         f"{rounded(one['breakthrough_probability_upper']):g}"
@@ -59,29 +74,13 @@ def rests_on(found: xr.Dataset) -> str:
 def _to_measure(shown, factors, conditions):
     """Say which quantity, if it were known, would narrow the band most."""
     groups = shown["group_of_factor"].sel(factor=factors)
-    measurable = groups["factor"][~groups.isin(CHOSEN_GROUPS)].values
+    measurable = groups["factor"][~groups.isin(_CHOSEN_GROUPS)].values
     if measurable.size == 0:
         return ""
     parts = np.clip(shown["first_order"].sel(factor=measurable).transpose("point", ...), 0.0, 1.0)
     said = [
-        f"the {measurable[of_point.argmax()].replace('_', ' ')} at {where}, "
+        f"the {spoken(measurable[of_point.argmax()])} at {where}, "
         f"by {percent(1.0 - np.sqrt(1.0 - of_point.max()))}"
         for of_point, where in zip(parts.values, conditions, strict=True)
     ]
     return f"{_MEASURED} {'; '.join(said)}."
-
-
-CHOSEN_GROUPS = "film", "contact model"
-"""Groups of choices, which cannot be measured."""
-_MEASURED = (
-    "Of the quantities, this is the one that, if it were known exactly, would make the standard "
-    "deviation of the logarithm of the probability less than any other would:"
-)
-_UNITS = {"force": "N", "speed": "r/min", "temperature": "°C"}
-_WORDS = """
-## What this does to the probability
-
-By what the probability of breakthrough is multiplied, or divided, as each quantity goes through its
-range, or a choice is made otherwise: means over random values of all others, at three operating
-points (`sensitivity.nc`). Deviations are from the study's values.
-"""

@@ -72,7 +72,8 @@ def sobol(
     values = predict(design(problem, base_samples))
     keys = {"first_order": "S1", "first_order_error": "S1_conf"}
     keys |= {"total_effect": "ST", "total_effect_error": "ST_conf"}
-    options = {"calc_second_order": False, "num_resamples": RESAMPLES, "seed": seed}
+    # SALib takes a seed of 0 for none.
+    options = {"calc_second_order": False, "num_resamples": RESAMPLES, "seed": seed + 1}
     sizes = len(dict.fromkeys(groups)) if groups else len(names)
 
     def of_point(column):

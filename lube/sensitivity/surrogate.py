@@ -20,6 +20,7 @@ from lube.types import Array
 SMOOTHING = 0.1
 """How much less than exactly runs are met, since they are not exact either."""
 LEAST_WEIGHT = 1e-4
+"""Weight of runs in which contact is certain, so that their quantile counts for nothing."""
 
 
 def held_out(count: int) -> int:
@@ -35,7 +36,7 @@ def groups(deviating: Deviating, film: xr.Dataset, values: dict, is_shaped: bool
     deviating : Deviating
         The study.
     film : xarray.Dataset
-        From `Deviating.film`.
+        From `lube.sensitivity.conditions.joined`.
     values : dict of str to xarray.DataArray
         From `lube.sensitivity.samples.deviations`.
     is_shaped : bool
@@ -171,7 +172,8 @@ class Surrogate:
         Returns
         -------
         Surrogate
-            Fitted to all runs; its errors are those of a fit to all but the last ones.
+            Fitted to all runs; its errors are those of a fit to all but the last ones. Those of a
+            sum are those at all runs.
         """
         known = np.isfinite(probability).all(axis=1)
         variables, probability = variables[:, known], probability[known]

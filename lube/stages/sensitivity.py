@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS, label
 from lube.sensitivity.conditions import Deviating
@@ -24,17 +25,19 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     factor, too: what it does is noise, and smaller indices than its own mean nothing.
     """
     deviating = Deviating.of(study)
-    predictor = Predictor.of(deviating, inputs["sensitivity_runs"])
     factors = deviating.factors
     names = [*(factor.name for factor in factors), SEED]
     of_factor = [*(factor.group for factor in factors), SEED]
-    predict = predictor.log_probability
     sizes = [len(each) for each in deviating.levels.values()]
 
-    single, values = sobol(names, predict, study.seed)
-    grouped, _ = sobol(names, predict, study.seed, of_factor)
+    with one_blas_thread():  # the number of threads would change the last digits
+        predictor = Predictor.of(deviating, inputs["sensitivity_runs"])
+        sampled = names, predictor.log_probability, study.seed
+        single, values = sobol(*sampled)
+        grouped, _ = sobol(*sampled, of_factor)
+        screened = morris(*sampled)
     table = _limits(single, "factor") | _limits(grouped, "factor_group", "group_")
-    table |= _limits(morris(names, predict, study.seed), "factor")
+    table |= _limits(screened, "factor")
     with np.errstate(invalid="ignore"):
         lower, median, upper = np.exp(np.quantile(values, BAND, axis=0))
     table |= {

@@ -6,7 +6,7 @@ group.
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Generic, Literal, TypeVar
 
@@ -150,6 +150,17 @@ class Factor:
         return isinstance(self.given, Choice)
 
 
+def spoken(name: str) -> str:
+    """Write the name of a factor as in a text.
+
+    Examples
+    --------
+    >>> spoken("young_modulus")
+    "Young's modulus"
+    """
+    return name.replace("_", " ").replace("hurst", "Hurst").replace("young", "Young's")
+
+
 def _of(group):
     """Say to which group a field belongs."""
     return Field(None, json_schema_extra={"group": group})
@@ -197,12 +208,11 @@ class Uncertainty(StrictModel):
 
     def factors(self) -> list[Factor]:
         """Return all factors that are given, in the order of the keys above."""
-        return list(self._given())
-
-    def _given(self) -> Iterator[Factor]:
-        for name, field in type(self).model_fields.items():
-            if (given := getattr(self, name)) is not None:
-                yield Factor(name, field.json_schema_extra["group"], given)
+        return [
+            Factor(name, field.json_schema_extra["group"], given)
+            for name, field in type(self).model_fields.items()
+            if (given := getattr(self, name)) is not None
+        ]
 
 
 def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:
