@@ -71,6 +71,14 @@ rule sensitivity:
         f"Done: sensitivity.nc and its figure are in {RESULTS}"
 
 
+rule verification:
+    """The study's methods against theory, other methods and print."""
+    input:
+        products(made_by("verification", FIGURES)),
+    message:
+        f"Done: verification.nc and its figure are in {RESULTS}"
+
+
 rule benchmark:
     """Measured times and coverage of intervals."""
     input:

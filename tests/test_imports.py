@@ -28,7 +28,7 @@ FLOORS = [
     {"grid"},
     {"study"},
     {"contact"},
-    {"rig", "inference", "sensitivity", "storage"},
+    {"rig", "inference", "sensitivity", "verification", "storage"},
     {"recordings"},
     {"stages"},
     {"report"},

@@ -340,6 +340,16 @@ _ROWS = (
         parallel=True,
     ),
     Stage(
+        "verification",
+        "methods against theory, other methods and print, some 20 seconds",
+        inputs=("lubricant",),
+        values=_LINES | _LAYER,
+        same_values=("film",),
+        target="verification",
+        only_with=("is_sampled", *_LINE),
+        parallel=True,
+    ),
+    Stage(
         "coverage",
         "how often intervals contain the true value for new rollers, about 30 minutes",
         values=_named("realisations"),

@@ -14,8 +14,8 @@ from snakemake.settings import types
 
 from lube.stages import load_study
 
-TARGETS = "all areal_contact patch_contact computed rough_passage sensitivity benchmark".split()
-TARGETS += ["archive", "report"]
+TARGETS = "all areal_contact patch_contact computed rough_passage sensitivity".split()
+TARGETS += ["verification", "benchmark", "archive", "report"]
 
 
 def followers(study):

@@ -133,12 +133,12 @@ def changed_stages(paper_with):
 MECHANICS = {"contact", "tail", "areal", "trace", "surface_trace", "experiment"}
 MECHANICS |= {"sensitivity_runs"}
 # Those that are for pure rolling too.
-LAYER = MECHANICS | {"master", "height_distribution", "variants", "passage"}
+LAYER = MECHANICS | {"master", "height_distribution", "variants", "passage", "verification"}
 DEFORMED = {"variants", "height_distribution"}
 LINES = LAYER | {"roughness", "patch"}
 SPECTRUM = LINES | {"surface", "film_response", "surface_response"}
 SLIDING = {"film", "film_response", "surface_response", "passage"}
-SENSITIVITY = "sensitivity_runs", "sensitivity"
+SENSITIVITY = "sensitivity_runs", "sensitivity", "verification"
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 
 

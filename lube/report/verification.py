@@ -1,0 +1,51 @@
+"""Outcomes of a study's checks, as a table."""
+
+import xarray as xr
+
+from lube.report.key_tables import markdown_table
+
+_HEADINGS = "", "computed", "compared with", "deviation", "passes up to", "source"
+_NUMBERS = "check_deviation", "check_allowed"
+_KINDS = {
+    "exact": "Exact theory and identities",
+    "method": "Other methods",
+    "same": "The same calculation, divided or arranged otherwise",
+    "print": "Printed numbers and fits of others",
+    "grid": "Other grids",
+}
+
+
+def outcomes(found: xr.Dataset) -> str:
+    """Tabulate the checks of a study, by their kind.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        A ``verification`` dataset.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    parts = []
+    for kind, words in _KINDS.items():
+        some = found.isel(check=found["check_kind"].values == kind)
+        rows = [_row(some.sel(check=number)) for number in some["check"].values]
+        if rows:
+            parts.append(f"**{words}**\n\n{markdown_table(_HEADINGS, rows)}")
+    return "\n\n".join(parts)
+
+
+def _row(one):
+    unit = one["check_unit"].item()
+    is_judged = one["check_allowed"].notnull().item()
+    texts = (one[f"check_{name}"].item() for name in ("subject", "against"))
+    deviation, allowed = (_with_unit(one[name].item(), unit) for name in _NUMBERS)
+    failed = "" if one["check_outcome"].item() else " (**differs**)"
+    number, source = f"{one['check'].item()}", one["check_source"].item()
+    return number, *texts, deviation + failed, allowed if is_judged else "", source
+
+
+def _with_unit(value, unit):
+    return f"{value:.2g} {unit}" if value else f"0 {unit}"

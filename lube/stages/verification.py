@@ -1,0 +1,101 @@
+"""The verification stage: the study's methods against theory, other methods and print."""
+
+import numpy as np
+import xarray as xr
+
+from lube.grid.film_profiles import six_digits
+from lube.grid.films import FilmGroups, hertz_contact
+from lube.schema import label, values_with_limits
+from lube.statistics.confidence import mean_interval
+from lube.study.study import Study
+from lube.types import Datasets
+from lube.verification.check import Check
+from lube.verification.films import film_checks, response
+from lube.verification.lines import (
+    COUNTED,
+    FEW,
+    LAMBDA_RATIOS,
+    curves,
+    line_checks,
+    on_grids,
+    scaled_checks,
+)
+from lube.verification.surfaces import surface_checks
+
+_TEXTS = "subject", "against", "kind", "unit", "source"
+_NUMBERS = "seen", "allowed"
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``verification.nc``; see `lube.stages`.
+
+    The checks are made with the study's lines, layer, rollers and oils. Its film has the shape and
+    its roughness the deformation of the paper, flat and none.
+    """
+    found, waves = curves(study, threads), response()
+    checks = line_checks(study, found, threads) + scaled_checks(study, inputs["lubricant"])
+    checks += surface_checks(study, threads) if study.line_spec.is_isotropic else []
+    checks += film_checks(_contact(study, inputs["lubricant"]), waves)
+    on_others = on_grids(study, threads)
+    table = _outcomes(checks) | _curves(found) | _on_grids(on_others)
+    table["response"] = "response_wavelength", six_digits(waves.computed)
+    table["printed_response"] = "response_wavelength", waves.printed
+    coordinates = {
+        "check": np.arange(1, len(checks) + 1),
+        "lambda_ratio": LAMBDA_RATIOS,
+        "grid": list(on_others),
+        "grid_lambda_ratio": LAMBDA_RATIOS[FEW],
+        "response_wavelength": waves.wavelength,
+    }
+    return label(xr.Dataset(table, coordinates), "verification")
+
+
+def _contact(study, lubricant):
+    """Line contact at the middle of the study's levels."""
+    grid, rollers = study.operating_grid, study.rough_rollers
+    force, speed = (sorted(levels)[len(levels) // 2] for levels in (grid.force, grid.speed))
+    oil = lubricant.isel(lubricant=0, temperature=lubricant.sizes["temperature"] // 2)
+    contact = hertz_contact(rollers, force, speed)
+    meniscus = study.film_model["inlet_meniscus"]
+    return FilmGroups.at(oil, rollers, force, contact, meniscus).profiles.item().contact
+
+
+def _outcomes(checks: list[Check]) -> dict:
+    table = {f"check_{name}": ("check", [getattr(one, name) for one in checks]) for name in _TEXTS}
+    seen, allowed = (np.array([getattr(one, name) for one in checks]) for name in _NUMBERS)
+    table["check_deviation"] = "check", six_digits(seen)
+    table["check_allowed"] = "check", allowed
+    # 2 where nothing is demanded.
+    table["check_outcome"] = (
+        "check",
+        np.where(np.isnan(allowed), 2, seen <= allowed).astype(np.int8),
+    )
+    return table
+
+
+def _curves(found):
+    table = {"touching_bound": ("lambda_ratio", six_digits(found.bound))}
+    for way in ("counted", "sampled"):
+        for number, name in enumerate(COUNTED):
+            limits = mean_interval(getattr(found, way)[..., number], 1.0)
+            digits = [("lambda_ratio", six_digits(each)) for each in limits]
+            table |= values_with_limits(f"{way}_{name}", digits)
+    return table
+
+
+def _on_grids(found):
+    """Ratios to the study's own probabilities; all grids have the same random numbers."""
+    own, dims = next(iter(found.values())), ("grid", "grid_lambda_ratio")
+    ratios, errors = [], []
+    for each in found.values():
+        ratio = each.mean(axis=0) / own.mean(axis=0)
+        scatter = (each - ratio * own).std(axis=0, ddof=1) / np.sqrt(len(own))
+        ratios.append(ratio)
+        errors.append(1.96 * scatter / own.mean(axis=0))
+    ratio, error = np.array(ratios), np.array(errors)
+    table = {}
+    for number, name in enumerate(COUNTED):
+        ends = (ratio, ratio - error, ratio + error)
+        limits = [(dims, six_digits(each[..., number])) for each in ends]
+        table |= values_with_limits(f"{name}_ratio", limits)
+    return table

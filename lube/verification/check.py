@@ -1,0 +1,79 @@
+"""One check, and how its outcome is written."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from lube.types import Array
+
+
+@dataclass(frozen=True)
+class Check:
+    """What was compared, with what, and how far they differ.
+
+    Attributes
+    ----------
+    subject : str
+        What was computed.
+    against : str
+        With what it was compared.
+    kind : str
+        One of `KINDS`.
+    seen, allowed : float
+        The deviation that was seen, and the greatest that passes; NaN if the deviation is a
+        property of the grid or the model, of which nothing is demanded.
+    unit : str
+        Unit of both: ``%``, ``standard errors`` or ``values``, a number of values that differ.
+    source : str
+        Equation or reference behind it.
+    """
+
+    subject: str
+    against: str
+    kind: str
+    seen: float
+    allowed: float
+    unit: str
+    source: str
+
+
+class Kind(NamedTuple):
+    """Kind of a check, in words."""
+
+    name: str
+    words: str
+
+
+KINDS = (
+    Kind("exact", "exact theory or identity"),
+    Kind("method", "another method for the same number"),
+    Kind("same", "the same calculation, divided or arranged otherwise"),
+    Kind("print", "printed numbers of others"),
+    Kind("grid", "another grid or band of wavelengths"),
+)
+"""Kinds of checks."""
+
+
+def percent_off(found: Array | float, expected: Array | float) -> float:
+    """Largest relative deviation, per cent."""
+    return float(100.0 * np.max(np.abs(np.asarray(found) / expected - 1.0)))
+
+
+def errors_apart(first: Array, second: Array) -> float:
+    """Largest distance of two means over independent samples, in standard errors.
+
+    Parameters
+    ----------
+    first, second : numpy.ndarray
+        Shape (samples, values); places where either does not scatter are left out.
+
+    Returns
+    -------
+    float
+        The largest over the values.
+    """
+    variance = sum(each.var(axis=0, ddof=1) / len(each) for each in (first, second))
+    scatters = variance > 0.0
+    apart = np.abs(first.mean(axis=0) - second.mean(axis=0))[scatters]
+    return float(np.max(apart / np.sqrt(variance[scatters]), initial=0.0))

@@ -1,0 +1,418 @@
+"""Checks of contact on rough lines."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import scipy.special
+import xarray as xr
+
+from lube.contact.counted import contact_at
+from lube.contact.rough_pair import roughness_batch
+from lube.contact.windows import ContactWindows
+from lube.grid.discretise import layer_factor_of
+from lube.grid.films import film_at
+from lube.grid.levels import rolling
+from lube.kernels.layer import layer_breaks
+from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
+from lube.study.line_spec import LineSpec
+from lube.study.study import Study
+from lube.surfaces.spectra import pair_moments
+from lube.surfaces.synthetic import draw_realisation
+from lube.threads import on_threads
+from lube.types import Array
+from lube.verification.check import Check, errors_apart, percent_off
+
+PAIRS = 40
+"""Pairs of lines on which contact is counted, and others on which it is sampled."""
+LAMBDA_RATIOS = np.arange(1.0, 8.5, 0.5)
+"""Lambda ratios of the curves."""
+FEW = np.flatnonzero(np.isin(LAMBDA_RATIOS, (1.0, 2.0, 3.0, 4.0)))
+"""Those at which the slower checks are made."""
+SLIP = 0.5
+CROSSED = np.array([1.0, 2.0, 3.0])
+"""Levels at which crossings are counted, over the rms height."""
+COUNTED = "geometric_contact_probability", "breakthrough_probability"
+STEPS = 400
+"""Time steps at which whole windows are looked at, one by one."""
+GRIDS = {
+    "the study's": (1, 1.0),
+    "twice the points": (2, 1.0),
+    "four times the points": (4, 1.0),
+    "shortest wave twice as long": (1, 0.5),
+    "twice as long, twice the points": (2, 0.5),
+    "half as long, twice the points": (2, 2.0),
+}
+"""Other grids: factors of the number of points, and of the largest wavenumber."""
+
+
+class Curves(NamedTuple):
+    """Probabilities over the lambda ratio.
+
+    Attributes
+    ----------
+    counted, sampled : numpy.ndarray
+        Shape (pairs, lambda ratios, 2): of touching, and of a breakthrough.
+    runs : numpy.ndarray
+        Sampled numbers of runs of touching points, and of those that break, per length, of the same
+        shape, 1/m.
+    bound : numpy.ndarray
+        Expected number of runs in a window, which the probability of touching tends to from below
+        as the film rises; shape (lambda ratios,).
+    """
+
+    counted: Array
+    sampled: Array
+    runs: Array
+    bound: Array
+
+
+def films_of(study: Study, rms: float, ratios: Array) -> xr.Dataset:
+    """Flat films of some lambda ratios, at the contact width of the study's middle force."""
+    forces = study.operating_grid.force
+    half_width = study.rollers.contact_half_width(sorted(forces)[len(forces) // 2])
+    return xr.Dataset(
+        {
+            "film_thickness": ("lambda_ratio", ratios * rms),
+            "contact_half_width": half_width,
+            "reduced_modulus": study.rollers.reduced_modulus,
+        }
+    )
+
+
+def curves(study: Study, threads: int | None) -> Curves:
+    """Count and sample contact on independent pairs of lines, and compute what theory expects."""
+    spec, windows = study.line_spec, _windows(study)
+
+    def counted(number):
+        return windows.count(draw_realisation(spec, study.seed, number))[:, :2]
+
+    def sampled(number):
+        return np.concatenate(windows.sample(spec, study.seed, number))[:4].T
+
+    moments = pair_moments(spec)
+    level = windows.thickness * spec.height_step
+    width = 2.0 * windows.half_windows * spec.spacing
+    bound = scipy.special.ndtr(-level / math.sqrt(moments[0]))
+    bound = bound + width * crossing_rate(level, moments)
+    counts, samples = (
+        np.array(on_threads(one, range(PAIRS), threads)) for one in (counted, sampled)
+    )
+    return Curves(counts, samples[..., :2], samples[..., 2:] / spec.spacing, bound)
+
+
+def _windows(study, spec=None, ratios=LAMBDA_RATIOS):
+    spec = spec or study.line_spec
+    film = films_of(study, math.hypot(*study.line_spec.rms_height), ratios)
+    return ContactWindows(spec, film, study.boundary_layer)
+
+
+def line_checks(study: Study, found: Curves, threads: int | None) -> list[Check]:
+    """Make all checks of lines.
+
+    Parameters
+    ----------
+    study : Study
+        A study with Gaussian lines.
+    found : Curves
+        From `curves`.
+    threads : int, optional
+        Threads that share the work.
+
+    Returns
+    -------
+    list of Check
+        Their outcomes.
+    """
+    spec = study.line_spec
+    pairs = on_threads(lambda number: draw_realisation(spec, study.seed, number), range(PAIRS))
+    windows = _windows(study)
+    seen = (found.counted > 0.0).mean(axis=0) > 0.5
+    level = windows.thickness * spec.height_step
+    moments = pair_moments(spec)
+    runs, broken = np.moveaxis(found.runs.mean(axis=0), 1, 0)
+    sharp = sharp_summit_share(level, moments, _curvature_limit(study))
+    rises = np.diff(np.abs(broken / runs - sharp))[FEW[-1] :] > 0.0
+    return [
+        Check(
+            "probabilities of touching and of breakthrough, counted",
+            "importance sampling on other lines",
+            "method",
+            errors_apart(found.counted[:, seen], found.sampled[:, seen]),
+            3.5,
+            "standard errors",
+            "Adler, Blanchet and Liu 2012",
+        ),
+        Check(
+            f"runs of touching points, sampled, lambda ratios {LAMBDA_RATIOS[0]:g} to "
+            f"{LAMBDA_RATIOS[-1]:g}",
+            "rate of upward crossings",
+            "exact",
+            percent_off(runs, crossing_rate(level, moments)),
+            5.0,
+            "%",
+            "Rice 1944",
+        ),
+        Check(
+            "part of the runs that break, sampled",
+            "part of the summits that are sharp enough, to which it must come closer as films rise",
+            "exact",
+            float(np.sum(rises)),
+            0.0,
+            "values",
+            "Rice 1945, for high films",
+        ),
+        Check(
+            "probability of touching, sampled",
+            "expected number of runs in the window, which it must not exceed",
+            "exact",
+            float(np.sum(found.sampled[..., 0].mean(axis=0) > found.bound)),
+            0.0,
+            "values",
+            "Boole's inequality",
+        ),
+        _crossings(spec, pairs),
+        _rms(spec, pairs),
+        _curvature(study),
+        _whole_windows(study, pairs[0], windows),
+        _slip(found, pairs, windows, threads),
+        _time_steps(pairs, windows),
+        _batches(study),
+    ]
+
+
+def _curvature_limit(study):
+    layer = study.boundary_layer
+    strengths = layer.critical_thickness, layer.shear_strength
+    return breaking_curvature(study.rollers.reduced_modulus, *strengths)
+
+
+def _rms(spec, pairs):
+    drawn = [[line.std() * spec.height_step for line in pair] for pair in pairs]
+    return Check(
+        "rms height of the lines as drawn",
+        "the study's rms height",
+        "exact",
+        percent_off(drawn, spec.rms_height),
+        1e-3,
+        "%",
+        "amplitudes are fixed",
+    )
+
+
+def _crossings(spec, pairs):
+    """Compare the runs above some levels with Rice's rate."""
+    moments = pair_moments(spec)
+    rms = math.sqrt(moments[0]) / spec.height_step
+    counts = []
+    for first, second in pairs:
+        line = first + np.resize(second, first.size)
+        above = line > (CROSSED * rms)[:, None]
+        counts.append(np.count_nonzero(above & ~np.roll(above, 1, axis=1), axis=1))
+    rate = np.mean(counts, axis=0) / (spec.points[0] * spec.spacing)
+    return Check(
+        "runs of points above 1, 2 and 3 rms heights, per length",
+        "rate of upward crossings",
+        "exact",
+        percent_off(rate, crossing_rate(CROSSED * rms * spec.height_step, moments)),
+        3.0,
+        "%",
+        "Rice 1944",
+    )
+
+
+def _curvature(study):
+    """Compare the curvature at which a parabolic summit breaks with theory."""
+    spec, layer = study.line_spec, study.boundary_layer
+    factor = layer_factor_of(spec, study.rollers.reduced_modulus, layer)
+    points = 20_001
+    distance = spec.spacing * (np.arange(points) - points // 2)
+    parabola = 0.5 * (distance[-1] ** 2 - distance**2) / spec.height_step
+
+    least, most = 1e-6, 1e9
+    for _ in range(100):
+        middle = math.sqrt(least * most)
+        breaks = layer_breaks(points, (middle * parabola).sum(), factor)
+        least, most = (least, middle) if breaks else (middle, most)
+    return Check(
+        "curvature at which the layer on a parabolic summit breaks",
+        "pi tau0 / (E* h_c)",
+        "exact",
+        percent_off(most, _curvature_limit(study)),
+        0.1,
+        "%",
+        "paper, Eqs. 5 and 6",
+    )
+
+
+def _whole_windows(study, pair, windows):
+    """Compare traces with whole windows, looked at point by point."""
+    factor = layer_factor_of(study.line_spec, study.rollers.reduced_modulus, study.boundary_layer)
+    some = windows[FEW]
+    traced = some.trace(pair)
+    steps = np.random.default_rng(study.seed).integers(traced.shape[1], size=STEPS)
+    wrong = 0
+    for row, (film, half, *_) in enumerate(some.keys):
+        around = np.arange(-half, half + 1)
+        for step in steps.tolist():
+            heights = sum(line.take(step + around, mode="wrap").astype(np.int64) for line in pair)
+            wrong += traced[row, step] != _broken(heights - film, factor)
+    return Check(
+        f"broken points at {STEPS} time steps, by the fast kernel",
+        "every point of the whole window, one by one",
+        "same",
+        float(wrong),
+        0.0,
+        "values",
+        "paper, section 2",
+    )
+
+
+def _broken(overlap, factor):
+    """Count the points of broken runs in a window."""
+    edges = np.flatnonzero(np.diff(overlap > 0, prepend=False, append=False))
+    runs = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+    return sum(b - a for a, b in runs if layer_breaks(b - a, int(overlap[a:b].sum()), factor))
+
+
+def _slip(found, pairs, windows, threads):
+    """Compare the probability with slip on some pairs with that without, on others."""
+    half = PAIRS // 2
+    some = windows[FEW]
+    slipping = on_threads(lambda pair: some.count(pair, SLIP)[:, :2], pairs[:half], threads)
+    return Check(
+        f"probability at a slide-to-roll ratio of {SLIP:g}",
+        "pure rolling, on other lines",
+        "exact",
+        errors_apart(
+            np.reshape(slipping, (half, -1)), found.counted[half:, FEW].reshape(PAIRS - half, -1)
+        ),
+        3.5,
+        "standard errors",
+        "stationary lines",
+    )
+
+
+def _time_steps(pairs, windows):
+    """Compare a tenth of a window between time steps with every step."""
+    some, shares = windows[FEW[:3]], []
+    for pair in pairs[:8]:
+        touching = some.trace(pair) > 0
+        stride = max(1, 2 * some.half_windows[0] // 10)
+        shares.append([touching.mean(axis=1), touching[:, ::stride].mean(axis=1)])
+    every, few = np.mean(shares, axis=0)
+    return Check(
+        "probability of breakthrough at ten time steps a contact width",
+        "every time step, on the same lines",
+        "grid",
+        percent_off(few, every),
+        3.0,
+        "%",
+        "lambda ratios 1 to 3",
+    )
+
+
+def _batches(study):
+    """Compare a realisation in a batch of two with the same realisation alone."""
+    film = films_of(study, math.hypot(*study.line_spec.rms_height), LAMBDA_RATIOS)
+    batches = (roughness_batch(study.line_spec, study.seed, some) for some in ([0, 1], [1]))
+    two, alone = (contact_at(batch, film, study.boundary_layer) for batch in batches)
+    pairs = [(two[name].sel(realisation=1), alone[name].sel(realisation=1)) for name in COUNTED]
+    return Check(
+        f"contact at {LAMBDA_RATIOS.size} films, in a batch of two realisations",
+        "the realisation alone",
+        "same",
+        float(sum(np.sum(first.values != second.values) for first, second in pairs)),
+        0.0,
+        "values",
+        "seed and number alone decide",
+    )
+
+
+def scaled_checks(study: Study, lubricant: xr.Dataset) -> list[Check]:
+    """Compare rollers with rollers twice as long, under twice the force.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    lubricant : xarray.Dataset
+        Its ``lubricant`` dataset.
+
+    Returns
+    -------
+    list of Check
+        Film and contact width are the same, so the probability is.
+    """
+    rollers, grid = study.rough_rollers, study.operating_grid
+    axes = xr.Dataset(coords={"force": list(grid.force), "speed": list(grid.speed)})
+    films, counts = [], []
+    for times in (1.0, 2.0):
+        longer = rollers.model_copy(update={"length": times * rollers.length})
+        film = film_at(
+            *(lubricant, longer, times * axes["force"], axes["speed"], study.film_formulas[:1]),
+            slide_to_roll_ratio=rolling(study.slips),
+            inlet_shear_heating=study.inlet_shear_heating,
+            inlet_meniscus=study.film_model["inlet_meniscus"],
+        )
+        windows = ContactWindows(study.line_spec, film, study.boundary_layer)
+        films.append(np.append(windows.thickness, windows.half_windows))
+        counts.append(windows.count(draw_realisation(study.line_spec, study.seed, 0))[:, 1])
+    known = np.isfinite(films[0])
+    wrong = np.sum(~np.isclose(*counts, rtol=1e-3, atol=1e-6, equal_nan=True))
+    longer = "rollers twice as long under twice the force"
+    return [
+        Check(
+            "films and contact widths at all operating points",
+            longer,
+            "exact",
+            percent_off(films[1][known], films[0][known]),
+            1e-6,
+            "%",
+            "only force over length counts",
+        ),
+        Check(
+            "probability of breakthrough at all operating points",
+            longer,
+            "exact",
+            float(wrong),
+            0.0,
+            "values",
+            "film and contact width alone decide",
+        ),
+    ]
+
+
+def on_grids(study: Study, threads: int | None) -> dict[str, Array]:
+    """Sample contact on lines with more points, and with narrower and wider bands.
+
+    Returns
+    -------
+    dict of str to numpy.ndarray
+        For each of `GRIDS` that the lines can have, the probabilities of touching and of a
+        breakthrough, shape (pairs, lambda ratios, 2), at the lambda ratios of `FEW`.
+    """
+    found = {}
+    for name, (points, wider) in GRIDS.items():
+        if all(_can_have(line, wider) for line in study.line_spec.lines):
+            spec = _other_grid(study.line_spec, points, wider)
+            windows = _windows(study, spec, LAMBDA_RATIOS[FEW])
+
+            def sampled(number, windows=windows, spec=spec):
+                return windows.sample(spec, study.seed, number)[0].T
+
+            found[name] = np.array(on_threads(sampled, range(PAIRS), threads))
+    return found
+
+
+def _can_have(line, wider):
+    """Whether a line has waves left in a narrower band, and known ones in a wider band."""
+    return wider * line.q_max > 1.1 * line.q_roll_off and (wider <= 1.0 or line.spectrum is None)
+
+
+def _other_grid(spec: LineSpec, points: int, wider: float) -> LineSpec:
+    lines = tuple(
+        line.model_copy(update={"points": points * line.points, "q_max": wider * line.q_max})
+        for line in spec.lines
+    )
+    return spec.model_copy(update={"lines": lines, "spacing": spec.spacing / points})

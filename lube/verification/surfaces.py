@@ -1,0 +1,143 @@
+"""Checks of the surfaces that the lines stand for."""
+
+import numpy as np
+import scipy.ndimage
+import scipy.sparse.csgraph
+
+from lube.contact.strip_film import surface_moments
+from lube.physics.excursions import expected_contacts
+from lube.study.study import Study
+from lube.surfaces.rough_surface import rough_surface
+from lube.threads import on_threads
+from lube.types import Array
+from lube.verification.check import Check, errors_apart, percent_off
+
+SURFACES = 16
+LEVELS = np.array([2.0, 2.5, 3.0])
+"""Levels at which contacts are counted, over the rms height."""
+
+
+def surface_checks(study: Study, threads: int | None) -> list[Check]:
+    """Make all checks of surfaces.
+
+    Parameters
+    ----------
+    study : Study
+        A study whose lines stand for surfaces.
+    threads : int, optional
+        Threads that share the work.
+
+    Returns
+    -------
+    list of Check
+        Their outcomes.
+    """
+    spec = study.line_spec
+    surface, moments = rough_surface(spec), surface_moments(spec)
+    rms = np.sqrt(moments.height)
+    levels = LEVELS * rms
+
+    def drawn(number):
+        heights, *_ = surface.draw(np.random.default_rng((study.seed, number)))
+        above = [heights > level / spec.height_step for level in levels]
+        return heights.std(), [[euler_characteristic(one), contact_count(one)] for one in above]
+
+    heights, counts = zip(*on_threads(drawn, range(SURFACES), threads), strict=True)
+    squares = (np.array(heights) * spec.height_step) ** 2
+    characteristic, contacts = np.moveaxis(np.array(counts), 2, 0)
+    # The surface closes on itself, so it has no sides: the part that grows with the area is left.
+    (down, along), none = surface.sides, 0.0
+    expected = sum(
+        sign * expected_contacts(levels, moments, *sides)
+        for sign, sides in (
+            *((1, (down, along)), (-1, (down, none))),
+            *((-1, (none, along)), (1, (none, none))),
+        )
+    )
+    said = ", ".join(f"{level:g}" for level in LEVELS)
+    return [
+        Check(
+            "mean square height of drawn surfaces",
+            "that of both lines together",
+            "exact",
+            errors_apart(squares[:, None], np.full((SURFACES, 1), moments.height)),
+            3.5,
+            "standard errors",
+            "C1D = pi q C2D",
+        ),
+        Check(
+            f"Euler characteristic of the parts above {said} rms heights, counted",
+            "its expected value",
+            "exact",
+            errors_apart(characteristic, np.broadcast_to(expected, characteristic.shape)),
+            3.5,
+            "standard errors",
+            "Adler and Taylor 2007",
+        ),
+        Check(
+            f"contacts above {LEVELS[-1]:g} rms heights, counted",
+            "expected Euler characteristic",
+            "method",
+            percent_off(contacts[:, -1].mean(), expected[-1]),
+            np.nan,
+            "%",
+            "Adler and Taylor 2007, for high films",
+        ),
+    ]
+
+
+def euler_characteristic(above: Array) -> int:
+    """Count the contacts less the holes in them, on a rectangle that closes on itself.
+
+    Parameters
+    ----------
+    above : numpy.ndarray of bool
+        Points above a level.
+
+    Returns
+    -------
+    int
+        Points, less pairs of neighbours, and squares of four points, all of them above.
+
+    Examples
+    --------
+    >>> ring = np.zeros((5, 5), bool)
+    >>> ring[1:4, 1:4] = True
+    >>> euler_characteristic(ring)
+    1
+    >>> ring[2, 2] = False
+    >>> euler_characteristic(ring)
+    0
+    """
+    down, along = (above & np.roll(above, -1, axis) for axis in (0, 1))
+    squares = down & np.roll(down, -1, 1)
+    points, pairs, fours = map(np.count_nonzero, (above, np.stack([down, along]), squares))
+    return points - pairs + fours
+
+
+def contact_count(above: Array) -> int:
+    """Count the contacts, on a rectangle that closes on itself.
+
+    Parameters
+    ----------
+    above : numpy.ndarray of bool
+        Points above a level.
+
+    Returns
+    -------
+    int
+        Groups of neighbouring points.
+
+    Examples
+    --------
+    >>> contact_count(np.eye(3, dtype=bool)), contact_count(np.array([[True, False, True]]))
+    (3, 1)
+    """
+    labels, count = scipy.ndimage.label(above)
+    # Groups that are joined across a side count once.
+    pairs = [each[:, (each > 0).all(axis=0)] for each in (labels[[0, -1]], labels[:, [0, -1]].T)]
+    joined = scipy.sparse.coo_array(
+        (np.ones(sum(each.shape[1] for each in pairs)), np.concatenate(pairs, axis=1)),
+        shape=(count + 1, count + 1),
+    )
+    return scipy.sparse.csgraph.connected_components(joined, directed=False)[0] - 1

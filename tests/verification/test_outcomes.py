@@ -1,0 +1,102 @@
+"""The checks of a small study: all pass on a fine grid, and what is wrong is found."""
+
+import numpy as np
+import pytest
+from studies import CONFIG, ROOT
+
+from lube.report.verification import outcomes
+from lube.stages import verification
+from lube.stages.lubricant import make as make_lubricant
+from lube.study.study import load_study
+from lube.verification import check, lines, surfaces
+from lube.verification.check import errors_apart, percent_off
+
+
+def found_in(study):
+    return verification.make(study, {"lubricant": make_lubricant(study, {})}, threads=2)
+
+
+@pytest.fixture(scope="module")
+def few():
+    patch = pytest.MonkeyPatch()
+    patch.setattr(lines, "PAIRS", 12)
+    patch.setattr(surfaces, "SURFACES", 8)
+    yield
+    patch.undo()
+
+
+@pytest.fixture(scope="module")
+def study():
+    own = load_study(CONFIG / "smoke.yaml")
+    roughness = own.roughness.model_copy(update={"points": 400_000})
+    return own.model_copy(update={"roughness": roughness})
+
+
+@pytest.fixture(scope="module")
+def found(few, study):
+    return found_in(study)
+
+
+def test_all_checks_pass_on_a_fine_grid(found):
+    wrong = found["check_subject"].values[found["check_outcome"].values == 0]
+    assert wrong.tolist() == []
+    assert set(found["check_kind"].values) == {kind.name for kind in check.KINDS}
+
+
+def test_a_grid_that_is_too_coarse_does_not_pass(few):
+    coarse = found_in(load_study(CONFIG / "smoke.yaml"))
+    wrong = coarse["check_subject"].values[coarse["check_outcome"].values == 0]
+    assert "runs of touching points, sampled, lambda ratios 1 to 8" in wrong
+    ratio = coarse["breakthrough_probability_ratio"].sel(grid="twice the points")
+    assert (ratio > 1.5).all()
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "subject"),
+    [
+        (lines, "crossing_rate", "runs of touching points, sampled, lambda ratios 1 to 8"),
+        (lines, "breaking_curvature", "curvature at which the layer on a parabolic summit breaks"),
+    ],
+)
+def test_theory_that_is_a_tenth_off_does_not_pass(few, study, monkeypatch, module, name, subject):
+    right = getattr(module, name)
+    monkeypatch.setattr(module, name, lambda *given: 1.1 * right(*given))
+    checks = {one.subject: one for one in lines.line_checks(study, lines.curves(study, 2), 2)}
+    assert checks[subject].seen > checks[subject].allowed
+
+
+def test_a_kernel_that_misses_a_point_is_found(few, study, monkeypatch):
+    right = lines.ContactWindows.trace
+    monkeypatch.setattr(
+        lines.ContactWindows, "trace", lambda *given: np.roll(right(*given), 1, axis=1)
+    )
+    checks = {one.subject: one for one in lines.line_checks(study, lines.curves(study, 2), 2)}
+    one = checks["broken points at 400 time steps, by the fast kernel"]
+    assert one.seen > one.allowed
+
+
+def test_more_points_change_little_and_another_band_more(found):
+    ratio = found["breakthrough_probability_ratio"]
+    assert abs(ratio.sel(grid="twice the points") - 1.0).max() < 0.05
+    assert (ratio.sel(grid="shortest wave twice as long") < 0.95).all()
+
+
+def test_deviations_of_means_and_numbers():
+    assert percent_off([1.0, 1.02], 1.0) == pytest.approx(2.0)
+    first = np.array([[0.0, 1.0], [2.0, 1.0]])
+    # Means 1 and 4 with standard errors of 1 each; the column without scatter is left out.
+    assert errors_apart(first, first + np.array([3.0, 9.0])) == pytest.approx(3.0 / np.sqrt(2.0))
+
+
+def test_the_table_has_a_row_for_each_check(found):
+    table = outcomes(found)
+    assert sum(line.startswith("| ") for line in table.splitlines()) == found.sizes["check"] + 10
+    failed = found.assign(check_outcome=found["check_outcome"] * 0)
+    assert outcomes(failed).count("(**differs**)") == found.sizes["check"]
+
+
+@pytest.mark.slow
+def test_the_documentation_has_the_outcomes_of_the_papers_study():
+    found = found_in(load_study(CONFIG / "paper.yaml"))
+    assert outcomes(found) in (ROOT / "docs/verification.md").read_text("utf-8")
+    assert (found["check_outcome"] > 0).all()
