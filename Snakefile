@@ -71,6 +71,14 @@ rule sensitivity:
         f"Done: sensitivity.nc and its figure are in {RESULTS}"
 
 
+rule electrical:
+    """What electrical meters read of the contact."""
+    input:
+        products(made_by("electrical", FIGURES)),
+    message:
+        f"Done: electrical.nc and its figure are in {RESULTS}"
+
+
 rule verification:
     """The study's methods against theory, other methods and print."""
     input:

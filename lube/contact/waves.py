@@ -280,6 +280,43 @@ def lifted(
     return np.array([first, both - first])
 
 
+def _nodes_of(part, before, answers, spacing):
+    """Nodes of a part of a window, from its first point on, and the shapes of both answers."""
+    shift = answers[0].shift(spacing)
+    nodes = part.start + (np.arange((part.stop - part.start >> shift) + 2) << shift)
+    return nodes - part.start, [answer.at(before - nodes, spacing) for answer in answers]
+
+
+def rms_along(
+    spec, points: int, before: int, answers: tuple[Answer, Answer], bands: list | None = None
+) -> Array:
+    """Rms height of the roughness in the gap along a contact window.
+
+    Parameters
+    ----------
+    spec, before, answers
+        As in `answered_window`.
+    points : int
+        Points of the window.
+    bands : list, optional
+        Powers and filters of both lines' waves, where they are known already.
+
+    Returns
+    -------
+    numpy.ndarray
+        Over that of the lines as drawn, shape (points,).
+    """
+    rms, _ = sum_of_lines(spec, 1)
+    bands = bands or [_bands(spec, roller, one, points) for roller, one in enumerate(answers)]
+    nodes, shapes = _nodes_of(slice(0, points), before, answers, spec.spacing)
+    with one_blas_thread():
+        added = sum(
+            (np.abs(1.0 + at @ filters) ** 2 - 1.0) @ power
+            for at, (power, _, filters) in zip(shapes, bands, strict=True)
+        )
+    return np.sqrt(1.0 + np.interp(np.arange(points), nodes, added) / rms**2)
+
+
 def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answer]) -> UnevenWindow:
     """Part of a contact window in which contact is likely, with the answers of the oil there.
 
@@ -300,23 +337,12 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
         For `lube.surfaces.rare_contact.rare_contact_under`.
     """
     shift = answers[0].shift(spec.spacing)
-
-    def nodes_of(first, points):
-        """Nodes of points of the window from a first one on, and the shapes of both answers."""
-        nodes = first + (np.arange((points >> shift) + 2) << shift)
-        return nodes - first, [answer.at(before - nodes, spec.spacing) for answer in answers]
-
     rms, _ = sum_of_lines(spec, 1)
     bands = [_bands(spec, roller, one, film.size) for roller, one in enumerate(answers)]
-    nodes, shapes = nodes_of(0, film.size)
     with one_blas_thread():
-        added = sum(
-            (np.abs(1.0 + at @ filters) ** 2 - 1.0) @ power
-            for at, (power, _, filters) in zip(shapes, bands, strict=True)
-        )
-        ratio = np.sqrt(1.0 + np.interp(np.arange(film.size), nodes, added) / rms**2)
+        ratio = rms_along(spec, film.size, before, answers, bands)
         _, part = likely_part(film, rms * ratio)
-        nodes, shapes = nodes_of(part.start, part.stop - part.start)
+        nodes, shapes = _nodes_of(slice(part.start, part.stop), before, answers, spec.spacing)
         at_once = np.zeros((nodes.size, nodes.size), np.float32)
         for at, (power, by_point, filters) in zip(shapes, bands, strict=True):
             drawn = np.exp(1j * nodes[:, None] * by_point)

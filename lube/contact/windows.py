@@ -9,7 +9,13 @@ import copy
 import numpy as np
 import xarray as xr
 
-from lube.contact.waves import Waves, answered_window, answers_at, longest_answers
+from lube.contact.waves import (
+    Waves,
+    answered_window,
+    answers_at,
+    longest_answers,
+    rms_along,
+)
 from lube.contact.window_films import WindowFilm, window_films
 from lube.grid.discretise import LineGrid, layer_factor_of, revolution, speed_ratios, whole_numbers
 from lube.grid.gap import PLAIN, Gap
@@ -20,7 +26,13 @@ from lube.kernels.strips import strip_statistics, strip_trace
 from lube.kernels.whole_runs import whole_run_steps
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
-from lube.surfaces.rare_contact import RarePair, UnevenWindow, rare_contact, rare_contact_under
+from lube.surfaces.rare_contact import (
+    RarePair,
+    UnevenWindow,
+    rare_contact,
+    rare_contact_under,
+    sum_of_lines,
+)
 from lube.surfaces.synthetic import LineSpecLike
 from lube.types import Array, Pair, Values
 
@@ -242,6 +254,35 @@ class ContactWindows:
         windows, runs = (np.full((len(each), self.size), np.nan) for each in found)
         windows[:, known], runs[:, known] = found
         return windows, runs
+
+    def gaps(self, spec: LineSpecLike) -> list[Pair | None]:
+        """Find the mean gap and the rms height of the roughness in it, across each contact.
+
+        Parameters
+        ----------
+        spec : LineSpecLike
+            Parameters of the lines.
+
+        Returns
+        -------
+        list of tuple of numpy.ndarray
+            Both at even positions from edge to edge of each contact, height steps, or one value for
+            all positions; None where the film is not known.
+        """
+        rms, _ = sum_of_lines(spec, 1)
+        return [
+            None if self.unknown[one] else self._gap_at(one, spec, rms) for one in range(self.size)
+        ]
+
+    def _gap_at(self, point, spec, rms):
+        if self._gap.is_plain:
+            return self.thickness[point], np.asarray(rms)
+        window, half_window = self._window([point]), self.half_windows[point]
+        film, ratio = window.film[0], np.ones(window.film.shape[1])
+        if self._gap.is_answered:
+            ratio = rms_along(spec, film.size, window.before, self._answers[point])
+        inside = slice(window.before - half_window, window.before + half_window + 1)
+        return film[inside], rms * ratio[inside]
 
     def _place(self, point, spec):
         """Contact window of an operating point, in which lines are sampled."""

@@ -340,6 +340,15 @@ _ROWS = (
         parallel=True,
     ),
     Stage(
+        "electrical",
+        "what electrical meters read at every operating point, some seconds",
+        inputs=("film", "contact"),
+        values=_named("resistivity rollers.length rig"),
+        target="electrical",
+        only_with=("is_sampled", *_LINE, "conducts"),
+        parallel=True,
+    ),
+    Stage(
         "verification",
         "methods against theory, other methods and print, some 20 seconds",
         inputs=("lubricant",),

@@ -4,9 +4,9 @@ Every default except the threshold of 100 ohm is assumed: the paper says nothing
 Voltages far below a volt are usual, so that the film does not break down electrically.
 """
 
-from typing import Annotated
+from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import Field, StrictInt
+from pydantic import Field, StrictInt, model_validator
 
 from lube.study.field_types import StrictModel, levels, quantity
 
@@ -16,9 +16,46 @@ RIG_REALISATIONS = 1_000_000
 _Resistance = Annotated[float, quantity("ohm", above=0.0)]
 
 
+class Preset(NamedTuple):
+    """Settings of a known rig.
+
+    Attributes
+    ----------
+    settings : dict
+        Keys of `Rig` with their values; all others are as in the study.
+    source : str
+        Where they come from.
+    """
+
+    settings: dict[str, Any]
+    source: str
+
+
+_ECR = (
+    "PCS Instruments, data sheet of the option ECR of the mini traction machine MTM2: some 15 mV "
+    "over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm"
+)
+PRESETS = {
+    "mtm-ecr": Preset({"bias_voltage": "15 mV", "series_resistance": "100 ohm"}, _ECR),
+    "mtm-ecr-10-kohm": Preset({"bias_voltage": "15 mV", "series_resistance": "10 kohm"}, _ECR),
+    "threshold-counter": Preset(
+        {"bandwidth": "1 MHz", "sampling_rate": "1 MHz", "noise": "50 uV"},
+        "a fast comparator at the paper's threshold of 100 ohm; bandwidth and noise assumed",
+    ),
+    "impedance-bridge": Preset(
+        {"bias_voltage": "1 V", "amplifier_range": "2 V", "series_resistance": "1 kohm"},
+        "as for impedance spectroscopy (Manjunath and others, Lubricants 12 (2024) 51); values "
+        "assumed",
+    ),
+}
+"""Known rigs, by the name that a study gives."""
+
+
 class Rig(StrictModel, validate_default=True):
     """Circuit, amplifier and sampling of a simulated twin-disc rig."""
 
+    preset: Literal[tuple(PRESETS)] | None = None
+    """a known rig, whose values hold where the study gives none of its own"""
     bias_voltage: Annotated[float, quantity("V", above=0.0)] = "50 mV"
     """voltage across rollers and series resistor"""
     series_resistance: _Resistance = "100 ohm"
@@ -49,6 +86,25 @@ class Rig(StrictModel, validate_default=True):
     """fraction of the roughness variance that each revolution renews, on the simulated rollers and,
     by assumption, on measured ones; at 0 the roughness stays the same
     """
+
+    frequency: Annotated[float, quantity("Hz", above=0.0)] = "100 kHz"
+    """frequency at which an impedance bridge measures the contact"""
+    dielectric_strength: Annotated[float, quantity("V/m", above=0.0)] = "20 MV/m"
+    """field at which the oil breaks down; as of insulating oils over 2.5 mm (IEC 60156), thin films
+    bear more
+    """
+
+    @model_validator(mode="before")
+    @classmethod
+    def _take_preset(cls, given):
+        preset = PRESETS.get(given.get("preset")) if isinstance(given, dict) else None
+        return {**preset.settings, **given} if preset else given
+
+    def like(self, preset: str) -> "Rig":
+        """Return this rig with the settings of a known one."""
+        known = Rig.model_validate(PRESETS[preset].settings)
+        changed = {name: getattr(known, name) for name in PRESETS[preset].settings}
+        return self.model_copy(update=changed | {"preset": preset})
 
     @property
     def resolved_voltage(self) -> float:

@@ -1,0 +1,157 @@
+"""The electrical stage: what electrical meters read at every operating point."""
+
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from lube.contact.rough_pair import roughness_batch
+from lube.contact.windows import study_windows
+from lube.grid.film_profiles import six_digits
+from lube.grid.levels import rolling
+from lube.grid.operating_points import at_slip, known_films, operating_points
+from lube.physics.electrical import (
+    film_capacitance,
+    mean_inverse_gap,
+    read_impedance,
+    surrounding_capacitance,
+)
+from lube.rig.readings import READINGS, Readings
+from lube.rig.simulator import simulated_revolutions
+from lube.schema import POINT_DIMS, label
+from lube.study.rig_settings import PRESETS
+from lube.study.study import Study
+from lube.threads import on_threads
+from lube.types import Datasets
+
+PAIRS = 8
+"""Pairs of lines on which contact is sampled under films that a voltage makes thinner."""
+OWN = "study"
+"""Name of the study's own rig."""
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    r"""Make ``electrical.nc``; see `lube.stages`.
+
+    All values are for the first film formula and the slide-to-roll ratio nearest to pure rolling.
+    The simulated rig runs for one revolution at each operating point.
+
+    Notes
+    -----
+    The capacitance of the contact is that of a rough film,
+
+    .. math:: C = \varepsilon_0 \varepsilon_r L' \int_{-a}^a
+        \left\langle \frac{1}{\max(g, h_c)} \right\rangle dx
+
+    and a meter that takes it for two plates reads a film that is thinner than the mean gap.
+    """
+    slip = rolling(study.slips)
+    film = at_slip(inputs["film"], slip).isel(film_formula=0, drop=True).transpose(*POINT_DIMS, ...)
+    table = _capacitances(study, film)
+    contact = inputs["contact"].isel(film_formula=0, drop=True)
+    contact = contact.sel(slide_to_roll_ratio=slip, drop=True)
+    length = contact["mean_contact_length"].mean("realisation")
+    share = contact["breakthrough_probability_mean"]
+    table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
+    table["closed_resistance"] = study.resistivity * share / length.where(length > 0.0)
+    rigs = {OWN: study.rig} | {name: study.rig.like(name) for name in PRESETS}
+    capacitance = table["capacitance"] + table["surrounding_capacitance"]
+    circuit = share, table["closed_resistance"].fillna(1.0), capacitance
+    phases = [np.degrees(_phase(rig, *circuit)) for rig in rigs.values()]
+    table["impedance_phase"] = xr.concat(phases, "rig", coords="minimal", compat="override")
+    found = xr.Dataset(table).transpose("rig", *POINT_DIMS).map(_six_digits)
+    found = found.merge(_readings(study, film, rigs, slip), join="exact")
+    found["discharge_probability"] = _discharges(study, film, rigs, threads)
+    found = found.drop_attrs().assign_coords(rig=list(rigs), reading=list(READINGS))
+    found["rig_source"] = "rig", ["the study", *(one.source for one in PRESETS.values())]
+    return label(found.assign(impedance_frequency=study.rig.frequency), "electrical")
+
+
+def _six_digits(values):
+    known = values.notnull()
+    return values.copy(data=six_digits(values.fillna(0.0).values)).where(known)
+
+
+def _phase(rig, *circuit):
+    """Phase of the impedance that a bridge with a rig's series resistance reads."""
+    series = rig.series_resistance + rig.lead_resistance
+    settings = {"frequency": rig.frequency, "series": series}
+    return xr.apply_ufunc(lambda *given: np.angle(read_impedance(*given, **settings)), *circuit)
+
+
+def _capacitances(study, film):
+    """Capacitance of the rough contact and around it, and films by which meters explain it, m."""
+    spec, rig = study.line_spec, study.rig
+    step, layer = spec.height_step, study.boundary_layer.critical_thickness
+    inverse = np.array(
+        [
+            np.nan
+            if gap is None
+            else np.mean(mean_inverse_gap(gap[0] * step, gap[1] * step, layer))
+            for gap in study_windows(study, film).gaps(spec)
+        ]
+    )
+    mean_gap = film["film_thickness"]
+    read = mean_gap.copy(data=1.0 / inverse.reshape(mean_gap.shape))
+    contact = film["contact_half_width"], study.rollers.length, rig.oil_permittivity
+    around = partial(surrounding_capacitance, length=contact[1], oil=contact[2])
+    sizes = mean_gap, film["contact_half_width"], film["reduced_radius"]
+    return {
+        "film_thickness": mean_gap,
+        "capacitance": film_capacitance(read, *contact),
+        "plate_capacitance": film_capacitance(mean_gap, *contact),
+        "surrounding_capacitance": xr.apply_ufunc(around, *sizes),
+        "capacitance_film": read,
+    }
+
+
+def _readings(study, film, rigs, slip):
+    """Contact shares by all rigs and readings, and the true ones."""
+    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations[:1])
+    once = study.model_copy(
+        update={"rig": study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})}
+    )
+    points = operating_points(film, slip)
+    known = [number for number, one in enumerate(points) if known_films(one.row, study.gap)]
+    shares = np.full((len(points), 1 + len(rigs) * len(READINGS)), np.nan)
+    for _, number, revolution in simulated_revolutions(lines, once, [points[one] for one in known]):
+        found = [np.count_nonzero(revolution.contact) / revolution.contact.size]
+        for rig in rigs.values():
+            readings = Readings(study.experiment, rig)
+            readings.add(revolution.voltage(rig))
+            found += readings.shares
+        shares[known[number]] = found
+    sizes = [film.sizes[name] for name in POINT_DIMS]
+    read = shares[:, 1:].T.reshape(len(rigs), len(READINGS), *sizes)
+    return xr.Dataset(
+        {
+            "true_contact_share": (POINT_DIMS, shares[:, 0].reshape(sizes)),
+            "read_contact_share": (("rig", "reading", *POINT_DIMS), read),
+        }
+    )
+
+
+def _discharges(study, film, rigs, threads):
+    """Share of time in which a rig's voltage breaks down the oil, without contact."""
+    found = {}
+
+    def touching(closer):
+        thickness = (film["film_thickness"] - closer).clip(min=0.0)
+        windows = study_windows(study, film.assign(film_thickness=thickness))
+        pairs = on_threads(
+            lambda number: windows.sample(study.line_spec, study.seed, number)[0][0],
+            range(PAIRS),
+            threads,
+        )
+        return np.mean(pairs, axis=0)
+
+    for rig in rigs.values():
+        gap = rig.bias_voltage / rig.dielectric_strength
+        if gap not in found:
+            found[gap] = touching(gap) - found.setdefault(0.0, touching(0.0))
+    # Few contacts more may come out as fewer, since both shares are estimates.
+    each = [
+        np.maximum(found[rig.bias_voltage / rig.dielectric_strength], 0.0) for rig in rigs.values()
+    ]
+    sizes = [film.sizes[name] for name in POINT_DIMS]
+    return ("rig", *POINT_DIMS), six_digits(np.reshape(each, (len(rigs), *sizes)))

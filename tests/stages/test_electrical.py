@@ -1,0 +1,91 @@
+"""What electrical meters read, on a small study."""
+
+import numpy as np
+import pytest
+from made import made
+from studies import CONFIG
+
+from lube.contact.window_films import window_films
+from lube.contact.windows import study_windows
+from lube.grid.operating_points import at_slip
+from lube.physics.electrical import mean_inverse_gap
+from lube.stages import electrical
+from lube.study.study import load_study
+
+
+@pytest.fixture(scope="module")
+def study():
+    own = load_study(CONFIG / "smoke.yaml")
+    roughness = own.roughness.model_copy(update={"points": 300_000})
+    return own.model_copy(update={"roughness": roughness, "realisations": 2})
+
+
+@pytest.fixture(scope="module")
+def files(study):
+    return made(study, ("lubricant", "film", "contact", "electrical"))
+
+
+@pytest.fixture(scope="module")
+def found(files):
+    return files["electrical"]
+
+
+def test_a_fast_rig_reads_the_share_that_is_true(found):
+    seen = found.true_contact_share > 0.01
+    read = found.read_contact_share.sel(rig="threshold-counter", reading="threshold")
+    assert seen.any()
+    np.testing.assert_allclose(read.where(seen), found.true_contact_share.where(seen), rtol=0.02)
+
+
+def test_a_rough_contact_has_more_capacitance_than_plates_and_reads_a_thinner_film(found):
+    assert (found.capacitance > found.plate_capacitance).all()
+    ratio = found.plate_capacitance / found.capacitance
+    np.testing.assert_allclose(found.capacitance_film, ratio * found.film_thickness, rtol=1e-5)
+
+
+def test_flat_films_have_the_mean_of_one_over_a_gaussian_gap(found, study):
+    rms = np.hypot(*study.line_spec.rms_height)
+    layer = study.boundary_layer.critical_thickness
+    expected = 1.0 / mean_inverse_gap(found.film_thickness.values, rms, layer)
+    np.testing.assert_allclose(found.capacitance_film, expected, rtol=1e-4)
+
+
+def test_more_volts_discharge_through_thicker_films(found, study):
+    volts = {name: study.rig.like(name).bias_voltage for name in found.rig.values[1:]}
+    assert volts["impedance-bridge"] > volts["mtm-ecr"]
+    more = found.discharge_probability.sel(rig="impedance-bridge")
+    assert (more > found.discharge_probability.sel(rig="mtm-ecr")).all()
+    assert (found.discharge_probability.min() >= 0.0).all()
+
+
+def test_contact_that_is_rare_is_a_capacitor(found):
+    own = found.impedance_phase.sel(rig="study")
+    assert ((own <= 0.0) & (own >= -90.0)).all()
+    # The rarer contact is, the more of a capacitor it is.
+    order = np.argsort(found.true_contact_share.values.ravel())
+    assert own.values.ravel()[order[0]] < -60.0 < -30.0 < own.values.ravel()[order[-1]]
+
+
+def test_the_gap_of_a_computed_shape_is_its_film_and_that_of_an_answered_line_has_its_rms(study):
+    shaped = study.model_copy(
+        update={"film_shape": "computed", "roughness_deformation": "computed"}
+    )
+    film = at_slip(made(shaped, ("lubricant", "film"))["film"], 0.0).isel(film_formula=0)
+    spec = shaped.line_spec
+    windows = study_windows(shaped, film)
+    for point, gap in enumerate(windows.gaps(spec)):
+        thickness, rms = gap
+        half = windows.half_windows[point]
+        assert thickness.shape == rms.shape == (2 * half + 1,)
+        whole = window_films(film, spec)[point]
+        here = slice(whole.before - half, whole.before + half + 1)
+        np.testing.assert_array_equal(thickness, whole.film[here])
+        own = np.hypot(*spec.rms_height) / spec.height_step
+        # The oil takes most from the long waves in the middle of the contact.
+        assert 0.2 < rms[half] / own < 1.05
+
+
+def test_measured_voltages_are_those_of_the_simulated_rig(found, study):
+    assert found.rig_source.sel(rig="study") == "the study"
+    assert "PCS" in found.rig_source.sel(rig="mtm-ecr").item()
+    assert electrical.OWN in found.rig.values

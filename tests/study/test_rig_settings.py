@@ -1,0 +1,31 @@
+"""Settings of known rigs."""
+
+import pytest
+
+from lube.errors import StudyError
+from lube.study.rig_settings import PRESETS, Rig
+from lube.study.study import load_study
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_a_known_rig_has_its_settings_and_the_studys_for_all_others(name):
+    rig = Rig(preset=name, oil_permittivity=2.5)
+    assert PRESETS[name].source
+    known = Rig(**PRESETS[name].settings)
+    for key in Rig.model_fields:
+        if key not in ("preset", "oil_permittivity"):
+            assert getattr(rig, key) == getattr(known, key)
+    assert rig.oil_permittivity == 2.5
+    assert Rig(oil_permittivity=2.5).like(name) == rig
+
+
+def test_values_of_the_study_take_precedence():
+    rig = Rig(preset="mtm-ecr", series_resistance="1 kohm")
+    assert (rig.bias_voltage, rig.series_resistance) == (0.015, 1000.0)
+
+
+def test_an_unknown_rig_is_refused_with_the_known_ones(paper_with):
+    with pytest.raises(StudyError) as caught:
+        load_study(paper_with(("rig", {"preset": "mtm"})))
+    assert "rig.preset: got 'mtm', need" in str(caught.value)
+    assert "'mtm-ecr'" in str(caught.value)
