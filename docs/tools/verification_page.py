@@ -16,7 +16,7 @@ PAGE = Path(__file__).parents[1] / "verification.md"
 
 def with_checks(text, found):
     """Write the outcomes of a ``verification`` dataset between the markers of the page."""
-    parts = r"(<!-- table: checks -->\n).*?(?=<!-- end -->)"
+    parts = r"(<!-- checks -->\n).*?(?=<!-- end -->)"
     return re.sub(parts, lambda match: f"{match[1]}{outcomes(found)}\n", text, flags=re.DOTALL)
 
 

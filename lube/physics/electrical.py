@@ -3,7 +3,6 @@
 from typing import Protocol
 
 import numpy as np
-import scipy.special
 
 from lube.physics.hertz import hertz_gap
 from lube.types import Values
@@ -178,6 +177,8 @@ def mean_inverse_gap(film_thickness: Values, rms: Values, layer: float) -> Value
     >>> f"{mean_inverse_gap(1e-6, 0.28e-6, 5e-9):.4g}"
     '1.155e+06'
     """
+    from scipy.special import ndtr  # slow to import
+
     film, rms = np.broadcast_arrays(np.asarray(film_thickness, float), np.asarray(rms, float))
     with np.errstate(divide="ignore", invalid="ignore"):
         height, least = film / rms, layer / rms
@@ -187,7 +188,7 @@ def mean_inverse_gap(film_thickness: Values, rms: Values, layer: float) -> Value
         gaps = np.exp(low[..., None] + half * (1.0 + _POINTS))
         density = np.exp(-0.5 * (gaps - height[..., None]) ** 2) / np.sqrt(2.0 * np.pi)
         parts = half[..., 0] * np.sum(_WEIGHTS * density, axis=-1)
-        rough = (scipy.special.ndtr(least - height) / least + parts) / rms
+        rough = (ndtr(least - height) / least + parts) / rms
         smooth = 1.0 / np.maximum(film, layer)
     return np.where(rms > 0.0, rough, smooth)[()]
 

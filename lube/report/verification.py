@@ -42,7 +42,7 @@ def _row(one):
     is_judged = one["check_allowed"].notnull().item()
     texts = (one[f"check_{name}"].item() for name in ("subject", "against"))
     deviation, allowed = (_with_unit(one[name].item(), unit) for name in _NUMBERS)
-    failed = "" if one["check_outcome"].item() else " (**differs**)"
+    failed = " (**differs**)" if one["check_outcome"].item() == "differs" else ""
     number, source = f"{one['check'].item()}", one["check_source"].item()
     return number, *texts, deviation + failed, allowed if is_judged else "", source
 

@@ -65,11 +65,8 @@ def _outcomes(checks: list[Check]) -> dict:
     seen, allowed = (np.array([getattr(one, name) for one in checks]) for name in _NUMBERS)
     table["check_deviation"] = "check", six_digits(seen)
     table["check_allowed"] = "check", allowed
-    # 2 where nothing is demanded.
-    table["check_outcome"] = (
-        "check",
-        np.where(np.isnan(allowed), 2, seen <= allowed).astype(np.int8),
-    )
+    outcomes = np.where(seen <= allowed, "agrees", "differs")
+    table["check_outcome"] = "check", np.where(np.isnan(allowed), "not judged", outcomes)
     return table
 
 

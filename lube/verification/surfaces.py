@@ -112,7 +112,7 @@ def euler_characteristic(above: Array) -> int:
     down, along = (above & np.roll(above, -1, axis) for axis in (0, 1))
     squares = down & np.roll(down, -1, 1)
     points, pairs, fours = map(np.count_nonzero, (above, np.stack([down, along]), squares))
-    return points - pairs + fours
+    return int(points - pairs + fours)
 
 
 def contact_count(above: Array) -> int:

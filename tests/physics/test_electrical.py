@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-
 from scipy.integrate import quad
 from scipy.special import ndtr
 
@@ -123,7 +122,10 @@ def test_the_gap_beside_the_contact_is_integrated_on_both_sides(film):
     # With X = 1 + y^2 the integrand is smooth at the edge.
     scale = half_width**2 / radius
     inside, _ = quad(
-        lambda y: 2.0 * y * half_width / (film + hertz_gap(1.0 + y * y) * scale), 0.0, 1e3, limit=900
+        lambda y: 2.0 * y * half_width / (film + hertz_gap(1.0 + y * y) * scale),
+        0.0,
+        1e3,
+        limit=900,
     )
     expected = 8.8541878188e-12 * 3.2 * 0.01 * inside
     found = surrounding_capacitance(film, half_width, radius, 0.01, 2.2)

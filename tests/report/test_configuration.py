@@ -37,7 +37,7 @@ def test_every_value_that_is_set_is_shown_with_its_unit(shown):
     assert values["roughness.shortest_wavelength"] == "10 points"
     assert values["pressure_viscosity.gold_base"] == "polyalphaolefin"
     unset = {"experiment.manifest", "traces[].lubricant", "traces[].film_formula"}
-    unset |= {"traces[].slide_to_roll_ratio", "about.doi"}
+    unset |= {"traces[].slide_to_roll_ratio", "about.doi", "rig.preset"}
     unset |= {"about.creators[].affiliation", "about.creators[].orcid"}
     unset |= {f"uncertainty.roughness_deformation.{key}" for key in ("choices", "source")}
     unset |= {"rollers.composite_rms_roughness", "roughness.roll_off_wavelength"}
