@@ -17,9 +17,10 @@ import xarray as xr
 
 from lube.errors import DataError
 from lube.grid.operating_points import surface_speeds
-from lube.schema import MEAN_LIMITS, label, values_with_limits
-from lube.statistics.confidence import probability_interval
-from lube.statistics.sample_size import independent_windows
+from lube.schema import LIMITS, MEAN_LIMITS, label, values_with_limits
+from lube.statistics.confidence import mean_over_first, probability_interval
+from lube.statistics.one_pair import prediction_limits
+from lube.statistics.sample_size import effective_sample_size, independent_windows
 from lube.types import Values
 
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
@@ -147,7 +148,30 @@ def with_intervals(contact: xr.Dataset, film: xr.Dataset) -> xr.Dataset:
     DataError
         As from `windows_by_force`.
     """
-    return label(with_limits(contact, windows_by_force(contact, film)), "contact")
+    windows = windows_by_force(contact, film)
+    return label(with_pair_limits(with_limits(contact, windows), windows), "contact")
+
+
+def with_pair_limits(dataset: xr.Dataset, windows: xr.DataArray) -> xr.Dataset:
+    """Add the limits between which one pair's probability of breakthrough lies in 95 % of cases.
+
+    Parameters
+    ----------
+    dataset, windows
+        As in `with_limits`. Each realisation is as long as the pair's record.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same, and ``breakthrough_probability_pair_lower`` and ``_pair_upper``.
+    """
+    shares = dataset["breakthrough_probability"]
+    dims = shares.dims[1:]
+    windows_here = windows.broadcast_like(shares[0]).transpose(*dims).values
+    size, mean = effective_sample_size(shares.values, windows_here), mean_over_first(shares.values)
+    limits = prediction_limits(mean, size, 1.0, len(shares))
+    names = (f"breakthrough_probability_pair{end}" for end in LIMITS[1:])
+    return dataset.assign({name: (dims, each) for name, each in zip(names, limits, strict=True)})
 
 
 def _join(batches):

@@ -340,6 +340,13 @@ _ROWS = (
         parallel=True,
     ),
     Stage(
+        "record_bands",
+        "which of its bands explains each record",
+        inputs=("comparison", "sensitivity_runs"),
+        target="sensitivity",
+        only_with=("uncertainty", "is_sampled", *_LINE, "conducts", "has_records"),
+    ),
+    Stage(
         "electrical",
         "what electrical meters read at every operating point, some seconds",
         inputs=("film", "contact"),

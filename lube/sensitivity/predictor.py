@@ -5,6 +5,7 @@ from itertools import chain
 
 import numpy as np
 import xarray as xr
+from scipy.stats import qmc
 
 from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
@@ -12,10 +13,12 @@ from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_sum, models
 from lube.sensitivity.samples import deviations
 from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
-from lube.types import Array
+from lube.types import Array, Pair
 
 AT_ONCE = 400
 """Samples whose films are computed together, for the sake of memory."""
+BAND = 0.05, 0.95
+"""Quantiles of the probability over all that a study does not know exactly."""
 COMPUTED = "computed"
 FILM_GROUPS = "moes_load", "moes_material", "dynamic_viscosity"
 """On which the ratio of the computed film to that of Moes' formula depends."""
@@ -110,7 +113,7 @@ class Predictor:
             "film_surrogate_error": ((), six_digits(np.array(self.film_error)).item()),
         }
 
-    def log_probability(self, unit: Array) -> Array:
+    def log_probability(self, unit: Array, points: xr.Dataset | None = None) -> Array:
         """Predict the logarithm of the probability of breakthrough.
 
         Parameters
@@ -118,6 +121,9 @@ class Predictor:
         unit : numpy.ndarray
             Samples of the study's factors and, as the last column, of the seed; shape
             (samples, factors + 1), numbers from 0 to 1.
+        points : xarray.Dataset, optional
+            ``lubricant``, ``temperature``, ``speed`` and ``force`` over point; by default all
+            operating points of the study.
 
         Returns
         -------
@@ -125,10 +131,31 @@ class Predictor:
             Shape (samples, points); NaN where the film is not known.
         """
         parts = np.array_split(unit, -(-len(unit) // AT_ONCE))
-        return np.concatenate([self._of_part(part) for part in parts])
+        points = stacked_points(self.deviating) if points is None else points
+        return np.concatenate([self._of_part(part, points) for part in parts])
 
-    def _of_part(self, unit):
-        deviating, points = self.deviating, stacked_points(self.deviating)
+    def band(self, points: xr.Dataset, samples: int = 1024) -> Pair:
+        """Find the band of the probability at some operating points.
+
+        Parameters
+        ----------
+        points : xarray.Dataset
+            As in `log_probability`.
+        samples : int, optional
+            Number of samples, a power of 2.
+
+        Returns
+        -------
+        lower, upper : numpy.ndarray
+            Probabilities that 5 and 95 % of the samples lie below, shape (points,).
+        """
+        study = self.deviating.study
+        factors = len(self.deviating.factors) + 1
+        unit = qmc.Sobol(factors, seed=np.random.default_rng(study.seed)).random(samples)
+        return tuple(np.exp(np.quantile(self.log_probability(unit, points), BAND, axis=0)))
+
+    def _of_part(self, unit, points):
+        deviating = self.deviating
         seed = np.minimum((unit[:, -1] * SEEDS).astype(int), SEEDS - 1)
         numbers = deviations(deviating.factors, unit[:, :-1])
         values = _by(numbers, "run")

@@ -8,13 +8,10 @@ from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS, label
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.indices import morris, sobol
-from lube.sensitivity.predictor import Predictor
+from lube.sensitivity.predictor import BAND, Predictor
 from lube.sensitivity.samples import SEED
 from lube.study.study import Study
 from lube.types import Datasets
-
-BAND = 0.05, 0.5, 0.95
-"""Quantiles of the probability over the samples."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -39,7 +36,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     table = _limits(single, "factor") | _limits(grouped, "factor_group", "group_")
     table |= _limits(screened, "factor")
     with np.errstate(invalid="ignore"):
-        lower, median, upper = np.exp(np.quantile(values, BAND, axis=0))
+        lower, median, upper = np.exp(np.quantile(values, (BAND[0], 0.5, BAND[1]), axis=0))
     table |= {
         "log_probability_deviation": ((), values.std(axis=0)),
         "breakthrough_probability_median": ((), median),
