@@ -29,6 +29,10 @@ _OF_NO_FILE = {
     "viscosity_ratio": ("viscosity ratio of a rolling bearing, kappa", "1"),
     "roughness_factor": ("factor on the roughness of both rollers", "1"),
     "position": ("position from the line of centres", "m"),
+    "assumed_breakthrough_probability": (
+        "breakthrough probability, 5 to 95 % over all that is not known exactly",
+        "1",
+    ),
     "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
     "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
     "whole_surface_probability": (f"breakthrough probability of the surface {_WHOLE}", "1"),

@@ -1,6 +1,6 @@
 """Film, probability of contact and resistance at operating points."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from lube.calculator.arguments import (
     single,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.contact.ensemble import with_limits
+from lube.contact.ensemble import with_limits, with_pair_limits
 from lube.contact.rough_pair import roughness_batch
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
@@ -184,6 +184,7 @@ def contact_probability(
     contact_model: str | Sequence[str] = "line",
     realisations: int = REALISATIONS,
     seed: int = SEED,
+    bands: bool | Mapping[str, Any] = False,
 ) -> Answer:
     """Probability of metal contact, with its 95 % interval, and the film.
 
@@ -222,17 +223,26 @@ def contact_probability(
         Number of pairs of roughness lines.
     seed : int, optional
         Seed of the roughness.
+    bands : bool or dict, optional
+        Whether to find the band of the probability over all that is not known exactly: a dict in
+        the form of a study's section ``uncertainty``, such as ``{"temperature": {"range": "+- 3 K",
+        "source": "thermocouple"}}``; or True for usual ranges. It takes some seconds for each
+        operating point of lines under flat films, some minutes for surfaces.
 
     Returns
     -------
     Answer
         The variables of `film`; ``breakthrough_probability`` and
         ``geometric_contact_probability`` of each realisation, and ``_mean``, ``_lower`` and
-        ``_upper`` of both. Results of importance sampling are ``tail_breakthrough_probability``,
-        ``tail_geometric_contact_probability`` and ``tail_breakthrough_rate``, breakthroughs per
-        hour, each with ``_lower`` and ``_upper``. They are NaN where the heights are not Gaussian,
-        or the formula flattens them; then the attribute ``remarks`` says so, before the remarks of
-        `film`.
+        ``_upper`` of both; ``breakthrough_probability_pair_lower`` and ``_pair_upper``, between
+        which the share of one pair in a revolution lies in 95 % of cases. Results of importance
+        sampling are ``tail_breakthrough_probability``, ``tail_geometric_contact_probability`` and
+        ``tail_breakthrough_rate``, breakthroughs per hour, each with ``_lower`` and ``_upper``.
+        They are NaN where the heights are not Gaussian, or the formula flattens them; then the
+        attribute ``remarks`` says so, before the remarks of `film`.
+
+        With `bands` also ``assumed_breakthrough_probability_lower`` and ``_upper``, between which
+        90 % of the means over pairs lie, by the first film formula and contact model.
 
         For the surface, by importance sampling: ``surface_breakthrough_probability`` and
         ``surface_geometric_contact_probability``, anywhere along the rollers, and the mean numbers
@@ -275,6 +285,12 @@ def contact_probability(
         found = found.assign(of_surface(table, rollers, seed, gap, slip))
     if "surface_load_share" in table:
         found["surface_load_share"] = table["surface_load_share"]
+    if bands is not False:
+        # Imports of the sensitivity study are slow.
+        from lube.calculator.bands import assumed_limits
+
+        given = (force, speed, temperature), choices, bands, np.ravel(film_formula)[0]
+        found = found.assign(assumed_limits(rollers, oil, *given, slip, seed))
     return with_remarks(found, table, rollers)
 
 
@@ -351,7 +367,8 @@ def ensemble(
     levels = {"realisation": np.arange(realisations), **thickness.coords}
     moved = spec.travel * min(speed_ratios(slip))
     independent = independent_windows(moved, width, spec.longest_wavelength)
-    return with_limits(xr.Dataset(contact, levels, {"seed": seed}), independent)
+    found = with_limits(xr.Dataset(contact, levels, {"seed": seed}), independent)
+    return with_pair_limits(found, independent)
 
 
 @with_parts

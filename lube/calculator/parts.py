@@ -152,6 +152,8 @@ class Rollers:
         Geometry, material and roughness: the rms heights are those of the lines.
     lines : LineSpec
         What determines the roughness lines.
+    roughness, given_pair : Roughness, RollerPair
+        Roughness and rollers as given, from which the lines follow.
     band : str
         Longest and shortest wave of the roughness, in words.
     layer : BoundaryLayer
@@ -240,6 +242,7 @@ class Rollers:
                 f"{AUTOMATIC_WAVELENGTH!r}, need a length"
             )
         self.lines = line_spec(self.pair, shared, largest_force=math.nan)
+        self.roughness, self.given_pair = shared, self.pair
         self.band = band_in_words(self.pair, shared, self.lines)
         self.pair = self.pair.with_rms_heights(self.lines.rms_height)
         if not self.lines.is_drawn:

@@ -24,10 +24,14 @@ SHOWN = {
         "moes_load moes_material contact_half_width hertz_pressure entrainment_speed "
         "inlet_shear_heating_factor"
     ).split(),
-    "contact": [f"{kind}{limit}" for kind in PROBABILITIES for limit in MEAN_LIMITS],
+    "contact": [
+        *(f"{kind}{limit}" for kind in PROBABILITIES for limit in MEAN_LIMITS),
+        *(f"breakthrough_probability_pair{limit}" for limit in LIMITS[1:]),
+    ],
     "tail": [
         f"{kind}{limit}" for kind in (*PROBABILITIES, "breakthrough_rate") for limit in LIMITS
     ],
+    "sensitivity": [f"breakthrough_probability{limit}" for limit in LIMITS[1:]],
 }
 """Variables of each dataset that the page holds, all of them over some of `CHOICES`."""
 TRACES = {"contact_length": np.maximum, "contact_resistance": np.minimum}
@@ -116,11 +120,11 @@ def _deformed(film, tail):
 
 
 def page_name(kind: str, name: str) -> str:
-    """Name of a variable on the page: variables of ``tail.nc`` begin with ``tail.``.
+    """Name of a variable on the page: those of ``tail.nc`` and ``sensitivity.nc`` have a prefix.
 
     Some variables of ``contact.nc`` have the same names.
     """
-    return f"tail.{name}" if kind == "tail" else name
+    return f"{kind}.{name}" if kind in ("tail", "sensitivity") else name
 
 
 def level_names(name: str, values: list) -> list[str]:

@@ -9,6 +9,12 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.samples import SEED
 from lube.study.uncertainty import spoken
 
+_BANDS = {
+    "mean": "are within the interval of the mean over pairs of rollers",
+    "pair": "within the band of one pair",
+    "assumptions": "within that of the assumptions only",
+    "none": "in none of the bands",
+}
 _PLACES = 0.9, 0.5, 0.1
 """Places of the operating points shown, in the order of their probability."""
 _CHOSEN_GROUPS = "film", "contact model"
@@ -27,13 +33,15 @@ points (`sensitivity.nc`). Deviations are from the study's values.
 """
 
 
-def rests_on(found: xr.Dataset) -> str:
+def rests_on(found: xr.Dataset, records: xr.Dataset | None = None) -> str:
     """Tabulate what each factor does to the probability.
 
     Parameters
     ----------
     found : xarray.Dataset
         A ``sensitivity`` dataset.
+    records : xarray.Dataset, optional
+        A ``record_bands`` dataset, if there are records.
 
     Returns
     -------
@@ -68,7 +76,20 @@ def rests_on(found: xr.Dataset) -> str:
     )
     rows.append(("probability, 5 to 95 % of the samples", "", "", *band))
     table = markdown_table(("uncertain", "range or choices", "source", *conditions), rows)
-    return f"{_WORDS}\n{table}\n\n{_to_measure(shown, factors, conditions)}\n"
+    measured = _to_measure(shown, factors, conditions)
+    return "\n\n".join([f"{_WORDS}\n{table}", measured, *_explained(records)]) + "\n"
+
+
+def _explained(records):
+    """Say how many records each band explains."""
+    if records is None:
+        return
+    needed = records["band_needed"].values
+    counts = [(np.sum(needed == name), words) for name, words in _BANDS.items()]
+    said = ", ".join(f"{count} {words}" for count, words in counts)
+    yield (
+        f"Of {np.sum(needed != '')} {records['origin'].item()} records, {said} (`record_bands.nc`)."
+    )
 
 
 def _to_measure(shown, factors, conditions):

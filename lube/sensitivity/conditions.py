@@ -65,15 +65,22 @@ class Deviating:
     oils: xr.Dataset
 
     @classmethod
-    def of(cls, study: Study) -> "Deviating":
+    def of(cls, study: Study, named: str = "uncertainty") -> "Deviating":
         """Tabulate the oils over the temperatures that occur, as far as their data reach.
+
+        Parameters
+        ----------
+        study : Study
+            The study.
+        named : str, optional
+            Name of its ranges in messages.
 
         Raises
         ------
         LubeError
             As from `lube.study.uncertainty.check_uncertainty`.
         """
-        with located("uncertainty"):
+        with located(named):
             check_uncertainty(study)
         levels, uncertain = study.operating_grid.temperature, study.uncertainty.temperature
         lower, upper = uncertain.range if uncertain else (0.0, 0.0)

@@ -162,7 +162,7 @@ class Predictor:
         film = self._with_computed(joined(deviating.films(values, points)), numbers)
         found = np.full((len(unit), points.sizes["point"]), np.nan)
         for model, surrogate in self.surrogates.items():
-            some = np.flatnonzero(_is_chosen(deviating, model, numbers, len(unit)))
+            some = np.flatnonzero(is_chosen(deviating, model, numbers, len(unit)))
             if some.size == 0:
                 continue
             own = {name: each.isel(run=some) for name, each in values.items()}
@@ -202,8 +202,8 @@ def _by(values, dim):
     return {name: xr.DataArray(column, dims=dim) for name, column in values.items()}
 
 
-def _is_chosen(deviating, model, numbers, count):
-    """Whether each of some samples chooses a model."""
+def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> Array:
+    """Find which of some samples choose a model; `numbers` are their deviations."""
     chosen = np.ones(count, bool)
     for name, choice in model._asdict().items():
         if name in numbers:

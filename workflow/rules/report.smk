@@ -7,6 +7,8 @@ PAGES = {
     "configuration": "every value, as written and as understood",
     "assumptions": "what the paper leaves open, and what is used instead",
 }
+# Datasets made on request that the page of assumptions shows.
+ON_ASSUMPTIONS = "sensitivity", "record_bands"
 # Parts of the report's start page.
 PARTS = ("facts", "findings", "limits", "files", "pipeline")
 
@@ -16,7 +18,7 @@ rule pages:
     input:
         **{kind: result(f"{kind}.nc") for kind in SUMMARISED if STUDY.has(kind)},
         # Once it has been made.
-        **{kind: result(f"{kind}.nc") for kind in KINDS if kind == "sensitivity"},
+        **{kind: result(f"{kind}.nc") for kind in KINDS if kind in ON_ASSUMPTIONS},
         study=FILES.study_file,
         paper=from_here(PAPER),
         docs=[from_here(f"docs/{page}.md") for page in ("limits", "assumptions", "architecture")],

@@ -7,5 +7,6 @@ from lube.storage.files import write_text
 from lube.storage.netcdf import load
 
 study = study_of_job(snakemake)
-datasets = {kind: load(snakemake.input[kind], kind, study) for kind in explored(study)}
+kinds = explored(study, snakemake.input.keys())
+datasets = {kind: load(snakemake.input[kind], kind, study) for kind in kinds}
 write_text(snakemake.output[0], explorer_page(datasets, study.band))

@@ -21,8 +21,13 @@ written = Path(snakemake.input.study).read_text(encoding="utf-8")
 docs = {Path(file).stem: Path(file).read_text(encoding="utf-8") for file in snakemake.input.docs}
 title, assumptions = title_and_text(assumptions_of(study, paper, docs["assumptions"]))
 _, limits = title_and_text(limits_of(study, paper, docs["limits"]))
-if sensitivity := snakemake.input.get("sensitivity"):
-    assumptions += rests_on(load(sensitivity, "sensitivity", study))
+bands = {
+    kind: load(path, kind, study)
+    for kind in ("sensitivity", "record_bands")
+    if (path := snakemake.input.get(kind))
+}
+if "sensitivity" in bands:
+    assumptions += rests_on(bands["sensitivity"], bands.get("record_bands"))
 drawing = docs["architecture"].split("```")[1]
 parts = {
     "facts": to_html(f"{facts(study, results['lubricant'])}\n\n{made(study)}"),

@@ -163,6 +163,7 @@ function showAnswers(point) {
         ? "computed for the first film formula only, where the film is known"
         : "of the time: no contact was seen; 95 % upper limit";
     element("interval").textContent = seen ? `of the time; 95 % interval ${percent(lower)} to ${percent(upper)}` : unseen;
+    element("bands").textContent = bands(point);
     element("marks").textContent = marked(point).map((name) => marks[name]).join("; ");
     if (content.sampled) {
         const rate = limits("tail.breakthrough_rate", ["", "_lower", "_upper"], point);
@@ -176,6 +177,17 @@ function showAnswers(point) {
     element("valid").classList.toggle("warning", !valid);
     element("lambda").textContent = shown("lambda_ratio", point);
     element("regime").textContent = content.regimes[at("regime", point)].replace("_", ", ");
+}
+
+// What one pair of rollers may show, and what the assumptions allow; of lines, in a revolution
+function bands(point) {
+    const words = { breakthrough_probability_pair: "one pair, 95 %: ", "sensitivity.breakthrough_probability": "assumptions, 5 to 95 %: " };
+    const texts = Object.entries(words).map(([name, text]) => {
+        if (!(`${name}_lower` in variables) || (isSurface(point) && name.endsWith("pair"))) return "";
+        const { mean: lower, lower: upper } = limits(name, ["_lower", "_upper"], point);
+        return lower === null ? "" : `${text}${percent(lower)} to ${percent(upper)}`;
+    });
+    return texts.filter(Boolean).join("; ");
 }
 
 function isNear(record, point, names) {

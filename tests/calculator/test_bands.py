@@ -1,0 +1,102 @@
+"""The bands of an answer: of one pair, and over all that is not known exactly."""
+
+import numpy as np
+import pytest
+
+import lube
+from lube import LubeError
+from lube.calculator import bands
+from lube.calculator.arguments import Choices
+
+POINTS = {"force": "400 N", "speed": "100 rpm", "temperature": ["60 degC", "80 degC"]}
+KELVIN = {"temperature": {"range": "+- 2 K", "source": "thermocouple"}}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few():
+    patch = pytest.MonkeyPatch()
+    patch.setattr(bands, "SAMPLES", {"line": 32, "surface": 4})
+    yield
+    patch.undo()
+
+
+def test_the_study_of_the_answer_has_the_rollers_lines(rollers, oil):
+    conditions = {name: np.array([1.0]) for name in ("force", "speed", "temperature")}
+    study = bands._study(rollers, oil, conditions, Choices(), "paper", 0.0, 1, None)
+    assert study.line_spec == rollers.lines
+    cut = lube.Rollers(radius="50 mm", rms_roughness="0.2 um", long_cutoff="0.25 mm")
+    assert bands._study(cut, oil, conditions, Choices(), "paper", 0.0, 1, None).line_spec == (
+        cut.lines
+    )
+
+
+def test_the_bands_enclose_the_answer_and_what_is_less_certain_has_a_wider_one(rollers, oil):
+    found = lube.contact_probability(rollers, oil, **POINTS, realisations=8, bands=KELVIN)
+    wide = lube.contact_probability(rollers, oil, **POINTS, realisations=8, bands=True)
+    sampled = found.tail_breakthrough_probability
+    for answer in (found, wide):
+        lower, upper = (
+            answer[f"assumed_breakthrough_probability_{end}"] for end in ("lower", "upper")
+        )
+        assert lower.dims == ("temperature",)
+        assert ((lower < sampled) & (sampled < upper)).all()
+        assert lower.attrs["long_name"].startswith("breakthrough probability, 5 to 95 %")
+    name = "assumed_breakthrough_probability_lower"
+    assert (wide[name] < found[name]).all()
+
+
+def test_a_range_of_the_temperature_is_what_two_temperatures_say(rollers, oil):
+    found = lube.contact_probability(
+        rollers, oil, "400 N", "100 rpm", "70 degC", realisations=2, bands=KELVIN
+    )
+    # 5 and 95 % of a uniform distribution.
+    ends = lube.contact_probability(
+        rollers, oil, "400 N", "100 rpm", ["68.2 degC", "71.8 degC"], realisations=2
+    )
+    for end, expected in zip(
+        ("lower", "upper"), ends.tail_breakthrough_probability.values, strict=True
+    ):
+        seen = found[f"assumed_breakthrough_probability_{end}"].item()
+        assert seen == pytest.approx(expected, rel=0.1)
+
+
+def test_one_pair_differs_more_from_the_mean_than_the_mean_is_uncertain(rollers, oil):
+    found = lube.contact_probability(rollers, oil, **POINTS, realisations=16)
+    name = "breakthrough_probability"
+    assert (found[f"{name}_pair_lower"] < found[f"{name}_lower"]).all()
+    assert (found[f"{name}_pair_upper"] > found[f"{name}_upper"]).all()
+    assert "assumed_breakthrough_probability_lower" not in found
+
+
+def test_choices_of_the_model_belong_to_the_band(rollers, oil):
+    choice = {"film_formula": {"choices": ["paper", "moes"], "source": "both are in use"}}
+    found = lube.contact_probability(
+        rollers, oil, "400 N", "100 rpm", "60 degC", realisations=2, bands=choice
+    )
+    by_formula = [
+        lube.contact_probability(
+            rollers, oil, "400 N", "100 rpm", "60 degC", realisations=2, film_formula=formula
+        ).tail_breakthrough_probability.item()
+        for formula in ("paper", "moes")
+    ]
+    ends = [found[f"assumed_breakthrough_probability_{end}"].item() for end in ("lower", "upper")]
+    np.testing.assert_allclose(sorted(by_formula), ends, rtol=0.1)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("yes", "bands: got 'yes', need True, False or a dict of ranges"),
+        ({}, "bands: got none, need an uncertain quantity or choice"),
+        ({"force": {"range": "+- 1 %"}}, "bands: force.source: missing"),
+        (
+            {"force": {"range": "2 % to 1 %", "source": "x"}},
+            "bands: force.range: got '2 % to 1 %', need the lower end first",
+        ),
+        ({"colour": {}}, "bands: colour: unknown key"),
+    ],
+)
+def test_bad_ranges_are_refused_in_one_line(rollers, oil, given, said):
+    with pytest.raises(LubeError) as caught:
+        lube.contact_probability(rollers, oil, **POINTS, realisations=2, bands=given)
+    assert str(caught.value).startswith(said) and "\n" not in str(caught.value)
