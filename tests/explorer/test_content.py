@@ -21,9 +21,9 @@ EXPLORED = ("lubricant", "film", "contact", "tail", "master", "trace", "comparis
 
 
 @pytest.fixture(scope="module")
-def explored(files):
+def explored(files, with_assumptions):
     """The datasets that the page is made of, as saved and loaded."""
-    return {kind: load(files / f"{kind}.nc", kind).load() for kind in EXPLORED}
+    return with_assumptions({kind: load(files / f"{kind}.nc", kind).load() for kind in EXPLORED})
 
 
 def read_back(datasets):

@@ -13,6 +13,7 @@ from studies import OIL
 from lube.explorer.content import CHOICES, SHOWN, page_content, page_name
 from lube.explorer.figures import COLUMNS, draw
 from lube.explorer.page import explorer_page
+from lube.schema import POINT_DIMS
 from lube.storage.netcdf import load
 
 EXPLORED = ("lubricant", "film", "contact", "tail", "master", "trace", "comparison")
@@ -22,7 +23,7 @@ BAND = "waves 800 µm to 3.14 µm"
 
 
 @pytest.fixture(scope="module")
-def explored(files):
+def explored(files, with_assumptions):
     """The datasets that the page is made of; at one point no contact, and at one a lot."""
     datasets = {kind: load(files / f"{kind}.nc", kind).load() for kind in EXPLORED}
     for name, none, much in (
@@ -39,7 +40,7 @@ def explored(files):
         kind, variable = name.split()
         datasets[kind][variable].loc[{"temperature": 40.0}] = none
         datasets[kind][variable].loc[{"temperature": 80.0}] = much
-    return datasets
+    return with_assumptions(datasets)
 
 
 @pytest.fixture(scope="module")
@@ -111,6 +112,10 @@ def rounded(number):
     return f"{float(f'{number:.3g}'):g}"
 
 
+def percent(share):
+    return f"{rounded(100.0 * share.item())}\u00a0%"
+
+
 def choose(page, name, index):
     """Move a control, as a hand does: a slider by its keys."""
     if name == "film_formula":
@@ -171,6 +176,17 @@ def test_every_control_moves_and_every_number_is_the_datasets(visit, explored, p
             assert words["interval"] == f"of the time; 95 % interval {interval}"
             often = "1 × 10⁻⁶ breakthroughs per hour (9 × 10⁻⁷ to 1.1 × 10⁻⁶)"
         assert page.inner_text("#rate") == f"{often}, on average over pairs of rollers"
+        assert page.inner_text("#bands") == "; ".join(
+            f"{words}: {percent(here[f'{name}_lower'])} to {percent(here[f'{name}_upper'])}"
+            for words, name, here in (
+                ("one pair, 95 %", "breakthrough_probability_pair", contact.sel(at)),
+                (
+                    "assumptions, 5 to 95 %",
+                    "breakthrough_probability",
+                    explored["sensitivity"].sel({dim: at[dim] for dim in POINT_DIMS}),
+                ),
+            )
+        )
 
 
 def test_without_importance_sampling_the_realisations_are_counted(visit, counted_file):
