@@ -79,6 +79,14 @@ rule electrical:
         f"Done: electrical.nc and its figure are in {RESULTS}"
 
 
+rule measurement_plan:
+    """What to measure next."""
+    input:
+        products(made_by("measurement_plan", FIGURES)),
+    message:
+        f"Done: plan.nc and its figure are in {RESULTS}"
+
+
 rule verification:
     """The study's methods against theory, other methods and print."""
     input:

@@ -29,8 +29,8 @@ class Readings:
 
     def __init__(self, experiment: Experiment, rig: Rig) -> None:
         self._rig, self._open = rig, divider_voltage(rig.leak_resistance, rig).item()
-        only = experiment.model_copy(update={"thresholds": (experiment.threshold,)})
-        self._counter = record_counter(only, rig, "voltage", 1.0 / rig.sampling_rate)
+        self._threshold = experiment.thresholds.index(experiment.threshold)
+        self._counter = record_counter(experiment, rig, "voltage", 1.0 / rig.sampling_rate)
         self._histogram, self._sum = np.zeros(_BINS, np.int64), 0.0
 
     def add(self, voltage: Array) -> None:
@@ -49,13 +49,18 @@ class Readings:
         self._histogram += np.bincount(bins, minlength=_BINS)
 
     @property
+    def by_threshold(self) -> Array:
+        """Share of time below each of the study's thresholds."""
+        return self._counter.below.sum(axis=1) / self._counter.samples
+
+    @property
     def shares(self) -> list[float]:
         """Contact share by each of `READINGS`."""
         samples = self._counter.samples
         below = np.cumsum(self._histogram)
         highest = np.searchsorted(below, HIGHEST * samples)
         return [
-            self._counter.below.sum() / samples,
+            self.by_threshold[self._threshold],
             below[highest // 2] / samples,
             1.0 - self._sum / samples / self._open,
         ]

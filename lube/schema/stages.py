@@ -356,6 +356,15 @@ _ROWS = (
         parallel=True,
     ),
     Stage(
+        "plan",
+        "what a record at each operating point would tell",
+        inputs=("lubricant", "film", "contact", "electrical", "sensitivity"),
+        values=_LINES | _LAYER | {"drift": "rig.drift"},
+        target="measurement_plan",
+        only_with=("is_sampled", *_LINE, "conducts"),
+        parallel=True,
+    ),
+    Stage(
         "verification",
         "methods against theory, other methods and print, some 20 seconds",
         inputs=("lubricant",),

@@ -63,6 +63,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     found = found.merge(_readings(study, film, rigs, slip), join="exact")
     found["discharge_probability"] = _discharges(study, film, rigs, threads)
     found = found.drop_attrs().assign_coords(rig=list(rigs), reading=list(READINGS))
+    found = found.assign_coords(threshold=list(study.experiment.thresholds))
     found["rig_source"] = "rig", ["the study", *(one.source for one in PRESETS.values())]
     return label(found.assign(impedance_frequency=study.rig.frequency), "electrical")
 
@@ -113,20 +114,23 @@ def _readings(study, film, rigs, slip):
     )
     points = operating_points(film, slip)
     known = [number for number, one in enumerate(points) if known_films(one.row, study.gap)]
-    shares = np.full((len(points), 1 + len(rigs) * len(READINGS)), np.nan)
+    ways = len(READINGS) + len(study.experiment.thresholds)
+    shares = np.full((len(points), 1 + len(rigs) * ways), np.nan)
     for _, number, revolution in simulated_revolutions(lines, once, [points[one] for one in known]):
         found = [np.count_nonzero(revolution.contact) / revolution.contact.size]
         for rig in rigs.values():
             readings = Readings(study.experiment, rig)
             readings.add(revolution.voltage(rig))
-            found += readings.shares
+            found += [*readings.shares, *readings.by_threshold]
         shares[known[number]] = found
     sizes = [film.sizes[name] for name in POINT_DIMS]
-    read = shares[:, 1:].T.reshape(len(rigs), len(READINGS), *sizes)
+    read = shares[:, 1:].T.reshape(len(rigs), ways, *sizes)
+    read, by_threshold = np.split(read, [len(READINGS)], axis=1)
     return xr.Dataset(
         {
             "true_contact_share": (POINT_DIMS, shares[:, 0].reshape(sizes)),
             "read_contact_share": (("rig", "reading", *POINT_DIMS), read),
+            "threshold_contact_share": (("rig", "threshold", *POINT_DIMS), by_threshold),
         }
     )
 

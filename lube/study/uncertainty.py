@@ -68,6 +68,13 @@ class _Uncertain(StrictModel):
         lower, upper = (f"{scale * end:g}{unit}" for end in self.range)
         return f"{lower} to {upper}"
 
+    def within(self, part: float) -> str:
+        """Half of the range, reduced to a part of it, in words, such as ``+- 1 %``."""
+        unit = type(self)._UNITS
+        lower, upper = self.range
+        half = 0.5 * part * (upper - lower) * (100.0 if unit == " %" else 1.0)
+        return f"+- {float(f'{half:.1g}'):g}{unit}"
+
 
 class Relative(_Uncertain):
     """A quantity whose deviation is given in per cent of its value."""

@@ -15,7 +15,7 @@ from snakemake.settings import types
 from lube.stages import load_study
 
 TARGETS = "all areal_contact patch_contact computed rough_passage sensitivity".split()
-TARGETS += ["electrical", "verification", "benchmark", "archive", "report"]
+TARGETS += ["electrical", "measurement_plan", "verification", "benchmark", "archive", "report"]
 
 
 def followers(study):

@@ -14,7 +14,7 @@ from lube.schema import STAGES
 
 LOCAL = {"report"}  # runs where Snakemake itself does
 TARGETS = {"all", "areal_contact", "patch_contact", "computed", "rough_passage"}
-TARGETS |= {"sensitivity", "electrical", "verification", "benchmark"}
+TARGETS |= {"sensitivity", "electrical", "measurement_plan", "verification", "benchmark"}
 
 
 @pytest.fixture

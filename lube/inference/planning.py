@@ -1,0 +1,148 @@
+r"""What a record would tell: expected intervals of film, oil and layer inferred from one.
+
+A record measures the contact share P of one pair of rollers. With the standard error
+:math:`\sigma` of the share, a quantity q that changes it is inferred with the relative error
+
+.. math:: \frac{\sigma_q}{q} = \frac{\sigma / P}{|\partial \ln P / \partial \ln q|}
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import scipy.special
+import xarray as xr
+
+from lube.contact.windows import ContactWindows
+from lube.grid.gap import Gap
+from lube.study.line_spec import LineSpec
+from lube.study.rollers import BoundaryLayer
+from lube.threads import on_threads
+from lube.types import Array
+
+PAIRS = 16
+"""Pairs of lines on which slopes are sampled; all quantities have the same."""
+STEP = 0.03
+"""Relative change of a quantity for its slope."""
+LEAST = 4.0
+"""Expected number of independent contacts in a record, below which it tells too little."""
+QUANTITIES = "film thickness", "pressure-viscosity coefficient", "layer strength"
+"""Quantities inferred from a record."""
+
+
+class Slopes(NamedTuple):
+    """Probability of breakthrough and how it changes.
+
+    Attributes
+    ----------
+    probability : numpy.ndarray
+        Shape (P,), at each operating point.
+    by_film, by_layer : numpy.ndarray
+        Slopes of its logarithm over those of the film thickness and of the layer's strength.
+    """
+
+    probability: Array
+    by_film: Array
+    by_layer: Array
+
+
+def slopes(
+    spec: LineSpec,
+    film: xr.Dataset,
+    layer: BoundaryLayer,
+    gap: Gap,
+    seed: int,
+    threads: int | None = None,
+) -> Slopes:
+    """Sample the probability of breakthrough, and its slopes, at some operating points.
+
+    Parameters
+    ----------
+    spec : LineSpec
+        Parameters of the lines.
+    film, layer, gap
+        As in `lube.contact.windows.ContactWindows`.
+    seed : int
+        Seed of the lines.
+    threads : int, optional
+        Threads that share the work.
+
+    Returns
+    -------
+    Slopes
+        In the order of the film's dimensions; NaN where the film is not known.
+    """
+    lower, upper = 1.0 - STEP, 1.0 + STEP
+    across = np.log(upper / lower)
+
+    def sampled(thicker=1.0, weaker=1.0):
+        changed = film.assign(film_thickness=film["film_thickness"] * thicker)
+        windows = ContactWindows(spec, changed, layer, gap, weaker)
+        pairs = on_threads(
+            lambda number: windows.sample(spec, seed, number)[0][1], range(PAIRS), threads
+        )
+        return np.mean(pairs, axis=0)
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        by_film = np.log(sampled(thicker=upper) / sampled(thicker=lower)) / across
+        by_layer = np.log(sampled(weaker=lower) / sampled(weaker=upper)) / across
+    return Slopes(sampled(), by_film, by_layer)
+
+
+def relative_error(
+    probability: Array, sample_size: Array, ratio: float, reading: Array | float = 0.0
+) -> Array:
+    r"""Relative standard error of the contact share that one pair's record shows.
+
+    .. math:: \frac{\sigma^2}{P^2} = v \frac{1 - P}{n P} + r^2
+
+    Parameters
+    ----------
+    probability : numpy.ndarray
+        Probability P.
+    sample_size : numpy.ndarray
+        Effective sample size n of one revolution.
+    ratio : float
+        Variance v of the record's share over that of a revolution, from
+        `lube.statistics.one_pair.scatter_ratio`.
+    reading : numpy.ndarray or float, optional
+        Relative error r of the rig's reading.
+
+    Returns
+    -------
+    numpy.ndarray
+        Infinite where fewer independent contacts than `LEAST` are expected.
+
+    Examples
+    --------
+    >>> relative_error(np.array([0.5, 0.001]), np.array([100.0, 100.0]), 1.0).round(3)
+    array([0.1, inf])
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        variance = ratio * (1.0 - probability) / (sample_size * probability)
+        enough = sample_size / ratio * probability >= LEAST
+    return np.where(enough, np.sqrt(variance + np.square(reading)), np.inf)
+
+
+def half_widths(found: Slopes, by_coefficient: Array, error: Array) -> Array:
+    """Half-widths of the 95 % intervals of all quantities, relative to them.
+
+    Parameters
+    ----------
+    found : Slopes
+        From `slopes`.
+    by_coefficient : numpy.ndarray
+        Slope of the film's logarithm over that of the pressure-viscosity coefficient.
+    error : numpy.ndarray
+        From `relative_error`, shape (P,).
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (quantities, P); NaN where a record tells nothing, or less than that the quantity is
+        between zero and twice its value.
+    """
+    each: Sequence[Array] = found.by_film, found.by_film * by_coefficient, found.by_layer
+    with np.errstate(divide="ignore", invalid="ignore"):
+        widths = scipy.special.ndtri(0.975) * error / np.abs(each)
+    return np.where(widths < 1.0, widths, np.nan)

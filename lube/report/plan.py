@@ -1,0 +1,96 @@
+"""What to measure next, as tables for the laboratory."""
+
+import numpy as np
+import xarray as xr
+
+from lube.report.key_tables import markdown_table
+from lube.report.pages import percent
+from lube.schema import POINT_DIMS
+from lube.study.uncertainty import spoken
+
+MOST = 5
+"""Rows of each table."""
+_POINT = ("force [N]", "speed [r/min]", "temperature [°C]", "expected contact share")
+
+
+def tables(found: xr.Dataset) -> str:
+    """Tabulate the best records of each quantity, durations, and other measurements.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        A ``plan`` dataset.
+
+    Returns
+    -------
+    str
+        Markdown, for the first lubricant.
+    """
+    points = found.isel(lubricant=0).stack(point=POINT_DIMS[1:])
+    once = points.sel(turns=1.0, method="nearest")
+    parts = [_records(once.sel(quantity=name), name) for name in found["quantity"].values]
+    parts.append(_durations(points))
+    if "narrowing" in found:
+        parts.append(_others(points))
+    return "\n\n".join(parts)
+
+
+def _records(of_quantity, name):
+    """Tabulate the records that tell most about a quantity."""
+    assumed = of_quantity.get("half_width_assumed")
+    widths = of_quantity["half_width"].values
+    order = [one for one in np.argsort(np.nan_to_num(widths, nan=np.inf)) if widths[one] < np.inf]
+    headings = [
+        *_POINT,
+        "one pair",
+        *(["other quantities uncertain"] if assumed is not None else []),
+    ]
+    rows = []
+    for place in order[:MOST]:
+        one = of_quantity.isel(point=place)
+        temperature, speed, force = one["point"].item()
+        share = percent(one["breakthrough_probability"].item())
+        row = [f"{force:g}", f"{speed:.4g}", f"{temperature:g}", share, _plus(widths[place])]
+        rows.append(row + ([_plus(assumed.values[place])] if assumed is not None else []))
+    title = f"**{name.capitalize()}**: expected 95 % interval from one record of a revolution"
+    return (
+        f"{title}\n\n{markdown_table(headings, rows)}" if rows else f"{title}: none tells enough."
+    )
+
+
+def _plus(width):
+    return f"± {percent(width)}" if np.isfinite(width) else "no bound"
+
+
+def _durations(points):
+    """Tabulate the best interval of each quantity by the duration of the record."""
+    least = points["half_width"].min("point")
+    rows = [
+        (name, *(_plus(least.sel(quantity=name, turns=turns).item()) for turns in least["turns"]))
+        for name in least["quantity"].values
+    ]
+    headings = (
+        "best interval by duration",
+        *(f"{turns:g} revolutions" for turns in least["turns"].values),
+    )
+    threshold = points["best_threshold"].item()
+    error = percent(points["reading_error"].median().item())
+    said = f"Read the share below {threshold:g} Ω: the rig then misreads it by {error} (median)."
+    return f"{markdown_table(headings, rows)}\n\n{said}"
+
+
+def _others(points):
+    """Tabulate which quantities to measure otherwise, and how well."""
+    narrowing = points["narrowing"].mean("point")
+    order = np.argsort(-narrowing.values)
+    rows = [
+        (
+            spoken(narrowing["factor"].values[one]),
+            points["range_of_factor"].values[one],
+            points["accuracy_of_factor"].values[one],
+            percent(narrowing.values[one]),
+        )
+        for one in order[:MOST]
+    ]
+    headings = ("measure otherwise", "now uncertain by", "accuracy that is enough")
+    return markdown_table((*headings, "narrows the band of the assumptions by"), rows)

@@ -1,0 +1,159 @@
+"""The plan stage: what a record at each operating point would tell, and what else to measure."""
+
+import numpy as np
+import xarray as xr
+
+from lube.contact.ensemble import windows_by_force
+from lube.grid.discretise import speed_ratios
+from lube.grid.film_profiles import six_digits
+from lube.grid.films import film_at
+from lube.grid.levels import rolling
+from lube.grid.operating_points import at_slip
+from lube.inference.planning import QUANTITIES, STEP, half_widths, relative_error, slopes
+from lube.schema import POINT_DIMS, label
+from lube.sensitivity.samples import SEED
+from lube.statistics.one_pair import scatter_ratio
+from lube.statistics.sample_size import effective_sample_size
+from lube.study.study import Study
+from lube.types import Datasets
+
+TURNS = (0.1, 0.3, 1.0, 10.0)
+"""Durations of records, in revolutions."""
+OWN_RIG = "study"
+_OF_QUANTITY = {
+    "film thickness": ("conditions", "surface", "layer"),
+    "pressure-viscosity coefficient": ("conditions", "surface", "layer"),
+    "layer strength": ("conditions", "surface", "oil"),
+}
+"""Groups of uncertain quantities that are not known when one is inferred from a record."""
+LEFT = 0.1
+"""Part of a quantity's variance that a good measurement of it leaves."""
+_CHOICES = "film", "contact model"
+
+
+def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
+    """Make ``plan.nc``; see `lube.stages`.
+
+    All values are for the first film formula and the slide-to-roll ratio nearest to pure rolling,
+    and for records of one pair of rollers with the study's rig. Slopes are those of lines.
+    """
+    slip = rolling(study.slips)
+    film = at_slip(inputs["film"], slip).isel(film_formula=0, drop=True).transpose(*POINT_DIMS, ...)
+    sizes = [film.sizes[name] for name in POINT_DIMS]
+    contact = inputs["contact"].isel(film_formula=0, drop=True)
+    windows = windows_by_force(contact, inputs["film"]).sel(slide_to_roll_ratio=slip, drop=True)
+    contact = contact.sel(slide_to_roll_ratio=slip, drop=True)
+    shares = contact["breakthrough_probability"].transpose("realisation", *POINT_DIMS)
+    windows = windows.broadcast_like(shares[0]).transpose(*POINT_DIMS).values
+    size = effective_sample_size(shares.values, windows).ravel()
+    found = slopes(study.line_spec, film, study.boundary_layer, study.gap, study.seed, threads)
+    threshold, reading = _best_threshold(inputs["electrical"])
+    by_coefficient = _film_slopes(study, inputs["lubricant"], slip)
+    table = {
+        "breakthrough_probability": found.probability,
+        "slope_by_film": found.by_film,
+        "slope_by_layer": found.by_layer,
+        "film_by_coefficient": by_coefficient,
+        "reading_error": reading,
+    }
+    table = {name: (POINT_DIMS, _digits(each.reshape(sizes))) for name, each in table.items()}
+    errors = [
+        relative_error(found.probability, size, _ratio(study, slip, turns), reading)
+        for turns in TURNS
+    ]
+    assumed = _assumed(inputs["sensitivity"]) if "sensitivity" in inputs else {}
+    for name, unknown in (("half_width", {}), ("half_width_assumed", assumed)):
+        if name == "half_width" or unknown:
+            widths = [_widths(found, by_coefficient, error, unknown) for error in errors]
+            dims = "quantity", "turns", *POINT_DIMS
+            widths = np.moveaxis(widths, 0, 1).reshape(len(QUANTITIES), len(TURNS), *sizes)
+            table[name] = dims, _digits(widths)
+    coordinates = {name: film[name].values for name in POINT_DIMS}
+    coordinates |= {"quantity": list(QUANTITIES), "turns": list(TURNS)}
+    dataset = xr.Dataset(table | {"best_threshold": threshold}, coordinates)
+    if "sensitivity" in inputs:
+        dataset = dataset.merge(_to_measure(study, inputs["sensitivity"]), join="exact")
+    return label(dataset, "plan")
+
+
+def _digits(values):
+    return np.where(np.isfinite(values), six_digits(np.nan_to_num(values)), np.nan)
+
+
+def _ratio(study, slip, turns):
+    """Variance of a record's share over that of a revolution, if new alignments do not help."""
+    spec = study.line_spec
+    reach = spec.longest_wavelength / spec.spacing
+    return scatter_ratio(turns, speed_ratios(slip), spec.points, reach, 1.0, study.rig.drift)
+
+
+def _best_threshold(electrical):
+    """Threshold at which the study's rig reads the share best, and its relative errors there."""
+    true = electrical["true_contact_share"].transpose(*POINT_DIMS)
+    read = electrical["threshold_contact_share"].sel(rig=OWN_RIG, drop=True)
+    off = np.abs(read / true.where(true > 0.0) - 1.0).transpose("threshold", *POINT_DIMS)
+    mean = off.mean(POINT_DIMS)
+    best = mean["threshold"].values[int(np.argmin(mean.values))]
+    # Where the simulated rig does not touch, it reads as well as on average.
+    errors = off.sel(threshold=best).fillna(mean.sel(threshold=best))
+    return best, errors.values.ravel()
+
+
+def _film_slopes(study, lubricant, slip):
+    """Slope of the film's logarithm over that of the pressure-viscosity coefficient."""
+    axes = {name: list(getattr(study.operating_grid, name)) for name in ("force", "speed")}
+    axes = xr.Dataset(coords=axes)
+    films = []
+    for factor in (1.0 - STEP, 1.0 + STEP):
+        coefficient = lubricant["pressure_viscosity_coefficient"] * factor
+        table = film_at(
+            lubricant.assign(pressure_viscosity_coefficient=coefficient),
+            study.rough_rollers,
+            axes["force"],
+            axes["speed"],
+            study.film_formulas[:1],
+            slide_to_roll_ratio=slip,
+            inlet_shear_heating=study.inlet_shear_heating,
+            inlet_meniscus=study.film_model["inlet_meniscus"],
+        )
+        films.append(table["film_thickness"].isel(film_formula=0).transpose(*POINT_DIMS).values)
+    return np.log(films[1] / films[0]).ravel() / np.log((1.0 + STEP) / (1.0 - STEP))
+
+
+def _assumed(sensitivity):
+    """Return the standard deviation of ln P by all that is not known, for each quantity."""
+    total = sensitivity["log_probability_deviation"].transpose(*POINT_DIMS)
+    parts = sensitivity["group_first_order"].clip(0.0, 1.0)
+    found = {}
+    for quantity, groups in _OF_QUANTITY.items():
+        known = [name for name in groups if name in parts["factor_group"]]
+        part = parts.sel(factor_group=known).sum("factor_group").clip(0.0, 1.0)
+        found[quantity] = (total * np.sqrt(part)).transpose(*POINT_DIMS).values.ravel()
+    return found
+
+
+def _widths(found, by_coefficient, error, unknown):
+    """Half-widths of all quantities, each with what else is not known."""
+    rows = []
+    for number, quantity in enumerate(QUANTITIES):
+        whole = np.hypot(error, unknown.get(quantity, 0.0))
+        rows.append(half_widths(found, by_coefficient, whole)[number])
+    return rows
+
+
+def _to_measure(study, sensitivity):
+    """Which uncertain quantity narrows the band most, and how well to measure it."""
+    groups = sensitivity["group_of_factor"].values
+    names = [
+        name
+        for name, group in zip(sensitivity["factor"].values, groups, strict=True)
+        if group not in (*_CHOICES, SEED)
+    ]
+    part = sensitivity["first_order"].sel(factor=names).clip(0.0, 1.0)
+    part = part / part.sum("factor").clip(min=1e-3)  # the choices of the model being made
+    narrowing = (1.0 - np.sqrt(1.0 - part)).transpose("factor", *POINT_DIMS).drop_attrs()
+    found = xr.Dataset({"narrowing": narrowing.copy(data=_digits(narrowing.values))})
+    given = [getattr(study.uncertainty, name) for name in names]
+    found["range_of_factor"] = "factor", [one.in_words for one in given]
+    found["accuracy_of_factor"] = "factor", [one.within(LEFT**0.5) for one in given]
+    return found
