@@ -11,6 +11,7 @@ from lube.calculator.operating_points import profile as profile
 from lube.calculator.operating_points import trace as trace
 from lube.calculator.parts import Oil as Oil
 from lube.calculator.parts import Rollers as Rollers
+from lube.calculator.planning import plan as plan
 from lube.calculator.required import required_film as required_film
 from lube.calculator.required import required_roughness as required_roughness
 from lube.calculator.required import required_speed as required_speed

@@ -33,6 +33,8 @@ _OF_NO_FILE = {
         "breakthrough probability, 5 to 95 % over all that is not known exactly",
         "1",
     ),
+    "half_width": ("expected half-width of the 95 % interval, relative to the quantity", "1"),
+    "reading_error": ("relative error of the share that the rig reads", "1"),
     "whole_probability": (f"breakthrough probability {_WHOLE}", "1"),
     "whole_tail_probability": (f"breakthrough probability {_WHOLE}, {_TAIL}", "1"),
     "whole_surface_probability": (f"breakthrough probability of the surface {_WHOLE}", "1"),

@@ -1,0 +1,170 @@
+"""What a record at some operating points would tell."""
+
+import numpy as np
+import xarray as xr
+
+from lube.calculator.answers import Answer
+from lube.calculator.arguments import (
+    FORMULA,
+    REALISATIONS,
+    SEED,
+    Amount,
+    Choices,
+    amount,
+    bare_number,
+    check_realisations,
+    conditions,
+    one_formula,
+)
+from lube.calculator.operating_points import (
+    FILM_VARIABLES,
+    ensemble,
+    film_in_si,
+    with_remarks,
+)
+from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.contact.windows import ContactWindows
+from lube.errors import StudyError, right_one
+from lube.grid.discretise import speed_ratios
+from lube.grid.films import film_at
+from lube.grid.operating_points import surface_speeds
+from lube.inference.planning import QUANTITIES, STEP, half_widths, relative_error, slopes
+from lube.physics.electrical import film_capacitance
+from lube.rig.readings import Readings
+from lube.rig.simulator import Revolution
+from lube.statistics.one_pair import scatter_ratio
+from lube.statistics.sample_size import effective_sample_size, independent_windows
+from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, Rig
+from lube.surfaces.synthetic import draw_realisation
+
+
+@with_parts
+def plan(
+    rollers: Rollers,
+    oil: Oil,
+    force: Amount,
+    speed: Amount,
+    temperature: Amount,
+    *,
+    film_formula: str = FORMULA,
+    film_shape: str = "flat",
+    roughness_deformation: str = "none",
+    slide_to_roll_ratio: float = 0.0,
+    turns: float = 1.0,
+    rig: str | None = None,
+    threshold: str = "100 ohm",
+    realisations: int = REALISATIONS,
+    seed: int = SEED,
+) -> Answer:
+    """Expect how well a record of the contact share tells film, oil and layer.
+
+    Ask before you measure: at which operating points, and how long. A record comes from one pair of
+    rollers, whose share differs from the mean over pairs. Slopes and scatter are those of lines.
+
+    Parameters
+    ----------
+    rollers, oil, force, speed, temperature
+        As in `lube.film`.
+    film_formula, film_shape, roughness_deformation, slide_to_roll_ratio, realisations, seed
+        As in `lube.contact_probability`; one film formula.
+    turns : float, optional
+        Length of the record, revolutions of the roller with the faster surface. Longer records of
+        equal rollers in pure rolling tell no more than one revolution.
+    rig : str, optional
+        A known rig, such as ``"mtm-ecr"``, whose error in reading the share is added. By default
+        the share is read exactly.
+    threshold : str, optional
+        Resistance below which that rig shows contact.
+
+    Returns
+    -------
+    Answer
+        The variables of `lube.film`; ``breakthrough_probability`` by importance sampling;
+        ``half_width``, the half-width of the expected interval of each ``quantity`` relative to the
+        quantity, NaN where the record tells less than a factor of two; and ``reading_error``.
+
+    Raises
+    ------
+    LubeError
+        Which argument, what came, what is needed.
+
+    Examples
+    --------
+    >>> rollers = Rollers(radius="50 mm", rms_roughness="0.2 um")
+    >>> oil = Oil("mobilgear-shc-xmp-320")
+    >>> found = plan(rollers, oil, "800 N", "100 rpm", "60 degC", realisations=16)
+    >>> bool(found.half_width.sel(quantity="film thickness") < 0.1)
+    True
+    """
+    slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
+    turns = bare_number("turns", turns, above=0.0)
+    choices = Choices.of(film_shape, roughness_deformation, "none", "line")
+    check_realisations(realisations, seed)
+    point = force, speed, temperature
+    table = film_in_si(rollers, oil, *point, one_formula(film_formula), choices, slip)
+    contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
+    shares = contact["breakthrough_probability"].values
+    spec, width = rollers.lines, 2.0 * table["contact_half_width"]
+    windows = independent_windows(spec.travel, width, spec.longest_wavelength)
+    windows = xr.DataArray(windows).broadcast_like(table["film_thickness"]).values
+    size = effective_sample_size(shares, windows).ravel()
+    found = slopes(spec, table, rollers.layer, choices.gap, seed)
+    reading = _reading_error(rollers, table, choices.gap, slip, rig, threshold, seed)
+    reach = spec.longest_wavelength / spec.spacing
+    ratio = scatter_ratio(turns, speed_ratios(slip), spec.points, reach, 1.0, 0.0)
+    error = relative_error(found.probability, size, ratio, reading)
+    by_coefficient = _film_slope(rollers, oil, point, film_formula)
+    widths = half_widths(found, by_coefficient, error)
+    dims, shape = table["film_thickness"].dims, table["film_thickness"].shape
+    answer = table[FILM_VARIABLES].assign_coords(quantity=list(QUANTITIES))
+    answer["breakthrough_probability"] = dims, found.probability.reshape(shape)
+    answer["half_width"] = ("quantity", *dims), widths.reshape(len(QUANTITIES), *shape)
+    answer["reading_error"] = dims, np.broadcast_to(reading, error.shape).reshape(shape)
+    return with_remarks(answer, table, rollers)
+
+
+def _film_slope(rollers, oil, point, film_formula):
+    """Slope of the film's logarithm over that of the pressure-viscosity coefficient."""
+    force, speed, temperature = conditions(*point, rollers.pair.first.radius)
+    properties, films = oil.at(temperature), []
+    for factor in (1.0 - STEP, 1.0 + STEP):
+        coefficient = properties["pressure_viscosity_coefficient"] * factor
+        changed = properties.assign(pressure_viscosity_coefficient=coefficient)
+        film = film_at(changed, rollers.pair, force, speed, [film_formula])
+        films.append(film["film_thickness"].isel(film_formula=0))
+    slope = np.log(films[1] / films[0]) / np.log((1.0 + STEP) / (1.0 - STEP))
+    return slope.transpose("temperature", "speed", "force", missing_dims="ignore").values.ravel()
+
+
+def _reading_error(rollers, table, gap, slip, rig, threshold, seed):
+    """Relative error of the share that a known rig reads of another pair, in one revolution."""
+    if rig is None:
+        return 0.0
+    if rig not in PRESETS:
+        raise StudyError(f"rig: got {rig!r}, {right_one(rig, PRESETS)}")
+    ohm = amount("threshold", threshold, "ohm", above=0.0).item()
+    experiment = Experiment(thresholds={"values": [ohm], "units": "ohm"}, threshold=f"{ohm!r} ohm")
+    known, spec = Rig(preset=rig), rollers.lines
+    if np.isnan(rollers.resistivity):
+        raise StudyError("rig: got one for rollers that do not conduct, need none")
+    windows = ContactWindows(spec, table, rollers.layer, gap)
+    traces = windows.trace(draw_realisation(spec, seed, RIG_REALISATIONS), slip)
+    thickness = table["film_thickness"]
+    film, half_width, speed = (
+        each.transpose(*thickness.dims).values.ravel()
+        for each in xr.broadcast(thickness, table["contact_half_width"], table["entrainment_speed"])
+    )
+    errors = np.empty(len(traces))
+    for number, contact in enumerate(traces):
+        plates = film_capacitance(
+            film[number], half_width[number], rollers.pair.length, known.oil_permittivity
+        )
+        step = spec.spacing / max(surface_speeds(speed[number], slip))
+        resistance = rollers.resistivity / spec.spacing
+        revolution = Revolution(contact, None, step, resistance, plates, (seed, number))
+        readings = Readings(experiment, known)
+        readings.add(revolution.voltage(known))
+        true = np.count_nonzero(contact) / contact.size
+        errors[number] = abs(readings.shares[0] / true - 1.0) if true else np.nan
+    # Where the simulated rig does not touch, it reads as well as on average.
+    return np.where(np.isnan(errors), np.nan_to_num(np.nanmean([*errors, 0.0])), errors)

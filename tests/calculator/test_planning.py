@@ -1,0 +1,52 @@
+"""Plans of measurements, asked for in a notebook."""
+
+import numpy as np
+import pytest
+
+import lube
+from lube import LubeError
+
+POINT = {"force": ["400 N", "1600 N"], "speed": "100 rpm", "temperature": "70 degC"}
+
+
+@pytest.fixture(scope="module")
+def found(rollers, oil):
+    return lube.plan(rollers, oil, **POINT, realisations=16)
+
+
+def test_a_plan_has_an_interval_of_each_quantity_at_each_point(found):
+    assert found.half_width.dims == ("quantity", "force")
+    film = found.half_width.sel(quantity="film thickness")
+    oil = found.half_width.sel(quantity="pressure-viscosity coefficient")
+    assert ((film > 0.0) & (film < oil)).all()
+    # By Pan and Hamrock the film rises with the coefficient to the power of 0.47.
+    np.testing.assert_allclose(film / oil, 0.47, rtol=0.01)
+    assert found.table().shape[0] == 6
+
+
+def test_a_short_record_and_a_slow_rig_tell_less(rollers, oil, found):
+    short = lube.plan(rollers, oil, **POINT, realisations=16, turns=0.2)
+    slow = lube.plan(rollers, oil, **POINT, realisations=16, rig="mtm-ecr-10-kohm")
+    film = {"quantity": "film thickness"}
+    np.testing.assert_allclose(
+        short.half_width.sel(film), np.sqrt(5.0) * found.half_width.sel(film), rtol=1e-6
+    )
+    assert (slow.reading_error > 0.0).all()
+    assert (slow.half_width.sel(film) > found.half_width.sel(film)).all()
+
+
+@pytest.mark.parametrize(
+    ("argument", "value", "said"),
+    [
+        ("rig", "mtm", "rig: got 'mtm', "),
+        ("threshold", "5 m", "threshold: wrong dimension or unit 'm'"),
+        ("turns", 0, "turns: got 0, need a value above 0"),
+        ("film_formula", ["paper", "moes"], "film_formula: got ['paper', 'moes'], need one name"),
+        ("contact_model", "surface", "plan: contact_model: unknown argument"),
+    ],
+)
+def test_what_does_not_suit_is_refused_in_one_line(rollers, oil, argument, value, said):
+    given = {"rig": "mtm-ecr"} | {argument: value}
+    with pytest.raises(LubeError) as caught:
+        lube.plan(rollers, oil, **POINT, **given)
+    assert str(caught.value).startswith(said) and "\n" not in str(caught.value)

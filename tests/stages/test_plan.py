@@ -1,0 +1,113 @@
+"""The plan of a small study, with and without what is not known exactly."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from made import made
+from studies import CONFIG
+
+from lube.report.plan import tables
+from lube.schema import POINT_DIMS
+from lube.stages import plan
+from lube.study.study import load_study
+from lube.study.uncertainty import Uncertainty
+
+RANGES = {
+    "viscosity": {"range": "+- 10 %", "source": "x"},
+    "first_rms_roughness": {"range": "-29 % to 25 %", "source": "x"},
+    "film_formula": {"choices": ["paper", "moes"], "source": "x"},
+}
+
+
+@pytest.fixture(scope="module")
+def study():
+    own = load_study(CONFIG / "smoke.yaml")
+    roughness = own.roughness.model_copy(update={"points": 200_000})
+    update = {"roughness": roughness, "realisations": 8}
+    return own.model_copy(update=update | {"uncertainty": Uncertainty.model_validate(RANGES)})
+
+
+@pytest.fixture(scope="module")
+def files(study):
+    return made(study, ("lubricant", "film", "contact", "electrical"))
+
+
+@pytest.fixture(scope="module")
+def sensitivity(files):
+    """Indices as of `sensitivity.nc`: a quarter is the oil's, half the surface's."""
+    film = files["film"]
+    levels = {name: film[name].values for name in POINT_DIMS}
+    sizes = [film.sizes[name] for name in POINT_DIMS]
+    groups = ["oil", "surface", "film", "seed"]
+    factors = ["viscosity", "first_rms_roughness", "film_formula", "seed"]
+    parts = np.multiply.outer([0.25, 0.5, 0.2, 0.0], np.ones(sizes))
+    return xr.Dataset(
+        {
+            "log_probability_deviation": (POINT_DIMS, np.full(sizes, 0.4)),
+            "group_first_order": (("factor_group", *POINT_DIMS), parts),
+            "first_order": (("factor", *POINT_DIMS), parts),
+            "group_of_factor": ("factor", groups),
+        },
+        levels | {"factor_group": groups, "factor": factors},
+    )
+
+
+@pytest.fixture(scope="module")
+def alone(study, files):
+    return plan.make(study, files, 2)
+
+
+@pytest.fixture(scope="module")
+def found(study, files, sensitivity):
+    return plan.make(study, files | {"sensitivity": sensitivity}, 2)
+
+
+def test_without_ranges_nothing_is_assumed(alone):
+    assert "half_width_assumed" not in alone and "narrowing" not in alone
+    assert "measure otherwise" not in tables(alone)
+
+
+def test_what_else_is_not_known_makes_an_interval_wider(alone, found):
+    xr.testing.assert_equal(alone["half_width"], found["half_width"])
+    film = {"quantity": "film thickness", "turns": 1.0}
+    wide, narrow = found["half_width_assumed"].sel(film), found["half_width"].sel(film)
+    assert (wide.notnull() <= narrow.notnull()).all()
+    # The surface has half of the variance, which the slope turns into that of the film.
+    added = 1.96 * 0.4 * np.sqrt(0.5) / np.abs(found["slope_by_film"])
+    known = wide.notnull()
+    expected = np.hypot(narrow, added).where(known)
+    np.testing.assert_allclose(wide.where(known), expected, rtol=1e-3)
+
+
+def test_records_longer_than_a_revolution_tell_no_more(found):
+    width = found["half_width"]
+    xr.testing.assert_equal(width.sel(turns=10.0, drop=True), width.sel(turns=1.0, drop=True))
+    ratio = (width.sel(turns=0.3) / width.sel(turns=1.0)).values
+    np.testing.assert_allclose(ratio[np.isfinite(ratio)], np.sqrt(1.0 / 0.3), rtol=0.05)
+
+
+def test_the_quantity_with_the_largest_part_is_to_be_measured_first(found):
+    narrowing = found["narrowing"].mean(POINT_DIMS)
+    assert narrowing["factor"].values.tolist() == ["viscosity", "first_rms_roughness"]
+    # Two thirds of what the quantities do.
+    assert narrowing[1] == pytest.approx(1.0 - np.sqrt(1.0 / 3.0), rel=1e-4)
+    assert found["accuracy_of_factor"].values.tolist() == ["+- 3 %", "+- 9 %"]
+
+
+def test_tables_have_the_best_records_first(found):
+    text = tables(found)
+    assert text.index("**Film thickness**") < text.index("**Pressure-viscosity coefficient**")
+    rows = [line for line in text.splitlines() if line.startswith("| ")]
+    first = next(line for line in rows if "±" in line)
+    best = found["half_width"].sel(quantity="film thickness", turns=1.0).min().item()
+    assert f"± {100 * best:.3g} %" in first
+    assert "| first rms roughness | -29 % to 25 % | +- 9 % |" in text
+
+
+def test_the_best_threshold_is_one_of_the_studys_and_read_best(study, files, found):
+    electrical = files["electrical"].sel(rig="study")
+    true = electrical["true_contact_share"]
+    off = np.abs(electrical["threshold_contact_share"] / true.where(true > 0.0) - 1.0)
+    mean = off.mean(POINT_DIMS)
+    assert found["best_threshold"] in study.experiment.thresholds
+    assert mean.sel(threshold=found["best_threshold"].item()) == mean.min()
