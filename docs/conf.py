@@ -23,7 +23,7 @@ extensions = [
     "sphinx_design",
 ]
 # README.md is the start page on GitHub; index.md includes it.
-exclude_patterns = ["README.md"]
+exclude_patterns = ["README.md", "paper"]
 nitpicky = True
 # Docstrings name modules and functions of the inside, which have no page.
 nitpick_ignore_regex = [("py:obj", r"lube\.schema|lube\.\w+\..+")]
