@@ -134,11 +134,13 @@ MECHANICS = {"contact", "tail", "areal", "trace", "surface_trace", "experiment"}
 MECHANICS |= {"sensitivity_runs"}
 # Those that are for pure rolling too.
 LAYER = MECHANICS | {"master", "height_distribution", "variants", "passage", "verification"}
+LAYER |= {"plan"}
 DEFORMED = {"variants", "height_distribution"}
 LINES = LAYER | {"roughness", "patch"}
 SPECTRUM = LINES | {"surface", "film_response", "surface_response"}
 SLIDING = {"film", "film_response", "surface_response", "passage"}
-SENSITIVITY = "sensitivity_runs", "sensitivity", "verification", "electrical"
+SENSITIVITY = "sensitivity_runs", "sensitivity", "record_bands", "verification"
+SENSITIVITY += ("electrical", "plan")
 GRID = {"experiment"}  # whose records are labelled by the levels that they are near
 
 
@@ -166,7 +168,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("load_sharing", "iterated", {"film"}),
         ("traces.1.temperature", "60 degC", {"trace", "surface_trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"experiment", "electrical"}),
-        ("rig.drift", 0.1, {"experiment", "electrical"}),
+        ("rig.drift", 0.1, {"experiment", "electrical", "plan"}),
         ("experiment.threshold", "10 ohm", {"experiment"}),
         ("realisations", 128, {"coverage", "variants"}),
         ("batch_size", 8, set()),
@@ -208,7 +210,8 @@ def test_a_lubricants_values_are_inputs_of_the_lubricant_stage_alone(changed_sta
 def test_rollers_that_do_not_conduct_have_no_rig(paper_with):
     insulator, paper = load_study(paper_with(("resistivity", "insulator"))), load_study(PAPER)
     assert paper.conducts and not insulator.conducts
-    rigs = {"rig", "experiment", "comparison", "gauge", "areal_gauge", "coverage", "electrical"}
+    rigs = {"rig", "experiment", "comparison", "gauge", "areal_gauge", "coverage"}
+    rigs |= {"electrical", "plan", "record_bands"}
     assert {stage for stage in STAGES if paper.has(stage) and not insulator.has(stage)} == rigs
     figures = set(study_figures(paper)) - set(study_figures(insulator))
     assert {name[:5] for name in figures} >= {"fig13", "fig14", "fig15", "fig16", "fig17", "fig18"}
