@@ -189,7 +189,8 @@ class Deviating:
         """Rms height of both lines together, m."""
         names = "first_rms_roughness", "second_rms_roughness"
         each = zip(names, self.study.line_spec.rms_height, strict=True)
-        return np.sqrt(sum((rms * (1.0 + values.get(name, 0.0))) ** 2 for name, rms in each))
+        rms = np.sqrt(sum((rms * (1.0 + values.get(name, 0.0))) ** 2 for name, rms in each))
+        return rms * (1.0 + values.get("rms_roughness", 0.0))
 
     def lines(self, values: dict[str, float]) -> LineSpec:
         """Parameters of the lines of one sample, no longer than needed."""

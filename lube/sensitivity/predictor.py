@@ -12,6 +12,7 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_sum, models
 from lube.sensitivity.samples import deviations
+from lube.sensitivity.shape import EffectiveRatio
 from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
 from lube.types import Array, Pair
 
@@ -46,12 +47,15 @@ class Predictor:
         the viscosity; None if the study does not choose it.
     film_error : float
         Its rms error at runs that were left out of the fit.
+    effective : EffectiveRatio or None
+        Lambda ratios of films with a shape; None if the study has none.
     """
 
     deviating: Deviating
     surrogates: dict[Model, Surrogate]
     film: Interpolant | None
     film_error: float
+    effective: EffectiveRatio | None
 
     @classmethod
     def of(cls, deviating: Deviating, runs: xr.Dataset) -> "Predictor":
@@ -64,18 +68,18 @@ class Predictor:
         runs : xarray.Dataset
             A ``sensitivity_runs`` dataset.
         """
-        surrogates = {}
+        surrogates, effective = {}, _effective(deviating, runs)
         for model in sorted(models(deviating), key=Model.deviations):
             own = _of_model(runs, model)
             values = _by(deviations(deviating.factors, own["factor_quantile"].values), "run")
-            variables = groups(deviating, own, values, not model.gap.is_plain)
+            variables = groups(deviating, own, values, model.gap, effective)
             variables = variables.transpose("group", "run").values
             found = own["breakthrough_probability"].transpose("run", "seed").values
             nearer = [one.parts for other, one in surrogates.items() if other.is_nearer(model)]
             parts = tuple(dict.fromkeys(chain.from_iterable(nearer)))
             known = is_sum(deviating, model)
             surrogates[model] = Surrogate.of(variables, found, parts, known)
-        return cls(deviating, surrogates, *_film(deviating, runs))
+        return cls(deviating, surrogates, *_film(deviating, runs), effective)
 
     def errors(self, runs: xr.Dataset, deviation: Array) -> dict:
         """Find the errors of the surrogates at runs that were left out of their fits.
@@ -167,7 +171,7 @@ class Predictor:
                 continue
             own = {name: each.isel(run=some) for name, each in values.items()}
             here = film.isel(run=some)
-            variables = groups(deviating, here, own, not model.gap.is_plain)
+            variables = groups(deviating, here, own, model.gap, self.effective)
             variables = variables.transpose("group", "run", "point").values
             shape = variables.shape[1:]
             logarithm = surrogate.log_probability(variables.reshape(len(variables), -1))
@@ -210,6 +214,15 @@ def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> 
             choices = getattr(deviating.study.uncertainty, name).choices
             chosen &= numbers[name] == choices.index(choice)
     return chosen
+
+
+def _effective(deviating, runs):
+    """Table of the effective lambda ratios, over the films of the runs and some more."""
+    if not any(model.gap.has_shape for model in models(deviating)):
+        return None
+    names = "moes_load", "moes_material", "lambda_ratio"
+    ranges = [(runs[name].min().item(), runs[name].max().item()) for name in names]
+    return EffectiveRatio.of(deviating, np.array(ranges) * (0.9, 1.1))
 
 
 def _film(deviating, runs):

@@ -22,6 +22,10 @@ SEEDS = 4
 """Independent sets of random numbers."""
 PAIRS = 3
 """Pairs of lines in each set."""
+NOISY = 0.1
+"""Relative standard error of a probability above which more pairs are sampled."""
+TIMES = 9
+"""How many times as many they then are."""
 SURFACE_SEEDS = 2
 """Sets that have surfaces of their own; the others share these."""
 FEWER_SURFACES = 16
@@ -37,7 +41,7 @@ class Sizes(NamedTuple):
 
 SIZES = {
     "plain line": Sizes(1024, 2),
-    "line": Sizes(1024, 4),
+    "line": Sizes(768, 4),
     "answered line": Sizes(256, 2),
     "surface": Sizes(16, 24),
     "sum": Sizes(4, 24),
@@ -214,5 +218,17 @@ def _probabilities(deviating, model, values, film):
             found.append(contact["breakthrough_probability"].values)
         return np.stack([found[seed % SURFACE_SEEDS] for seed in range(SEEDS)], axis=1)
     windows = ContactWindows(spec, film, layer, model.gap)
-    found = [windows.sample(spec, study.seed, number)[0][1] for number in range(SEEDS * PAIRS)]
-    return np.transpose(found).reshape(-1, SEEDS, PAIRS).mean(axis=2)
+
+    def sampled(some, numbers):
+        found = [some.sample(spec, study.seed, number)[0][1] for number in numbers]
+        return np.transpose(found).reshape(some.size, SEEDS, -1)
+
+    found = sampled(windows, range(SEEDS * PAIRS))
+    mean = found.mean(axis=2)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        error = found.std(axis=(1, 2), ddof=1) / np.sqrt(SEEDS * PAIRS) / found.mean(axis=(1, 2))
+    noisy = np.flatnonzero(error > NOISY)
+    if noisy.size:
+        more = sampled(windows[noisy], range(SEEDS * PAIRS, SEEDS * PAIRS * TIMES))
+        mean[noisy] = np.concatenate([found[noisy], more], axis=2).mean(axis=2)
+    return mean

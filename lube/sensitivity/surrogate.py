@@ -14,7 +14,9 @@ import scipy.special
 import xarray as xr
 from scipy.interpolate import RBFInterpolator
 
+from lube.grid.gap import PLAIN, Gap
 from lube.sensitivity.conditions import Deviating
+from lube.sensitivity.shape import EffectiveRatio
 from lube.types import Array
 
 SMOOTHING = 0.1
@@ -28,7 +30,13 @@ def held_out(count: int) -> int:
     return max(min(200, count // 4), 1)
 
 
-def groups(deviating: Deviating, film: xr.Dataset, values: dict, is_shaped: bool) -> xr.DataArray:
+def groups(
+    deviating: Deviating,
+    film: xr.Dataset,
+    values: dict,
+    gap: Gap = PLAIN,
+    effective: EffectiveRatio | None = None,
+) -> xr.DataArray:
     """Form the dimensionless groups on which the probability depends.
 
     Parameters
@@ -39,8 +47,10 @@ def groups(deviating: Deviating, film: xr.Dataset, values: dict, is_shaped: bool
         From `lube.sensitivity.conditions.joined`.
     values : dict of str to xarray.DataArray
         From `lube.sensitivity.samples.deviations`.
-    is_shaped : bool
-        Whether the probability depends on Moes' numbers, too.
+    gap : Gap, optional
+        If it is not plain, the probability depends on Moes' numbers, too.
+    effective : EffectiveRatio, optional
+        Takes the place of the lambda ratio of a film with a shape.
 
     Returns
     -------
@@ -56,8 +66,12 @@ def groups(deviating: Deviating, film: xr.Dataset, values: dict, is_shaped: bool
     strength = layer.shear_strength / layer.critical_thickness / film["reduced_modulus"]
     strength = strength * (1.0 + values.get("shear_strength", 0.0))
     strength = strength / (1.0 + values.get("critical_thickness", 0.0))
+    ratio = film["film_thickness"] / rms
+    moes = film["moes_load"], film["moes_material"]
+    if gap.has_shape:
+        ratio = xr.apply_ufunc(effective, *xr.broadcast(ratio, *moes))
     found = [
-        film["film_thickness"] / rms,
+        ratio,
         np.log(film["contact_half_width"] / longest),
         np.log(shortest / longest),
         np.log(strength * shortest ** (2.0 - hurst) * longest**hurst / rms),
@@ -65,9 +79,10 @@ def groups(deviating: Deviating, film: xr.Dataset, values: dict, is_shaped: bool
     ]
     if not spec.has_like_lines:
         first = spec.rms_height[0] * (1.0 + values.get("first_rms_roughness", 0.0))
+        first = first * (1.0 + values.get("rms_roughness", 0.0))
         found += [(first / rms) ** 2]
-    if is_shaped:
-        found += [np.log(film["moes_load"]), np.log(film["moes_material"])]
+    if not gap.is_plain:
+        found += [np.log(each) for each in moes]
     each = xr.broadcast(*(xr.DataArray(one, name="groups") for one in found))
     return xr.concat(each, "group", coords="minimal", compat="override", join="exact")
 

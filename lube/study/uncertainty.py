@@ -188,6 +188,8 @@ class Uncertainty(StrictModel):
     """speed of both rollers"""
     young_modulus: Relative | None = _of("conditions")
     """Young's modulus of both rollers"""
+    rms_roughness: Relative | None = _of("surface")
+    """rms height of the roughness of both rollers alike"""
     first_rms_roughness: Relative | None = _of("surface")
     """rms height of the first roller's roughness"""
     second_rms_roughness: Relative | None = _of("surface")
@@ -239,10 +241,12 @@ def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:
     """
     longer = 1.0 + values.get("longest_wavelength", 0.0)
     shorter = 1.0 + values.get("shortest_wavelength", 0.0)
+    higher = 1.0 + values.get("rms_roughness", 0.0)
     lines = []
     for line, name in zip(spec.lines, ROLLERS, strict=True):
+        own = 1.0 + values.get(f"{name}_rms_roughness", 0.0)
         update = {
-            "rms_height": line.rms_height * (1.0 + values.get(f"{name}_rms_roughness", 0.0)),
+            "rms_height": line.rms_height * higher * own,
             "q_min": line.q_min / longer,
             "q_roll_off": line.q_roll_off / longer,
             "q_max": line.q_max / shorter,

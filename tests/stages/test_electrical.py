@@ -67,9 +67,10 @@ def test_contact_that_is_rare_is_a_capacitor(found):
 
 
 def test_the_gap_of_a_computed_shape_is_its_film_and_that_of_an_answered_line_has_its_rms(study):
-    shaped = study.model_copy(
-        update={"film_shape": "computed", "roughness_deformation": "computed"}
-    )
+    levels = {"force": (800.0,), "speed": (100.0,), "temperature": (40.0,)}
+    grid = study.operating_grid.model_copy(update=levels | {"slide_to_roll_ratio": (0.0,)})
+    choices = {"film_shape": "computed", "roughness_deformation": "computed"}
+    shaped = study.model_copy(update=choices | {"operating_grid": grid})
     film = at_slip(made(shaped, ("lubricant", "film"))["film"], 0.0).isel(film_formula=0)
     spec = shaped.line_spec
     windows = study_windows(shaped, film)
