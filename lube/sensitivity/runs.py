@@ -41,7 +41,7 @@ class Sizes(NamedTuple):
 
 SIZES = {
     "plain line": Sizes(1024, 2),
-    "line": Sizes(768, 4),
+    "line": Sizes(1024, 3),
     "answered line": Sizes(256, 2),
     "surface": Sizes(16, 24),
     "sum": Sizes(4, 24),

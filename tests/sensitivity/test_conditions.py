@@ -103,3 +103,13 @@ def test_a_little_beyond_the_data_the_viscosity_goes_on(study):
     ]
     steps = np.diff(np.log(found))
     assert steps[0] == pytest.approx(steps[1], rel=0.05) and steps[0] < 0.0
+
+
+def test_heights_of_both_rollers_alike_are_those_of_each(study):
+    together = {"rms_roughness": 0.2, "second_rms_roughness": 0.1}
+    apart = {"first_rms_roughness": 0.2, "second_rms_roughness": 1.2 * 1.1 - 1.0}
+    one, other = (Deviating.of(study).lines(values) for values in (together, apart))
+    assert one.rms_height == pytest.approx(other.rms_height)
+    rms = [Deviating.of(study).rms_roughness(values) for values in (together, apart)]
+    assert rms[0] == pytest.approx(rms[1])
+    assert rms[0] == pytest.approx(np.hypot(*one.rms_height))

@@ -23,7 +23,7 @@ from lube.study.uncertainty import Uncertainty
 SOURCE = {"source": "assumed"}
 SMALL = {
     "viscosity": {"range": "+- 10 %"} | SOURCE,
-    "first_rms_roughness": {"range": "-29 % to 25 %"} | SOURCE,
+    "rms_roughness": {"range": "-29 % to 25 %"} | SOURCE,
     "hurst_exponent": {"range": "0.6 to 0.8"} | SOURCE,
     "critical_thickness": {"range": "-50 % to 0 %"} | SOURCE,
     "film_formula": {"choices": ["paper", "computed"]} | SOURCE,
@@ -108,7 +108,7 @@ def test_indices_are_parts_of_the_variance(result):
 
 def test_what_matters_is_told_from_what_does_not(result):
     total = result["total_effect"].mean(POINT_DIMS)
-    assert total.sel(factor="first_rms_roughness") > 5.0 * total.sel(factor="viscosity")
+    assert total.sel(factor="rms_roughness") > 5.0 * total.sel(factor="viscosity")
     assert total.sel(factor=SEED) < 0.1
     effect = result["elementary_effect"].mean(POINT_DIMS)
     assert effect.sel(factor="hurst_exponent") > 2.0 * effect.sel(factor=SEED)
