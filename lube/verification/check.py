@@ -7,6 +7,9 @@ import numpy as np
 
 from lube.types import Array
 
+CLOSE = 3.5
+"""Standard errors within which two estimates agree, the largest of several distances."""
+
 
 @dataclass(frozen=True)
 class Check:

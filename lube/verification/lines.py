@@ -21,7 +21,7 @@ from lube.surfaces.spectra import pair_moments
 from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 from lube.types import Array
-from lube.verification.check import Check, errors_apart, percent_off
+from lube.verification.check import CLOSE, Check, errors_apart, percent_off
 
 PAIRS = 40
 """Pairs of lines on which contact is counted, and others on which it is sampled."""
@@ -30,6 +30,7 @@ LAMBDA_RATIOS = np.arange(1.0, 8.5, 0.5)
 FEW = np.flatnonzero(np.isin(LAMBDA_RATIOS, (1.0, 2.0, 3.0, 4.0)))
 """Those at which the slower checks are made."""
 SLIP = 0.5
+"""Slide-to-roll ratio at which the probability is compared with that in pure rolling."""
 CROSSED = np.array([1.0, 2.0, 3.0])
 """Levels at which crossings are counted, over the rms height."""
 COUNTED = "geometric_contact_probability", "breakthrough_probability"
@@ -139,7 +140,7 @@ def line_checks(study: Study, found: Curves, threads: int | None) -> list[Check]
             "importance sampling on other lines",
             "method",
             errors_apart(found.counted[:, seen], found.sampled[:, seen]),
-            3.5,
+            CLOSE,
             "standard errors",
             "Adler, Blanchet and Liu 2012",
         ),
@@ -287,7 +288,7 @@ def _slip(found, pairs, windows, threads):
         errors_apart(
             np.reshape(slipping, (half, -1)), found.counted[half:, FEW].reshape(PAIRS - half, -1)
         ),
-        3.5,
+        CLOSE,
         "standard errors",
         "stationary lines",
     )

@@ -10,7 +10,7 @@ from lube.study.study import Study
 from lube.surfaces.rough_surface import rough_surface
 from lube.threads import on_threads
 from lube.types import Array
-from lube.verification.check import Check, errors_apart, percent_off
+from lube.verification.check import CLOSE, Check, errors_apart, percent_off
 
 SURFACES = 16
 LEVELS = np.array([2.0, 2.5, 3.0])
@@ -61,7 +61,7 @@ def surface_checks(study: Study, threads: int | None) -> list[Check]:
             "that of both lines together",
             "exact",
             errors_apart(squares[:, None], np.full((SURFACES, 1), moments.height)),
-            3.5,
+            CLOSE,
             "standard errors",
             "C1D = pi q C2D",
         ),
@@ -70,7 +70,7 @@ def surface_checks(study: Study, threads: int | None) -> list[Check]:
             "its expected value",
             "exact",
             errors_apart(characteristic, np.broadcast_to(expected, characteristic.shape)),
-            3.5,
+            CLOSE,
             "standard errors",
             "Adler and Taylor 2007",
         ),
