@@ -40,12 +40,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     slip = rolling(study.slips)
     film = at_slip(inputs["film"], slip).isel(film_formula=0, drop=True).transpose(*POINT_DIMS, ...)
     sizes = [film.sizes[name] for name in POINT_DIMS]
-    contact = inputs["contact"].isel(film_formula=0, drop=True)
-    windows = windows_by_force(contact, inputs["film"]).sel(slide_to_roll_ratio=slip, drop=True)
-    contact = contact.sel(slide_to_roll_ratio=slip, drop=True)
-    shares = contact["breakthrough_probability"].transpose("realisation", *POINT_DIMS)
-    windows = windows.broadcast_like(shares[0]).transpose(*POINT_DIMS).values
-    size = effective_sample_size(shares.values, windows).ravel()
     found = slopes(study.line_spec, film, study.boundary_layer, study.gap, study.seed, threads)
     threshold, reading = _best_threshold(inputs["electrical"])
     by_coefficient = _film_slopes(study, inputs["lubricant"], slip)
@@ -57,23 +51,34 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         "reading_error": reading,
     }
     table = {name: (POINT_DIMS, _digits(each.reshape(sizes))) for name, each in table.items()}
+    size = _sample_size(inputs["contact"], inputs["film"], slip)
     errors = [
         relative_error(found.probability, size, _ratio(study, slip, turns), reading)
         for turns in TURNS
     ]
-    assumed = _assumed(inputs["sensitivity"]) if "sensitivity" in inputs else {}
-    for name, unknown in (("half_width", {}), ("half_width_assumed", assumed)):
-        if name == "half_width" or unknown:
-            widths = [_widths(found, by_coefficient, error, unknown) for error in errors]
-            dims = "quantity", "turns", *POINT_DIMS
-            widths = np.moveaxis(widths, 0, 1).reshape(len(QUANTITIES), len(TURNS), *sizes)
-            table[name] = dims, _digits(widths)
+    unknown = {"half_width": {}}
+    if "sensitivity" in inputs:
+        unknown["half_width_assumed"] = _assumed(inputs["sensitivity"])
+    for name, others in unknown.items():
+        widths = [_widths(found, by_coefficient, error, others) for error in errors]
+        widths = np.moveaxis(widths, 0, 1).reshape(len(QUANTITIES), len(TURNS), *sizes)
+        table[name] = ("quantity", "turns", *POINT_DIMS), _digits(widths)
     coordinates = {name: film[name].values for name in POINT_DIMS}
     coordinates |= {"quantity": list(QUANTITIES), "turns": list(TURNS)}
     dataset = xr.Dataset(table | {"best_threshold": threshold}, coordinates)
     if "sensitivity" in inputs:
         dataset = dataset.merge(_to_measure(study, inputs["sensitivity"]), join="exact")
     return label(dataset, "plan")
+
+
+def _sample_size(contact, film, slip):
+    """Effective sample size of a revolution, from the scatter between realisations."""
+    contact = contact.isel(film_formula=0, drop=True)
+    windows = windows_by_force(contact, film).sel(slide_to_roll_ratio=slip, drop=True)
+    shares = contact["breakthrough_probability"].sel(slide_to_roll_ratio=slip, drop=True)
+    shares = shares.transpose("realisation", *POINT_DIMS)
+    windows = windows.broadcast_like(shares[0]).transpose(*POINT_DIMS).values
+    return effective_sample_size(shares.values, windows).ravel()
 
 
 def _digits(values):
