@@ -67,6 +67,7 @@ rule sensitivity:
     """What the probability of contact rests on."""
     input:
         products(made_by("sensitivity", FIGURES)),
+        [result("record_bands.nc")] if STUDY.has("record_bands") else [],
     message:
         f"Done: sensitivity.nc and its figure are in {RESULTS}"
 

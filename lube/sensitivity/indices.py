@@ -9,7 +9,7 @@ M. D. Morris, Factorial sampling plans for preliminary computational experiments
 T. Iwanaga, W. Usher and J. Herman, Toward SALib 2.0, SESMO 4 (2022) 18155.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -22,7 +22,7 @@ from lube.threads import on_threads
 from lube.types import Array
 
 BASE_SAMPLES = 1024
-TRAJECTORIES = 50
+TRAJECTORIES = 200
 """Paths of Morris' design; each changes every factor once."""
 LEVELS = 10
 """Levels of each factor in Morris' design."""
@@ -87,32 +87,52 @@ def sobol(
     return dict(zip(keys, found, strict=True)), np.concatenate([blocks[:, 0], blocks[:, -1]])
 
 
-def morris(names: Sequence[str], predict: Callable[[Array], Array], seed: int) -> dict[str, Array]:
-    """Screen the factors by Morris' method.
+def morris(
+    names: Sequence[str],
+    predict: Callable[[Array], Array],
+    seed: int,
+    choices: Mapping[str, int] | None = None,
+) -> dict[str, Array]:
+    r"""Screen the factors by Morris' method.
 
     Parameters
     ----------
     names, predict, seed
         As in `sobol`.
+    choices : mapping of str to int, optional
+        Factors that are choices, with the number of each: a step leads from one to another, and is
+        not the part of a range.
 
     Returns
     -------
     dict of str to numpy.ndarray
-        ``elementary_effect``, the mean of the absolute effects of a step through the whole range,
-        ``elementary_effect_error`` and ``elementary_effect_deviation``, shape (factors, points).
+        Shape (factors, points): ``elementary_effect``, the mean of the absolute effects of a step
+        through the whole range, or from one choice to another; ``elementary_effect_error`` and
+        ``elementary_effect_deviation``; and ``screened_deviation``, the standard deviation that the
+        factor would give by itself to a function with these effects d. It is
+        :math:`\sqrt{\langle d^2 \rangle / 12}` of a range, and
+        :math:`\sqrt{\langle d^2 \rangle (1 - 1/k) / 2}` of a choice among k.
     """
     problem = _problem(names)
     unit = morris_sample.sample(problem, TRAJECTORIES, num_levels=LEVELS, seed=seed)
     values = predict(unit)
-    keys = {"elementary_effect": "mu_star", "elementary_effect_error": "mu_star_conf"}
-    keys |= {"elementary_effect_deviation": "sigma"}
     options = {"num_levels": LEVELS, "num_resamples": RESAMPLES, "seed": seed}
+    # SALib divides each change by the step, a part of the range.
+    step, choices = LEVELS / (2.0 * (LEVELS - 1.0)), choices or {}
+    scale = np.array([step if name in choices else 1.0 for name in names])
+    part = [0.5 - 0.5 / choices[name] if name in choices else 1.0 / 12.0 for name in names]
 
     def of_point(column):
         if not np.isfinite(column).all():
-            return np.full((len(keys), len(names)), np.nan)
+            return np.full((4, len(names)), np.nan)
         found = morris_analysis.analyze(problem, unit, column, **options)
-        return np.array([np.ma.filled(found[key], np.nan) for key in keys.values()], float)
+        mean, absolute, error, deviation = (
+            np.ma.filled(found[key], np.nan) for key in ("mu", "mu_star", "mu_star_conf", "sigma")
+        )
+        square = mean**2 + deviation**2 * (1.0 - 1.0 / TRAJECTORIES)
+        effects = np.array([absolute, error, deviation], float) * scale
+        return np.concatenate([effects, [np.sqrt(square * part) * scale]])
 
     found = np.stack(on_threads(of_point, values.T), axis=-1)
-    return dict(zip(keys, found, strict=True))
+    keys = ("elementary_effect", "elementary_effect_error", "elementary_effect_deviation")
+    return dict(zip((*keys, "screened_deviation"), found, strict=True))

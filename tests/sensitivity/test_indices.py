@@ -44,6 +44,22 @@ def test_the_elementary_effects_of_a_linear_function_are_its_slopes():
     assert (found["elementary_effect_deviation"][[0, 2], 0] > 1.0).all()
 
 
+def test_a_choice_changes_the_function_by_what_lies_between():
+    def predict(unit):
+        return np.column_stack([5.0 * (unit[:, 0] >= 0.5) + unit[:, 1]])
+
+    found = morris(NAMES[:2], predict, seed=1, choices={"first": 2})
+    np.testing.assert_allclose(found["elementary_effect"][:, 0], [5.0, 1.0])
+    # Of a choice between two 5/2, of a uniform number 1/12^0.5.
+    np.testing.assert_allclose(found["screened_deviation"][:, 0], [2.5, 12**-0.5])
+
+
+def test_screened_deviations_of_a_linear_function_are_exact():
+    found = morris(NAMES, ishigami, seed=1)
+    expected = np.array([3.0, 2.0, 0.0]) / np.sqrt(12.0)
+    np.testing.assert_allclose(found["screened_deviation"][:, 1], expected, atol=1e-9)
+
+
 def test_a_point_without_a_value_or_without_a_change_has_no_indices():
     def predict(unit):
         first = np.where(np.arange(len(unit)) == 0, np.nan, unit[:, 0])
