@@ -114,7 +114,7 @@ def plan(
     ratio = scatter_ratio(turns, speed_ratios(slip), spec.points, reach, 1.0, 0.0)
     error = relative_error(found.probability, size, ratio, reading)
     by_coefficient = _film_slope(rollers, oil, point, film_formula)
-    widths = half_widths(found, by_coefficient, error)
+    widths = half_widths(found, by_coefficient, error, realisations)
     dims, shape = table["film_thickness"].dims, table["film_thickness"].shape
     answer = table[FILM_VARIABLES].assign_coords(quantity=list(QUANTITIES))
     answer["breakthrough_probability"] = dims, found.probability.reshape(shape)

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy.special
 import xarray as xr
 
 from lube.contact.windows import ContactWindows
 from lube.grid.gap import Gap
+from lube.statistics.one_pair import quantile
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.threads import on_threads
@@ -119,12 +119,13 @@ def relative_error(
     array([0.1, inf])
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        variance = ratio * (1.0 - probability) / (sample_size * probability)
+        # An estimate of the probability may exceed one.
+        variance = ratio * np.maximum(1.0 - probability, 0.0) / (sample_size * probability)
         enough = sample_size / ratio * probability >= LEAST
     return np.where(enough, np.sqrt(variance + np.square(reading)), np.inf)
 
 
-def half_widths(found: Slopes, by_coefficient: Array, error: Array) -> Array:
+def half_widths(found: Slopes, by_coefficient: Array, error: Array, realisations: int) -> Array:
     """Half-widths of the 95 % intervals of all quantities, relative to them.
 
     Parameters
@@ -135,6 +136,8 @@ def half_widths(found: Slopes, by_coefficient: Array, error: Array) -> Array:
         Slope of the film's logarithm over that of the pressure-viscosity coefficient.
     error : numpy.ndarray
         From `relative_error`, shape (P,).
+    realisations : int
+        Number of realisations from whose scatter the error follows.
 
     Returns
     -------
@@ -144,5 +147,5 @@ def half_widths(found: Slopes, by_coefficient: Array, error: Array) -> Array:
     """
     each: Sequence[Array] = found.by_film, found.by_film * by_coefficient, found.by_layer
     with np.errstate(divide="ignore", invalid="ignore"):
-        widths = scipy.special.ndtri(0.975) * error / np.abs(each)
+        widths = quantile(realisations) * error / np.abs(each)
     return np.where(widths < 1.0, widths, np.nan)

@@ -341,7 +341,7 @@ _ROWS = (
     ),
     Stage(
         "record_bands",
-        "which of its bands explains each record",
+        "which band of the model explains each record",
         inputs=("comparison", "sensitivity_runs"),
         target="sensitivity",
         only_with=("uncertainty", "is_sampled", *_LINE, "conducts", "has_records"),

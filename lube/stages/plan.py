@@ -60,7 +60,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     if "sensitivity" in inputs:
         unknown["half_width_assumed"] = _assumed(inputs["sensitivity"])
     for name, others in unknown.items():
-        widths = [_widths(found, by_coefficient, error, others) for error in errors]
+        given = found, by_coefficient, inputs["contact"].sizes["realisation"]
+        widths = [_widths(*given, error, others) for error in errors]
         widths = np.moveaxis(widths, 0, 1).reshape(len(QUANTITIES), len(TURNS), *sizes)
         table[name] = ("quantity", "turns", *POINT_DIMS), _digits(widths)
     coordinates = {name: film[name].values for name in POINT_DIMS}
@@ -137,12 +138,12 @@ def _assumed(sensitivity):
     return found
 
 
-def _widths(found, by_coefficient, error, unknown):
+def _widths(found, by_coefficient, realisations, error, unknown):
     """Half-widths of all quantities, each with what else is not known."""
     rows = []
     for number, quantity in enumerate(QUANTITIES):
         whole = np.hypot(error, unknown.get(quantity, 0.0))
-        rows.append(half_widths(found, by_coefficient, whole)[number])
+        rows.append(half_widths(found, by_coefficient, whole, realisations)[number])
     return rows
 
 

@@ -9,6 +9,7 @@ from studies import CONFIG
 from lube.report.plan import tables
 from lube.schema import POINT_DIMS
 from lube.stages import plan
+from lube.statistics.one_pair import quantile
 from lube.study.study import load_study
 from lube.study.uncertainty import Uncertainty
 
@@ -73,7 +74,7 @@ def test_what_else_is_not_known_makes_an_interval_wider(alone, found):
     wide, narrow = found["half_width_assumed"].sel(film), found["half_width"].sel(film)
     assert (wide.notnull() <= narrow.notnull()).all()
     # The surface has half of the variance, which the slope turns into that of the film.
-    added = 1.96 * 0.4 * np.sqrt(0.5) / np.abs(found["slope_by_film"])
+    added = quantile(8) * 0.4 * np.sqrt(0.5) / np.abs(found["slope_by_film"])
     known = wide.notnull()
     expected = np.hypot(narrow, added).where(known)
     np.testing.assert_allclose(wide.where(known), expected, rtol=1e-3)
