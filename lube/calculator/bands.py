@@ -126,8 +126,8 @@ def _probabilities(deviating, unit, points):
         some = np.flatnonzero(is_chosen(deviating, model, values, len(samples)))
         if some.size:
             table = run(deviating, model, samples[some], runs.isel(run=some))
-            probability = table["breakthrough_probability"].mean("seed")
             # Without a value where the layer holds in all contacts that were sampled.
-            probability = probability.fillna(0.0).where(table["film_thickness"].notnull())
+            probability = table["breakthrough_probability"].fillna(0.0).mean("seed")
+            probability = probability.where(table["film_thickness"].notnull())
             found[some] = probability.values
     return found.reshape(len(unit), number)

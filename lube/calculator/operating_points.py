@@ -227,7 +227,8 @@ def contact_probability(
         Whether to find the band of the probability over all that is not known exactly: a dict in
         the form of a study's section ``uncertainty``, such as ``{"temperature": {"range": "+- 3 K",
         "source": "thermocouple"}}``; or True for usual ranges. It takes some seconds for each
-        operating point of lines under flat films, some minutes for surfaces.
+        operating point of lines under flat films, some minutes for surfaces. It needs Gaussian
+        heights that no formula flattens.
 
     Returns
     -------

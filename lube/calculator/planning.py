@@ -71,8 +71,8 @@ def plan(
         Length of the record, revolutions of the roller with the faster surface. Longer records of
         equal rollers in pure rolling tell no more than one revolution.
     rig : str, optional
-        A known rig, such as ``"mtm-ecr"``, whose error in reading the share is added. By default
-        the share is read exactly.
+        A known rig, such as ``"mtm-ecr"``, whose error in reading the share of a revolution is
+        added. By default the share is read exactly.
     threshold : str, optional
         Resistance below which that rig shows contact.
 
@@ -86,7 +86,7 @@ def plan(
     Raises
     ------
     LubeError
-        Which argument, what came, what is needed.
+        Which argument, what came, what is needed; or that the lines cannot be sampled.
 
     Examples
     --------
@@ -105,7 +105,8 @@ def plan(
     contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
     shares = contact["breakthrough_probability"].values
     spec, width = rollers.lines, 2.0 * table["contact_half_width"]
-    windows = independent_windows(spec.travel, width, spec.longest_wavelength)
+    travel = spec.travel * min(speed_ratios(slip))
+    windows = independent_windows(travel, width, spec.longest_wavelength)
     windows = xr.DataArray(windows).broadcast_like(table["film_thickness"]).values
     size = effective_sample_size(shares, windows).ravel()
     found = slopes(spec, table, rollers.layer, choices.gap, seed)
@@ -167,4 +168,5 @@ def _reading_error(rollers, table, gap, slip, rig, threshold, seed):
         true = np.count_nonzero(contact) / contact.size
         errors[number] = abs(readings.shares[0] / true - 1.0) if true else np.nan
     # Where the simulated rig does not touch, it reads as well as on average.
-    return np.where(np.isnan(errors), np.nan_to_num(np.nanmean([*errors, 0.0])), errors)
+    known = errors[np.isfinite(errors)]
+    return np.where(np.isnan(errors), known.mean() if known.size else 0.0, errors)

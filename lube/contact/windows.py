@@ -17,6 +17,7 @@ from lube.contact.waves import (
     rms_along,
 )
 from lube.contact.window_films import WindowFilm, window_films
+from lube.errors import StudyError
 from lube.grid.discretise import LineGrid, layer_factor_of, revolution, speed_ratios, whole_numbers
 from lube.grid.gap import PLAIN, Gap
 from lube.kernels.motion import surface_position
@@ -40,6 +41,10 @@ WINDOWS_PER_WIDTH = 10
 """Windows per contact width if the window is not uniform. More windows hardly reduce the scatter
 between realisations, since neighbouring windows see nearly the same points."""
 NO_SLIPS = np.empty((1, 0))
+FLATTENED = (
+    "roughness_deformation: got venner-1997, need none or computed: lines that a formula flattens "
+    "cannot be sampled"
+)
 
 
 class ContactWindows:
@@ -239,7 +244,14 @@ class ContactWindows:
             As from `lube.surfaces.rare_contact.rare_contact`, shapes (2, P) and (10, P). In uneven
             windows as from `lube.surfaces.rare_contact.rare_contact_under`, shapes (2, P) and
             (1 + S, P), NaN where the film is not known.
+
+        Raises
+        ------
+        StudyError
+            If a formula flattens the lines.
         """
+        if self._gap.is_flattened:
+            raise StudyError(FLATTENED)
         if self._gap.is_uniform:
             widths = 2 * self.half_windows + 1
             return rare_contact(spec, seed, number, self.thickness, widths, self._factors)

@@ -350,7 +350,7 @@ _ROWS = (
         "electrical",
         "what electrical meters read at every operating point, some seconds",
         inputs=("film", "contact"),
-        values=_named("resistivity rollers.length rig"),
+        values=_named("resistivity rollers.length rig") | {"experiment": "evaluation"},
         target="electrical",
         only_with=("is_sampled", *_LINE, "conducts"),
         parallel=True,

@@ -227,7 +227,8 @@ def _probabilities(deviating, model, values, film):
     mean = found.mean(axis=2)
     with np.errstate(invalid="ignore", divide="ignore"):
         error = found.std(axis=(1, 2), ddof=1) / np.sqrt(SEEDS * PAIRS) / found.mean(axis=(1, 2))
-    noisy = np.flatnonzero(error > NOISY)
+    # Without a breakthrough on any pair the error is not known.
+    noisy = np.flatnonzero(~(error <= NOISY) & ~windows.unknown)
     if noisy.size:
         more = sampled(windows[noisy], range(SEEDS * PAIRS, SEEDS * PAIRS * TIMES))
         mean[noisy] = np.concatenate([found[noisy], more], axis=2).mean(axis=2)

@@ -136,8 +136,11 @@ def _readings(study, film, rigs, slip):
 
 
 def _discharges(study, film, rigs, threads):
-    """Share of time in which a rig's voltage breaks down the oil, without contact."""
-    found = {}
+    """Share of time in which a rig's voltage breaks down the oil, without contact.
+
+    Surfaces discharge where they are closer than a certain distance, as if the film were thinner by
+    it. A film with a shape is thinner in proportion, by this much where its formula refers to.
+    """
 
     def touching(closer):
         thickness = (film["film_thickness"] - closer).clip(min=0.0)
@@ -149,13 +152,9 @@ def _discharges(study, film, rigs, threads):
         )
         return np.mean(pairs, axis=0)
 
-    for rig in rigs.values():
-        gap = rig.bias_voltage / rig.dielectric_strength
-        if gap not in found:
-            found[gap] = touching(gap) - found.setdefault(0.0, touching(0.0))
+    gaps = [rig.bias_voltage / rig.dielectric_strength for rig in rigs.values()]
+    found = {gap: touching(gap) for gap in (0.0, *gaps)}
     # Few contacts more may come out as fewer, since both shares are estimates.
-    each = [
-        np.maximum(found[rig.bias_voltage / rig.dielectric_strength], 0.0) for rig in rigs.values()
-    ]
+    each = [np.maximum(found[gap] - found[0.0], 0.0) for gap in gaps]
     sizes = [film.sizes[name] for name in POINT_DIMS]
     return ("rig", *POINT_DIMS), six_digits(np.reshape(each, (len(rigs), *sizes)))

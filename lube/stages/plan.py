@@ -20,12 +20,12 @@ from lube.types import Datasets
 TURNS = (0.1, 0.3, 1.0, 10.0)
 """Durations of records, in revolutions."""
 OWN_RIG = "study"
-_OF_QUANTITY = {
-    "film thickness": ("conditions", "surface", "layer"),
-    "pressure-viscosity coefficient": ("conditions", "surface", "layer"),
-    "layer strength": ("conditions", "surface", "oil"),
+_GIVEN = {
+    "film thickness": ("oil", "temperature", "speed"),
+    "pressure-viscosity coefficient": ("pressure_viscosity_coefficient",),
+    "layer strength": ("layer",),
 }
-"""Groups of uncertain quantities that are not known when one is inferred from a record."""
+"""Uncertain quantities, and groups of them, of which each inference does without."""
 LEFT = 0.1
 """Part of a quantity's variance that a good measurement of it leaves."""
 _CHOICES = "film", "contact model"
@@ -41,7 +41,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     film = at_slip(inputs["film"], slip).isel(film_formula=0, drop=True).transpose(*POINT_DIMS, ...)
     sizes = [film.sizes[name] for name in POINT_DIMS]
     found = slopes(study.line_spec, film, study.boundary_layer, study.gap, study.seed, threads)
-    threshold, reading = _best_threshold(inputs["electrical"])
+    threshold, reading = _best_threshold(inputs["electrical"], study.experiment.threshold)
     by_coefficient = _film_slopes(study, inputs["lubricant"], slip)
     table = {
         "breakthrough_probability": found.probability,
@@ -67,13 +67,14 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     coordinates = {name: film[name].values for name in POINT_DIMS}
     coordinates |= {"quantity": list(QUANTITIES), "turns": list(TURNS)}
     dataset = xr.Dataset(table | {"best_threshold": threshold}, coordinates)
-    if "sensitivity" in inputs:
-        dataset = dataset.merge(_to_measure(study, inputs["sensitivity"]), join="exact")
+    if "sensitivity" in inputs and (names := _measurable(inputs["sensitivity"])):
+        found = _to_measure(study, inputs["sensitivity"], names)
+        dataset = dataset.merge(found, join="exact")
     return label(dataset, "plan")
 
 
 def _sample_size(contact, film, slip):
-    """Effective sample size of a revolution, from the scatter between realisations."""
+    """Effective sample size of a realisation, from the scatter between them."""
     contact = contact.isel(film_formula=0, drop=True)
     windows = windows_by_force(contact, film).sel(slide_to_roll_ratio=slip, drop=True)
     shares = contact["breakthrough_probability"].sel(slide_to_roll_ratio=slip, drop=True)
@@ -90,15 +91,22 @@ def _ratio(study, slip, turns):
     """Variance of a record's share over that of a revolution, if new alignments do not help."""
     spec = study.line_spec
     reach = spec.longest_wavelength / spec.spacing
-    return scatter_ratio(turns, speed_ratios(slip), spec.points, reach, 1.0, study.rig.drift)
+    known = speed_ratios(slip), spec.points, reach, 1.0, study.rig.drift
+    # A realisation may be several revolutions long.
+    return scatter_ratio(turns, *known) / scatter_ratio(study.revolutions, *known)
 
 
-def _best_threshold(electrical):
-    """Threshold at which the study's rig reads the share best, and its relative errors there."""
+def _best_threshold(electrical, own):
+    """Threshold at which the study's rig reads the share best, and its relative errors there.
+
+    It is the study's own, without an error, if the simulated rig never touches.
+    """
     true = electrical["true_contact_share"].transpose(*POINT_DIMS)
     read = electrical["threshold_contact_share"].sel(rig=OWN_RIG, drop=True)
     off = np.abs(read / true.where(true > 0.0) - 1.0).transpose("threshold", *POINT_DIMS)
     mean = off.mean(POINT_DIMS)
+    if mean.isnull().all():
+        return own, np.zeros(true.size)
     best = mean["threshold"].values[int(np.argmin(mean.values))]
     # Where the simulated rig does not touch, it reads as well as on average.
     errors = off.sel(threshold=best).fillna(mean.sel(threshold=best))
@@ -127,13 +135,17 @@ def _film_slopes(study, lubricant, slip):
 
 
 def _assumed(sensitivity):
-    """Return the standard deviation of ln P by all that is not known, for each quantity."""
+    """Return the standard deviation of ln P by all that an inference must know."""
     total = sensitivity["log_probability_deviation"].transpose(*POINT_DIMS)
-    parts = sensitivity["group_first_order"].clip(0.0, 1.0)
-    found = {}
-    for quantity, groups in _OF_QUANTITY.items():
-        known = [name for name in groups if name in parts["factor_group"]]
-        part = parts.sel(factor_group=known).sum("factor_group").clip(0.0, 1.0)
+    parts, found = sensitivity["first_order"].clip(0.0, 1.0), {}
+    groups = sensitivity["group_of_factor"].values
+    for quantity, given in _GIVEN.items():
+        unknown = [
+            name
+            for name, group in zip(parts["factor"].values, groups, strict=True)
+            if not {name, group} & {*given, *_CHOICES, SEED}
+        ]
+        part = parts.sel(factor=unknown).sum("factor").clip(0.0, 1.0)
         found[quantity] = (total * np.sqrt(part)).transpose(*POINT_DIMS).values.ravel()
     return found
 
@@ -147,14 +159,14 @@ def _widths(found, by_coefficient, realisations, error, unknown):
     return rows
 
 
-def _to_measure(study, sensitivity):
+def _measurable(sensitivity):
+    """Names of the uncertain quantities, which are not choices."""
+    each = zip(sensitivity["factor"].values, sensitivity["group_of_factor"].values, strict=True)
+    return [name for name, group in each if group not in (*_CHOICES, SEED)]
+
+
+def _to_measure(study, sensitivity, names):
     """Which uncertain quantity narrows the band most, and how well to measure it."""
-    groups = sensitivity["group_of_factor"].values
-    names = [
-        name
-        for name, group in zip(sensitivity["factor"].values, groups, strict=True)
-        if group not in (*_CHOICES, SEED)
-    ]
     part = sensitivity["first_order"].sel(factor=names).clip(0.0, 1.0)
     part = part / part.sum("factor").clip(min=1e-3)  # the choices of the model being made
     narrowing = (1.0 - np.sqrt(1.0 - part)).transpose("factor", *POINT_DIMS).drop_attrs()

@@ -52,8 +52,12 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 def _needed(table):
     """Name the narrowest band that explains each record."""
     share = table["measured_share"].values
-    needed = np.where(np.isfinite(share), "none", "").astype("U11")
-    for name, variable in reversed(_BANDS.items()):
-        lower, upper = (table[f"{variable}{end}"].values for end in LIMITS[1:])
-        needed[(share >= lower) & (share <= upper)] = name
+    limits = {
+        name: [table[f"{variable}{end}"].values for end in LIMITS[1:]]
+        for name, variable in _BANDS.items()
+    }
+    known = np.isfinite([share, *(each for pair in limits.values() for each in pair)]).all(axis=0)
+    needed = np.where(known, "none", "").astype("U11")
+    for name, (lower, upper) in reversed(limits.items()):
+        needed[known & (share >= lower) & (share <= upper)] = name
     return needed

@@ -4,7 +4,7 @@ import numpy as np
 import scipy.special
 import xarray as xr
 
-from lube.contact.windows import ContactWindows, study_windows
+from lube.contact.windows import FLATTENED, ContactWindows, study_windows
 from lube.errors import StudyError
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
@@ -35,10 +35,6 @@ errors follow from the scatter between them."""
 FEWER_PAIRS = 8
 """The first of these pairs, used for the other film formulas."""
 _SLIP = "slide_to_roll_ratio"
-_FLATTENED = (
-    "roughness_deformation: got venner-1997, need none or computed: lines that a formula flattens "
-    "cannot be sampled"
-)
 _ASYMPTOTES = "geometric_contact_asymptote", "breakthrough_asymptote"
 _PROBABILITIES = "breakthrough_probability", "geometric_contact_probability"
 
@@ -234,7 +230,7 @@ def pair_limits(values: xr.Dataset) -> xr.Dataset:
 def _why_not(spec, gap):
     """Say in one line why contact cannot be sampled; nothing if it can."""
     if gap.is_flattened:
-        return _FLATTENED
+        return FLATTENED
     try:
         check_gaussian(spec)
     except StudyError as error:

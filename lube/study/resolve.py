@@ -5,7 +5,7 @@ contents are merged from the last base up: mappings key by key; lists and single
 replaced. Each study needs a different name, so that the results of different values are not mixed
 in one folder. The title, summary, date and DOI in ``about`` are not taken over from the base. A
 roller's roughness replaces that of the base, even if it is given in another way, such as Ra
-instead of rms.
+instead of rms; and a known rig replaces the circuit of the base.
 """
 
 import io
@@ -18,6 +18,7 @@ from ruamel.yaml import YAML
 
 from lube.errors import StudyError, shown
 from lube.study.lubricant_record import is_record_path
+from lube.study.rig_settings import PRESETS
 from lube.study.rollers import ROLLERS, ROUGHNESS_KEYS
 from lube.study.text_files import read_yaml
 from lube.types import File
@@ -147,6 +148,10 @@ def _on_top(base, changes, where):
     match base, changes:
         case {"rollers": dict(below)}, {"rollers": dict(above)}:
             base = base | {"rollers": _without_replaced(below, above)}
+    match base, changes:
+        case {"rig": dict(below)}, {"rig": {"preset": str(preset)}} if preset in PRESETS:
+            kept = {name: below[name] for name in below.keys() - PRESETS[preset].settings.keys()}
+            base = base | {"rig": kept}
     return _merged(base, changes)
 
 

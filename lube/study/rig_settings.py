@@ -33,11 +33,15 @@ class Preset(NamedTuple):
 
 _ECR = (
     "PCS Instruments, data sheet of the option ECR of the mini traction machine MTM2: some 15 mV "
-    "over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm"
+    "over the contact and a balance resistor of 10 ohm, 100 ohm, 1 kohm or 10 kohm; range assumed"
 )
 PRESETS = {
-    "mtm-ecr": Preset({"bias_voltage": "15 mV", "series_resistance": "100 ohm"}, _ECR),
-    "mtm-ecr-10-kohm": Preset({"bias_voltage": "15 mV", "series_resistance": "10 kohm"}, _ECR),
+    "mtm-ecr": Preset(
+        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "100 ohm"}, _ECR
+    ),
+    "mtm-ecr-10-kohm": Preset(
+        {"bias_voltage": "15 mV", "amplifier_range": "30 mV", "series_resistance": "10 kohm"}, _ECR
+    ),
     "threshold-counter": Preset(
         {"bandwidth": "1 MHz", "sampling_rate": "1 MHz", "noise": "50 uV"},
         "a fast comparator at the paper's threshold of 100 ohm; bandwidth and noise assumed",
@@ -97,8 +101,10 @@ class Rig(StrictModel, validate_default=True):
     @model_validator(mode="before")
     @classmethod
     def _take_preset(cls, given):
-        preset = PRESETS.get(given.get("preset")) if isinstance(given, dict) else None
-        return {**preset.settings, **given} if preset else given
+        match given:
+            case {"preset": str(name)} if name in PRESETS:
+                return {**PRESETS[name].settings, **given}
+        return given
 
     def like(self, preset: str) -> "Rig":
         """Return this rig with the settings of a known one."""

@@ -69,7 +69,7 @@ def errors_apart(first: Array, second: Array) -> float:
     Parameters
     ----------
     first, second : numpy.ndarray
-        Shape (samples, values); places where either does not scatter are left out.
+        Shape (samples, values); places where neither scatters are left out.
 
     Returns
     -------

@@ -29,6 +29,8 @@ LAMBDA_RATIOS = np.arange(1.0, 8.5, 0.5)
 """Lambda ratios of the curves."""
 FEW = np.flatnonzero(np.isin(LAMBDA_RATIOS, (1.0, 2.0, 3.0, 4.0)))
 """Those at which the slower checks are made."""
+LOW = 4.0
+"""Lambda ratio from which on sharp summits decide more and more which runs break."""
 SLIP = 0.5
 """Slide-to-roll ratio at which the probability is compared with that in pure rolling."""
 CROSSED = np.array([1.0, 2.0, 3.0])
@@ -133,7 +135,9 @@ def line_checks(study: Study, found: Curves, threads: int | None) -> list[Check]
     moments = pair_moments(spec)
     runs, broken = np.moveaxis(found.runs.mean(axis=0), 1, 0)
     sharp = sharp_summit_share(level, moments, _curvature_limit(study))
-    rises = np.diff(np.abs(broken / runs - sharp))[FEW[-1] :] > 0.0
+    apart = 100.0 * np.abs(broken / runs - sharp)
+    touching = found.sampled[..., 0]
+    error = touching.std(axis=0, ddof=1) / math.sqrt(PAIRS)
     return [
         Check(
             "probabilities of touching and of breakthrough, counted",
@@ -155,21 +159,21 @@ def line_checks(study: Study, found: Curves, threads: int | None) -> list[Check]
             "Rice 1944",
         ),
         Check(
-            "part of the runs that break, sampled",
-            "part of the summits that are sharp enough, to which it must come closer as films rise",
+            f"part of the runs that break, sampled, lambda ratio {LAMBDA_RATIOS[-1]:g}",
+            f"part of the summits that are sharp enough: farther from it than at {LOW:g}",
             "exact",
-            float(np.sum(rises)),
-            0.0,
-            "values",
+            float(max(apart[-1] - apart[LAMBDA_RATIOS == LOW].item(), 0.0)),
+            1.0,
+            "%",
             "Rice 1945, for high films",
         ),
         Check(
             "probability of touching, sampled",
-            "expected number of runs in the window, which it must not exceed",
+            "expected number of runs in the window, which it must not exceed: by how much it does",
             "exact",
-            float(np.sum(found.sampled[..., 0].mean(axis=0) > found.bound)),
-            0.0,
-            "values",
+            float(np.max((touching.mean(axis=0) - found.bound) / error, initial=0.0)),
+            CLOSE,
+            "standard errors",
             "Boole's inequality",
         ),
         _crossings(spec, pairs),

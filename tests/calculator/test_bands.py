@@ -100,3 +100,13 @@ def test_bad_ranges_are_refused_in_one_line(rollers, oil, given, said):
     with pytest.raises(LubeError) as caught:
         lube.contact_probability(rollers, oil, **POINTS, realisations=2, bands=given)
     assert str(caught.value).startswith(said) and "\n" not in str(caught.value)
+
+
+def test_lines_that_a_formula_flattens_have_no_band(rollers, oil):
+    with pytest.raises(LubeError, match="roughness_deformation: got venner-1997, need"):
+        lube.contact_probability(
+            *(rollers, oil, "400 N", "100 rpm", "60 degC"),
+            realisations=2,
+            roughness_deformation="venner-1997",
+            bands=KELVIN,
+        )

@@ -42,6 +42,7 @@ def test_a_short_record_and_a_slow_rig_tell_less(rollers, oil, found):
         ("threshold", "5 m", "threshold: wrong dimension or unit 'm'"),
         ("turns", 0, "turns: got 0, need a value above 0"),
         ("film_formula", ["paper", "moes"], "film_formula: got ['paper', 'moes'], need one name"),
+        ("roughness_deformation", "venner-1997", "roughness_deformation: got venner-1997, need"),
         ("contact_model", "surface", "plan: contact_model: unknown argument"),
     ],
 )

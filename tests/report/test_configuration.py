@@ -40,6 +40,11 @@ def test_every_value_that_is_set_is_shown_with_its_unit(shown):
     unset |= {"traces[].slide_to_roll_ratio", "about.doi", "rig.preset"}
     unset |= {"about.creators[].affiliation", "about.creators[].orcid"}
     unset |= {f"uncertainty.roughness_deformation.{key}" for key in ("choices", "source")}
+    unset |= {
+        f"uncertainty.{roller}_rms_roughness.{key}"
+        for roller in ("first", "second")
+        for key in ("range", "source", "distribution")
+    }
     unset |= {"rollers.composite_rms_roughness", "roughness.roll_off_wavelength"}
     unset |= {"roughness.long_cutoff", "roughness.short_cutoff", "roughness.lay_angle"}
     keys = {key.strip("`") for key, _, _ in study_keys()}

@@ -73,7 +73,8 @@ def test_what_else_is_not_known_makes_an_interval_wider(alone, found):
     film = {"quantity": "film thickness", "turns": 1.0}
     wide, narrow = found["half_width_assumed"].sel(film), found["half_width"].sel(film)
     assert (wide.notnull() <= narrow.notnull()).all()
-    # The surface has half of the variance, which the slope turns into that of the film.
+    # The surface has half of the variance, which the slope turns into that of the film; what the
+    # oil does, it does by the film.
     added = quantile(8) * 0.4 * np.sqrt(0.5) / np.abs(found["slope_by_film"])
     known = wide.notnull()
     expected = np.hypot(narrow, added).where(known)

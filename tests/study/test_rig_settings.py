@@ -1,6 +1,7 @@
 """Settings of known rigs."""
 
 import pytest
+from studies import PAPER
 
 from lube.errors import StudyError
 from lube.study.rig_settings import PRESETS, Rig
@@ -29,3 +30,13 @@ def test_an_unknown_rig_is_refused_with_the_known_ones(paper_with):
         load_study(paper_with(("rig", {"preset": "mtm"})))
     assert "rig.preset: got 'mtm', need" in str(caught.value)
     assert "'mtm-ecr'" in str(caught.value)
+
+
+def test_a_known_rig_replaces_the_circuit_of_the_study_below(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text(
+        f"based_on: {PAPER}\nname: mine\nrig: {{preset: mtm-ecr-10-kohm, noise: 1 uV}}\n", "utf-8"
+    )
+    rig = load_study(path).rig
+    assert (rig.bias_voltage, rig.series_resistance, rig.noise) == (0.015, 1e4, 1e-6)
+    assert rig.revolutions == load_study(PAPER).rig.revolutions

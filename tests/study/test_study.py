@@ -169,7 +169,7 @@ def test_a_change_touches_the_stages_that_depend_on_it_and_no_other(changed_stag
         ("traces.1.temperature", "60 degC", {"trace", "surface_trace", "rig"}),
         ("rig.bandwidth", "10 kHz", {"experiment", "electrical"}),
         ("rig.drift", 0.1, {"experiment", "electrical", "plan"}),
-        ("experiment.threshold", "10 ohm", {"experiment"}),
+        ("experiment.threshold", "10 ohm", {"experiment", "electrical"}),
         ("realisations", 128, {"coverage", "variants"}),
         ("batch_size", 8, set()),
         ("kept_realisations", [0, 1], set()),
