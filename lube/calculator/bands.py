@@ -4,7 +4,6 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
-from scipy.stats import qmc
 
 from lube.calculator.arguments import Choices, conditions
 from lube.calculator.parts import Oil, Rollers
@@ -13,7 +12,7 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.predictor import BAND, is_chosen
 from lube.sensitivity.runs import models, run
-from lube.sensitivity.samples import deviations
+from lube.sensitivity.samples import deviations, quantiles
 from lube.study.field_types import validate
 from lube.study.operating_grid import OperatingGrid
 from lube.study.study import Study
@@ -85,8 +84,7 @@ def assumed_limits(
     deviating = Deviating.of(study, "bands")
     points = xr.Dataset({name: ("point", values.values.ravel()) for name, values in names.items()})
     points["lubricant"] = "point", np.full(points.sizes["point"], oil.record.name)
-    factors = len(deviating.factors)
-    unit = qmc.Sobol(factors, seed=np.random.default_rng(seed)).random(SAMPLES[choices.models[0]])
+    unit = quantiles(SAMPLES[choices.models[0]], len(deviating.factors), seed)
     found = _probabilities(deviating, unit, points[list(POINT_DIMS)])
     limits = np.quantile(found, BAND, axis=0)
     return {

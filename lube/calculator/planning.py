@@ -28,7 +28,13 @@ from lube.errors import StudyError, right_one
 from lube.grid.discretise import speed_ratios
 from lube.grid.films import film_at
 from lube.grid.operating_points import surface_speeds
-from lube.inference.planning import QUANTITIES, STEP, half_widths, relative_error, slopes
+from lube.inference.planning import (
+    QUANTITIES,
+    film_by_coefficient,
+    half_widths,
+    relative_error,
+    slopes,
+)
 from lube.physics.electrical import film_capacitance
 from lube.rig.readings import Readings
 from lube.rig.simulator import Revolution
@@ -127,13 +133,12 @@ def plan(
 def _film_slope(rollers, oil, point, film_formula):
     """Slope of the film's logarithm over that of the pressure-viscosity coefficient."""
     force, speed, temperature = conditions(*point, rollers.pair.first.radius)
-    properties, films = oil.at(temperature), []
-    for factor in (1.0 - STEP, 1.0 + STEP):
-        coefficient = properties["pressure_viscosity_coefficient"] * factor
-        changed = properties.assign(pressure_viscosity_coefficient=coefficient)
-        film = film_at(changed, rollers.pair, force, speed, [film_formula])
-        films.append(film["film_thickness"].isel(film_formula=0))
-    slope = np.log(films[1] / films[0]) / np.log((1.0 + STEP) / (1.0 - STEP))
+
+    def film_of(properties):
+        table = film_at(properties, rollers.pair, force, speed, [film_formula])
+        return table["film_thickness"].isel(film_formula=0)
+
+    slope = film_by_coefficient(oil.at(temperature), film_of)
     return slope.transpose("temperature", "speed", "force", missing_dims="ignore").values.ravel()
 
 

@@ -53,7 +53,7 @@ def six_digits(values: Array) -> Array:
     Parameters
     ----------
     values : numpy.ndarray
-        Values, finite.
+        Values; NaN stays NaN.
 
     Returns
     -------

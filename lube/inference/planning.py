@@ -6,7 +6,7 @@ A record measures the contact share P of one pair of rollers. With the standard 
 .. math:: \frac{\sigma_q}{q} = \frac{\sigma / P}{|\partial \ln P / \partial \ln q|}
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -87,6 +87,29 @@ def slopes(
         by_film = np.log(sampled(thicker=upper) / sampled(thicker=lower)) / across
         by_layer = np.log(sampled(weaker=lower) / sampled(weaker=upper)) / across
     return Slopes(sampled(), by_film, by_layer)
+
+
+def film_by_coefficient(lubricant: xr.Dataset, film_of: Callable) -> xr.DataArray:
+    """Find the slope of the film's logarithm over that of the pressure-viscosity coefficient.
+
+    Parameters
+    ----------
+    lubricant : xarray.Dataset
+        With ``pressure_viscosity_coefficient``.
+    film_of : callable
+        Film thickness with a changed dataset.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over the dimensions of the film.
+    """
+    coefficient = lubricant["pressure_viscosity_coefficient"]
+    lower, upper = (
+        film_of(lubricant.assign(pressure_viscosity_coefficient=coefficient * factor))
+        for factor in (1.0 - STEP, 1.0 + STEP)
+    )
+    return np.log(upper / lower) / np.log((1.0 + STEP) / (1.0 - STEP))
 
 
 def relative_error(

@@ -3,16 +3,10 @@
 import xarray as xr
 
 from lube.report.key_tables import markdown_table
+from lube.verification.check import KINDS
 
 _HEADINGS = "", "computed", "compared with", "deviation", "passes up to", "source"
 _NUMBERS = "check_deviation", "check_allowed"
-_KINDS = {
-    "exact": "Exact theory and identities",
-    "method": "Other methods",
-    "same": "The same calculation, divided or arranged otherwise",
-    "print": "Printed numbers and fits of others",
-    "grid": "Other grids",
-}
 
 
 def outcomes(found: xr.Dataset) -> str:
@@ -29,7 +23,7 @@ def outcomes(found: xr.Dataset) -> str:
         Markdown.
     """
     parts = []
-    for kind, words in _KINDS.items():
+    for kind, words in KINDS.items():
         some = found.isel(check=found["check_kind"].values == kind)
         rows = [_row(some.sel(check=number)) for number in some["check"].values]
         if rows:

@@ -5,13 +5,12 @@ from itertools import chain
 
 import numpy as np
 import xarray as xr
-from scipy.stats import qmc
 
 from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_sum, models
-from lube.sensitivity.samples import deviations
+from lube.sensitivity.samples import deviations, quantiles
 from lube.sensitivity.shape import EffectiveRatio
 from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
 from lube.types import Array, Pair
@@ -153,9 +152,8 @@ class Predictor:
         lower, upper : numpy.ndarray
             Probabilities that 5 and 95 % of the samples lie below, shape (points,).
         """
-        study = self.deviating.study
         factors = len(self.deviating.factors) + 1
-        unit = qmc.Sobol(factors, seed=np.random.default_rng(study.seed)).random(samples)
+        unit = quantiles(samples, factors, self.deviating.study.seed)
         return tuple(np.exp(np.quantile(self.log_probability(unit, points), BAND, axis=0)))
 
     def _of_part(self, unit, points):

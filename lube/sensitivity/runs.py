@@ -8,13 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy.stats import qmc
 
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.gap import Gap
 from lube.sensitivity.conditions import Deviating, joined
-from lube.sensitivity.samples import deviations
+from lube.sensitivity.samples import deviations, quantiles
 from lube.threads import on_threads
 from lube.types import Array
 
@@ -137,8 +136,7 @@ def design(deviating: Deviating, model: Model) -> tuple[Array, xr.Dataset]:
         As for `run`.
     """
     study, (samples, points) = deviating.study, _sizes(deviating, model)
-    factors = len(deviating.factors)
-    unit = qmc.Sobol(factors, seed=np.random.default_rng(study.seed)).random(samples)
+    unit = quantiles(samples, len(deviating.factors), study.seed)
     generator = np.random.default_rng((study.seed, samples))
     chosen = {
         name: ("run", np.array(each)[generator.integers(len(each), size=samples * points)])

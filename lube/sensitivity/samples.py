@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy.special
+from scipy.stats import qmc
 
 from lube.study.uncertainty import Factor
 from lube.types import Array
@@ -12,6 +13,26 @@ FARTHEST = 1.5
 """Normal deviations are cut off at this many half-ranges."""
 SEED = "seed"
 """Name of the factor that stands for the random numbers of the lines."""
+
+
+def quantiles(count: int, factors: int, seed: int) -> Array:
+    """Draw samples that fill the space of the factors evenly (Sobol' points).
+
+    Parameters
+    ----------
+    count : int
+        Number of samples, a power of 2.
+    factors : int
+        Number of factors.
+    seed : int
+        Seed of the study.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples, factors), numbers from 0 to 1.
+    """
+    return qmc.Sobol(factors, seed=np.random.default_rng(seed)).random(count)
 
 
 def deviations(factors: Sequence[Factor], unit: Array) -> dict[str, Array]:

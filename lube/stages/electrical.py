@@ -19,15 +19,13 @@ from lube.physics.electrical import (
 from lube.rig.readings import READINGS, Readings
 from lube.rig.simulator import simulated_revolutions
 from lube.schema import POINT_DIMS, label
-from lube.study.rig_settings import PRESETS
+from lube.study.rig_settings import OWN_RIG, PRESETS
 from lube.study.study import Study
 from lube.threads import on_threads
 from lube.types import Datasets
 
 PAIRS = 8
 """Pairs of lines on which contact is sampled under films that a voltage makes thinner."""
-OWN = "study"
-"""Name of the study's own rig."""
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -54,23 +52,18 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     share = contact["breakthrough_probability_mean"]
     table["breakdown_ratio"] = length / (2.0 * film["contact_half_width"])
     table["closed_resistance"] = study.resistivity * share / length.where(length > 0.0)
-    rigs = {OWN: study.rig} | {name: study.rig.like(name) for name in PRESETS}
+    rigs = {OWN_RIG: study.rig} | {name: study.rig.like(name) for name in PRESETS}
     capacitance = table["capacitance"] + table["surrounding_capacitance"]
     circuit = share, table["closed_resistance"].fillna(1.0), capacitance
     phases = [np.degrees(_phase(rig, *circuit)) for rig in rigs.values()]
     table["impedance_phase"] = xr.concat(phases, "rig", coords="minimal", compat="override")
-    found = xr.Dataset(table).transpose("rig", *POINT_DIMS).map(_six_digits)
+    found = xr.Dataset(table).transpose("rig", *POINT_DIMS).map(six_digits)
     found = found.merge(_readings(study, film, rigs, slip), join="exact")
     found["discharge_probability"] = _discharges(study, film, rigs, threads)
     found = found.drop_attrs().assign_coords(rig=list(rigs), reading=list(READINGS))
     found = found.assign_coords(threshold=list(study.experiment.thresholds))
     found["rig_source"] = "rig", ["the study", *(one.source for one in PRESETS.values())]
     return label(found.assign(impedance_frequency=study.rig.frequency), "electrical")
-
-
-def _six_digits(values):
-    known = values.notnull()
-    return values.copy(data=six_digits(values.fillna(0.0).values)).where(known)
 
 
 def _phase(rig, *circuit):

@@ -9,17 +9,23 @@ from lube.grid.film_profiles import six_digits
 from lube.grid.films import film_at
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip
-from lube.inference.planning import QUANTITIES, STEP, half_widths, relative_error, slopes
+from lube.inference.planning import (
+    QUANTITIES,
+    film_by_coefficient,
+    half_widths,
+    relative_error,
+    slopes,
+)
 from lube.schema import POINT_DIMS, label
 from lube.sensitivity.samples import SEED
 from lube.statistics.one_pair import scatter_ratio
 from lube.statistics.sample_size import effective_sample_size
+from lube.study.rig_settings import OWN_RIG
 from lube.study.study import Study
 from lube.types import Datasets
 
 TURNS = (0.1, 0.3, 1.0, 10.0)
 """Durations of records, in revolutions."""
-OWN_RIG = "study"
 _GIVEN = {
     "film thickness": ("oil", "temperature", "speed"),
     "pressure-viscosity coefficient": ("pressure_viscosity_coefficient",),
@@ -84,7 +90,8 @@ def _sample_size(contact, film, slip):
 
 
 def _digits(values):
-    return np.where(np.isfinite(values), six_digits(np.nan_to_num(values)), np.nan)
+    """Round to six digits; NaN where a slope or an interval is infinite."""
+    return six_digits(np.where(np.isfinite(values), values, np.nan))
 
 
 def _ratio(study, slip, turns):
@@ -117,21 +124,17 @@ def _film_slopes(study, lubricant, slip):
     """Slope of the film's logarithm over that of the pressure-viscosity coefficient."""
     axes = {name: list(getattr(study.operating_grid, name)) for name in ("force", "speed")}
     axes = xr.Dataset(coords=axes)
-    films = []
-    for factor in (1.0 - STEP, 1.0 + STEP):
-        coefficient = lubricant["pressure_viscosity_coefficient"] * factor
+
+    def film_of(oil):
         table = film_at(
-            lubricant.assign(pressure_viscosity_coefficient=coefficient),
-            study.rough_rollers,
-            axes["force"],
-            axes["speed"],
-            study.film_formulas[:1],
+            *(oil, study.rough_rollers, axes["force"], axes["speed"], study.film_formulas[:1]),
             slide_to_roll_ratio=slip,
             inlet_shear_heating=study.inlet_shear_heating,
             inlet_meniscus=study.film_model["inlet_meniscus"],
         )
-        films.append(table["film_thickness"].isel(film_formula=0).transpose(*POINT_DIMS).values)
-    return np.log(films[1] / films[0]).ravel() / np.log((1.0 + STEP) / (1.0 - STEP))
+        return table["film_thickness"].isel(film_formula=0)
+
+    return film_by_coefficient(lubricant, film_of).transpose(*POINT_DIMS).values.ravel()
 
 
 def _assumed(sensitivity):

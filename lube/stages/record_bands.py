@@ -30,9 +30,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """
     comparison = inputs["comparison"].isel(film_formula=0, drop=True)
     comparison = comparison.isel(contact_model=0, drop=True, missing_dims="ignore")
-    names = [f"{name}{end}" for name in ("simulated_probability", "predicted_share")
-             for end in LIMITS[1:]]  # fmt: skip
-    names += [f"measured_share{end}" for end in LIMITS]
+    names = [f"measured_share{end}" for end in LIMITS]
+    for end in LIMITS[1:]:
+        names += [f"simulated_probability{end}", f"predicted_share{end}"]
     kept = comparison.reset_coords()[["record", *names, *_CONDITIONS]].drop_attrs()
     table = kept.set_coords(_CONDITIONS)
     points = xr.Dataset({name: ("point", table[name].values) for name in POINT_DIMS})

@@ -13,6 +13,9 @@ from lube.study.field_types import StrictModel, levels, quantity
 RIG_REALISATIONS = 1_000_000
 """First realisation of the simulated rig's rollers; a study's realisations are below it."""
 
+OWN_RIG = "study"
+"""Name of a study's own rig among the known ones."""
+
 _Resistance = Annotated[float, quantity("ohm", above=0.0)]
 
 

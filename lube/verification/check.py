@@ -1,7 +1,6 @@
 """One check, and how its outcome is written."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -41,21 +40,14 @@ class Check:
     source: str
 
 
-class Kind(NamedTuple):
-    """Kind of a check, in words."""
-
-    name: str
-    words: str
-
-
-KINDS = (
-    Kind("exact", "exact theory or identity"),
-    Kind("method", "another method for the same number"),
-    Kind("same", "the same calculation, divided or arranged otherwise"),
-    Kind("print", "printed numbers of others"),
-    Kind("grid", "another grid or band of wavelengths"),
-)
-"""Kinds of checks."""
+KINDS = {
+    "exact": "Exact theory and identities",
+    "method": "Other methods",
+    "same": "The same calculation, divided or arranged otherwise",
+    "print": "Printed numbers and fits of others",
+    "grid": "Other grids",
+}
+"""Kinds of checks, in words."""
 
 
 def percent_off(found: Array | float, expected: Array | float) -> float:

@@ -30,7 +30,7 @@ LAMBDA_RATIOS = np.arange(1.0, 8.5, 0.5)
 FEW = np.flatnonzero(np.isin(LAMBDA_RATIOS, (1.0, 2.0, 3.0, 4.0)))
 """Those at which the slower checks are made."""
 LOW = 4.0
-"""Lambda ratio from which on sharp summits decide more and more which runs break."""
+"""Lambda ratio with which the highest one is compared."""
 SLIP = 0.5
 """Slide-to-roll ratio at which the probability is compared with that in pure rolling."""
 CROSSED = np.array([1.0, 2.0, 3.0])
@@ -160,7 +160,7 @@ def line_checks(study: Study, found: Curves, threads: int | None) -> list[Check]
         ),
         Check(
             f"part of the runs that break, sampled, lambda ratio {LAMBDA_RATIOS[-1]:g}",
-            f"part of the summits that are sharp enough: farther from it than at {LOW:g}",
+            f"part of the summits that are sharp enough; how much farther off than at {LOW:g}",
             "exact",
             float(max(apart[-1] - apart[LAMBDA_RATIOS == LOW].item(), 0.0)),
             1.0,
@@ -169,7 +169,7 @@ def line_checks(study: Study, found: Curves, threads: int | None) -> list[Check]
         ),
         Check(
             "probability of touching, sampled",
-            "expected number of runs in the window, which it must not exceed: by how much it does",
+            "expected number of runs in the window; by how much it exceeds this",
             "exact",
             float(np.max((touching.mean(axis=0) - found.bound) / error, initial=0.0)),
             CLOSE,

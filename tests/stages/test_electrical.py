@@ -9,7 +9,7 @@ from lube.contact.window_films import window_films
 from lube.contact.windows import study_windows
 from lube.grid.operating_points import at_slip
 from lube.physics.electrical import mean_inverse_gap
-from lube.stages import electrical
+from lube.study.rig_settings import OWN_RIG
 from lube.study.study import load_study
 
 
@@ -89,4 +89,4 @@ def test_the_gap_of_a_computed_shape_is_its_film_and_that_of_an_answered_line_ha
 def test_measured_voltages_are_those_of_the_simulated_rig(found, study):
     assert found.rig_source.sel(rig="study") == "the study"
     assert "PCS" in found.rig_source.sel(rig="mtm-ecr").item()
-    assert electrical.OWN in found.rig.values
+    assert OWN_RIG in found.rig.values
