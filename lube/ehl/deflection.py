@@ -3,8 +3,7 @@
 from functools import cache
 
 import numpy as np
-import scipy.interpolate
-import scipy.special
+import scipy
 
 from lube.types import Array
 

@@ -32,7 +32,7 @@ import math
 
 import numpy as np
 import scipy.fft
-import scipy.optimize
+import scipy
 
 from lube.errors import DataError
 from lube.surfaces.abel import line_of_profile, monotone
