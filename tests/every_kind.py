@@ -45,10 +45,11 @@ def datasets_of_every_kind(study):
     others += ["patch", "passage", "film_plane", "heating_plane"]
     others += ["surface_response", "variants", "surface_records"]
     others += ["sensitivity_runs", "sensitivity", "record_bands", "plan", "verification"]
+    batches = ["sensitivity_runs_batch"]
     with on_few_surfaces():
         quick = made(own, [kind for kind in STAGES if kind not in others])
     return {
         **quick,
         "surface": measured_surfaces({"first": example_surface()}, own.line_spec, 0.7),
-        **{kind: measured_values(kind) for kind in others},
+        **{kind: measured_values(kind) for kind in [*others, *batches]},
     }

@@ -8,6 +8,7 @@ import pytest
 from lube.contact.rough_pair import roughness_batch
 from lube.schema import STAGES
 from lube.stages import maker, passage
+from lube.study.uncertainty import SAMPLE_BATCHES
 
 
 @contextlib.contextmanager
@@ -43,7 +44,10 @@ def made(study, kinds=tuple(STAGES), threads=2):
     for name, stage in STAGES.items():
         if stage.target == "benchmark" or not study.has(name) or name not in kinds:
             continue
-        if stage.in_batches:
+        if stage.in_batches == "samples":
+            batch = maker(name, "make_batch")
+            datasets["batches"] = [batch(study, number) for number in range(SAMPLE_BATCHES)]
+        elif stage.in_batches:
             lines = roughness_batch(study.line_spec, study.seed, range(study.realisations))
             batch = maker(name, "make_batch")(study, datasets["film"], lines)
             datasets[f"{name}_batch"] = batch

@@ -3,7 +3,7 @@
 from lube.schema import STAGES
 from lube.storage.git import ROOT
 
-_BATCHED = {name for name, stage in STAGES.items() if stage.in_batches}
+_BATCHED = {name for name, stage in STAGES.items() if stage.in_batches == "realisations"}
 
 
 def job_groups() -> dict[str, str]:
@@ -33,4 +33,4 @@ def job_groups() -> dict[str, str]:
         stage.rule: "figures" if name in after else "beside" for name, stage in STAGES.items()
     }
     groups |= dict.fromkeys(before.difference(_BATCHED) | {"resolved_study"}, "tables")
-    return groups | {"batch": "batches"}
+    return groups | {"batch": "batches", "samples": "beside"}

@@ -12,7 +12,7 @@ from lube.errors import LubeError, located
 from lube.schema import STAGES
 from lube.study.resolve import study_files
 from lube.study.study import Study
-from lube.study.uncertainty import check_uncertainty
+from lube.study.uncertainty import SAMPLE_BATCHES, check_uncertainty
 from lube.types import File, Files
 
 
@@ -163,8 +163,10 @@ class StudyFiles:
         return getattr(self, attribute)() if attribute else []
 
     def batches_of(self, stage: str) -> list[str]:
-        """Return the files of a stage's batches, such as ``batches/contact_0.nc``."""
-        return [self.result(f"batches/{stage}_{first}.nc") for first in self.study.batches]
+        """Return the files of a stage's batches, such as ``batches/contact_0.nc``; none if none."""
+        numbers = {"realisations": self.study.batches, "samples": range(SAMPLE_BATCHES), "": ()}
+        of_stage = numbers[STAGES[stage].in_batches]
+        return [self.result(f"batches/{stage}_{number}.nc") for number in of_stage]
 
     def batch_limits(self, wildcards: object) -> tuple[int, int]:
         """Return the first and last realisation of the batch that begins with a wildcard."""

@@ -45,8 +45,8 @@ class Stage:
         Jobs of a higher priority are started first.
     parallel : bool
         Whether a job uses all cores.
-    in_batches : bool
-        Whether it joins batches of realisations.
+    in_batches : str
+        Whether it joins batches, and of what: ``realisations`` or ``samples``.
     """
 
     name: str
@@ -61,7 +61,7 @@ class Stage:
     parameters: tuple[str, ...] = ()
     priority: int = 0
     parallel: bool = False
-    in_batches: bool = False
+    in_batches: str = ""
 
     @property
     def rule(self) -> str:
@@ -142,7 +142,7 @@ _ROWS = (
         inputs=("film",),
         values=_LINES | _CONTACT | _named("revolutions"),
         same_values=("roughness",),  # each batch draws its lines itself
-        in_batches=True,
+        in_batches="realisations",
         only_with=_LINE,
     ),
     Stage(
@@ -197,7 +197,7 @@ _ROWS = (
         inputs=("film",),
         values=_LINES | _LAYER,
         same_values=("roughness",),
-        in_batches=True,
+        in_batches="realisations",
         only_with=(*_LINE, "gap.is_plain"),
     ),
     Stage(
@@ -329,7 +329,7 @@ _ROWS = (
         same_values=("film",),
         target="sensitivity",
         only_with=("uncertainty", "is_sampled", *_LINE),
-        parallel=True,
+        in_batches="samples",
     ),
     Stage(
         "sensitivity",

@@ -14,6 +14,7 @@ from lube.contact.windows import ContactWindows
 from lube.grid.gap import Gap
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.samples import deviations, quantiles
+from lube.study.uncertainty import SAMPLE_BATCHES
 from lube.threads import on_threads
 from lube.types import Array
 
@@ -143,6 +144,25 @@ def design(deviating: Deviating, model: Model) -> tuple[Array, xr.Dataset]:
         for name, each in deviating.levels.items()
     }
     return np.repeat(unit, points, axis=0), xr.Dataset(chosen)
+
+
+def runs_of_batch(unit: Array, number: int) -> Array:
+    """Find the runs of one of `SAMPLE_BATCHES` batches of samples, of about the same size.
+
+    Parameters
+    ----------
+    unit : numpy.ndarray
+        As from `design`.
+    number : int
+        Number of the batch, from 0.
+
+    Returns
+    -------
+    numpy.ndarray
+        Numbers of the runs, in their order; none if there are fewer samples than batches.
+    """
+    sample = np.cumsum(np.diff(unit, axis=0, prepend=-1.0).any(axis=1)) - 1
+    return np.flatnonzero(sample * SAMPLE_BATCHES // (sample[-1] + 1) == number)
 
 
 def run(

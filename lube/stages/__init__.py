@@ -3,8 +3,9 @@
 A stage is a row of `lube.schema.stages` and a module of its name with a function
 ``make(study, inputs, threads)``. It takes the study, the datasets of the kinds that its row lists,
 and the number of threads that it may use, which does not change the result; it returns the dataset.
-Stages that run in batches of realisations find these datasets in ``inputs["batches"]``; their
-modules also have ``make_batch(study, film, lines)``, for the lines of some realisations.
+Stages that run in batches find these datasets in ``inputs["batches"]``; their modules also have
+``make_batch(study, film, lines)``, for the lines of some realisations, or ``make_batch(study,
+number)``, for some samples of what is uncertain.
 
 Functions that stages call, and the types of their arguments, are names of this package, listed in
 ``__init__.pyi``. They use SI units except for the operating variables: force in N, speed in r/min,
@@ -29,11 +30,11 @@ def maker(stage: str, name: str = "make") -> Callable[..., xr.Dataset]:
     stage : str
         Name of the stage in `lube.schema.STAGES`.
     name : str, optional
-        ``make``, or ``make_batch`` for a batch of realisations.
+        ``make``, or ``make_batch`` for a batch.
 
     Returns
     -------
     callable
-        ``make(study, inputs, threads)``, or ``make_batch(study, film, lines)``.
+        ``make(study, inputs, threads)``, or `make_batch` with the arguments of its module.
     """
     return getattr(importlib.import_module(f"lube.stages.{stage}"), name)

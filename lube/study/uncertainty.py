@@ -22,6 +22,8 @@ from lube.units import parse_number, parse_quantity, with_unit
 
 BEYOND = 5.0
 """Kelvin by which deviating temperatures may leave the range of an oil's data."""
+SAMPLE_BATCHES = 8
+"""Jobs among which the samples of a study are shared: those that are done are not lost."""
 GROUPS = "oil", "conditions", "surface", "layer", "film", "contact model"
 """Groups of factors."""
 

@@ -31,8 +31,8 @@ waves it is made of, although interpolating the logarithm between scattered valu
 import math
 
 import numpy as np
-import scipy.fft
 import scipy
+import scipy.fft
 
 from lube.errors import DataError
 from lube.surfaces.abel import line_of_profile, monotone

@@ -82,6 +82,7 @@ def test_the_cell_methods_of_a_mean_name_what_it_is_over():
             "areal",
             "surface_records",
             "variants",
+            "sensitivity_runs_batch",
             "sensitivity_runs",
             "sensitivity",
             "verification",

@@ -26,7 +26,7 @@ def test_every_stage_has_a_function_that_makes_it_or_a_benchmark():
             assert (ROOT / f"benchmarks/bench_{name}.py").is_file()
         else:
             assert list(inspect.signature(maker(name)).parameters) == ["study", "inputs", "threads"]
-        assert stage.in_batches == (f"{name}_batch" in FILES)
+        assert bool(stage.in_batches) == (f"{name}_batch" in FILES)
 
 
 def test_stages_stand_after_those_they_depend_on():

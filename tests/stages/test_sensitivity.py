@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from made import made
 from studies import CONFIG
 
 from lube.contact.windows import study_windows
@@ -14,7 +15,7 @@ from lube.sensitivity.indices import sobol
 from lube.sensitivity.predictor import Predictor
 from lube.sensitivity.runs import PAIRS, PLAIN_LINE, SEEDS, Sizes, design, models, run
 from lube.sensitivity.samples import SEED
-from lube.stages import sensitivity, sensitivity_runs
+from lube.stages import sensitivity
 from lube.stages.film import make as make_film
 from lube.stages.lubricant import make as make_lubricant
 from lube.study.study import load_study
@@ -50,7 +51,7 @@ def few():
 
 @pytest.fixture(scope="module")
 def direct(study, few):
-    return sensitivity_runs.make(study, {}, threads=2)
+    return made(study, ["sensitivity_runs"])["sensitivity_runs"]
 
 
 @pytest.fixture(scope="module")
@@ -58,12 +59,12 @@ def result(study, direct):
     return sensitivity.make(study, {"sensitivity_runs": direct})
 
 
-def test_runs_do_not_depend_on_the_number_of_threads(study, direct):
+def test_runs_do_not_depend_on_batches_or_the_number_of_threads(study, direct):
     deviating = Deviating.of(study)
     for model in models(deviating):
         unit, points = design(deviating, model)
         some = slice(8)
-        found = run(deviating, model, unit[some], points.isel(run=some), threads=1)
+        found = run(deviating, model, unit[some], points.isel(run=some), threads=2)
         same = [direct[name].values == choice for name, choice in model._asdict().items()]
         expected = direct.isel(run=np.all(same, axis=0)).isel(run=some)
         for name in ("breakthrough_probability", "film_thickness"):
@@ -178,7 +179,7 @@ def test_indices_of_the_flat_line_agree_with_those_of_direct_runs(study):
     section = {key: SMALL[key] for key in list(SMALL)[:4]}
     own = study.model_copy(update={"uncertainty": Uncertainty.model_validate(section)})
     deviating = Deviating.of(own)
-    predictor = Predictor.of(deviating, sensitivity_runs.make(own, {}, threads=2))
+    predictor = Predictor.of(deviating, made(own, ["sensitivity_runs"])["sensitivity_runs"])
     names = [*section, SEED]
     levels = np.meshgrid(*deviating.levels.values(), indexing="ij")
 

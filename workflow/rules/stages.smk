@@ -9,7 +9,7 @@ for stage in STAGES.values():
                 stage.rule
             input:
                 **FILES.stage_files(stage.name),
-                batches=FILES.batches_of(stage.name) if stage.in_batches else [],
+                batches=FILES.batches_of(stage.name),
                 written=FILES.written_files(stage.name),
                 # Their values are parameters. A title is not a parameter, so a new one makes nothing again.
                 records=ancient(FILES.record_files()),
@@ -85,3 +85,25 @@ if STUDY.has("contact"):
             "Batch: realisations {params.realisations[0]} to {params.realisations[1]} at all operating points"
         script:
             "../scripts/batch.py"
+
+
+if STUDY.has("sensitivity_runs"):
+
+    rule samples:
+        """Batches of samples of all that is uncertain, which the sensitivity study joins."""
+        input:
+            # Their values are parameters.
+            records=ancient(FILES.record_files()),
+            sources=script_sources("samples"),
+        output:
+            result("batches/sensitivity_runs_{number}.nc"),
+        log:
+            result("logs/samples_{number}.log"),
+        benchmark:
+            result("benchmarks/samples_{number}.tsv")
+        params:
+            study=FILES.stage_inputs("sensitivity_runs"),
+        message:
+            "Samples: batch {wildcards.number} of random values of what is uncertain, some minutes"
+        script:
+            "../scripts/samples.py"
