@@ -1,0 +1,9 @@
+"""Make one batch of the sensitivity study's direct runs."""
+
+from lube.pipeline.jobs import study_of_job
+from lube.stages import sensitivity_runs
+from lube.storage.netcdf import save
+
+study = study_of_job(snakemake)
+batch = sensitivity_runs.make_batch(study, int(snakemake.wildcards.number))
+save(batch, snakemake.output[0], "sensitivity_runs_batch", study, [])
