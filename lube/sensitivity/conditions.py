@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy.fft
@@ -10,7 +11,9 @@ import xarray as xr
 from lube.errors import located
 from lube.grid.films import film_at
 from lube.grid.levels import rolling
+from lube.physics.pressure_viscosity import roelands_slope
 from lube.schema import POINT_DIMS
+from lube.sensitivity.heights import EquivalentRatio
 from lube.study.line_spec import LineSpec
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import BoundaryLayer, Roller
@@ -24,6 +27,8 @@ OIL = (
 )
 NODES = 500
 """Temperatures between which properties of the oils are interpolated: to some 1e-6."""
+SECANT = 200e6
+"""Pressure to which a secant goes if the definition of the coefficient is not known, Pa."""
 TRAVEL = 100.0
 """Length of a drawn line over its longest wavelength: more contact windows than are sampled."""
 
@@ -58,15 +63,21 @@ class Deviating:
     study : Study
         The study.
     oils : xarray.Dataset
-        Logarithms of the properties of its lubricants over a range of temperatures.
+        Logarithms of the properties of its lubricants over a range of temperatures; also of the
+        slope over the pressure-viscosity coefficient, by definition of the latter.
+    heights : EquivalentRatio or None
+        Lambda ratios of heights that are not Gaussian; None if all are.
     """
 
     study: Study
     oils: xr.Dataset
+    heights: EquivalentRatio | None
 
     @classmethod
     def of(cls, study: Study, named: str = "uncertainty") -> "Deviating":
-        """Tabulate the oils over the temperatures that occur, as far as their data reach.
+        """Tabulate the oils over the temperatures that occur, and the heights.
+
+        The oils are tabulated as far as their data reach.
 
         Parameters
         ----------
@@ -89,7 +100,11 @@ class Deviating:
         hottest = min(max(levels) + upper, *(one[1] for one in ranges))
         temperature = np.linspace(coldest, max(hottest, coldest + 1.0), NODES)
         table = lubricant_table(study.lubricants, temperature)[list(OIL)].drop_attrs()
-        return cls(study, np.log(table))
+        definitions = study.uncertainty.pressure_viscosity_definition
+        slopes = [_slope_ratio(table, each) for each in definitions.choices] if definitions else []
+        if slopes:
+            table["slope_ratio"] = xr.concat(slopes, "definition")
+        return cls(study, np.log(table), _heights(study))
 
     def choices(self, name: str, own: str) -> tuple[str, ...]:
         """Return the choices of a factor, or the study's own if it is not uncertain."""
@@ -161,6 +176,9 @@ class Deviating:
         oil = np.exp(oil.sel(lubricant=points["lubricant"]))
         for name, key in (("viscosity", OIL[0]), ("pressure_viscosity_coefficient", OIL[1])):
             oil[key] = oil[key] * (1.0 + values.get(name, 0.0))
+        if "pressure_viscosity_definition" in values:
+            chosen = oil["slope_ratio"].isel(definition=values["pressure_viscosity_definition"])
+            oil = oil.drop_vars("slope_ratio").assign({OIL[1]: oil[OIL[1]] * chosen})
         loads = points["force"] * (1.0 + values.get("force", 0.0))
         speeds = points["speed"] * (1.0 + values.get("speed", 0.0))
         table = film_at(
@@ -192,6 +210,26 @@ class Deviating:
         rms = np.sqrt(sum((rms * (1.0 + values.get(name, 0.0))) ** 2 for name, rms in each))
         return rms * (1.0 + values.get("rms_roughness", 0.0))
 
+    def equivalent(self, ratio: xr.DataArray, values: dict) -> xr.DataArray:
+        """Find the lambda ratio at which Gaussian heights touch as often as those of the samples.
+
+        Parameters
+        ----------
+        ratio : xarray.DataArray
+            Lambda ratio.
+        values : dict of str to xarray.DataArray
+            As for `films`.
+
+        Returns
+        -------
+        xarray.DataArray
+            The ratio; that of the film itself if the heights are Gaussian.
+        """
+        if self.heights is None:
+            return ratio
+        own = (xr.DataArray(values.get(name, known)) for name, known in GAUSSIAN.items())
+        return xr.apply_ufunc(self.heights, *xr.broadcast(ratio, *own))
+
     def lines(self, values: dict[str, float]) -> LineSpec:
         """Parameters of the lines of one sample, no longer than needed."""
         spec = deviating_lines(self.study.line_spec, values)
@@ -208,6 +246,27 @@ class Deviating:
         return layer.model_copy(update=scaled)
 
 
+def _slope_ratio(oils, definition):
+    """Slope at atmospheric pressure over the coefficient, if it is by some definition."""
+    span = SECANT if definition == "secant" else None
+    slope = partial(roelands_slope, definition=definition, span=span)
+    return xr.apply_ufunc(np.vectorize(slope), oils[OIL[1]], oils[OIL[0]]) / oils[OIL[1]]
+
+
+def _heights(study):
+    """Table of lambda ratios for the heights of a study; None if they are Gaussian."""
+    given = {name: getattr(study.uncertainty, name) for name in GAUSSIAN}
+    if not any(given.values()):
+        return None
+    ends = (
+        uncertain.range if uncertain else (GAUSSIAN[name], GAUSSIAN[name] + 1e-6)
+        for name, uncertain in given.items()
+    )
+    return EquivalentRatio.of(*ends, study.line_spec.rms_height)
+
+
+GAUSSIAN = {"skewness": 0.0, "kurtosis": 3.0}
+"""Moments of Gaussian heights."""
 FILM = (
     *("film_thickness", "contact_half_width", "reduced_modulus"),
     *("moes_load", "moes_material", "dynamic_viscosity", "lambda_ratio"),

@@ -1,6 +1,7 @@
 """Direct runs: the probability of breakthrough for samples of the uncertain quantities.
 
-All runs draw the same random numbers, so that they differ by the quantities alone.
+All runs draw the same random numbers, so that they differ by the quantities alone. Lines are
+Gaussian; if heights are not, the film is that in which Gaussian ones touch as often.
 """
 
 from itertools import pairwise
@@ -224,6 +225,8 @@ def _probabilities(deviating, model, values, film):
     """Probability of breakthrough at some points, by each set of random numbers."""
     study, spec, layer = deviating.study, deviating.lines(values), deviating.layer(values)
     film["reduced_modulus"] = film["reduced_modulus"].values.flat[0]
+    rms = deviating.rms_roughness(values)
+    film["film_thickness"] = rms * deviating.equivalent(film["film_thickness"] / rms, values)
     if model.contact_model == "surface":
         choices = {"gap": model.gap, "threads": 1, "fewer": FEWER_SURFACES}
         found = []

@@ -66,7 +66,7 @@ def groups(
     strength = layer.shear_strength / layer.critical_thickness / film["reduced_modulus"]
     strength = strength * (1.0 + values.get("shear_strength", 0.0))
     strength = strength / (1.0 + values.get("critical_thickness", 0.0))
-    ratio = film["film_thickness"] / rms
+    ratio = deviating.equivalent(film["film_thickness"] / rms, values)
     moes = film["moes_load"], film["moes_material"]
     if gap.has_shape:
         ratio = xr.apply_ufunc(effective, *xr.broadcast(ratio, *moes))

@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 from lube.ehl.film_formulas import FORMULAS, formula
 from lube.errors import LubeError, StudyError, located, shown
 from lube.physics.inlet_heating import INLET_HEATING
+from lube.physics.pressure_viscosity import DEFINITIONS
 from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
 from lube.study.line_spec import LineSpec
 from lube.study.rollers import ROLLERS
@@ -96,12 +97,30 @@ class OfTemperature(_Uncertain):
     """deviation from the study's value"""
 
 
-class OfExponent(_Uncertain):
-    """A Hurst exponent that is not known exactly."""
+class _Number(_Uncertain):
+    """A pure number that is not known exactly."""
 
     _UNITS: ClassVar[str] = ""
 
+
+class OfExponent(_Number):
+    """A Hurst exponent that is not known exactly."""
+
     range: Annotated[tuple[float, float], _range("", "0.6 to 0.8", above=0.0, below=1.0)]
+    """least and greatest value"""
+
+
+class OfSkewness(_Number):
+    """A skewness of heights that is not known exactly."""
+
+    range: Annotated[tuple[float, float], _range("", "-0.2 to 0.2", least=-1.0, most=1.0)]
+    """least and greatest value"""
+
+
+class OfKurtosis(_Number):
+    """A kurtosis of heights that is not known exactly."""
+
+    range: Annotated[tuple[float, float], _range("", "3 to 3.5", least=3.0, most=10.0)]
     """least and greatest value"""
 
 
@@ -182,6 +201,8 @@ class Uncertainty(StrictModel):
     """viscosity of the oils"""
     pressure_viscosity_coefficient: Relative | None = _of("oil")
     """pressure-viscosity coefficient of the oils"""
+    pressure_viscosity_definition: Choice[Literal[tuple(DEFINITIONS)]] | None = _of("oil")
+    """definition of the coefficient where its source states none; a secant is to 200 MPa"""
     temperature: OfTemperature | None = _of("conditions")
     """temperature of the oil at the inlet"""
     force: Relative | None = _of("conditions")
@@ -202,6 +223,10 @@ class Uncertainty(StrictModel):
     """longest wavelength of both rollers' roughness"""
     shortest_wavelength: Relative | None = _of("surface")
     """shortest wavelength of both rollers' roughness"""
+    skewness: OfSkewness | None = _of("surface")
+    """skewness of the heights of both rollers"""
+    kurtosis: OfKurtosis | None = _of("surface")
+    """kurtosis of the heights of both rollers, at least that of lognormal heights as skew"""
     critical_thickness: Relative | None = _of("layer")
     """critical thickness of the boundary layer"""
     shear_strength: Relative | None = _of("layer")
@@ -283,6 +308,13 @@ def check_uncertainty(study) -> None:
             "hurst_exponent: got a range for lines with a measured spectrum, on which nothing "
             "depends, need none"
         )
+    if uncertain.pressure_viscosity_definition:
+        for record in study.lubricants:
+            if record.pressure_viscosity.gold_base is None:
+                raise StudyError(
+                    f"pressure_viscosity_definition: got choices, but {record.name} states the "
+                    "definition of its coefficient, need none"
+                )
     if uncertain.inlet_shear_heating:
         for record in study.lubricants:
             if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:

@@ -101,14 +101,34 @@ def johnson_curve(skewness: float, kurtosis: float) -> Array:
     if skewness < 0.0:
         return -johnson_curve(-skewness, kurtosis)[::-1]
     least = _lognormal_steepness(skewness)
-    lognormal = standard_moments(_heights("bounded", least, 0.0))[1]
-    family = "unbounded" if kurtosis > lognormal else "bounded"
+    family = "unbounded" if kurtosis > lognormal_kurtosis(skewness) else "bounded"
 
     def excess(steepness):
         return standard_moments(_with_skewness(family, steepness, skewness))[1] - kurtosis
 
     steepness = scipy.optimize.brentq(excess, least, _STEEPEST[family], xtol=1e-13)
     return _standardised(_with_skewness(family, steepness, skewness))
+
+
+def lognormal_kurtosis(skewness: float) -> float:
+    """Kurtosis of lognormal heights; those of Johnson's curve with less of it are bounded.
+
+    Parameters
+    ----------
+    skewness : float
+        Skewness, 0 or more.
+
+    Returns
+    -------
+    float
+        Kurtosis.
+
+    Examples
+    --------
+    >>> f"{lognormal_kurtosis(0.5):.3f}"
+    '3.448'
+    """
+    return standard_moments(_heights("bounded", _lognormal_steepness(skewness), 0.0))[1]
 
 
 def gaussian_power(power: Array, first_wave: int, points: int, curve: Array) -> Array:

@@ -3,9 +3,11 @@ import pytest
 import xarray as xr
 from repository import ROOT
 
-from lube.sensitivity.conditions import Deviating
+from lube.physics.pressure_viscosity import roelands_slope
+from lube.sensitivity.conditions import OIL, Deviating
 from lube.stages import film_table, lubricant_table
 from lube.study.study import load_study
+from lube.study.uncertainty import Uncertainty
 from lube.surfaces.spectra import pair_moments
 
 PAPER = ROOT / "workflow/config/paper.yaml"
@@ -21,6 +23,8 @@ CHANGED = {
         "shortest_wavelength": "4 um",
     },
 }
+
+HEIGHTS = {"skewness": -0.1, "kurtosis": 3.4}
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +66,31 @@ def test_deviating_films_are_those_of_a_study_with_these_values(study, formula, 
     expected = film_table(oil, rollers, *levels, inlet_shear_heating=heating).squeeze()
     for name in ("film_thickness", "lambda_ratio", "contact_half_width", "moes_load"):
         assert found[name].item() == pytest.approx(expected[name].item(), rel=1e-5), name
+
+
+@pytest.mark.parametrize("definition", ["slope-at-atmospheric", "secant"])
+def test_a_coefficient_by_another_definition_is_converted(study, definition):
+    number = study.uncertainty.pressure_viscosity_definition.choices.index(definition)
+    found = films(study, {"pressure_viscosity_definition": number}).squeeze()
+    oil = lubricant_table(study.lubricants, [60.0])
+    alpha, viscosity = (oil[name].item() for name in OIL[1::-1])
+    span = 200e6 if definition == "secant" else None
+    oil[OIL[1]] = oil[OIL[1]] * roelands_slope(alpha, viscosity, definition, span) / alpha
+    expected = film_table(oil, study.rollers, [400.0], [120.0], ["paper"]).squeeze()
+    assert found["film_thickness"].item() == pytest.approx(expected["film_thickness"].item(), 1e-5)
+
+
+def test_heights_that_are_not_gaussian_touch_under_another_film(study):
+    """In a sample as in many, and not at all if the heights are known."""
+    deviating, ratio = Deviating.of(study), xr.DataArray([2.0, 4.0], dims="run")
+    samples = {name: xr.DataArray([value] * 2, dims="run") for name, value in HEIGHTS.items()}
+    found = deviating.equivalent(ratio, samples)
+    expected = deviating.heights(ratio.values, np.full(2, -0.1), np.full(2, 3.4))
+    np.testing.assert_array_equal(found, expected)
+    assert found[1] < 4.0 and expected[0] == pytest.approx(2.0, rel=0.02)
+    np.testing.assert_array_equal(deviating.equivalent(ratio, HEIGHTS), expected)
+    known = study.model_copy(update={"uncertainty": Uncertainty(force=study.uncertainty.force)})
+    assert Deviating.of(known).equivalent(ratio, samples) is ratio
 
 
 def test_without_deviations_films_are_those_of_the_study(study):

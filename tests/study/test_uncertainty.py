@@ -64,6 +64,11 @@ def test_ranges_are_read_in_their_units(tmp_path):
         ("force", {"range": "2 %"} | SOURCE, "got '2 %', need a range such as"),
         ("force", {"range": "-120 % to 0 %"} | SOURCE, "need a value above -1 and at most 10"),
         ("hurst_exponent", {"range": "0.5 to 1.5"} | SOURCE, "need a value above 0 and below 1"),
+        (
+            "kurtosis",
+            {"range": "2 to 3"} | SOURCE,
+            "need a value at least 3",
+        ),
         ("hurst_exponent", {"range": "+- 0.1"} | SOURCE, "need a range such as 0.6 to 0.8"),
         ("temperature", {"range": "+- 2 %"} | SOURCE, "temperature.range: wrong dimension or unit"),
         ("skew", {"range": "+- 2 %"} | SOURCE, "uncertainty.skew: unknown key"),
@@ -104,6 +109,18 @@ def test_a_range_needs_a_source(tmp_path):
         (
             {"uncertainty": {"shortest_wavelength": {"range": "-60 % to 0 %"} | SOURCE}},
             "contact_model: surface: roughness: got a shortest wavelength",
+        ),
+        (
+            {
+                "lubricants": ["n-dodecane"],
+                "uncertainty": {
+                    "pressure_viscosity_definition": {
+                        "choices": ["slope-at-atmospheric", "secant"],
+                    }
+                    | SOURCE
+                },
+            },
+            "but n-dodecane states the definition of its coefficient",
         ),
         ({"load_sharing": "iterated"}, "load_sharing iterated, need load_sharing none"),
     ],
