@@ -7,7 +7,7 @@ from lube.report.key_tables import markdown_table
 from lube.report.pages import percent, rounded
 from lube.schema import POINT_DIMS
 from lube.sensitivity.samples import SEED
-from lube.study.uncertainty import spoken
+from lube.study.uncertainty import CHOICES, spoken
 
 _BANDS = {
     "mean": "are within the interval of the mean over pairs of rollers",
@@ -17,8 +17,6 @@ _BANDS = {
 }
 _PLACES = 0.9, 0.5, 0.1
 """Places of the operating points shown, in the order of their probability."""
-_CHOSEN_GROUPS = "film", "contact model"
-"""Groups of choices, which cannot be measured."""
 _MEASURED = (
     "Of the quantities, this is the one that, if it were known exactly, would make the standard "
     "deviation of the logarithm of the probability less than any other would:"
@@ -94,9 +92,8 @@ def _explained(records):
 
 def _to_measure(shown, factors, conditions):
     """Say which quantity, if it were known, would narrow the band most."""
-    groups = shown["group_of_factor"].sel(factor=factors)
-    measurable = groups["factor"][~groups.isin(_CHOSEN_GROUPS)].values
-    if measurable.size == 0:
+    measurable = [name for name in factors if name not in CHOICES]
+    if not measurable:
         return ""
     parts = np.clip(shown["first_order"].sel(factor=measurable).transpose("point", ...), 0.0, 1.0)
     said = [

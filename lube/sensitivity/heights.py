@@ -75,5 +75,6 @@ def _ratios(skewness, kurtosis, parts):
     # The second line must be this high where the first one has one of its heights.
     needed = (RATIOS[:, None] - parts[0] * curve) / parts[1]
     above = scipy.special.ndtr(-np.interp(needed, curve, gaussian, right=np.inf))
+    touching = np.sum(above * weight, axis=1) / weight.sum()
     rarest = scipy.special.ndtr(-RATIOS[-1])
-    return -scipy.special.ndtri_exp(np.log(np.maximum(above @ (weight / weight.sum()), rarest)))
+    return -scipy.special.ndtri_exp(np.log(np.maximum(touching, rarest)))

@@ -22,6 +22,7 @@ from lube.statistics.one_pair import scatter_ratio
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.rig_settings import OWN_RIG
 from lube.study.study import Study
+from lube.study.uncertainty import CHOICES
 from lube.types import Datasets
 
 TURNS = (0.1, 0.3, 1.0, 10.0)
@@ -34,7 +35,6 @@ _GIVEN = {
 """Uncertain quantities, and groups of them, of which each inference does without."""
 LEFT = 0.1
 """Part of a quantity's variance that a good measurement of it leaves."""
-_CHOICES = "film", "contact model"
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -73,9 +73,11 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     coordinates = {name: film[name].values for name in POINT_DIMS}
     coordinates |= {"quantity": list(QUANTITIES), "turns": list(TURNS)}
     dataset = xr.Dataset(table | {"best_threshold": threshold}, coordinates)
-    if "sensitivity" in inputs and (names := _measurable(inputs["sensitivity"])):
-        found = _to_measure(study, inputs["sensitivity"], names)
-        dataset = dataset.merge(found, join="exact")
+    if "sensitivity" in inputs:
+        factors = inputs["sensitivity"]["factor"].values.tolist()
+        if names := [name for name in factors if name not in (*CHOICES, SEED)]:
+            found = _to_measure(study, inputs["sensitivity"], names)
+            dataset = dataset.merge(found, join="exact")
     return label(dataset, "plan")
 
 
@@ -146,7 +148,7 @@ def _assumed(sensitivity):
         unknown = [
             name
             for name, group in zip(parts["factor"].values, groups, strict=True)
-            if not {name, group} & {*given, *_CHOICES, SEED}
+            if not {name, group} & {*given, *CHOICES, SEED}
         ]
         part = parts.sel(factor=unknown).sum("factor").clip(0.0, 1.0)
         found[quantity] = (total * np.sqrt(part)).transpose(*POINT_DIMS).values.ravel()
@@ -160,12 +162,6 @@ def _widths(found, by_coefficient, realisations, error, unknown):
         whole = np.hypot(error, unknown.get(quantity, 0.0))
         rows.append(half_widths(found, by_coefficient, whole, realisations)[number])
     return rows
-
-
-def _measurable(sensitivity):
-    """Names of the uncertain quantities, which are not choices."""
-    each = zip(sensitivity["factor"].values, sensitivity["group_of_factor"].values, strict=True)
-    return [name for name, group in each if group not in (*_CHOICES, SEED)]
 
 
 def _to_measure(study, sensitivity, names):

@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Generic, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Generic, Literal, TypeVar, get_args
 
 from pydantic import Field, model_validator
 
@@ -25,8 +25,6 @@ BEYOND = 5.0
 """Kelvin by which deviating temperatures may leave the range of an oil's data."""
 SAMPLE_BATCHES = 8
 """Jobs among which the samples of a study are shared: those that are done are not lost."""
-GROUPS = "oil", "conditions", "surface", "layer", "film", "contact model"
-"""Groups of factors."""
 
 
 def _end(text, units):
@@ -163,7 +161,7 @@ class Factor:
     name : str
         Key in the study's section ``uncertainty``.
     group : str
-        One of `GROUPS`.
+        ``oil``, ``conditions``, ``surface``, ``layer``, ``film`` or ``contact model``.
     given : _Uncertain or Choice
         Range or choices.
     """
@@ -249,6 +247,14 @@ class Uncertainty(StrictModel):
             for name, field in type(self).model_fields.items()
             if (given := getattr(self, name)) is not None
         ]
+
+
+CHOICES = [
+    name
+    for name, field in Uncertainty.model_fields.items()
+    if issubclass(get_args(field.annotation)[0], Choice)
+]
+"""Factors that are choices, which cannot be measured."""
 
 
 def deviating_lines(spec: LineSpec, values: Mapping[str, float]) -> LineSpec:
