@@ -9,8 +9,8 @@ from lube.schema import label, values_with_limits
 from lube.statistics.confidence import mean_interval
 from lube.study.study import Study
 from lube.types import Datasets
-from lube.verification.check import Check
-from lube.verification.films import film_checks, response
+from lube.verification.check import CHECKS
+from lube.verification.films import VENNER, film_checks, response
 from lube.verification.lines import (
     COUNTED,
     FEW,
@@ -23,7 +23,6 @@ from lube.verification.lines import (
 from lube.verification.surfaces import surface_checks
 
 _TEXTS = "subject", "against", "kind", "unit", "source"
-_NUMBERS = "seen", "allowed"
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -33,19 +32,19 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     its roughness the deformation of the paper, flat and none.
     """
     found, waves = curves(study, threads), response()
-    checks = line_checks(study, found, threads) + scaled_checks(study, inputs["lubricant"])
-    checks += surface_checks(study, threads) if study.line_spec.is_isotropic else []
-    checks += film_checks(_contact(study, inputs["lubricant"]), waves)
+    seen = line_checks(study, found, threads) | scaled_checks(study, inputs["lubricant"])
+    seen |= surface_checks(study, threads) if study.line_spec.is_isotropic else {}
+    seen |= film_checks(_contact(study, inputs["lubricant"]), waves)
     on_others = on_grids(study, threads)
-    table = _outcomes(checks) | _curves(found) | _on_grids(on_others)
-    table["response"] = "response_wavelength", six_digits(waves.computed)
-    table["printed_response"] = "response_wavelength", waves.printed
+    table = _outcomes(seen) | _curves(found) | _on_grids(on_others)
+    table["response"] = "response_wavelength", six_digits(waves)
+    table["printed_response"] = "response_wavelength", list(VENNER.values())
     coordinates = {
-        "check": np.arange(1, len(checks) + 1),
+        "check": np.arange(1, len(seen) + 1),
         "lambda_ratio": LAMBDA_RATIOS,
         "grid": list(on_others),
         "grid_lambda_ratio": LAMBDA_RATIOS[FEW],
-        "response_wavelength": waves.wavelength,
+        "response_wavelength": list(VENNER),
     }
     return label(xr.Dataset(table, coordinates), "verification")
 
@@ -60,9 +59,10 @@ def _contact(study, lubricant):
     return FilmGroups.at(oil, rollers, force, contact, meniscus).profiles.item().contact
 
 
-def _outcomes(checks: list[Check]) -> dict:
-    table = {f"check_{name}": ("check", [getattr(one, name) for one in checks]) for name in _TEXTS}
-    seen, allowed = (np.array([getattr(one, name) for one in checks]) for name in _NUMBERS)
+def _outcomes(deviations):
+    rows, seen = CHECKS.loc[list(deviations)], np.array(list(deviations.values()))
+    table = {f"check_{name}": ("check", rows[name].tolist()) for name in _TEXTS}
+    allowed = rows["allowed"].to_numpy()
     table["check_deviation"] = "check", six_digits(seen)
     table["check_allowed"] = "check", allowed
     outcomes = np.where(seen <= allowed, "agrees", "differs")

@@ -1,45 +1,16 @@
-"""One check, and how its outcome is written."""
+"""The checks, and how far two results are apart."""
 
-from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from lube.types import Array
 
-CLOSE = 3.5
-"""Standard errors within which two estimates agree, the largest of several distances."""
-
-
-@dataclass(frozen=True)
-class Check:
-    """What was compared, with what, and how far they differ.
-
-    Attributes
-    ----------
-    subject : str
-        What was computed.
-    against : str
-        With what it was compared.
-    kind : str
-        One of `KINDS`.
-    seen, allowed : float
-        The deviation that was seen, and the greatest that passes; NaN if the deviation is a
-        property of the grid or the model, of which nothing is demanded.
-    unit : str
-        Unit of both: ``%``, ``standard errors`` or ``values``, a number of values that differ.
-    source : str
-        Equation or reference behind it.
-    """
-
-    subject: str
-    against: str
-    kind: str
-    seen: float
-    allowed: float
-    unit: str
-    source: str
-
-
+CHECKS = pd.read_csv(Path(__file__).with_name("checks.csv"), index_col="name")
+"""All checks, in the order of their numbers: what is compared with what, the kind of check, the
+greatest deviation that passes with its unit, and the equation or reference behind it. Nothing is
+demanded of deviations without a limit, which are properties of the model."""
 KINDS = {
     "exact": "Exact theory and identities",
     "method": "Other methods",
