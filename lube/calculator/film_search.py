@@ -182,12 +182,8 @@ class FilmSearch:
 
     def _sampled(self, windows, pairs=PAIRS):
         """Mean and limits of the breakthrough probability, by importance sampling."""
-        spec, seed = self._rollers.lines, self._seed
-
-        def on_pair(number):
-            return windows.sample(spec, seed, number)[0][1]
-
-        return mean_interval(np.stack(on_threads(on_pair, range(pairs))), 1.0)
+        found = windows.on_pairs(self._rollers.lines, self._seed, pairs)
+        return mean_interval(found[:, 1], 1.0)
 
     def _counted(self, windows):
         """Mean and limits of the breakthrough probability, counted in realisations."""

@@ -26,7 +26,6 @@ from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, right_one
 from lube.grid.discretise import speed_ratios
-from lube.grid.films import film_at
 from lube.grid.operating_points import surface_speeds
 from lube.inference.planning import (
     QUANTITIES,
@@ -36,7 +35,7 @@ from lube.inference.planning import (
     slopes,
 )
 from lube.physics.electrical import film_capacitance
-from lube.rig.readings import Readings
+from lube.rig.readings import read_shares
 from lube.rig.simulator import Revolution
 from lube.statistics.one_pair import scatter_ratio
 from lube.statistics.sample_size import effective_sample_size, independent_windows
@@ -120,26 +119,17 @@ def plan(
     reach = spec.longest_wavelength / spec.spacing
     ratio = scatter_ratio(turns, speed_ratios(slip), spec.points, reach, 1.0, 0.0)
     error = relative_error(found.probability, size, ratio, reading)
-    by_coefficient = _film_slope(rollers, oil, point, film_formula)
+    *point, temperature = conditions(*point, rollers.pair.first.radius)
+    oils, dims = oil.at(temperature), table["film_thickness"].dims
+    slope = film_by_coefficient(oils, rollers.pair, *point, film_formula)
+    by_coefficient = slope.transpose(*dims).values.ravel()
     widths = half_widths(found, by_coefficient, error, realisations)
-    dims, shape = table["film_thickness"].dims, table["film_thickness"].shape
+    shape = table["film_thickness"].shape
     answer = table[FILM_VARIABLES].assign_coords(quantity=list(QUANTITIES))
     answer["breakthrough_probability"] = dims, found.probability.reshape(shape)
     answer["half_width"] = ("quantity", *dims), widths.reshape(len(QUANTITIES), *shape)
     answer["reading_error"] = dims, np.broadcast_to(reading, error.shape).reshape(shape)
     return with_remarks(answer, table, rollers)
-
-
-def _film_slope(rollers, oil, point, film_formula):
-    """Slope of the film's logarithm over that of the pressure-viscosity coefficient."""
-    force, speed, temperature = conditions(*point, rollers.pair.first.radius)
-
-    def film_of(properties):
-        table = film_at(properties, rollers.pair, force, speed, [film_formula])
-        return table["film_thickness"].isel(film_formula=0)
-
-    slope = film_by_coefficient(oil.at(temperature), film_of)
-    return slope.transpose("temperature", "speed", "force", missing_dims="ignore").values.ravel()
 
 
 def _reading_error(rollers, table, gap, slip, rig, threshold, seed):
@@ -168,10 +158,9 @@ def _reading_error(rollers, table, gap, slip, rig, threshold, seed):
         step = spec.spacing / max(surface_speeds(speed[number], slip))
         resistance = rollers.resistivity / spec.spacing
         revolution = Revolution(contact, None, step, resistance, plates, (seed, number))
-        readings = Readings(experiment, known)
-        readings.add(revolution.voltage(known))
+        (read, *_), _ = read_shares(revolution.voltage(known), experiment, known)
         true = np.count_nonzero(contact) / contact.size
-        errors[number] = abs(readings.shares[0] / true - 1.0) if true else np.nan
+        errors[number] = abs(read / true - 1.0) if true else np.nan
     # Where the simulated rig does not touch, it reads as well as on average.
     known = errors[np.isfinite(errors)]
     return np.where(np.isnan(errors), known.mean() if known.size else 0.0, errors)

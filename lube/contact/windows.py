@@ -35,6 +35,7 @@ from lube.surfaces.rare_contact import (
     sum_of_lines,
 )
 from lube.surfaces.synthetic import LineSpecLike
+from lube.threads import on_threads
 from lube.types import Array, Pair, Values
 
 WINDOWS_PER_WIDTH = 10
@@ -266,6 +267,13 @@ class ContactWindows:
         windows, runs = (np.full((len(each), self.size), np.nan) for each in found)
         windows[:, known], runs[:, known] = found
         return windows, runs
+
+    def on_pairs(
+        self, spec: LineSpecLike, seed: int, pairs: int, threads: int | None = None
+    ) -> Array:
+        """Estimate probabilities at any rarity on some pairs, shape (pairs, 2, P); see `sample`."""
+        found = on_threads(lambda number: self.sample(spec, seed, number)[0], range(pairs), threads)
+        return np.array(found)
 
     def gaps(self, spec: LineSpecLike) -> list[Pair | None]:
         """Find the mean gap and the rms height of the roughness in it, across each contact.

@@ -6,19 +6,18 @@ A record measures the contact share P of one pair of rollers. With the standard 
 .. math:: \frac{\sigma_q}{q} = \frac{\sigma / P}{|\partial \ln P / \partial \ln q|}
 """
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from lube.contact.windows import ContactWindows
+from lube.grid.films import film_at
 from lube.grid.gap import Gap
 from lube.statistics.one_pair import quantile
 from lube.study.line_spec import LineSpec
-from lube.study.rollers import BoundaryLayer
-from lube.threads import on_threads
-from lube.types import Array
+from lube.study.rollers import BoundaryLayer, RollerPair
+from lube.types import Array, Values
 
 PAIRS = 16
 """Pairs of lines on which slopes are sampled; all quantities have the same."""
@@ -78,10 +77,7 @@ def slopes(
     def sampled(thicker=1.0, weaker=1.0):
         changed = film.assign(film_thickness=film["film_thickness"] * thicker)
         windows = ContactWindows(spec, changed, layer, gap, weaker)
-        pairs = on_threads(
-            lambda number: windows.sample(spec, seed, number)[0][1], range(PAIRS), threads
-        )
-        return np.mean(pairs, axis=0)
+        return windows.on_pairs(spec, seed, PAIRS, threads)[:, 1].mean(axis=0)
 
     with np.errstate(divide="ignore", invalid="ignore"):
         by_film = np.log(sampled(thicker=upper) / sampled(thicker=lower)) / across
@@ -89,15 +85,20 @@ def slopes(
     return Slopes(sampled(), by_film, by_layer)
 
 
-def film_by_coefficient(lubricant: xr.Dataset, film_of: Callable) -> xr.DataArray:
+def film_by_coefficient(
+    lubricant: xr.Dataset,
+    rollers: RollerPair,
+    force: Values,
+    speed: Values,
+    film_formula: str,
+    **model: Any,
+) -> xr.DataArray:
     """Find the slope of the film's logarithm over that of the pressure-viscosity coefficient.
 
     Parameters
     ----------
-    lubricant : xarray.Dataset
-        With ``pressure_viscosity_coefficient``.
-    film_of : callable
-        Film thickness with a changed dataset.
+    lubricant, rollers, force, speed, film_formula, **model
+        As in `lube.grid.films.film_at`; one film formula.
 
     Returns
     -------
@@ -105,11 +106,13 @@ def film_by_coefficient(lubricant: xr.Dataset, film_of: Callable) -> xr.DataArra
         Over the dimensions of the film.
     """
     coefficient = lubricant["pressure_viscosity_coefficient"]
-    lower, upper = (
-        film_of(lubricant.assign(pressure_viscosity_coefficient=coefficient * factor))
-        for factor in (1.0 - STEP, 1.0 + STEP)
-    )
-    return np.log(upper / lower) / np.log((1.0 + STEP) / (1.0 - STEP))
+
+    def film(factor):
+        oil = lubricant.assign(pressure_viscosity_coefficient=coefficient * factor)
+        table = film_at(oil, rollers, force, speed, [film_formula], **model)
+        return table["film_thickness"].isel(film_formula=0)
+
+    return np.log(film(1.0 + STEP) / film(1.0 - STEP)) / np.log((1.0 + STEP) / (1.0 - STEP))
 
 
 def relative_error(
@@ -158,17 +161,18 @@ def half_widths(found: Slopes, by_coefficient: Array, error: Array, realisations
     by_coefficient : numpy.ndarray
         Slope of the film's logarithm over that of the pressure-viscosity coefficient.
     error : numpy.ndarray
-        From `relative_error`, shape (P,).
+        From `relative_error`, shape (P,); or of all quantities, shape (quantities, ..., P).
     realisations : int
         Number of realisations from whose scatter the error follows.
 
     Returns
     -------
     numpy.ndarray
-        Shape (quantities, P); NaN where a record tells nothing, or less than that the quantity is
-        between zero and twice its value.
+        Shape (quantities, ..., P); NaN where a record tells nothing, or less than that the quantity
+        is between zero and twice its value.
     """
-    each: Sequence[Array] = found.by_film, found.by_film * by_coefficient, found.by_layer
+    each = np.array([found.by_film, found.by_film * by_coefficient, found.by_layer])
+    each = each.reshape(len(each), *(1,) * max(np.ndim(error) - 2, 0), -1)
     with np.errstate(divide="ignore", invalid="ignore"):
         widths = quantile(realisations) * error / np.abs(each)
     return np.where(widths < 1.0, widths, np.nan)

@@ -16,51 +16,36 @@ HIGHEST = 0.99
 _BINS = 20_000
 
 
-class Readings:
-    """Contact shares as meters read them, from a record that arrives piece by piece.
+def read_shares(voltage: Array, experiment: Experiment, rig: Rig) -> tuple[list[float], Array]:
+    """Read contact shares from a record, in all ways.
 
     Parameters
     ----------
+    voltage : numpy.ndarray
+        Shape (N,), V.
     experiment : Experiment
-        The threshold (ohm) and how contact ends.
+        The thresholds (ohm) and how contact ends.
     rig : Rig
         The circuit.
+
+    Returns
+    -------
+    shares : list of float
+        Contact share by each of `READINGS`.
+    by_threshold : numpy.ndarray
+        Share of time below each of the study's thresholds.
     """
-
-    def __init__(self, experiment: Experiment, rig: Rig) -> None:
-        self._rig, self._open = rig, divider_voltage(rig.leak_resistance, rig).item()
-        self._threshold = experiment.thresholds.index(experiment.threshold)
-        self._counter = record_counter(experiment, rig, "voltage", 1.0 / rig.sampling_rate)
-        self._histogram, self._sum = np.zeros(_BINS, np.int64), 0.0
-
-    def add(self, voltage: Array) -> None:
-        """Read the next piece of the record.
-
-        Parameters
-        ----------
-        voltage : numpy.ndarray
-            Shape (N,), V.
-        """
-        self._counter.add(voltage)
-        self._sum += float(np.sum(voltage))
-        # From zero to twice the open circuit; noise beyond it is put at the ends.
-        bins = voltage * (0.5 * _BINS / self._open)
-        bins = np.clip(bins, 0, _BINS - 1).astype(np.int64)
-        self._histogram += np.bincount(bins, minlength=_BINS)
-
-    @property
-    def by_threshold(self) -> Array:
-        """Share of time below each of the study's thresholds."""
-        return self._counter.below.sum(axis=1) / self._counter.samples
-
-    @property
-    def shares(self) -> list[float]:
-        """Contact share by each of `READINGS`."""
-        samples = self._counter.samples
-        below = np.cumsum(self._histogram)
-        highest = np.searchsorted(below, HIGHEST * samples)
-        return [
-            self.by_threshold[self._threshold],
-            below[highest // 2] / samples,
-            1.0 - self._sum / samples / self._open,
-        ]
+    counter = record_counter(experiment, rig, "voltage", 1.0 / rig.sampling_rate)
+    counter.add(voltage)
+    by_threshold = counter.below.sum(axis=1) / voltage.size
+    whole = divider_voltage(rig.leak_resistance, rig).item()
+    # From zero to twice the open circuit; noise beyond it is put at the ends.
+    bins = np.clip(voltage * (0.5 * _BINS / whole), 0, _BINS - 1).astype(np.int64)
+    below = np.cumsum(np.bincount(bins, minlength=_BINS))
+    highest = np.searchsorted(below, HIGHEST * voltage.size)
+    shares = [
+        by_threshold[experiment.thresholds.index(experiment.threshold)],
+        below[highest // 2] / voltage.size,
+        1.0 - float(np.sum(voltage)) / voltage.size / whole,
+    ]
+    return shares, by_threshold

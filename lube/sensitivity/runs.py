@@ -44,7 +44,7 @@ SIZES = {
     "plain line": Sizes(1024, 2),
     "line": Sizes(1024, 3),
     "answered line": Sizes(256, 2),
-    "surface": Sizes(64, 8),
+    "surface": Sizes(32, 12),
     "sum": Sizes(4, 24),
 }
 """Surfaces are slow to draw, but once drawn they serve many operating points. The response of the

@@ -16,12 +16,11 @@ from lube.physics.electrical import (
     read_impedance,
     surrounding_capacitance,
 )
-from lube.rig.readings import READINGS, Readings
+from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import simulated_revolutions
 from lube.schema import POINT_DIMS, label
 from lube.study.rig_settings import OWN_RIG, PRESETS
 from lube.study.study import Study
-from lube.threads import on_threads
 from lube.types import Datasets
 
 PAIRS = 8
@@ -112,9 +111,8 @@ def _readings(study, film, rigs, slip):
     for _, number, revolution in simulated_revolutions(lines, once, [points[one] for one in known]):
         found = [np.count_nonzero(revolution.contact) / revolution.contact.size]
         for rig in rigs.values():
-            readings = Readings(study.experiment, rig)
-            readings.add(revolution.voltage(rig))
-            found += [*readings.shares, *readings.by_threshold]
+            for read in read_shares(revolution.voltage(rig), study.experiment, rig):
+                found += [*read]
         shares[known[number]] = found
     sizes = [film.sizes[name] for name in POINT_DIMS]
     read = shares[:, 1:].T.reshape(len(rigs), ways, *sizes)
@@ -138,12 +136,7 @@ def _discharges(study, film, rigs, threads):
     def touching(closer):
         thickness = (film["film_thickness"] - closer).clip(min=0.0)
         windows = study_windows(study, film.assign(film_thickness=thickness))
-        pairs = on_threads(
-            lambda number: windows.sample(study.line_spec, study.seed, number)[0][0],
-            range(PAIRS),
-            threads,
-        )
-        return np.mean(pairs, axis=0)
+        return windows.on_pairs(study.line_spec, study.seed, PAIRS, threads)[:, 0].mean(axis=0)
 
     gaps = [rig.bias_voltage / rig.dielectric_strength for rig in rigs.values()]
     found = {gap: touching(gap) for gap in (0.0, *gaps)}

@@ -6,7 +6,6 @@ import xarray as xr
 from lube.contact.ensemble import windows_by_force
 from lube.grid.discretise import speed_ratios
 from lube.grid.film_profiles import six_digits
-from lube.grid.films import film_at
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip
 from lube.inference.planning import (
@@ -48,7 +47,18 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     sizes = [film.sizes[name] for name in POINT_DIMS]
     found = slopes(study.line_spec, film, study.boundary_layer, study.gap, study.seed, threads)
     threshold, reading = _best_threshold(inputs["electrical"], study.experiment.threshold)
-    by_coefficient = _film_slopes(study, inputs["lubricant"], slip)
+    axes = xr.Dataset(coords={name: film[name] for name in ("force", "speed")})
+    by_coefficient = film_by_coefficient(
+        inputs["lubricant"],
+        study.rough_rollers,
+        axes["force"],
+        axes["speed"],
+        study.film_formulas[0],
+        slide_to_roll_ratio=slip,
+        inlet_shear_heating=study.inlet_shear_heating,
+        inlet_meniscus=study.film_model["inlet_meniscus"],
+    )
+    by_coefficient = by_coefficient.transpose(*POINT_DIMS).values.ravel()
     table = {
         "breakthrough_probability": found.probability,
         "slope_by_film": found.by_film,
@@ -58,18 +68,16 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     }
     table = {name: (POINT_DIMS, _digits(each.reshape(sizes))) for name, each in table.items()}
     size = _sample_size(inputs["contact"], inputs["film"], slip)
-    errors = [
-        relative_error(found.probability, size, _ratio(study, slip, turns), reading)
-        for turns in TURNS
-    ]
-    unknown = {"half_width": {}}
+    ratios = [_ratio(study, slip, turns) for turns in TURNS]
+    errors = [relative_error(found.probability, size, ratio, reading) for ratio in ratios]
+    unknown = {"half_width": 0.0}
     if "sensitivity" in inputs:
-        unknown["half_width_assumed"] = _assumed(inputs["sensitivity"])
+        unknown["half_width_assumed"] = _assumed(inputs["sensitivity"])[:, None]
     for name, others in unknown.items():
-        given = found, by_coefficient, inputs["contact"].sizes["realisation"]
-        widths = [_widths(*given, error, others) for error in errors]
-        widths = np.moveaxis(widths, 0, 1).reshape(len(QUANTITIES), len(TURNS), *sizes)
-        table[name] = ("quantity", "turns", *POINT_DIMS), _digits(widths)
+        error, realisations = np.hypot(errors, others), inputs["contact"].sizes["realisation"]
+        widths = half_widths(found, by_coefficient, error, realisations)
+        widths = _digits(widths.reshape(len(QUANTITIES), len(TURNS), *sizes))
+        table[name] = ("quantity", "turns", *POINT_DIMS), widths
     coordinates = {name: film[name].values for name in POINT_DIMS}
     coordinates |= {"quantity": list(QUANTITIES), "turns": list(TURNS)}
     dataset = xr.Dataset(table | {"best_threshold": threshold}, coordinates)
@@ -122,46 +130,18 @@ def _best_threshold(electrical, own):
     return best, errors.values.ravel()
 
 
-def _film_slopes(study, lubricant, slip):
-    """Slope of the film's logarithm over that of the pressure-viscosity coefficient."""
-    axes = {name: list(getattr(study.operating_grid, name)) for name in ("force", "speed")}
-    axes = xr.Dataset(coords=axes)
-
-    def film_of(oil):
-        table = film_at(
-            *(oil, study.rough_rollers, axes["force"], axes["speed"], study.film_formulas[:1]),
-            slide_to_roll_ratio=slip,
-            inlet_shear_heating=study.inlet_shear_heating,
-            inlet_meniscus=study.film_model["inlet_meniscus"],
-        )
-        return table["film_thickness"].isel(film_formula=0)
-
-    return film_by_coefficient(lubricant, film_of).transpose(*POINT_DIMS).values.ravel()
-
-
 def _assumed(sensitivity):
-    """Return the standard deviation of ln P by all that an inference must know."""
+    """Return the standard deviation of ln P by all that each inference must know."""
     total = sensitivity["log_probability_deviation"].transpose(*POINT_DIMS)
-    parts, found = sensitivity["first_order"].clip(0.0, 1.0), {}
-    groups = sensitivity["group_of_factor"].values
-    for quantity, given in _GIVEN.items():
-        unknown = [
-            name
-            for name, group in zip(parts["factor"].values, groups, strict=True)
-            if not {name, group} & {*given, *CHOICES, SEED}
-        ]
+    parts = sensitivity["first_order"].clip(0.0, 1.0)
+    each = zip(parts["factor"].values, sensitivity["group_of_factor"].values, strict=True)
+    groups, found = dict(each), []
+    for quantity in QUANTITIES:
+        given = {*_GIVEN[quantity], *CHOICES, SEED}
+        unknown = [name for name, group in groups.items() if not {name, group} & given]
         part = parts.sel(factor=unknown).sum("factor").clip(0.0, 1.0)
-        found[quantity] = (total * np.sqrt(part)).transpose(*POINT_DIMS).values.ravel()
-    return found
-
-
-def _widths(found, by_coefficient, realisations, error, unknown):
-    """Half-widths of all quantities, each with what else is not known."""
-    rows = []
-    for number, quantity in enumerate(QUANTITIES):
-        whole = np.hypot(error, unknown.get(quantity, 0.0))
-        rows.append(half_widths(found, by_coefficient, whole, realisations)[number])
-    return rows
+        found.append((total * np.sqrt(part)).transpose(*POINT_DIMS).values.ravel())
+    return np.array(found)
 
 
 def _to_measure(study, sensitivity, names):

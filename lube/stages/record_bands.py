@@ -57,7 +57,6 @@ def _needed(table):
         for name, variable in _BANDS.items()
     }
     known = np.isfinite([share, *(each for pair in limits.values() for each in pair)]).all(axis=0)
-    needed = np.where(known, "none", "").astype("U11")
-    for name, (lower, upper) in reversed(limits.items()):
-        needed[known & (share >= lower) & (share <= upper)] = name
+    inside = [(share >= lower) & (share <= upper) for lower, upper in limits.values()]
+    needed = np.where(known, np.select(inside, list(limits), "none"), "")
     return needed

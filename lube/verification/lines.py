@@ -292,11 +292,7 @@ def on_grids(study: Study, threads: int | None) -> dict[str, Array]:
         if all(_can_have(line, wider) for line in study.line_spec.lines):
             spec = _other_grid(study.line_spec, points, wider)
             windows = _windows(study, spec, LAMBDA_RATIOS[FEW])
-
-            def sampled(number, windows=windows, spec=spec):
-                return windows.sample(spec, study.seed, number)[0].T
-
-            found[name] = np.array(on_threads(sampled, range(PAIRS), threads))
+            found[name] = np.moveaxis(windows.on_pairs(spec, study.seed, PAIRS, threads), 1, 2)
     return found
 
 

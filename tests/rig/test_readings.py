@@ -4,18 +4,16 @@ import numpy as np
 import pytest
 
 from lube.physics.electrical import divider_voltage
-from lube.rig.readings import READINGS, Readings
+from lube.rig.readings import READINGS, read_shares
 from lube.study.rig_settings import Experiment, Rig
 
 RIG = Rig(leak_resistance="1 Gohm")
 OPEN = divider_voltage(np.inf, RIG)
 
 
-def shares(voltage, pieces=1, rig=RIG):
-    readings = Readings(Experiment(), rig)
-    for piece in np.array_split(voltage, pieces):
-        readings.add(piece)
-    return dict(zip(READINGS, readings.shares, strict=True))
+def shares(voltage, rig=RIG):
+    found, _ = read_shares(voltage, Experiment(), rig)
+    return dict(zip(READINGS, found, strict=True))
 
 
 def record(share, closed, samples=100_000, noise=2e-5):
@@ -40,11 +38,6 @@ def test_a_contact_of_as_many_ohms_as_the_resistor_is_half_of_one_by_the_mean():
     assert found["mean voltage"] == pytest.approx(0.2, abs=2e-3)
     # The threshold of 100 ohm is met by a part of the noise.
     assert 0.1 < found["threshold"] <= 0.4
-
-
-def test_pieces_of_a_record_are_the_whole():
-    voltage = record(0.3, closed=30.0)
-    assert shares(voltage, pieces=7) == pytest.approx(shares(voltage), rel=1e-12)
 
 
 def test_a_record_in_contact_is_open_to_an_adaptive_threshold():
