@@ -123,7 +123,7 @@ def plan(
     oils, dims = oil.at(temperature), table["film_thickness"].dims
     slope = film_by_coefficient(oils, rollers.pair, *point, film_formula)
     by_coefficient = slope.transpose(*dims).values.ravel()
-    widths = half_widths(found, by_coefficient, error, realisations)
+    widths = half_widths(found, by_coefficient, error[None], realisations)
     shape = table["film_thickness"].shape
     answer = table[FILM_VARIABLES].assign_coords(quantity=list(QUANTITIES))
     answer["breakthrough_probability"] = dims, found.probability.reshape(shape)

@@ -1,13 +1,15 @@
 """Operating points as plain numbers, and the speeds of their surfaces."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
+from typing import Any
 
 import xarray as xr
 
 from lube.grid.gap import Gap
 from lube.grid.levels import rolling
-from lube.schema import EXPERIMENT_DIMS
+from lube.schema import CONTACT_DIMS, EXPERIMENT_DIMS, OPERATING_DIMS
 
 
 def surface_speeds(entrainment_speed: float, slide_to_roll_ratio: float) -> tuple[float, float]:
@@ -70,6 +72,30 @@ def at_slip(film: xr.Dataset, slide_to_roll_ratio: float | None = None) -> xr.Da
     if slide_to_roll_ratio is None:
         slide_to_roll_ratio = rolling(film[name].values)
     return film.sel({name: slide_to_roll_ratio}, drop=True)
+
+
+def rows_at(film: xr.Dataset, points: Sequence[Mapping[str, Any]]) -> xr.Dataset:
+    """Select the rows of a film table at some operating points.
+
+    Parameters
+    ----------
+    film : xarray.Dataset
+        A ``film`` dataset.
+    points : sequence of mapping
+        Level of each of `lube.schema.CONTACT_DIMS`; the slide-to-roll ratio is the same at all.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over operating_point.
+    """
+    levels = {
+        name: xr.DataArray([point[name] for point in points], dims="operating_point")
+        for name in CONTACT_DIMS
+    }
+    rows = at_slip(film, points[0]["slide_to_roll_ratio"])
+    rows = rows.sel({name: levels[name] for name in OPERATING_DIMS})
+    return rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
 
 
 def by_contact_model(dataset: xr.Dataset) -> xr.Dataset:

@@ -161,18 +161,18 @@ def half_widths(found: Slopes, by_coefficient: Array, error: Array, realisations
     by_coefficient : numpy.ndarray
         Slope of the film's logarithm over that of the pressure-viscosity coefficient.
     error : numpy.ndarray
-        From `relative_error`, shape (P,); or of all quantities, shape (quantities, ..., P).
+        From `relative_error`, of some records, shape (records, P); or, if it differs between the
+        quantities, of shape (quantities, records, P).
     realisations : int
         Number of realisations from whose scatter the error follows.
 
     Returns
     -------
     numpy.ndarray
-        Shape (quantities, ..., P); NaN where a record tells nothing, or less than that the quantity
-        is between zero and twice its value.
+        Shape (quantities, records, P); NaN where a record tells nothing, or less than that the
+        quantity is between zero and twice its value.
     """
     each = np.array([found.by_film, found.by_film * by_coefficient, found.by_layer])
-    each = each.reshape(len(each), *(1,) * max(np.ndim(error) - 2, 0), -1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        widths = quantile(realisations) * error / np.abs(each)
+        widths = quantile(realisations) * error / np.abs(each)[:, None]
     return np.where(widths < 1.0, widths, np.nan)

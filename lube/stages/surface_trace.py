@@ -5,9 +5,9 @@ import xarray as xr
 
 from lube.contact.surface_trace import surface_traces
 from lube.grid.film_responses import with_surface_responses
-from lube.grid.operating_points import at_slip
+from lube.grid.operating_points import rows_at
 from lube.physics.electrical import contact_resistance
-from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, with_dims
+from lube.schema import CONTACT_DIMS, label
 from lube.study.study import Study
 from lube.types import Datasets
 
@@ -27,18 +27,15 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         `lube.contact.surface_trace.surface_traces`.
     """
     points, slip = study.trace_points, study.trace_points[0]["slide_to_roll_ratio"]
-    columns = {name: [point[name] for point in points] for name in CONTACT_DIMS}
-    levels = xr.Dataset(with_dims("surface_trace", columns))
-    film = at_slip(with_surface_responses(inputs), slip)
-    film = film.sel({name: levels[name] for name in OPERATING_DIMS})
-    film = film.transpose("operating_point", ...)
+    film = rows_at(with_surface_responses(inputs), points).transpose("operating_point", ...)
     choices = study.boundary_layer, study.seed, slip, study.gap, threads
     found = surface_traces(study.line_spec, study.rollers.length, film, *choices)
     resistivity = study.resistivity if study.conducts else np.nan
     resistance = contact_resistance(found["contact_length"].values, resistivity)
     # All traces have the same speed, and so the same times.
     times = found["step"].values / film["entrainment_speed"].values[0]
-    found = found.assign_coords(step=times, **levels.data_vars).rename(step="time")
+    levels = {name: ("operating_point", film[name].values) for name in CONTACT_DIMS}
+    found = found.assign_coords(step=times, **levels).rename(step="time")
     found = found.assign(
         contact_resistance=(("operating_point", "time"), resistance),
         **film[["film_thickness", "contact_half_width", "entrainment_speed"]],

@@ -14,11 +14,11 @@ from lube.errors import DataError
 from lube.grid.discretise import LineGrid, layer_factor_of, line_pair, speed_ratios, whole_numbers
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
-from lube.grid.operating_points import at_slip, known_films, surface_speeds
+from lube.grid.operating_points import known_films, rows_at, surface_speeds
 from lube.kernels.layer import layer_breaks
 from lube.kernels.motion import surface_position
 from lube.physics.electrical import contact_resistance
-from lube.schema import CONTACT_DIMS, OPERATING_DIMS, label, with_dims
+from lube.schema import label
 from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.types import Datasets
@@ -107,11 +107,7 @@ def contact_trace(
 
 def _known_rows(film, points, gap):
     """Rows of the film table at the operating points, along ``operating_point``."""
-    columns = {name: [point[name] for point in points] for name in CONTACT_DIMS}
-    levels = xr.Dataset(with_dims("trace", columns))
-    film = at_slip(film, points[0]["slide_to_roll_ratio"])
-    rows = film.sel({name: levels[name] for name in OPERATING_DIMS})
-    rows = rows.assign_coords(slide_to_roll_ratio=levels["slide_to_roll_ratio"])
+    rows = rows_at(film, points)
     known = known_films(rows, gap).values
     for number in np.flatnonzero(~known):
         log.warning("traces.%d: left out, the film is not known there", number)

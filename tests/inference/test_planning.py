@@ -69,7 +69,7 @@ def test_a_shorter_record_and_a_worse_reading_tell_less():
 
 def test_intervals_scale_with_the_error_and_without_a_slope_there_is_none():
     some = Slopes(np.array([0.1, 0.1]), np.array([-4.0, 0.0]), np.array([-0.5, -0.5]))
-    widths = half_widths(some, np.array([0.5, 0.5]), np.array([0.1, 0.1]), 64)
+    widths = half_widths(some, np.array([0.5, 0.5]), np.array([[0.1, 0.1]]), 64)[:, 0]
     assert widths[0, 0] == pytest.approx(quantile(64) * 0.1 / 4.0)
     assert widths[1, 0] == pytest.approx(2.0 * widths[0, 0])
     assert np.isnan(widths[:2, 1]).all()
@@ -85,7 +85,7 @@ def test_films_read_from_single_pairs_scatter_as_expected(spec, film, layer, fou
     shares = np.array([windows.count(draw_realisation(spec, 1, n))[:, 1] for n in range(60)])
     others = np.array([windows.count(draw_realisation(spec, 2, n))[:, 1] for n in range(60)])
     error = relative_error(found.probability, effective_sample_size(shares, 100.0), 1.0)
-    expected = half_widths(found, np.ones(3), error, 60)[0]
+    expected = half_widths(found, np.ones(3), error[None], 60)[0, 0]
     read = np.log(others / found.probability) / found.by_film
     seen = quantile(60) * read.std(axis=0, ddof=1)
     np.testing.assert_allclose(expected, seen, rtol=3.0 * quantile(60) / np.sqrt(2.0 * 60))
