@@ -184,7 +184,8 @@ def spoken(name: str) -> str:
     >>> spoken("young_modulus")
     "Young's modulus"
     """
-    return name.replace("_", " ").replace("hurst", "Hurst").replace("young", "Young's")
+    words = name.replace("_", " ").replace("pressure viscosity", "pressure-viscosity")
+    return words.replace("hurst", "Hurst").replace("young", "Young's")
 
 
 def _of(group):
