@@ -25,6 +25,8 @@ OIL = (
     *("dynamic_viscosity", "pressure_viscosity_coefficient"),
     *("temperature_viscosity_coefficient", "thermal_conductivity"),
 )
+GAUSSIAN = {"skewness": 0.0, "kurtosis": 3.0}
+"""Moments of Gaussian heights."""
 NODES = 500
 """Temperatures between which properties of the oils are interpolated: to some 1e-6."""
 SECANT = 200e6
@@ -265,8 +267,6 @@ def _heights(study):
     return EquivalentRatio.of(*ends, study.line_spec.rms_height)
 
 
-GAUSSIAN = {"skewness": 0.0, "kurtosis": 3.0}
-"""Moments of Gaussian heights."""
 FILM = (
     *("film_thickness", "contact_half_width", "reduced_modulus"),
     *("moes_load", "moes_material", "dynamic_viscosity", "lambda_ratio"),

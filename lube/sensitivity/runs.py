@@ -225,8 +225,9 @@ def _probabilities(deviating, model, values, film):
     """Probability of breakthrough at some points, by each set of random numbers."""
     study, spec, layer = deviating.study, deviating.lines(values), deviating.layer(values)
     film["reduced_modulus"] = film["reduced_modulus"].values.flat[0]
-    rms = deviating.rms_roughness(values)
-    film["film_thickness"] = rms * deviating.equivalent(film["film_thickness"] / rms, values)
+    ratio = film["film_thickness"] / deviating.rms_roughness(values)
+    thicker = deviating.equivalent(ratio, values) / ratio
+    film["film_thickness"] = film["film_thickness"] * thicker
     if model.contact_model == "surface":
         choices = {"gap": model.gap, "threads": 1, "fewer": FEWER_SURFACES}
         found = []

@@ -225,7 +225,7 @@ class Uncertainty(StrictModel):
     skewness: OfSkewness | None = _of("surface")
     """skewness of the heights of both rollers"""
     kurtosis: OfKurtosis | None = _of("surface")
-    """kurtosis of the heights of both rollers, at least that of lognormal heights as skew"""
+    """kurtosis of the heights of both rollers; at least that of lognormal heights as skewed"""
     critical_thickness: Relative | None = _of("layer")
     """critical thickness of the boundary layer"""
     shear_strength: Relative | None = _of("layer")
