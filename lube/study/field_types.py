@@ -39,7 +39,7 @@ def _texts(model):
     """Text under each field in the source of a model and of those that it is based on."""
     found = {}
     for base in reversed(model.__mro__):
-        if issubclass(base, StrictModel) and "[" not in base.__name__:  # as in `Choice[str]`
+        if issubclass(base, StrictModel):
             (source,) = ast.parse(textwrap.dedent(inspect.getsource(base))).body
             for field, text in pairwise(source.body):
                 if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr):

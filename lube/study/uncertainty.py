@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Generic, Literal, TypeVar, get_args
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, get_args
 
 from pydantic import Field, model_validator
 
@@ -122,7 +122,6 @@ class OfKurtosis(_Number):
     """least and greatest value"""
 
 
-Name = TypeVar("Name")
 FilmFormula = Annotated[
     str,
     read_by(
@@ -133,10 +132,15 @@ FilmFormula = Annotated[
 """Name of a film formula."""
 
 
-class Choice(StrictModel, Generic[Name]):
+Name = TypeVar("Name")
+Some = Annotated[tuple[Name, ...], Field(min_length=2)]
+"""Two names or more."""
+
+
+class Choice(StrictModel):
     """A choice of the model that may be made otherwise; all are equally likely."""
 
-    choices: Annotated[tuple[Name, ...], Field(min_length=2)]
+    choices: Some[str]
     """the choices"""
     source: Text
     """why each of them may be right, or `assumed`"""
@@ -150,6 +154,42 @@ class Choice(StrictModel, Generic[Name]):
     def _check_once(self):
         each_once(self.choices)
         return self
+
+
+class OfDefinition(Choice):
+    """Definitions of the pressure-viscosity coefficient."""
+
+    choices: Some[Literal[tuple(DEFINITIONS)]]
+
+
+class OfFormula(Choice):
+    """Film formulas."""
+
+    choices: Some[FilmFormula]
+
+
+class OfShape(Choice):
+    """Shapes of the film."""
+
+    choices: Some[Literal["flat", "computed"]]
+
+
+class OfHeating(Choice):
+    """Models of the heating at the inlet."""
+
+    choices: Some[Literal[INLET_HEATING]]
+
+
+class OfDeformation(Choice):
+    """Deformations of the roughness."""
+
+    choices: Some[Literal["none", "computed"]]
+
+
+class OfContact(Choice):
+    """What touches."""
+
+    choices: Some[Literal["line", "surface"]]
 
 
 @dataclass(frozen=True)
@@ -200,7 +240,7 @@ class Uncertainty(StrictModel):
     """viscosity of the oils"""
     pressure_viscosity_coefficient: Relative | None = _of("oil")
     """pressure-viscosity coefficient of the oils"""
-    pressure_viscosity_definition: Choice[Literal[tuple(DEFINITIONS)]] | None = _of("oil")
+    pressure_viscosity_definition: OfDefinition | None = _of("oil")
     """definition of the coefficient where its source states none; a secant is to 200 MPa"""
     temperature: OfTemperature | None = _of("conditions")
     """temperature of the oil at the inlet"""
@@ -230,15 +270,15 @@ class Uncertainty(StrictModel):
     """critical thickness of the boundary layer"""
     shear_strength: Relative | None = _of("layer")
     """limiting shear stress of the boundary layer"""
-    film_formula: Choice[FilmFormula] | None = _of("film")
+    film_formula: OfFormula | None = _of("film")
     """film formula, of which the study takes its first"""
-    film_shape: Choice[Literal["flat", "computed"]] | None = _of("film")
+    film_shape: OfShape | None = _of("film")
     """shape of the film"""
-    inlet_shear_heating: Choice[Literal[INLET_HEATING]] | None = _of("film")
+    inlet_shear_heating: OfHeating | None = _of("film")
     """heating of the oil at the inlet"""
-    roughness_deformation: Choice[Literal["none", "computed"]] | None = _of("film")
+    roughness_deformation: OfDeformation | None = _of("film")
     """deformation of the roughness"""
-    contact_model: Choice[Literal["line", "surface"]] | None = _of("contact model")
+    contact_model: OfContact | None = _of("contact model")
     """what touches"""
 
     def factors(self) -> list[Factor]:

@@ -1,6 +1,7 @@
 """A study: read whole, frozen, and what follows from its values."""
 
 import math
+import pickle
 
 import pytest
 import xarray as xr
@@ -24,6 +25,11 @@ def test_the_papers_study_has_the_papers_125_operating_points():
     assert grid.speed[0] == 600.0 / 7.0
     assert grid.temperature == (40.0, 50.0, 60.0, 70.0, 80.0)
     assert grid.slide_to_roll_ratio == (0.0,)
+
+
+def test_a_study_can_be_handed_to_another_process():
+    study = load_study(PAPER)
+    assert pickle.loads(pickle.dumps(study)) == study
 
 
 def test_the_papers_rollers_layer_roughness_and_trace_are_in_si():
