@@ -14,6 +14,7 @@ NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("error")
+@pytest.mark.filterwarnings("ignore:Could not import mpi4py:ImportWarning")  # of SurfaceTopography
 @pytest.mark.parametrize("name", STUDIES)
 def test_no_figure_has_colliding_text_covered_or_missing_points(name, unlike):
     folder = unlike(name)
