@@ -66,7 +66,7 @@ def test_every_figure_is_in_its_chapter_as_png_and_pdf(smoke, held):
         for figure in smoke.notebooks
         for suffix in ("png", "pdf")
     )
-    assert sorted(chapters) == ["1 Oil and film", "2 Contact", "4 Simulation and rig"]
+    assert sorted(chapters) == ["1 Oil and film", "2 Contact", "3 Simulation and rig"]
     for path in shown:
         data = base64.b64decode(held["results"][path]["data_uri"].split("base64,")[1])
         assert data == (smoke / path).read_bytes()
