@@ -163,7 +163,7 @@ class StudyFiles:
         return getattr(self, attribute)() if attribute else []
 
     def batches_of(self, stage: str) -> list[str]:
-        """Return the files of a stage's batches, such as ``batches/contact_0.nc``; none if none."""
+        """Return the files of a stage's batches, such as ``batches/contact_0.nc``, if any."""
         numbers = {"realisations": self.study.batches, "samples": range(SAMPLE_BATCHES), "": ()}
         of_stage = numbers[STAGES[stage].in_batches]
         return [self.result(f"batches/{stage}_{number}.nc") for number in of_stage]

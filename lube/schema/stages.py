@@ -324,7 +324,7 @@ _ROWS = (
     ),
     Stage(
         "sensitivity_runs",
-        "probabilities for random values of what is uncertain, several minutes",
+        "probabilities for random values of what is uncertain",
         values=_LINES | _CONTACT | _named("rollers.length contact_model uncertainty"),
         same_values=("film",),
         target="sensitivity",

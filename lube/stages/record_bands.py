@@ -58,5 +58,4 @@ def _needed(table):
     }
     known = np.isfinite([share, *(each for pair in limits.values() for each in pair)]).all(axis=0)
     inside = [(share >= lower) & (share <= upper) for lower, upper in limits.values()]
-    needed = np.where(known, np.select(inside, list(limits), "none"), "")
-    return needed
+    return np.where(known, np.select(inside, list(limits), "none"), "")

@@ -16,9 +16,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     batches = [batch.drop_attrs() for batch in inputs["batches"]]
     minimal = {"data_vars": "minimal", "coords": "minimal", "compat": "equals"}
     table = xr.concat(batches, "run", join="exact", **minimal)
-    each = zip(*(table[name].values for name in Model._fields), strict=True)
-    order = models(Deviating.of(study))
-    number = [order.index(Model(*map(str, choices))) for choices in each]
+    chosen = list(zip(*(table[name].values for name in Model._fields), strict=True))
+    order = list(dict.fromkeys(chosen))  # the first batch has the first sample of each model
+    number = [order.index(model) for model in chosen]
     return label(table.isel(run=np.argsort(number, kind="stable")), "sensitivity_runs")
 
 
