@@ -364,10 +364,9 @@ def records_on_file(study, table, film, folder):
     film = film.isel(film_formula=0)
     rows = [{name: [level] for name, level in levels.items()} for levels in levels_of(table)]
     points = [operating_points(film.sel(row), 0.0)[0] for row in rows]
-    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     rows = ["file,temperature [degC],speed [rpm],force [N],pair,origin"]
     parts = defaultdict(list)
-    for pair, number, part in simulated_revolutions(lines, study, points):
+    for pair, number, part in simulated_revolutions(study, points):
         parts[pair, number].append(part.voltage(study.rig))
         if len(parts[pair, number]) == math.ceil(study.rig.revolutions):
             _write(folder / f"{pair}_{number}.nc", parts.pop((pair, number)), study.rig)

@@ -5,7 +5,6 @@ import yaml
 from made import made, on_few_surfaces, with_few_passages
 from studies import CONFIG, PAPER_CONTENT
 
-from lube.contact.rough_pair import roughness_batch
 from lube.grid.operating_points import operating_points
 from lube.rig.simulator import simulated_revolutions
 from lube.stages.film import film_table
@@ -264,9 +263,8 @@ def _write_records(study, manifest):
     forces, speeds = [203.0, 800.0, 1203.0, 1600.0], [100.0, 200.0]
     film = film_table(oil, study.rollers, forces, speeds, ["paper"])
     points = operating_points(film.isel(film_formula=0), 0.0)
-    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     voltages = {}
-    for _, number, revolution in simulated_revolutions(lines, study, points):
+    for _, number, revolution in simulated_revolutions(study, points):
         voltages.setdefault(number, []).append(revolution.voltage(study.rig))
     rows = ["file,force [N],speed [rpm],temperature [degC]"]
     for number, parts in voltages.items():

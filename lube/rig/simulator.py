@@ -14,16 +14,19 @@ to the steps of the converter.
                    amplifier         +-- film -----+
 """
 
+import functools
 import logging
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
-from lube.contact.windows import ContactWindows
-from lube.grid.discretise import LineGrid, line_pair, revolution, speed_ratios
+from lube.contact.rough_pair import drawn
+from lube.contact.windows import study_windows
+from lube.grid.discretise import revolution, speed_ratios
 from lube.grid.operating_points import OperatingPoint, surface_speeds
 from lube.kernels.circuit import sampled_voltage
 from lube.physics.electrical import contact_resistance, film_capacitance
@@ -38,16 +41,14 @@ TOGETHER = 16
 
 
 def simulated_revolutions(
-    lines: xr.Dataset, study: Study, points: list[OperatingPoint]
+    study: Study, points: list[OperatingPoint]
 ) -> Iterator[tuple[int, int, "Revolution"]]:
     """Run all pairs of the rig's rollers, each at all operating points.
 
     Parameters
     ----------
-    lines : xarray.Dataset
-        A ``roughness_batch`` dataset of `Study.rig_realisations`.
     study : Study
-        Its rig, boundary layer, rollers, resistivity and seed.
+        Its rig, the rig's rollers, boundary layer, resistivity and seed.
     points : list of OperatingPoint
         From `lube.grid.operating_points.operating_points`; all of one slide-to-roll ratio.
 
@@ -60,22 +61,23 @@ def simulated_revolutions(
     revolution : Revolution
         The next revolution of this pair at this point.
     """
-    for pair, drawn in enumerate(np.split(lines["realisation"].values, study.rig.pairs)):
+    of_pairs = np.reshape(study.rig_realisations, (study.rig.pairs, -1)).tolist()
+    for pair, numbers in enumerate(of_pairs):
+        drawn_once = functools.cache(partial(drawn, study))
         for begin in range(0, len(points), TOGETHER):
             some = points[begin : begin + TOGETHER]
-            for turn, contacts in enumerate(_turns(lines, study, some, drawn)):
+            for turn, contacts in enumerate(_turns(study, some, map(drawn_once, numbers))):
                 for number, contact in enumerate(contacts, begin):
-                    seed = (study.seed, int(drawn[0]), number + 1, turn)
-                    spacing = lines.attrs["spacing"]
-                    yield pair, number, _revolution(contact, points[number], spacing, study, seed)
+                    seed = (study.seed, numbers[0], number + 1, turn)
+                    yield pair, number, _revolution(contact, points[number], study, seed)
             log.info("simulated rig: pair %d, %d operating points", pair + 1, begin + len(some))
 
 
-def _turns(lines, study, points, drawn):
+def _turns(study, points, pairs):
     """Grid points in contact at all time steps of each turn, at some operating points."""
-    slip, windows = points[0].slide_to_roll_ratio, _windows(lines, study, points)
+    slip, windows = points[0].slide_to_roll_ratio, _windows(study, points)
     ratios = speed_ratios(slip)
-    for turn, pair in enumerate(drifting_rollers(lines, study, drawn)):
+    for turn, pair in enumerate(drifting_rollers(study, pairs)):
         steps = revolution(pair, ratios)
         if not turn or not repeats(study, ratios):
             contacts = windows.trace(pair, slip, turn * steps)
@@ -83,41 +85,39 @@ def _turns(lines, study, points, drawn):
         yield contacts[:, : max(round(part * steps), 1)]
 
 
-def _windows(lines, study, points):
+def _windows(study, points):
     """Contact windows of some operating points."""
     rows = [point.row for point in points]
     film = xr.concat(rows, "operating_point", coords="minimal", compat="override", join="exact")
     alike = ["reduced_modulus", "reduced_radius", "composite_rms_roughness"]
-    film = film.assign(rows[0][alike])
-    return ContactWindows(LineGrid.of(lines), film, study.boundary_layer, study.gap)
+    return study_windows(study, film.assign(rows[0][alike]))
 
 
-def drifting_rollers(lines: xr.Dataset, study: Study, drawn: Array) -> Iterator[Pair]:
-    """Draw a pair of rollers, whose roughness may drift, for each of its revolutions.
+def drifting_rollers(study: Study, pairs: Iterable[Pair]) -> Iterator[Pair]:
+    """Yield a pair of rollers, whose roughness may drift, for each of its revolutions.
 
     Parameters
     ----------
-    lines, study
-        As in `simulated_revolutions`.
-    drawn : numpy.ndarray
-        Realisations of this pair, one for each revolution if the roughness drifts.
+    study : Study
+        Its rig.
+    pairs : iterable of tuple of numpy.ndarray
+        The lines of this pair, and new ones for each further revolution if the roughness drifts.
 
     Yields
     ------
     tuple of numpy.ndarray
         The two lines, int32 height steps.
     """
-    drift, pair = study.rig.drift, line_pair(lines, drawn[0])
+    drift, pairs = study.rig.drift, iter(pairs)
+    pair = next(pairs)
     for turn in range(math.ceil(study.rig.revolutions)):
         if turn and drift > 0.0:
-            pair = tuple(
-                _renewed(old, new, drift)
-                for old, new in zip(pair, line_pair(lines, drawn[turn]), strict=True)
-            )
+            both = zip(pair, next(pairs), strict=True)
+            pair = tuple(_renewed(old, new, drift) for old, new in both)
         yield pair
 
 
-def _revolution(contact, point, spacing, study, seed):
+def _revolution(contact, point, study, seed):
     capacitance = film_capacitance(
         point.row["film_thickness"].item(),
         point.row["contact_half_width"].item(),
@@ -125,6 +125,7 @@ def _revolution(contact, point, spacing, study, seed):
         study.rig.oil_permittivity,
     )
     speeds = surface_speeds(point.row["entrainment_speed"].item(), point.slide_to_roll_ratio)
+    spacing = study.line_spec.spacing
     time_step, resistance = spacing / max(speeds), study.resistivity / spacing
     return Revolution(contact, point, time_step, resistance, capacitance, seed)
 

@@ -6,6 +6,7 @@ from itertools import chain
 import numpy as np
 import xarray as xr
 
+from lube.errors import DataError
 from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
@@ -17,6 +18,8 @@ from lube.types import Array, Pair
 
 AT_ONCE = 400
 """Samples whose films are computed together, for the sake of memory."""
+LEAST_RUNS = 20
+"""Runs with breakthroughs that a surrogate needs."""
 BAND = 0.05, 0.95
 """Quantiles of the probability over all that a study does not know exactly."""
 COMPUTED = "computed"
@@ -66,6 +69,11 @@ class Predictor:
             The study.
         runs : xarray.Dataset
             A ``sensitivity_runs`` dataset.
+
+        Raises
+        ------
+        DataError
+            If the boundary layer breaks in fewer than `LEAST_RUNS` runs of a model.
         """
         surrogates, effective = {}, _effective(deviating, runs)
         for model in sorted(models(deviating), key=Model.deviations):
@@ -74,6 +82,13 @@ class Predictor:
             variables = groups(deviating, own, values, model.gap, effective)
             variables = variables.transpose("group", "run").values
             found = own["breakthrough_probability"].transpose("run", "seed").values
+            broken = np.count_nonzero(np.isfinite(found).all(axis=1))
+            if broken < LEAST_RUNS:
+                raise DataError(
+                    f"sensitivity: the boundary layer breaks in {broken} of {len(found)} runs of "
+                    f"the model '{', '.join(model)}', need {LEAST_RUNS} or more: the films are too "
+                    "thick, or the grid of the lines is too coarse"
+                )
             nearer = [one.parts for other, one in surrogates.items() if other.is_nearer(model)]
             parts = tuple(dict.fromkeys(chain.from_iterable(nearer)))
             known = is_sum(deviating, model)

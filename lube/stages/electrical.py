@@ -5,7 +5,6 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from lube.contact.rough_pair import roughness_batch
 from lube.contact.windows import study_windows
 from lube.grid.film_profiles import six_digits
 from lube.grid.levels import rolling
@@ -100,7 +99,6 @@ def _capacitances(study, film):
 
 def _readings(study, film, rigs, slip):
     """Contact shares by all rigs and readings, and the true ones."""
-    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations[:1])
     once = study.model_copy(
         update={"rig": study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})}
     )
@@ -108,7 +106,7 @@ def _readings(study, film, rigs, slip):
     known = [number for number, one in enumerate(points) if known_films(one.row, study.gap)]
     ways = len(READINGS) + len(study.experiment.thresholds)
     shares = np.full((len(points), 1 + len(rigs) * ways), np.nan)
-    for _, number, revolution in simulated_revolutions(lines, once, [points[one] for one in known]):
+    for _, number, revolution in simulated_revolutions(once, [points[one] for one in known]):
         found = [np.count_nonzero(revolution.contact) / revolution.contact.size]
         for rig in rigs.values():
             for read in read_shares(revolution.voltage(rig), study.experiment, rig):

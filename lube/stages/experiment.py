@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError, LubeError
 from lube.grid.levels import rolling
 from lube.grid.operating_points import OperatingPoint, known_films, operating_points
@@ -68,7 +67,6 @@ def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
         for point in every
         if point not in points
     ]
-    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     exact = dict.fromkeys(LEVELS, 0.0)
     records = {
         (pair, number): Record(
@@ -77,7 +75,7 @@ def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
         for pair in range(study.rig.pairs)
         for number, point in enumerate(points)
     }
-    for pair, number, revolution in simulated_revolutions(lines, study, points):
+    for pair, number, revolution in simulated_revolutions(study, points):
         records[pair, number].add_revolution(revolution)
     rows = [
         record.evaluate() | {"record": _name_of_point(points[number], pair, study)}

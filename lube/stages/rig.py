@@ -3,7 +3,6 @@
 import numpy as np
 import xarray as xr
 
-from lube.contact.rough_pair import roughness_batch
 from lube.errors import DataError
 from lube.grid.operating_points import OperatingPoint, known_films, operating_points
 from lube.physics.electrical import resistance_from_voltage
@@ -39,7 +38,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     DataError
         If the film is known at none of the points.
     """
-    lines = roughness_batch(study.line_spec, study.seed, study.rig_realisations)
     points = [_point_at(levels, inputs["film"]) for levels in study.trace_points]
     points = [point for point in points if known_films(point.row, study.gap)]
     if not points:
@@ -50,7 +48,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         [record_counter(study.experiment, rig, "voltage", interval) for rig in rigs] for _ in points
     ]
     voltages, steps = {}, np.zeros((len(points), 2), int)
-    for _, number, revolution in simulated_revolutions(lines, study, points):
+    for _, number, revolution in simulated_revolutions(study, points):
         if number not in voltages:
             voltages[number] = revolution.voltage(study.rig)
         for rig, counter in zip(rigs, counters[number], strict=True):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lube.contact.rough_pair import roughness_batch
+from lube.contact.rough_pair import drawn, roughness_batch
 from lube.grid.gap import Gap
 from lube.grid.operating_points import operating_points
 from lube.physics.electrical import divider_voltage, resistance_from_voltage
@@ -78,10 +78,15 @@ def test_a_large_capacitance_hides_how_soon_a_contact_ends():
 
 
 @pytest.fixture(scope="module")
-def lines_of(make_spec, study):
-    """The rollers that a study's rig draws, on a grid fine enough for some contact."""
-    spec = make_spec(60_000)
-    return lambda changed: roughness_batch(spec, study.seed, changed.rig_realisations)
+def finer(study):
+    """The smoke study, on a grid fine enough for some contact."""
+    roughness = study.roughness.model_copy(update={"points": 60_000})
+    return study.model_copy(update={"roughness": roughness})
+
+
+def lines_of(study):
+    """The lines that its rig draws, for other stages."""
+    return roughness_batch(study.line_spec, study.seed, study.rig_realisations)
 
 
 @pytest.fixture(scope="module")
@@ -94,13 +99,13 @@ def slipping(rig_film):
     return operating_points(rig_film.isel(film_formula=0), 0.1)
 
 
-def run(lines, study, points):
-    return list(simulated_revolutions(lines, study, points))
+def run(study, points):
+    return list(simulated_revolutions(study, points))
 
 
-def test_every_pair_passes_all_points_for_all_its_revolutions(lines_of, study, with_rig, points):
-    several = with_rig(study, pairs=3, revolutions=2.5)
-    passed = run(lines_of(several), several, points)
+def test_every_pair_passes_all_points_for_all_its_revolutions(finer, with_rig, points):
+    several = with_rig(finer, pairs=3, revolutions=2.5)
+    passed = run(several, points)
     assert [(pair, number) for pair, number, _ in passed] == [
         (pair, number) for pair in range(3) for _turn in range(3) for number in range(len(points))
     ]
@@ -112,65 +117,60 @@ def test_every_pair_passes_all_points_for_all_its_revolutions(lines_of, study, w
 
 
 @pytest.mark.parametrize(("slip", "within"), [(0.0, 1e-12), (0.1, 0.01)])
-def test_its_contacts_are_those_of_the_contact_stage(
-    lines_of, study, with_rig, rig_film, slip, within
-):
+def test_its_contacts_are_those_of_the_contact_stage(finer, with_rig, rig_film, slip, within):
     """With slip the second turn goes on where the first ended, to half a grid point."""
-    two = with_rig(study, pairs=2, revolutions=2)
+    two = with_rig(finer, pairs=2, revolutions=2)
     lines = lines_of(two)
-    found = contact_statistics(lines, rig_film, study.boundary_layer, [slip], revolutions=2)
+    found = contact_statistics(lines, rig_film, finer.boundary_layer, [slip], revolutions=2)
     expected = found["breakthrough_probability"].isel(film_formula=0, slide_to_roll_ratio=0)
     points = operating_points(rig_film.isel(film_formula=0), slip)
     touched = np.zeros((2, len(points)))
-    for pair, number, revolution in run(lines, two, points):
+    for pair, number, revolution in run(two, points):
         touched[pair, number] += np.mean(revolution.contact > 0) / 2.0
     np.testing.assert_allclose(touched.ravel(), expected.values.ravel(), rtol=within, atol=2e-5)
     assert touched.max() > 0.01
 
 
 @pytest.mark.parametrize("deformation", ["none", "venner-1997"])
-def test_under_films_with_a_shape_too(lines_of, study, with_rig, shaped_film, deformation):
+def test_under_films_with_a_shape_too(finer, with_rig, shaped_film, deformation):
     """The contact stage looks at some windows, and rounds flattened lines otherwise.
 
     Under so weak a layer contact is frequent enough that some windows know it."""
-    weak = study.boundary_layer.model_copy(update={"shear_strength": 2e5})
+    weak = finer.boundary_layer.model_copy(update={"shear_strength": 2e5})
     choices = {"film_shape": "computed", "roughness_deformation": deformation}
-    changed = with_rig(study.model_copy(update=choices | {"boundary_layer": weak}), revolutions=1)
+    changed = with_rig(finer.model_copy(update=choices | {"boundary_layer": weak}), revolutions=1)
     lines, gap = lines_of(changed), Gap("computed", deformation)
     found = contact_statistics(lines, shaped_film, weak, gap=gap)["breakthrough_probability"]
     points = operating_points(shaped_film.isel(film_formula=0), 0.0)
-    touched = [np.mean(one.contact > 0) for _, _, one in run(lines, changed, points)]
+    touched = [np.mean(one.contact > 0) for _, _, one in run(changed, points)]
     expected = found.isel(film_formula=0).values.ravel()
     np.testing.assert_allclose(touched, expected, rtol=0.05, atol=5e-4)
     assert max(touched) > 0.03
 
 
 @pytest.mark.parametrize(("drift", "kept"), [(0.3, 0.7**0.5), (1.0, 0.0)])
-def test_drift_renews_its_share_of_the_variance_each_turn(lines_of, study, with_rig, drift, kept):
-    drifting = with_rig(study, drift=drift, revolutions=3)
-    drawn = drifting_rollers(lines_of(drifting), drifting, drifting.rig_realisations)
-    first, second, third = (pair[0] for pair in drawn)
+def test_drift_renews_its_share_of_the_variance_each_turn(finer, with_rig, drift, kept):
+    drifting = with_rig(finer, drift=drift, revolutions=3)
+    pairs = (drawn(drifting, number) for number in drifting.rig_realisations)
+    first, second, third = (pair[0] for pair in drifting_rollers(drifting, pairs))
     assert np.corrcoef(first, second)[0, 1] == pytest.approx(kept, abs=0.05)
     assert np.corrcoef(first, third)[0, 1] == pytest.approx(kept**2, abs=0.05)
     assert np.std(third) == pytest.approx(np.std(first), rel=0.05)
 
 
-def test_the_faster_surface_passes_one_grid_point_each_time_step(
-    lines_of, study, with_rig, slipping
-):
-    one = with_rig(study, revolutions=1)
-    lines = lines_of(one)
-    _, _, revolution = run(lines, one, slipping)[0]
+def test_the_faster_surface_passes_one_grid_point_each_time_step(finer, with_rig, slipping):
+    one = with_rig(finer, revolutions=1)
+    _, _, revolution = run(one, slipping)[0]
     faster = 1.05 * revolution.point.row["entrainment_speed"].item()
-    assert revolution.time_step == pytest.approx(lines.attrs["spacing"] / faster)
-    turn = 2.0 * np.pi * study.rollers.first.radius / faster
+    assert revolution.time_step == pytest.approx(finer.line_spec.spacing / faster)
+    turn = 2.0 * np.pi * finer.rollers.first.radius / faster
     assert revolution.contact.size * revolution.time_step == pytest.approx(turn)
 
 
-def test_noise_differs_between_pairs_points_and_turns(lines_of, study, with_rig, points):
-    two = with_rig(study, pairs=2, revolutions=2)
+def test_noise_differs_between_pairs_points_and_turns(finer, with_rig, points):
+    two = with_rig(finer, pairs=2, revolutions=2)
     passed = {}
-    for pair, number, revolution in run(lines_of(two), two, points):
+    for pair, number, revolution in run(two, points):
         passed.setdefault((pair, number), []).append(revolution)
     silent = np.zeros(60_000, np.int32)
 
@@ -184,15 +184,12 @@ def test_noise_differs_between_pairs_points_and_turns(lines_of, study, with_rig,
     assert not np.array_equal(noise(0, 0, 0), beside[: noise(0, 0, 0).size])
 
 
-def test_how_many_points_are_held_at_once_changes_nothing(
-    lines_of, study, with_rig, slipping, monkeypatch
-):
-    two = with_rig(study, revolutions=2)
-    lines = lines_of(two)
+def test_how_many_points_are_held_at_once_changes_nothing(finer, with_rig, slipping, monkeypatch):
+    two = with_rig(finer, revolutions=2)
     expected = {}
-    for pair, number, revolution in run(lines, two, slipping):
+    for pair, number, revolution in run(two, slipping):
         expected.setdefault((pair, number), []).append(revolution.contact)
     monkeypatch.setattr(module, "TOGETHER", 3)
-    for pair, number, revolution in run(lines, two, slipping):
+    for pair, number, revolution in run(two, slipping):
         np.testing.assert_array_equal(revolution.contact, expected[pair, number].pop(0))
     assert not any(expected.values())

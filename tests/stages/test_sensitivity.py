@@ -7,6 +7,7 @@ from made import made
 from studies import CONFIG
 
 from lube.contact.windows import study_windows
+from lube.errors import DataError
 from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
 from lube.sensitivity import indices, runs
@@ -21,6 +22,7 @@ from lube.stages.lubricant import make as make_lubricant
 from lube.study.study import load_study
 from lube.study.uncertainty import Uncertainty
 
+PROBABILITY = "breakthrough_probability"
 SOURCE = {"source": "assumed"}
 SMALL = {
     "viscosity": {"range": "+- 10 %"} | SOURCE,
@@ -69,6 +71,17 @@ def test_runs_do_not_depend_on_batches_or_the_number_of_threads(study, direct):
         expected = direct.isel(run=np.all(same, axis=0)).isel(run=some)
         for name in ("breakthrough_probability", "film_thickness"):
             np.testing.assert_array_equal(six_digits(found[name].values), expected[name])
+
+
+def test_runs_without_breakthroughs_are_refused_in_one_line(study, direct):
+    """As of the smoke study, on whose coarse grid the layer of hardly any contact breaks."""
+    probability = direct[PROBABILITY].where(direct["film_shape"] == "flat")
+    expected = (
+        r"^sensitivity: the boundary layer breaks in 0 of 128 runs of the model "
+        r"'line, computed, none', need 20 or more: .* too coarse$"
+    )
+    with pytest.raises(DataError, match=expected):
+        sensitivity.make(study, {"sensitivity_runs": direct.assign({PROBABILITY: probability})})
 
 
 def test_runs_leave_xarrays_options_as_they_were(direct):
