@@ -43,7 +43,7 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
     Returns
     -------
     xarray.Dataset
-        The variables of `film_at_records`; ``breakthrough_probability`` over (realisation,
+        The variables of `study_films_at_records`; ``breakthrough_probability`` over (realisation,
         film_formula, record); the results of `lube.inference.record_scatter.record_scatter` over
         the same dimensions, most without realisation; and the attributes ``travel`` and
         ``longest_wavelength``, both m, of one realisation.
@@ -67,10 +67,26 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
 
 
 def study_films_at_records(study: Study, experiment: xr.Dataset) -> xr.Dataset:
-    """Film thickness at the conditions of each record by a study's films, as `film_at_records`."""
+    """Film thickness at the conditions of each record by a study's films.
+
+    Parameters
+    ----------
+    study : Study
+        Its oils, rollers and films.
+    experiment : xarray.Dataset
+        An ``experiment`` dataset.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of `film_at_records`, what the ``comparison`` file has.
+    """
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     choices = study.rough_rollers, study.film_formulas
-    return film_at_records(experiment, oils, *choices, **study.film_model)
+    table = film_at_records(experiment, oils, *choices, **study.film_model)
+    unused = [name for name in table if name not in FILES["comparison"]]
+    unused += [] if study.gap.has_shape else ["formula_place"]
+    return table.drop_vars(unused)
 
 
 def film_at_records(
@@ -80,7 +96,7 @@ def film_at_records(
     formulas: Sequence[str],
     **film_model: Any,
 ) -> xr.Dataset:
-    """Film thickness at the conditions of each record.
+    """Film table at the conditions of each record, and the viscosity of the oil.
 
     Parameters
     ----------
@@ -95,41 +111,9 @@ def film_at_records(
     Returns
     -------
     xarray.Dataset
-        ``film_thickness``, ``lambda_ratio``, ``moes_load``, ``moes_material``,
-        ``contact_half_width`` and ``dynamic_viscosity`` over film_formula and record;
-        ``reduced_radius``, ``reduced_modulus`` and ``composite_rms_roughness``. If films have a
-        shape, also ``film_profile`` over record and film_position, and ``formula_place``. With
-        inlet shear heating also its factor over record, and with a meniscus its distance.
-    """
-    table = table_at_records(experiment, lubricant, rollers, formulas, **film_model)
-    unused = [name for name in table if name not in FILES["comparison"]]
-    unused += [] if "film_profile" in table else ["formula_place"]
-    if film_model.get("inlet_shear_heating", "none") == "none":
-        unused.append("inlet_shear_heating_factor")
-    table = table.drop_vars(unused)
-    if film_model.get("inlet_meniscus") is not None:
-        table["inlet_meniscus"] = film_model["inlet_meniscus"]
-    return table.transpose("film_formula", "record", ...)
-
-
-def table_at_records(
-    experiment: xr.Dataset,
-    lubricant: xr.Dataset,
-    rollers: RollerPair,
-    formulas: Sequence[str],
-    **film_model: Any,
-) -> xr.Dataset:
-    """Film table at the conditions of each record, and the viscosity of the oil.
-
-    Parameters
-    ----------
-    experiment, lubricant, rollers, formulas, **film_model
-        As in `film_at_records`.
-
-    Returns
-    -------
-    xarray.Dataset
-        All variables of `lube.grid.films.film_at` over record, and ``dynamic_viscosity``.
+        Variables of `lube.grid.films.film_at` over film_formula and record, and
+        ``dynamic_viscosity``; with a meniscus also its distance, with inlet shear heating its
+        factor.
     """
     force, speed, temperature, oil, slip = (
         xr.DataArray(experiment[name].values, dims="record")
@@ -139,7 +123,12 @@ def table_at_records(
     table = film_at(
         properties, rollers, force, speed, formulas, slide_to_roll_ratio=slip, **film_model
     )
-    return table.assign(dynamic_viscosity=properties["dynamic_viscosity"])
+    table["dynamic_viscosity"] = properties["dynamic_viscosity"]
+    if film_model.get("inlet_shear_heating", "none") == "none":
+        del table["inlet_shear_heating_factor"]
+    if film_model.get("inlet_meniscus") is not None:
+        table["inlet_meniscus"] = film_model["inlet_meniscus"]
+    return table.transpose("film_formula", "record", ...)
 
 
 def _stored(study, film, contact):

@@ -12,7 +12,7 @@ from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import study_windows
 from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, with_surface_responses
-from lube.inference.at_records import table_at_records
+from lube.inference.at_records import film_at_records
 from lube.inference.record_curves import RecordCurves, curve_offsets
 from lube.inference.surface_scatter import surface_scatter
 from lube.physics.excursions import expected_contacts
@@ -48,7 +48,7 @@ def surfaces_at_records(
         An ``experiment`` dataset.
     first : xarray.Dataset
         Films at its records by the first film formula, from
-        `lube.inference.at_records.film_at_records`, without the dimension film_formula.
+        `lube.inference.at_records.study_films_at_records`, without the dimension film_formula.
     inputs : dict of str to xarray.Dataset
         The study's ``film`` and ``areal``, and its ``surface_response`` if the oil answers the
         surfaces. Where they contain the film of a record, its probability is taken from them.
@@ -113,7 +113,7 @@ def _off_grid(study, experiment, first):
     experiment = experiment.isel(record=some)
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
     formulas = study.film_formulas[:1]
-    table = table_at_records(experiment, oils, study.rough_rollers, formulas, **choices)
+    table = film_at_records(experiment, oils, study.rough_rollers, formulas, **choices)
     responses = table[[*VARIABLES, *SURFACE_VARIABLES]].isel(record=inverse)
     return first.drop_dims(["wavelength", "response_position"]).assign(responses)
 
