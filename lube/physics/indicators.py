@@ -1,8 +1,8 @@
 r"""Indicators of lubrication that engineers know, by their published formulas.
 
 They are kept for comparison: no result of a study uses them. W, U and G are the groups of
-`lube.physics.dimensionless`. Each formula is used with its own lambda ratio, and only where it was
-meant to hold.
+`lube.physics.dimensionless`. Each formula is used with its own lambda ratio; one whose range is
+published, within that range only.
 """
 
 from collections.abc import Callable

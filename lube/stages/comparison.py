@@ -50,7 +50,7 @@ _SIDES = "lower", "upper"
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``comparison.nc``; see `lube.stages`."""
     film, contact, experiment = (inputs.get(kind) for kind in ("film", "contact", "experiment"))
-    if contact:
+    if contact is not None:
         model = model_at_records(experiment, film, contact, study)
     else:
         model, spec = study_films_at_records(study, experiment), study.line_spec

@@ -13,7 +13,7 @@ from studies import OIL
 from lube.explorer.content import CHOICES, SHOWN, page_content, page_name
 from lube.explorer.figures import COLUMNS, draw
 from lube.explorer.page import explorer_page
-from lube.schema import POINT_DIMS
+from lube.schema import POINT_DIMS, model_dependent
 from lube.storage.netcdf import load
 
 EXPLORED = ("lubricant", "film", "contact", "tail", "master", "trace", "comparison")
@@ -322,6 +322,28 @@ def test_records_near_the_point_are_told_with_their_intervals(visit, explored, p
     assert text.startswith(f"Simulated record {record['record'].item()}: in contact ")
     share = rounded(100 * record["measured_share"].item())
     assert f"in contact {share}\u00a0% of the time" in text
+
+
+def test_a_record_is_told_with_what_the_chosen_contact_model_predicts(visit, explored, tmp_path):
+    models = xr.DataArray(["line", "surface"], dims="contact_model", name="contact_model")
+    study = explored | {"tail": xr.concat([explored["tail"]] * 2, models, data_vars="minimal")}
+    by_line, names = explored["comparison"], model_dependent("comparison")
+    limits = {f"predicted_share_{end}": 0.9 for end in ("lower", "upper")}
+    by_surface = by_line.assign(
+        {name: xr.full_like(by_line[name], limits[name]) for name in limits}
+    )
+    by_both = xr.concat([by_line[names], by_surface[names]], models)
+    by_both = by_line.drop_vars(names).merge(by_both)
+    for comparison, expected in (
+        (by_both, "rollers: 90\u00a0% to 90\u00a0%"),
+        (by_line, "lines: "),
+    ):
+        path = tmp_path / "both.html"
+        page = explorer_page(study | {"comparison": comparison}, BAND)
+        path.write_text(page, encoding="utf-8")
+        for model, predicted in (("line", "lines: "), ("surface", expected)):
+            page = visit(path, f"#force=1600&temperature=80&contact_model={model}")
+            assert f"predicted for one pair of {predicted}" in page.inner_text("#records")
 
 
 # How it looks
