@@ -115,7 +115,7 @@ def morris(
     """
     problem = _problem(names)
     unit = morris_sample.sample(problem, TRAJECTORIES, num_levels=LEVELS, seed=seed)
-    values = predict(unit)
+    values = predict(_between_any_choices(unit, names, choices or {}, seed))
     options = {"num_levels": LEVELS, "num_resamples": RESAMPLES, "seed": seed}
     # SALib divides each change by the step, a part of the range.
     step, choices = LEVELS / (2.0 * (LEVELS - 1.0)), choices or {}
@@ -136,3 +136,16 @@ def morris(
     found = np.stack(on_threads(of_point, values.T), axis=-1)
     keys = ("elementary_effect", "elementary_effect_error", "elementary_effect_deviation")
     return dict(zip((*keys, "screened_deviation"), found, strict=True))
+
+
+def _between_any_choices(unit, names, choices, seed):
+    """Let each path change a choice to any other; Morris' steps go half-way through all choices."""
+    paths = unit.reshape(TRAJECTORIES, -1, len(names)).copy()
+    generator = np.random.default_rng(seed)
+    for name, count in choices.items():
+        ends = np.tile(np.arange(count), (TRAJECTORIES, 1))
+        ends = generator.permuted(ends, axis=1)[:, :2]
+        column = paths[..., names.index(name)]
+        chosen = np.take_along_axis(ends, (column > 0.5).astype(int), axis=1)
+        column[:] = (chosen + 0.5) / count
+    return paths.reshape(unit.shape)

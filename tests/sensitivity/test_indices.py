@@ -54,6 +54,17 @@ def test_a_choice_changes_the_function_by_what_lies_between():
     np.testing.assert_allclose(found["screened_deviation"][:, 0], [2.5, 12**-0.5])
 
 
+def test_a_choice_among_several_goes_from_any_to_any():
+    """Six numbers in their order: steps half-way through them only would give 2.2 for 1.7."""
+
+    def predict(unit):
+        return np.column_stack([np.floor(6.0 * unit[:, 0]) + unit[:, 1]])
+
+    found = morris(NAMES[:2], predict, seed=1, choices={"first": 6})
+    whole = np.std(np.arange(6.0))
+    np.testing.assert_allclose(found["screened_deviation"][:, 0], [whole, 12**-0.5], rtol=0.05)
+
+
 def test_screened_deviations_of_a_linear_function_are_exact():
     found = morris(NAMES, ishigami, seed=1)
     expected = np.array([3.0, 2.0, 0.0]) / np.sqrt(12.0)
