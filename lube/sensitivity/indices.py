@@ -26,6 +26,8 @@ TRAJECTORIES = 200
 """Paths of Morris' design; each changes every factor once."""
 LEVELS = 10
 """Levels of each factor in Morris' design."""
+EVEN = 4096
+"""Sizes of a factor from which its variance follows."""
 RESAMPLES = 100
 """Samples drawn anew for the intervals."""
 
@@ -92,35 +94,46 @@ def morris(
     predict: Callable[[Array], Array],
     seed: int,
     choices: Mapping[str, int] | None = None,
+    sizes: Callable[[Array], Array] = np.asarray,
 ) -> dict[str, Array]:
     r"""Screen the factors by Morris' method.
+
+    The levels of a factor are the middles of `LEVELS` equal parts of its distribution. A step leads
+    half-way through them, or from one choice to any other.
 
     Parameters
     ----------
     names, predict, seed
         As in `sobol`.
     choices : mapping of str to int, optional
-        Factors that are choices, with the number of each: a step leads from one to another, and is
-        not the part of a range.
+        Factors that are choices, with the number of each.
+    sizes : callable, optional
+        From samples to sizes of the factors, both of shape (samples, factors); by default the
+        factors are uniformly distributed.
 
     Returns
     -------
     dict of str to numpy.ndarray
-        Shape (factors, points): ``elementary_effect``, the mean of the absolute effects of a step
-        through the whole range, or from one choice to another; ``elementary_effect_error`` and
+        Shape (factors, points): ``elementary_effect``, the mean of the absolute effects of two such
+        steps, or from one choice to another; ``elementary_effect_error`` and
         ``elementary_effect_deviation``; and ``screened_deviation``, the standard deviation that the
-        factor would give by itself to a function with these effects d. It is
-        :math:`\sqrt{\langle d^2 \rangle / 12}` of a range, and
-        :math:`\sqrt{\langle d^2 \rangle (1 - 1/k) / 2}` of a choice among k.
+        factor gives by itself to a function that changes by d with a step. It is
+        :math:`\sqrt{\langle d^2 \rangle (1 - 1/k) / 2}` of a choice among k, else the standard
+        deviation of the factor's size x times
+        :math:`\sqrt{\langle d^2 \rangle / \langle \Delta x^2 \rangle}`.
     """
     problem = _problem(names)
     unit = morris_sample.sample(problem, TRAJECTORIES, num_levels=LEVELS, seed=seed)
-    values = predict(_between_any_choices(unit, names, choices or {}, seed))
+    choices = choices or {}
+    paths = _between_any_choices(unit, names, choices, seed)
+    values = predict(paths)
     options = {"num_levels": LEVELS, "num_resamples": RESAMPLES, "seed": seed}
-    # SALib divides each change by the step, a part of the range.
-    step, choices = LEVELS / (2.0 * (LEVELS - 1.0)), choices or {}
-    scale = np.array([step if name in choices else 1.0 for name in names])
-    part = [0.5 - 0.5 / choices[name] if name in choices else 1.0 / 12.0 for name in names]
+    # SALib divides each change by the step between its own levels.
+    step = LEVELS / (2.0 * (LEVELS - 1.0))
+    scale = step * np.array([1.0 if name in choices else 2.0 for name in names])
+    parts = _variances(sizes, paths)
+    for name, count in choices.items():
+        parts[names.index(name)] = 0.5 - 0.5 / count
 
     def of_point(column):
         if not np.isfinite(column).all():
@@ -131,7 +144,7 @@ def morris(
         )
         square = mean**2 + deviation**2 * (1.0 - 1.0 / TRAJECTORIES)
         effects = np.array([absolute, error, deviation], float) * scale
-        return np.concatenate([effects, [np.sqrt(square * part) * scale]])
+        return np.concatenate([effects, [np.sqrt(square * parts) * step]])
 
     found = np.stack(on_threads(of_point, values.T), axis=-1)
     keys = ("elementary_effect", "elementary_effect_error", "elementary_effect_deviation")
@@ -139,8 +152,9 @@ def morris(
 
 
 def _between_any_choices(unit, names, choices, seed):
-    """Let each path change a choice to any other; Morris' steps go half-way through all choices."""
-    paths = unit.reshape(TRAJECTORIES, -1, len(names)).copy()
+    """Paths through the middles of the levels, each of which changes a choice to any other."""
+    paths = (np.rint((LEVELS - 1) * unit) + 0.5) / LEVELS
+    paths = paths.reshape(TRAJECTORIES, -1, len(names))
     generator = np.random.default_rng(seed)
     for name, count in choices.items():
         ends = np.tile(np.arange(count), (TRAJECTORIES, 1))
@@ -149,3 +163,11 @@ def _between_any_choices(unit, names, choices, seed):
         chosen = np.take_along_axis(ends, (column > 0.5).astype(int), axis=1)
         column[:] = (chosen + 0.5) / count
     return paths.reshape(unit.shape)
+
+
+def _variances(sizes, paths):
+    """Variance of each factor over the mean square of its steps along the paths."""
+    factors = paths.shape[1]
+    even = np.tile((np.arange(EVEN) + 0.5)[:, None] / EVEN, factors)
+    steps = np.diff(sizes(paths).reshape(TRAJECTORIES, -1, factors), axis=1)
+    return np.var(sizes(even), axis=0) * TRAJECTORIES / np.sum(steps**2, axis=(0, 1))
