@@ -8,13 +8,14 @@ from contextlib import suppress
 import pandas as pd
 
 from lube.commands.run import repository
-from lube.errors import LubeError
+from lube.errors import LubeError, located
 from lube.grid.plausibility import overview, remarks
 from lube.pipeline.command_line import changes_of, study_of_command
 from lube.pipeline.study_files import StudyFiles
 from lube.report.pages import count
 from lube.stages.film import film_table
 from lube.study.oil_properties import lubricant_table
+from lube.study.uncertainty import check_uncertainty
 from lube.types import File
 
 
@@ -59,6 +60,12 @@ def check_study(path: File, entries: Sequence[str] = ()) -> tuple[list[str], lis
     film = film_table(oil, study.rough_rollers, *levels, slide_to_roll_ratio=study.slips, **model)
     question = film, study.line_spec, study.rough_rollers
     notes = remarks(*question)
+    if study.has("sensitivity"):
+        try:
+            with located("no sensitivity study is possible: uncertainty"):
+                check_uncertainty(study)
+        except LubeError as error:
+            notes.append(str(error))
     lines = {
         "study": f"{study.name}: valid{', see the remarks below' if notes else ''}",
         "operating points": " = ".join([f"{points:,}", *filter(None, [" × ".join(factors)])]),

@@ -23,6 +23,14 @@ def test_shipped_studies_are_valid(path):
     summary, refused = check_study(path)
     assert summary[0].split()[:2] == ["study", f"{path.stem}:"] and "valid" in summary[0]
     assert not refused
+    assert not any("no sensitivity study" in line for line in summary)
+
+
+def test_ranges_that_hold_for_another_study_only_are_named(paper_with):
+    _, remarks = lines_of(paper_with(("roughness.longest_wavelength", "0.8 mm")))
+    assert [one.split(":")[:2] for one in remarks if "sensitivity" in one] == [
+        ["no sensitivity study is possible", " uncertainty"]
+    ]
 
 
 def test_the_amount_of_work_is_said():

@@ -42,6 +42,8 @@ def test_without_options_it_is_the_papers_study_with_waves_up_to_the_usual_cutof
     own["film_formulas"] = sorted(
         set(PAPER_CONTENT["film_formulas"]) - {"paper"}, key=PAPER_CONTENT["film_formulas"].index
     )
+    longest = {"range": "-50 % to 0 %", "source": "assumed"}
+    own["uncertainty"] = PAPER_CONTENT["uncertainty"] | {"longest_wavelength": longest}
     content = resolved_content("mine.yaml")
     assert content | {"name": "mine"} == PAPER_CONTENT | own
     assert load_study("mine.yaml").band == "waves 800 µm to 3.14 µm"
