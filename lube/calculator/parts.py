@@ -109,7 +109,7 @@ class Rollers:
     longest_wavelength, shortest_wavelength : str, optional
         Ends of the roughness band. The defaults are `lube.study.rollers.LONGEST_WAVELENGTH`, the
         cutoff with which an Ra from 0.1 to 2 um is customarily measured, and the paper's shortest
-        wavelength. The answers depend on them more than on anything else.
+        wavelength. The answers depend on them.
     long_cutoff, short_cutoff : str, optional
         Cutoffs lambda_c and lambda_s that the roughness was measured with: its height is that of
         the waves between them, and other waves add to it. By default the longest and the shortest
