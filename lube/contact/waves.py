@@ -295,7 +295,7 @@ def rms_along(
     Parameters
     ----------
     spec, before, answers
-        As in `answered_window`.
+        As in `answered_windows`.
     points : int
         Points of the window.
     bands : list, optional
@@ -317,15 +317,17 @@ def rms_along(
     return np.sqrt(1.0 + np.interp(np.arange(points), nodes, added) / rms**2)
 
 
-def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answer]) -> UnevenWindow:
-    """Part of a contact window in which contact is likely, with the answers of the oil there.
+def answered_windows(
+    spec, points: int, before: int, answers: tuple[Answer, Answer]
+) -> Callable[[Array], UnevenWindow]:
+    """Prepare contact windows under films to which the oil answers alike.
 
     Parameters
     ----------
     spec : lube.study.line_spec.LineSpec
         Parameters of the lines.
-    film : numpy.ndarray, shape (W,)
-        Film thickness at each point of the window, height steps.
+    points : int
+        Points W of the window.
     before : int
         Points of the window before its centre.
     answers : tuple of Answer
@@ -333,27 +335,21 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
 
     Returns
     -------
-    UnevenWindow
-        For `lube.surfaces.rare_contact.rare_contact_under`.
+    callable
+        From the film thickness at each point of the window, height steps, shape (W,), to the part
+        of it in which contact is likely, an `UnevenWindow` for
+        `lube.surfaces.rare_contact.rare_contact_under`.
     """
     shift = answers[0].shift(spec.spacing)
     rms, _ = sum_of_lines(spec, 1)
-    bands = [_bands(spec, roller, one, film.size) for roller, one in enumerate(answers)]
+    bands = [_bands(spec, roller, one, points) for roller, one in enumerate(answers)]
+    ratio = rms_along(spec, points, before, answers, bands)
+    reach = math.ceil(spec.longest_wavelength / spec.spacing)
+    last = (max(points, reach) >> shift) + 2
+    lags = np.arange(-last, last + 1) << shift
+    most = 1 + max(len(filters) for _, _, filters in bands)
+    covariances = np.zeros((2, lags.size, most, most))
     with one_blas_thread():
-        ratio = rms_along(spec, film.size, before, answers, bands)
-        _, part = likely_part(film, rms * ratio)
-        nodes, shapes = _nodes_of(slice(part.start, part.stop), before, answers, spec.spacing)
-        at_once = np.zeros((nodes.size, nodes.size), np.float32)
-        for at, (power, by_point, filters) in zip(shapes, bands, strict=True):
-            drawn = np.exp(1j * nodes[:, None] * by_point)
-            changed = (1.0 + at @ filters) * drawn
-            found = (changed * power) @ changed.conj().T - (drawn * power) @ drawn.conj().T
-            at_once += (found.real / rms**2).astype(np.float32)
-        reach = math.ceil(spec.longest_wavelength / spec.spacing)
-        last = (max(film.size, reach) >> shift) + 2
-        lags = np.arange(-last, last + 1) << shift
-        most = 1 + max(len(filters) for _, _, filters in bands)
-        covariances = np.zeros((2, lags.size, most, most))
         for roller, (power, by_point, filters) in enumerate(bands):
             moved = power * np.exp(1j * lags[:, None] * by_point)
             both = np.concatenate([np.ones((1, power.size)), filters])
@@ -361,8 +357,21 @@ def answered_window(spec, film: Array, before: int, answers: tuple[Answer, Answe
             found = moved @ products.reshape(-1, power.size).T
             here = covariances[roller, :, : len(both), : len(both)]
             here[:] = found.real.reshape(here.shape) / rms**2
-        covariances[:, :, 0, 0] = 0.0
-    return UnevenWindow(film[part], ratio[part], tuple(shapes), at_once, covariances, shift)
+    covariances[:, :, 0, 0] = 0.0
+
+    def under(film):
+        _, part = likely_part(film, rms * ratio)
+        nodes, shapes = _nodes_of(slice(part.start, part.stop), before, answers, spec.spacing)
+        at_once = np.zeros((nodes.size, nodes.size), np.float32)
+        with one_blas_thread():
+            for at, (power, by_point, filters) in zip(shapes, bands, strict=True):
+                drawn = np.exp(1j * nodes[:, None] * by_point)
+                changed = (1.0 + at @ filters) * drawn
+                found = (changed * power) @ changed.conj().T - (drawn * power) @ drawn.conj().T
+                at_once += (found.real / rms**2).astype(np.float32)
+        return UnevenWindow(film[part], ratio[part], tuple(shapes), at_once, covariances, shift)
+
+    return under
 
 
 def _bands(spec, roller, answer, points):

@@ -11,7 +11,7 @@ import xarray as xr
 
 from lube.contact.waves import (
     Waves,
-    answered_window,
+    answered_windows,
     answers_at,
     longest_answers,
     rms_along,
@@ -87,7 +87,7 @@ class ContactWindows:
         gap: Gap = PLAIN,
         weaker: Values = 1.0,
     ) -> None:
-        self._grid, self._gap, self._places = grid, gap, {}
+        self._grid, self._gap, self._places, self._alike = grid, gap, {}, {}
         names = ["film_thickness", "contact_half_width"]
         # If contact depends on more than film and width, points are distinguished by Moes' numbers
         # and, with slip, by the answer to the longest wave.
@@ -96,7 +96,6 @@ class ContactWindows:
         spread = xr.broadcast(*(film[name] for name in names), *longest)
         thickness, half_width, *others = (each.values.ravel() for each in spread)
         self._contacts = np.stack([half_width, *others], axis=1)
-        self._numbers = np.arange(thickness.size)
         self.thickness, self.unknown = thickness / grid.height_step, np.isnan(thickness)
         self._films, self.half_windows = whole_numbers(thickness, half_width, grid)
         if gap.has_shape:
@@ -306,14 +305,21 @@ class ContactWindows:
 
     def _place(self, point, spec):
         """Contact window of an operating point, in which lines are sampled."""
-        key = self._numbers[point]
+        key = self._films[point], *self._contacts[point]
         if key not in self._places:
-            window = self._window([point])
-            place = UnevenWindow(window.film[0].astype(float))
+            window, make = self._window([point]), UnevenWindow
             if self._gap.is_answered:
-                place = answered_window(spec, place.film, window.before, self._answers[point])
-            self._places[key] = place
+                make = self._answered(spec, window, self._answers[point])
+            self._places[key] = make(window.film[0].astype(float))
         return self._places[key]
+
+    def _answered(self, spec, window, answers):
+        """Maker of contact windows, the same for all films to which the oil answers alike."""
+        key = window.before, window.film.size, *map(id, answers)
+        if key not in self._alike:
+            about = spec, window.film.size, window.before, tuple(answers)
+            self._alike[key] = answered_windows(*about)
+        return self._alike[key]
 
     def _in_contact(self, pair):
         """Yield the lines, flattened if need be, and the points at which they are the same."""

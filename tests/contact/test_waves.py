@@ -5,7 +5,7 @@ import pytest
 from plain_answers import PlainAnswer
 
 from lube.contact import waves
-from lube.contact.waves import Answer, Waves, answered_window, answers_at, lifted
+from lube.contact.waves import Answer, Waves, answered_windows, answers_at, lifted
 from lube.grid.discretise import line_pair
 from lube.grid.operating_points import at_slip
 from lube.kernels.motion import surface_position
@@ -101,7 +101,7 @@ def window(point, spec):
     film = np.full(int(2 * point["contact_half_width"].item() / spec.spacing), composite(spec))
     before = film.size // 2
     answers = tuple(answers_at(point, False).values)
-    return answered_window(spec, film, before, answers), before
+    return answered_windows(spec, film.size, before, answers)(film), before
 
 
 def changed_waves(spec, roller, point, positions):
