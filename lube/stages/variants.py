@@ -213,16 +213,12 @@ def _counted(variants, windows, study, threads):
 def _on_surface(variant, film, own, study, threads):
     """Probabilities on surfaces, and their ratios to the study's own, which are independent."""
     names = "breakthrough_probability", "geometric_contact_probability"
-    points = film["film_thickness"].size
+    unknown = np.full(film["film_thickness"].size, np.nan)
+    found = {f"{name}{end}": unknown for name in names for end in LIMITS}
     if study.has("surface_response") and variant.gap.is_on_surfaces:
         choices = study.boundary_layer, study.seed, variant.gap, threads
         contact = surface_contact(study.line_spec, study.rollers.length, film, *choices)
-        found = {f"{name}{end}": contact[f"{name}{end}"] for name in names for end in LIMITS}
-        found = {
-            name: values.transpose(*POINT_DIMS).values.ravel() for name, values in found.items()
-        }
-    else:
-        found = {f"{name}{end}": np.full(points, np.nan) for name in names for end in LIMITS}
+        found = {name: contact[name].transpose(*POINT_DIMS).values.ravel() for name in found}
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = found[names[0]] / own[names[0]]
         half_widths = [
