@@ -76,8 +76,7 @@ def wave_responses(
     angles = np.zeros(1)
     response, error = _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads)
     heights = _line_heights(spec, response["wavelength"].values)[:, None]
-    deformation = error.isel(roller=0, wave_angle=0, drop=True)
-    deformation = deformation.copy(data=_deformation(response, heights))
+    deformation = _deformation(response, heights)
     response, error = (each.isel(wave_angle=0, drop=True) for each in (response, error))
     values = response.real, response.imag, error, deformation
     return xr.Dataset(dict(zip(VARIABLES, values, strict=True)))
@@ -100,11 +99,9 @@ def surface_responses(
         real and the imaginary part also over roller, wave_angle (degrees, `ANGLES`), wavelength and
         response_position; NaN where the film is not known.
     """
-    response, error = _solved(solved, contact, slide_to_roll_ratio, spec, ANGLES, threads)
-    waves = response["wave_angle"].values, response["wavelength"].values
-    deformation = error.isel(roller=0, wave_angle=0, drop=True)
-    deformation = deformation.copy(data=_deformation(response, _surface_heights(spec, *waves)))
-    values = response.real, response.imag, deformation
+    response, _ = _solved(solved, contact, slide_to_roll_ratio, spec, ANGLES, threads)
+    heights = _surface_heights(spec, ANGLES, response["wavelength"].values)
+    values = response.real, response.imag, _deformation(response, heights)
     return xr.Dataset(dict(zip(SURFACE_VARIABLES, values, strict=True)))
 
 
@@ -150,7 +147,9 @@ def _deformation(response, heights):
     """Rms change of surfaces by the oil, from the mean square heights of their waves."""
     inside = np.abs(response["response_position"]) <= 1.0
     square = np.mean(np.abs(response.values[..., inside] - 1.0) ** 2, axis=-1)
-    return six_digits(np.sqrt(np.einsum("...raw,raw", square, heights)))
+    rms = six_digits(np.sqrt(np.einsum("...raw,raw", square, heights)))
+    one = response.isel(roller=0, wave_angle=0, wavelength=0, response_position=0, drop=True)
+    return one.copy(data=rms)
 
 
 def _surface_heights(spec, angles, wavelengths):
