@@ -12,7 +12,7 @@ from lube.grid.operating_points import surface_speeds
 from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.synthetic import amplitudes_across_lay, wave_amplitudes
 from lube.threads import on_threads
-from lube.types import Datasets
+from lube.types import Datasets, Pair
 
 log = logging.getLogger(__name__)
 
@@ -157,7 +157,7 @@ def _surface_heights(spec, angles, wavelengths):
     psi = np.pi * (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
     shares = []
     for roller, line in enumerate(spec.lines):
-        length, power = _waves(spec, roller, amplitudes_across_lay)
+        length, power = line_waves(spec, roller, amplitudes_across_lay)
         power, edges = np.histogram(-np.log(length), LENGTHS, weights=power)
         # The waves of the isotropic surface run in all directions; see `lube.surfaces.lay`.
         across_lay, ridges = np.cos(psi), np.sin(psi) / line.lay_ratio
@@ -174,13 +174,13 @@ def _line_heights(spec, wavelengths):
     """Distribute the mean square height of each line over the wavelengths, which fall."""
     shares = []
     for roller in (0, 1):
-        length, power = _waves(spec, roller, wave_amplitudes)
+        length, power = line_waves(spec, roller)
         shares.append(np.einsum("wk,k", _weights(-np.log(length), -np.log(wavelengths)), power))
     return np.array(shares)
 
 
-def _waves(spec, roller, amplitudes_of):
-    """Lengths of the waves of a line, and their mean square heights."""
+def line_waves(spec, roller: int, amplitudes_of=wave_amplitudes) -> Pair:
+    """Lengths of the waves of a line, m, and their mean square heights, m^2."""
     first, amplitudes = amplitudes_of(spec, roller)
     length = spec.points[roller] * spec.spacing / (first + np.arange(amplitudes.size))
     return length, amplitudes**2 / 2.0
