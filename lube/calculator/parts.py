@@ -41,15 +41,9 @@ _MODELS = (
     ("radius", "young_modulus", "poisson_ratio"),
     ("rms_roughness", "ra_roughness", "topography"),
     (
-        "hurst_exponent",
-        "long_cutoff",
-        "short_cutoff",
-        "roll_off_wavelength",
-        "skewness",
-        "kurtosis",
-        "lay_ratio",
-        "lay_angle",
-    ),
+        "hurst_exponent long_cutoff short_cutoff roll_off_wavelength skewness kurtosis lay_ratio "
+        "lay_angle"
+    ).split(),
 )
 """Arguments for a roller, for the heights of its roughness, and for the roughness of both."""
 _LENGTHS = ("longest_wavelength", "shortest_wavelength")
