@@ -322,6 +322,25 @@ class Study(StrictModel):
                 f"{with_unit(half_width, 'm')}, the half-width of the contact at {force:g} N"
             )
 
+    def check_surfaces(self, spec: LineSpec) -> None:
+        """Refuse lines whose surfaces the model cannot bring into contact.
+
+        Parameters
+        ----------
+        spec : LineSpec
+            The study's lines, or lines that deviate.
+
+        Raises
+        ------
+        LubeError
+            As from `lube.study.surface_checks.check_surfaces`.
+        """
+        from lube.study.surface_checks import check_surfaces  # which loads scipy
+
+        width = 2.0 * self.rollers.contact_half_width(max(self.operating_grid.force))
+        with located("contact_model: surface"):
+            check_surfaces(spec, self.rollers.length, width, self.gap)
+
     def check_slip(self, slide_to_roll_ratio: float) -> None:
         """Refuse slip of lines that a formula flattens.
 
@@ -396,27 +415,19 @@ class Study(StrictModel):
             check_sizes(self)
             for ratio in self.slips:
                 self.check_slip(ratio)
-        if self.has_lines:
-            with located(kind=ValueError):
+            if self.has_lines:
                 check_follows_rolling(self.line_spec)
-        if self.has_surfaces:
-            self._check_surfaces()
-        elif self.rough_surfaces is not None:
-            self._check_stands_for_surface()
+            if self.has_surfaces:
+                self.check_surfaces(self.line_spec)
+            elif self.rough_surfaces is not None:
+                self._check_stands_for_surface()
         return self
 
     def _check_stands_for_surface(self):
         from lube.surfaces.rare_contact import check_stands_for_surface  # which loads scipy
 
-        with located(f"load_sharing: got {self.load_sharing}, need none", ValueError):
+        with located(f"load_sharing: got {self.load_sharing}, need none"):
             check_stands_for_surface(self.line_spec)
-
-    def _check_surfaces(self):
-        from lube.study.surface_checks import check_surfaces  # which loads scipy
-
-        width = 2.0 * self.rollers.contact_half_width(max(self.operating_grid.force))
-        with located("contact_model: surface", ValueError):
-            check_surfaces(self.line_spec, self.rollers.length, width, self.gap)
 
     def _check_conductivity(self):
         for record in self.lubricants:

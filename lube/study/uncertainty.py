@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar, get_args
 from pydantic import Field, model_validator
 
 from lube.ehl.film_formulas import FORMULAS, formula
-from lube.errors import LubeError, StudyError, located, shown
+from lube.errors import LubeError, StudyError, shown
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.physics.pressure_viscosity import DEFINITIONS
 from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
@@ -402,8 +402,4 @@ def _check_bands(study):
         )
     models = uncertain.contact_model.choices if uncertain.contact_model else study.contact_model
     if "surface" in models:
-        from lube.study.surface_checks import check_surfaces  # which loads scipy
-
-        width = 2.0 * study.rollers.contact_half_width(max(study.operating_grid.force))
-        with located("contact_model: surface"):
-            check_surfaces(wide, study.rollers.length, width, study.gap)
+        study.check_surfaces(wide)
