@@ -355,7 +355,6 @@ def ensemble(
     for end in (width.min().item(), width.max().item()):
         check_width(spec, end, "force: the contact")
     check_follows_rolling(spec)
-    check_realisations(realisations, seed)
     windows = ContactWindows(spec, table, rollers.layer, gap)
 
     def of_realisation(number):
