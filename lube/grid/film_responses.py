@@ -201,7 +201,7 @@ def _of_film(profile, wavelengths, speeds, positions, angle):
     response = np.ones((distinct.size, wavelengths.size, positions.size), complex)
 
     def solved(wavelength):
-        wave = WaveResponse.of(profile, wavelength, angle=angle)
+        wave = WaveResponse(profile, wavelength, angle=angle)
         return np.stack([wave.transfer(speed, positions) for speed in distinct])
 
     try:

@@ -142,7 +142,7 @@ def _of_waves(profile):
             log.warning("%s", error)
             continue
         inside = np.abs(wave.position) < INSIDE
-        linear = WaveResponse.of(profile, wavelength).transfer(speed, wave.position)
+        linear = WaveResponse(profile, wavelength).transfer(speed, wave.position)
         smooth = profile.scaled_gap(wave.position) / profile.central_gap
         difference[at] = np.sqrt(np.mean(np.abs(wave.transfer - linear)[inside] ** 2))
         oil[at] = wave.oil_load_share
