@@ -55,9 +55,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     else:
         model, spec = study_films_at_records(study, experiment), study.line_spec
         model.attrs = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
-    if not study.compares_surfaces:
-        return compare(model, experiment, film)
-    return compare(model, experiment, film, study.contact_model, inputs["surface_records"])
+    surfaces = inputs.get("surface_records")
+    return compare(model, experiment, film, study.contact_model, surfaces)
 
 
 def compare(
