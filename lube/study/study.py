@@ -20,13 +20,7 @@ from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
-from lube.study.field_types import (
-    Slug,
-    StrictModel,
-    each_once,
-    quantity_or_words,
-    validate,
-)
+from lube.study.field_types import Slug, StrictModel, each_once, quantity_or_words, validate
 from lube.study.line_spec import (
     LineSpec,
     band_in_words,
@@ -34,11 +28,7 @@ from lube.study.line_spec import (
     check_width,
     line_spec,
 )
-from lube.study.lubricant_record import (
-    LubricantRecord,
-    check_temperatures,
-    load_record,
-)
+from lube.study.lubricant_record import LubricantRecord, check_temperatures, load_record
 from lube.study.metadata import About
 from lube.study.operating_grid import OperatingGrid, TracePoint
 from lube.study.resolve import resolved_content, with_paths
