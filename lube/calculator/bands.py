@@ -1,6 +1,7 @@
 """The band of an answer over all that is not known exactly."""
 
 from collections.abc import Mapping
+from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
@@ -103,10 +104,7 @@ def _study(rollers, oil, conditions_, choices, film_formula, slip, seed, uncerta
         boundary_layer=rollers.layer,
         film_formulas=(film_formula,),
         operating_grid=OperatingGrid.model_construct(**levels, slide_to_roll_ratio=(slip,)),
-        inlet_shear_heating="none",
-        inlet_meniscus="none",
-        film_shape=choices.gap.film_shape,
-        roughness_deformation=choices.gap.roughness_deformation,
+        **asdict(choices.gap),
         load_sharing=choices.load_sharing,
         contact_model=choices.models,
         seed=seed,

@@ -29,7 +29,7 @@ from lube.calculator.operating_points import (
     with_remarks,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
-from lube.errors import DataError, LubeError, right_one, shown
+from lube.errors import DataError, located, right_one, shown
 from lube.schema import LIMITS, values_with_limits
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.statistics.confidence import probability_interval
@@ -230,8 +230,6 @@ def _column(header, values):
     if name == "share" and units is None and not isinstance(values[0], str):
         units = "1"
     given = values if units is None else (values, units)
-    try:
+    with located("points", DataError):
         numbers = amount(name, given, _COLUMNS[name], **limits)
-    except LubeError as error:
-        raise DataError(f"points: {error}") from None
     return name, xr.DataArray(numbers.values, dims="point")

@@ -1,9 +1,11 @@
 """Search for the film that keeps contact below a share of time."""
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 
-from lube.calculator.arguments import bare_number, check_realisations
+from lube.calculator.arguments import Choices, bare_number, check_realisations, one_model
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
@@ -48,13 +50,19 @@ class FilmSearch:
         Share of time with contact, between 0 and 1.
     realisations, seed : int
         As in `lube.contact_probability`.
-    choices : Choices
-        What film and contact are made of, with a single contact model.
+    contact_model : str
+        A single contact model.
+    shape, deformation : str
+        `film_shape` and `roughness_deformation` as in `lube.contact_probability`; the oil carries
+        the whole load.
     """
 
-    def __init__(self, rollers, share, realisations, seed, choices):
-        self._share, self.gap = bare_number("share", share, above=0.0, below=1.0), choices.gap
-        self._on_surface = "surface" in choices.models
+    def __init__(
+        self, rollers, share, realisations, seed, contact_model, shape="flat", deformation="none"
+    ):
+        self.choices = Choices.of(shape, deformation, "none", one_model(contact_model))
+        self._share, self._gap = bare_number("share", share, above=0.0, below=1.0), self.choices.gap
+        self._on_surface = "surface" in self.choices.models
         self._realisations = check_realisations(realisations, seed)
         self._rollers, self._seed = rollers, seed
         if not self._on_surface:
@@ -67,13 +75,13 @@ class FilmSearch:
         Parameters
         ----------
         table : callable
-            Film table at some levels, with a gap as second argument.
+            Film table at some levels, with choices as second argument.
         levels : numpy.ndarray
             Levels of the condition that are tried.
         tried : str
             These levels in words.
         """
-        whole = table(levels, PLAIN)
+        whole = table(levels, replace(self.choices, gap=PLAIN))
         for name, size in whole["film_thickness"].sizes.items():
             if size != levels.size:
                 raise StudyError(f"{name}: got {size} values, need one")
@@ -83,7 +91,7 @@ class FilmSearch:
 
         def table_at(sought):
             here = np.interp(sought, ratios[known], known)
-            return table(np.interp(here, np.arange(levels.size), levels), self.gap)
+            return table(np.interp(here, np.arange(levels.size), levels), self.choices)
 
         ends = ratios[known[[0, -1]]]
         films = self.films(whole["contact_half_width"].item(), table_at, ends)
@@ -122,14 +130,14 @@ class FilmSearch:
         """Films near the one sought, and the probability on lines there, with its limits."""
         spec = self._rollers.lines
         windows = spec.independent_windows(2.0 * half_width) * self._realisations
-        can_sample = spec.is_gaussian and not self.gap.is_flattened
+        can_sample = spec.is_gaussian and not self._gap.is_flattened
         if not can_sample and self._share * windows < 1.0:
             raise RangeError(
                 f"share: got {self._share:g}, need at least {1.0 / windows:.2g}: "
                 f"{self._realisations} realisations show no rarer contact, and importance sampling "
                 "needs Gaussian lines that no formula flattens"
             )
-        ratios, is_plain = LAMBDA_RATIOS, self.gap.is_plain
+        ratios, is_plain = LAMBDA_RATIOS, self._gap.is_plain
         if spec.is_gaussian or not is_plain:
             # A first look at flat films, on lines as drawn, says where to look.
             first = self._windows(self._flat(ratios, half_width), own, PLAIN)
@@ -144,7 +152,7 @@ class FilmSearch:
         table = self._flat(ratios, half_width) if is_plain else table_at(ratios)
         is_seen = self._share * windows >= OFTEN or not can_sample
         method = self._counted if is_seen else self._sampled
-        return table, method(self._windows(table, own, self.gap))
+        return table, method(self._windows(table, own, self._gap))
 
     def _at_surfaces(self, half_width, table_at, ends, own):
         """Films near the one sought, and the probability on surfaces there, with its limits."""
@@ -155,10 +163,10 @@ class FilmSearch:
         contacts = expected_contacts(films, moments, length, 2.0 * half_width)
         found = _crossing(ratios, -np.expm1(-contacts), self._share)
         ratios = np.unique(np.clip(max(found, ratios[0]) * AROUND, *ends))
-        table = self._flat(ratios, half_width) if self.gap.is_plain else table_at(ratios)
+        table = self._flat(ratios, half_width) if self._gap.is_plain else table_at(ratios)
         weaker = self._weaker(table, own)
         layer, seed = self._rollers.layer, self._seed
-        found = surface_contact(spec, length, table, layer, seed, self.gap, weaker=weaker)
+        found = surface_contact(spec, length, table, layer, seed, self._gap, weaker=weaker)
         return table, [found[f"breakthrough_probability{end}"].values for end in LIMITS]
 
     def _crossing(self, ratios, probabilities):

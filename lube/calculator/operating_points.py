@@ -299,10 +299,8 @@ def of_surface(
     table: xr.Dataset, rollers: Rollers, seed: int, gap: Gap, slip: xr.DataArray | float
 ) -> dict[str, xr.DataArray]:
     """Contact of the surface at some films, by the names of `contact_probability`."""
-    choices = rollers.layer, seed, gap
-    found = surface_contact(
-        rollers.lines, rollers.pair.length, table, *choices, slide_to_roll_ratio=slip
-    )
+    given = rollers.lines, rollers.pair.length, table, rollers.layer, seed, gap
+    found = surface_contact(*given, slide_to_roll_ratio=slip)
     return {f"surface_{name}": values for name, values in found.items()}
 
 
@@ -355,7 +353,6 @@ def ensemble(
     for end in (width.min().item(), width.max().item()):
         check_width(spec, end, "force: the contact")
     check_follows_rolling(spec)
-    check_realisations(realisations, seed)
     windows = ContactWindows(spec, table, rollers.layer, gap)
 
     def of_realisation(number):

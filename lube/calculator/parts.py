@@ -12,7 +12,7 @@ import xarray as xr
 
 from lube.calculator.answers import Answer, described
 from lube.calculator.arguments import Amount, amount
-from lube.errors import LubeError, RecordError, StudyError, right_one, shown
+from lube.errors import LubeError, RecordError, StudyError, located, right_one, shown
 from lube.physics.pressure_viscosity import FORMULA_DEFINITION, GOLD_BASES
 from lube.study.field_types import validate
 from lube.study.line_spec import band_in_words, line_spec
@@ -41,15 +41,9 @@ _MODELS = (
     ("radius", "young_modulus", "poisson_ratio"),
     ("rms_roughness", "ra_roughness", "topography"),
     (
-        "hurst_exponent",
-        "long_cutoff",
-        "short_cutoff",
-        "roll_off_wavelength",
-        "skewness",
-        "kurtosis",
-        "lay_ratio",
-        "lay_angle",
-    ),
+        "hurst_exponent long_cutoff short_cutoff roll_off_wavelength skewness kurtosis lay_ratio "
+        "lay_angle"
+    ).split(),
 )
 """Arguments for a roller, for the heights of its roughness, and for the roughness of both."""
 _LENGTHS = ("longest_wavelength", "shortest_wavelength")
@@ -340,10 +334,8 @@ class Oil:
             for key, value in own.items():
                 if value is not None:
                     raise RecordError(f"Oil: {key}: got {shown(value)} {needed}")
-            try:
+            with located("Oil: name"):
                 self.record = load_record(name)
-            except RecordError as error:
-                raise RecordError(f"Oil: name: {error}") from None
         if temperature_range is not None:
             levels = amount("temperature_range", temperature_range, "degC").values.ravel().tolist()
             ends = {"lowest": f"{levels[0]!r} degC", "highest": f"{levels[-1]!r} degC"}

@@ -16,12 +16,7 @@ from lube.calculator.arguments import (
     conditions,
     one_formula,
 )
-from lube.calculator.operating_points import (
-    FILM_VARIABLES,
-    ensemble,
-    film_in_si,
-    with_remarks,
-)
+from lube.calculator.operating_points import FILM_VARIABLES, ensemble, film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
 from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, right_one

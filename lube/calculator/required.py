@@ -5,8 +5,6 @@ lie where the limits of the probability do. So the 95 % interval is that of the 
 rollers. The oil carries the whole load: films that keep contact rare leave little to asperities.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import xarray as xr
 
@@ -15,10 +13,8 @@ from lube.calculator.arguments import (
     FORMULA,
     REALISATIONS,
     SEED,
-    Choices,
     amount,
     one_formula,
-    one_model,
     rotation_speed,
     single,
 )
@@ -76,9 +72,7 @@ def required_film(
     >>> bool(found.film_thickness_lower < found.film_thickness < found.film_thickness_upper)
     True
     """
-    search = FilmSearch(
-        rollers, share, realisations, seed, Choices(models=(one_model(contact_model),))
-    )
+    search = FilmSearch(rollers, share, realisations, seed, contact_model)
     force = single(amount("force", force, "N", above=0.0))
     half_width = float(rollers.pair.contact_half_width(force))
     return _labelled(search.films(half_width))
@@ -124,14 +118,13 @@ def required_viscosity(
     rotation = single(rotation_speed(speed, rollers.pair.first.radius))
     one = one_formula(film_formula)
 
-    def table(factors, gap):
+    def table(factors, choices):
         # The film depends on the product of viscosity and speed, so the speed is varied for both.
         speeds = rotation * factors, "rpm"
-        model = replace(choices, gap=gap)
-        return film_in_si(rollers, oil, force, speeds, temperature, one, model)
+        return film_in_si(rollers, oil, force, speeds, temperature, one, choices)
 
-    choices = _choices(film_shape, roughness_deformation, contact_model)
-    search = FilmSearch(rollers, share, realisations, seed, choices)
+    model = contact_model, film_shape, roughness_deformation
+    search = FilmSearch(rollers, share, realisations, seed, *model)
     tried = f"viscosity within a factor of {FACTORS[-1]:g} of the oil's"
     films, factors = search.along(table, FACTORS, tried)
     properties = oil.at(amount("temperature", temperature, "degC"))
@@ -177,12 +170,11 @@ def required_speed(
     """
     one = one_formula(film_formula)
 
-    def table(speeds, gap):
-        model = replace(choices, gap=gap)
-        return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, model)
+    def table(speeds, choices):
+        return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
 
-    choices = _choices(film_shape, roughness_deformation, contact_model)
-    search = FilmSearch(rollers, share, realisations, seed, choices)
+    model = contact_model, film_shape, roughness_deformation
+    search = FilmSearch(rollers, share, realisations, seed, *model)
     films, speeds = search.along(table, FACTORS, f"speed up to {FACTORS[-1]:g} m/s")
     turns = rotation_speed("1 m/s", rollers.pair.first.radius).item()
     return _labelled({"entrainment_speed": speeds, "speed": speeds * turns} | films)
@@ -225,12 +217,11 @@ def required_temperature(
     """
     one = one_formula(film_formula)
 
-    def table(temperatures, gap):
-        model = replace(choices, gap=gap)
-        return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, model)
+    def table(temperatures, choices):
+        return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
 
-    choices = _choices(film_shape, roughness_deformation, contact_model)
-    search = FilmSearch(rollers, share, realisations, seed, choices)
+    model = contact_model, film_shape, roughness_deformation
+    search = FilmSearch(rollers, share, realisations, seed, *model)
     levels = np.linspace(*oil.record.valid_temperatures, TEMPERATURES)
     films, found = search.along(table, levels, "temperature of this oil")
     return _labelled({"temperature": found} | films)
@@ -276,18 +267,18 @@ def required_roughness(
     LubeError
         Which argument, what came, what is needed; or that no roughness tried is low enough.
     """
-    choices = _choices(film_shape, roughness_deformation, contact_model)
-    search = FilmSearch(rollers, share, realisations, seed, choices)
+    model = contact_model, film_shape, roughness_deformation
+    search = FilmSearch(rollers, share, realisations, seed, *model)
     one = one_formula(film_formula)
     point = force, speed, temperature, one
-    film = film_in_si(rollers, oil, *point, choices)
+    film = film_in_si(rollers, oil, *point, search.choices)
     own = single(film["lambda_ratio"])
 
     def table_at(ratios):
         # Lines of s times the height break as the given ones do under the film over s.
         scale = xr.DataArray(ratios / own, dims="film")
         scaled = {"film_thickness": scale * film["film_thickness"]}
-        if search.gap.has_shape:
+        if search.choices.gap.has_shape:
             scaled["film_profile"] = scale * shaped_films(film)
         return film.assign(scaled)
 
@@ -296,11 +287,6 @@ def required_roughness(
     sigma = rollers.pair.composite_rms_roughness * own / ratios
     found = {"roughness_factor": own / ratios, "composite_rms_roughness": sigma}
     return _labelled(found | {"lambda_ratio": ratios})
-
-
-def _choices(film_shape, roughness_deformation, contact_model):
-    """Choices with one contact model; the oil carries the whole load."""
-    return Choices.of(film_shape, roughness_deformation, "none", one_model(contact_model))
 
 
 def _labelled(found):

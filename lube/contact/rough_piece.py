@@ -128,7 +128,7 @@ def _response(profile, wavenumber, speed, position):
     solved = np.geomspace(wanted[0], SHORTEST, count)
     transfer = np.ones((count, position.size), complex)
     for number, wavelength in enumerate(solved):
-        transfer[number] = WaveResponse.of(profile, wavelength).transfer(speed, position)
+        transfer[number] = WaveResponse(profile, wavelength).transfer(speed, position)
         if np.abs(transfer[number] - 1.0).max() < UNCHANGED:
             break
     return at_wavelengths(wanted, solved, transfer, position).T

@@ -27,9 +27,6 @@ The crests of a wave on a rough surface may lie at an angle, and the wave is
     \hat h = \frac{1}{\pi} \int \hat p\, K_0(|k_y| |X - X'|)\, dX' + e^{i k_x X}
 """
 
-from dataclasses import dataclass
-from functools import cached_property
-
 import numpy as np
 import scipy
 
@@ -50,54 +47,48 @@ _LEAST, _ENOUGH = 3.0, 8.0
 second it has its full amplitude."""
 
 
-@dataclass(frozen=True)
 class WaveResponse:
     """Response of a film to waves of one wavelength.
+
+    The film is solved for again, on nodes that resolve the wave.
+
+    Parameters
+    ----------
+    profile : FilmProfile
+        The steady film.
+    wavelength : float
+        Wavelength over the half-width.
+    fineness : float, optional
+        The number of nodes per wavelength grows in proportion.
+    angle : float, optional
+        Angle between rolling and the direction in which the wave runs, degrees, from 0 for crests
+        along the rollers to 90 for ridges along rolling.
 
     Attributes
     ----------
     profile : FilmProfile
-        The steady film, on nodes that resolve the wave.
+        The steady film, on these nodes.
     wavelength : float
         Wavelength over the half-width.
-    angle : float
-        Angle between rolling and the direction in which the wave runs, degrees, from 0 for crests
-        along the rollers to 90 for ridges along rolling.
+
+    Raises
+    ------
+    lube.ehl.line_contact.ConvergenceError
+        If the film does not converge on these nodes.
     """
 
-    profile: FilmProfile
-    wavelength: float
-    angle: float = 0.0
-
-    @classmethod
-    def of(
-        cls, profile: FilmProfile, wavelength: float, fineness: float = 1.0, angle: float = 0.0
-    ) -> "WaveResponse":
-        """Form the response of a film, which is solved for again, on nodes that resolve the wave.
-
-        Parameters
-        ----------
-        profile : FilmProfile
-            The steady film.
-        wavelength : float
-            Wavelength over the half-width.
-        fineness : float, optional
-            The number of nodes per wavelength grows in proportion.
-        angle : float, optional
-            Angle between rolling and the direction of the wave, degrees.
-
-        Returns
-        -------
-        WaveResponse
-            The response.
-
-        Raises
-        ------
-        lube.ehl.line_contact.ConvergenceError
-            If the film does not converge on these nodes.
-        """
-        step = wavelength / (POINTS_A_WAVE * fineness)
-        return cls(on_nodes(profile, _resolving_nodes(profile, step)), wavelength, angle)
+    def __init__(
+        self, profile: FilmProfile, wavelength: float, fineness: float = 1.0, angle: float = 0.0
+    ) -> None:
+        nodes = _resolving_nodes(profile, wavelength / (POINTS_A_WAVE * fineness))
+        self.profile, self.wavelength = on_nodes(profile, nodes), wavelength
+        wavenumber, angle = 2.0 * np.pi / wavelength, np.radians(angle)
+        self._along, self._across = wavenumber * np.cos(angle), wavenumber * np.sin(angle)
+        self._discrete = DiscreteContact(profile.contact, nodes, self._across)
+        self._film = np.flatnonzero(self.profile.pressure[1:-1] > 0.0)
+        flux = self._discrete.flux_by_pressure(self.profile.flow)
+        drag = self._discrete.drag_by_pressure(self.profile.flow)
+        self._by_pressure = flux[:, self._film + 1], drag[:, self._film + 1]
 
     def transfer(self, surface_speed: float, position: Array, fixed_load: bool = True) -> Array:
         r"""Transfer function of the wave.
@@ -125,8 +116,8 @@ class WaveResponse:
         :math:`\exp(i k c X)`, within a cell. So a wave that the oil carries through the contact
         keeps its height and phase on any mesh, and only the effect of pressure is approximated.
         """
-        discrete, flow, film, by_pressure = self._linearised
-        (wavenumber, across), middle = self._wavenumbers, discrete.middle
+        discrete, flow, film = self._discrete, self.profile.flow, self._film
+        wavenumber, across, middle = self._along, self._across, discrete.middle
         follows = fixed_load and not across
         phase = 1j * wavenumber * surface_speed * np.diff(self.profile.nodes) / 2.0
         # Oil stored on either side of a node, in half a cell each, times i k c.
@@ -137,7 +128,7 @@ class WaveResponse:
             return (np.diff(flux, axis=0) - stored)[film]
 
         matrix = np.zeros((film.size + 1, film.size + 1), complex)
-        matrix[:-1, :-1] = balance(*by_pressure)
+        matrix[:-1, :-1] = balance(*self._by_pressure)
         through = across**2 * flow.conductance * discrete.step**2
         matrix[:-1, :-1] += np.diag(0.5 * (through[1:] + through[:-1])[film])
         matrix[:-1, -1] = balance(flow.by_gap, flow.drag_by_gap)
@@ -150,22 +141,6 @@ class WaveResponse:
             deflected = deflection_matrix(position, self.profile.nodes, across)
             deflection = deflected[:, film + 1] @ change[:-1]
         return 1.0 + (change[-1] + deflection) * np.exp(-1j * wavenumber * position)
-
-    @property
-    def _wavenumbers(self):
-        """Wavenumbers along rolling and along the rollers, over the half-width."""
-        wavenumber, angle = 2.0 * np.pi / self.wavelength, np.radians(self.angle)
-        return wavenumber * np.cos(angle), wavenumber * np.sin(angle)
-
-    @cached_property
-    def _linearised(self):
-        """Mesh, flow, inner nodes in the film, and derivatives of flux and drag by pressure."""
-        across = self._wavenumbers[1]
-        discrete = DiscreteContact(self.profile.contact, self.profile.nodes, across)
-        flow = self.profile.flow
-        film = np.flatnonzero(self.profile.pressure[1:-1] > 0.0)
-        by_pressure = discrete.flux_by_pressure(flow), discrete.drag_by_pressure(flow)
-        return discrete, flow, film, [each[:, film + 1] for each in by_pressure]
 
 
 def at_wavelengths(

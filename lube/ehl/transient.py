@@ -105,6 +105,8 @@ class RoughPassage:
         Pressure of the oil at the nodes, over Hertz' maximum pressure.
     contact_pressure, gap : numpy.ndarray, shape (n - 1,)
         Pressure of solid contact and scaled gap midway between the nodes.
+    position, spacing : numpy.ndarray, shape (n - 1,)
+        Positions midway between the nodes and distances of the nodes, over the half-width.
     """
 
     def __init__(self, profile: FilmProfile, step: float, highest: float = 0.0) -> None:
@@ -113,7 +115,8 @@ class RoughPassage:
         reach = max(REACH, -narrow.min(initial=0.0))
         smooth = on_nodes(profile, passage_nodes(profile, step, reach))
         self._discrete = DiscreteContact(smooth.contact, smooth.nodes)
-        self._step, self._late = step, 0.5 * (1.0 + min(step / _DAMPING, 1.0))
+        self.position, self.spacing = self._discrete.middle, self._discrete.step
+        self._late = 0.5 * (1.0 + min(step / _DAMPING, 1.0))
         self._squeeze = 0.5 * self._discrete.weight[1:-1] / step
         self._closed = CLOSED * profile.central_gap
         # Half the pressure in a cell acts at each of its nodes.
@@ -123,16 +126,6 @@ class RoughPassage:
         self._offset, self.contact_pressure = smooth.offset, np.zeros(smooth.nodes.size - 1)
         self._flow = self._discrete.flow(smooth.pressure, smooth.offset)
         self.gap, self._film, self._factors = self._flow.gap, None, None
-
-    @property
-    def position(self) -> Array:
-        """Positions midway between the nodes, over the half-width."""
-        return self._discrete.middle
-
-    @property
-    def spacing(self) -> Array:
-        """Distances of the nodes, over the half-width."""
-        return self._discrete.step
 
     @property
     def oil_load_share(self) -> float:

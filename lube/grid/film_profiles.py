@@ -65,7 +65,12 @@ def six_digits(values: Array) -> Array:
     >>> six_digits(np.array([0.0, 1.23456789e-6])).tolist()
     [0.0, 1.23457e-06]
     """
-    return np.vectorize(lambda value: float(f"{value:.6g}"), otypes=[float])(values)
+    return rounded(values, 6)
+
+
+def rounded(values: Array, digits: int) -> Array:
+    """Round to some digits; see `six_digits`."""
+    return np.vectorize(lambda value: float(f"{value:.{digits}g}"), otypes=[float])(values)
 
 
 def over_positions(solved: xr.DataArray, sample, contact: xr.Dataset) -> xr.DataArray:

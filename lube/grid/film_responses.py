@@ -12,7 +12,7 @@ from lube.grid.operating_points import surface_speeds
 from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.synthetic import amplitudes_across_lay, wave_amplitudes
 from lube.threads import on_threads
-from lube.types import Datasets
+from lube.types import Datasets, Pair
 
 log = logging.getLogger(__name__)
 
@@ -76,8 +76,7 @@ def wave_responses(
     angles = np.zeros(1)
     response, error = _solved(solved, contact, slide_to_roll_ratio, spec, angles, threads)
     heights = _line_heights(spec, response["wavelength"].values)[:, None]
-    deformation = error.isel(roller=0, wave_angle=0, drop=True)
-    deformation = deformation.copy(data=_deformation(response, heights))
+    deformation = _deformation(response, heights)
     response, error = (each.isel(wave_angle=0, drop=True) for each in (response, error))
     values = response.real, response.imag, error, deformation
     return xr.Dataset(dict(zip(VARIABLES, values, strict=True)))
@@ -100,11 +99,9 @@ def surface_responses(
         real and the imaginary part also over roller, wave_angle (degrees, `ANGLES`), wavelength and
         response_position; NaN where the film is not known.
     """
-    response, error = _solved(solved, contact, slide_to_roll_ratio, spec, ANGLES, threads)
-    waves = response["wave_angle"].values, response["wavelength"].values
-    deformation = error.isel(roller=0, wave_angle=0, drop=True)
-    deformation = deformation.copy(data=_deformation(response, _surface_heights(spec, *waves)))
-    values = response.real, response.imag, deformation
+    response, _ = _solved(solved, contact, slide_to_roll_ratio, spec, ANGLES, threads)
+    heights = _surface_heights(spec, ANGLES, response["wavelength"].values)
+    values = response.real, response.imag, _deformation(response, heights)
     return xr.Dataset(dict(zip(SURFACE_VARIABLES, values, strict=True)))
 
 
@@ -150,7 +147,9 @@ def _deformation(response, heights):
     """Rms change of surfaces by the oil, from the mean square heights of their waves."""
     inside = np.abs(response["response_position"]) <= 1.0
     square = np.mean(np.abs(response.values[..., inside] - 1.0) ** 2, axis=-1)
-    return six_digits(np.sqrt(np.einsum("...raw,raw", square, heights)))
+    rms = six_digits(np.sqrt(np.einsum("...raw,raw", square, heights)))
+    one = response.isel(roller=0, wave_angle=0, wavelength=0, response_position=0, drop=True)
+    return one.copy(data=rms)
 
 
 def _surface_heights(spec, angles, wavelengths):
@@ -158,7 +157,7 @@ def _surface_heights(spec, angles, wavelengths):
     psi = np.pi * (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
     shares = []
     for roller, line in enumerate(spec.lines):
-        length, power = _waves(spec, roller, amplitudes_across_lay)
+        length, power = line_waves(spec, roller, amplitudes_across_lay)
         power, edges = np.histogram(-np.log(length), LENGTHS, weights=power)
         # The waves of the isotropic surface run in all directions; see `lube.surfaces.lay`.
         across_lay, ridges = np.cos(psi), np.sin(psi) / line.lay_ratio
@@ -175,13 +174,13 @@ def _line_heights(spec, wavelengths):
     """Distribute the mean square height of each line over the wavelengths, which fall."""
     shares = []
     for roller in (0, 1):
-        length, power = _waves(spec, roller, wave_amplitudes)
+        length, power = line_waves(spec, roller)
         shares.append(np.einsum("wk,k", _weights(-np.log(length), -np.log(wavelengths)), power))
     return np.array(shares)
 
 
-def _waves(spec, roller, amplitudes_of):
-    """Lengths of the waves of a line, and their mean square heights."""
+def line_waves(spec, roller: int, amplitudes_of=wave_amplitudes) -> Pair:
+    """Lengths of the waves of a line, m, and their mean square heights, m^2."""
     first, amplitudes = amplitudes_of(spec, roller)
     length = spec.points[roller] * spec.spacing / (first + np.arange(amplitudes.size))
     return length, amplitudes**2 / 2.0
@@ -202,7 +201,7 @@ def _of_film(profile, wavelengths, speeds, positions, angle):
     response = np.ones((distinct.size, wavelengths.size, positions.size), complex)
 
     def solved(wavelength):
-        wave = WaveResponse.of(profile, wavelength, angle=angle)
+        wave = WaveResponse(profile, wavelength, angle=angle)
         return np.stack([wave.transfer(speed, positions) for speed in distinct])
 
     try:

@@ -57,9 +57,5 @@ def indicators(film: xr.Dataset, resistance: xr.DataArray, rollers) -> xr.Datase
 
 def _load_share(curve, film, rollers):
     """Share of the load that asperities carry, by one curve."""
-    scales = {
-        "composite rms": rollers.composite_rms_roughness,
-        "mean Ra": rollers.mean_ra_roughness,
-    }
-    share = curve.share(film["film_thickness"] / scales[curve.roughness])
+    share = curve.share(film["film_thickness"] / getattr(rollers, curve.roughness))
     return share.where(film["hertz_pressure"] <= curve.pressure, np.nan)

@@ -93,7 +93,8 @@ class LoadShare:
     share : callable
         Share from the lambda ratio.
     roughness : str
-        What the film is divided by: ``composite rms``, or ``mean Ra`` of both surfaces.
+        What the film is divided by: the property ``composite_rms_roughness`` of the rollers, or
+        ``mean_ra_roughness``.
     pressure : float
         Largest Hertzian pressure for which the curve is meant, Pa.
     source : str
@@ -106,7 +107,7 @@ class LoadShare:
     source: str
 
 
-_COMPOSITE, _MEAN_RA, _ANY = "composite rms", "mean Ra", np.inf
+_COMPOSITE, _MEAN_RA, _ANY = "composite_rms_roughness", "mean_ra_roughness", np.inf
 _ZHOU = (
     "R. S. Zhou, M. R. Hoeprich, J. Tribol. 113 (1991) 590, Eq. 29, constants of Lubricants 11 "
     "(2023) 369, Table 4"

@@ -25,14 +25,7 @@ from lube.contact.ensemble import windows_in
 from lube.contact.surface_strip import SURFACES
 from lube.inference.at_records import model_at_records, study_films_at_records
 from lube.inference.study_shares import levels_named, log_lines
-from lube.schema import (
-    AT_RECORDS,
-    LIMITS,
-    label,
-    model_dependent,
-    values_with_limits,
-    with_dims,
-)
+from lube.schema import AT_RECORDS, LIMITS, label, model_dependent, values_with_limits, with_dims
 from lube.statistics.confidence import probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size
@@ -55,9 +48,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     else:
         model, spec = study_films_at_records(study, experiment), study.line_spec
         model.attrs = {"travel": spec.travel, "longest_wavelength": spec.longest_wavelength}
-    if not study.compares_surfaces:
-        return compare(model, experiment, film)
-    return compare(model, experiment, film, study.contact_model, inputs["surface_records"])
+    surfaces = inputs.get("surface_records")
+    return compare(model, experiment, film, study.contact_model, surfaces)
 
 
 def compare(

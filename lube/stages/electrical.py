@@ -75,16 +75,11 @@ def _capacitances(study, film):
     """Capacitance of the rough contact and around it, and films by which meters explain it, m."""
     spec, rig = study.line_spec, study.rig
     step, layer = spec.height_step, study.boundary_layer.critical_thickness
-    inverse = np.array(
-        [
-            np.nan
-            if gap is None
-            else np.mean(mean_inverse_gap(gap[0] * step, gap[1] * step, layer))
-            for gap in study_windows(study, film).gaps(spec)
-        ]
-    )
-    mean_gap = film["film_thickness"]
-    read = mean_gap.copy(data=1.0 / inverse.reshape(mean_gap.shape))
+    mean_gap, inverse = film["film_thickness"], []
+    for gap in study_windows(study, film).gaps(spec):
+        at_gap = [np.nan] if gap is None else mean_inverse_gap(gap[0] * step, gap[1] * step, layer)
+        inverse.append(np.mean(at_gap))
+    read = mean_gap.copy(data=1.0 / np.reshape(inverse, mean_gap.shape))
     contact = film["contact_half_width"], study.rollers.length, rig.oil_permittivity
     around = partial(surrounding_capacitance, length=contact[1], oil=contact[2])
     sizes = mean_gap, film["contact_half_width"], film["reduced_radius"]

@@ -75,8 +75,7 @@ def _plane(viscosity, alpha, film_modulus):
     groups = []
     for moes_material in MOES_MATERIALS:
         speed = 0.5 * (moes_material / material) ** 4
-        for load in MOES_LOADS * np.sqrt(2.0 * speed):
-            groups.append((load, speed, material))
+        groups += [(load, speed, material) for load in MOES_LOADS * np.sqrt(2.0 * speed)]
     solved = profiles_of(*np.transpose(groups), viscosity, film_modulus)
     films = [[getattr(one, f"{name}_film", np.nan) for name in PLACES] for one in solved]
     shape = (MOES_MATERIALS.size, MOES_LOADS.size, 3)

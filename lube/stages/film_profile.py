@@ -5,7 +5,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from lube.ehl.line_contact import FilmProfile
-from lube.grid.film_profiles import over_positions
+from lube.grid.film_profiles import over_positions, rounded
 from lube.grid.films import FilmGroups, hertz_contact
 from lube.schema import POINT_DIMS, label
 from lube.study.rollers import RollerPair
@@ -60,11 +60,7 @@ def film_profile_table(
     table["film"] = film * rollers.reduced_radius
     table["pressure"] = pressure * table["hertz_pressure"]
     for name, digits in _DIGITS.items():
-        found = [
-            float(f"{getattr(one, name):.{digits}g}") if one else np.nan
-            for one in solved.values.flat
-        ]
-        table[name] = solved.copy(data=np.reshape(found, solved.shape))
+        table[name] = xr.apply_ufunc(rounded, groups.of_profiles(name), kwargs={"digits": digits})
     for name in ("central_film", "minimum_film"):
         table[name] = table[name] * rollers.reduced_radius
     table["rolling_resistance"] *= 2.0 * rollers.reduced_modulus * rollers.reduced_radius

@@ -15,12 +15,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     resistance = inputs["film_profile"]["rolling_resistance"]
     with xr.set_options(keep_attrs=False):
         found = indicators(film, resistance, study.rough_rollers)
-    return label(
-        xr.Dataset(
-            {
-                name: found[name].drop_attrs().transpose(*row.dims)
-                for name, row in FILES["indicators"].items()
-            }
-        ),
-        "indicators",
-    )
+    rows = FILES["indicators"].items()
+    table = {name: found[name].drop_attrs().transpose(*row.dims) for name, row in rows}
+    return label(xr.Dataset(table), "indicators")

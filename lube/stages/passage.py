@@ -15,6 +15,7 @@ from lube.contact.windows import ContactWindows
 from lube.ehl.line_contact import ConvergenceError, one_blas_thread
 from lube.ehl.response import WaveResponse
 from lube.ehl.transient import RoughPassage, pass_wave
+from lube.grid.film_profiles import rounded
 from lube.grid.films import FilmGroups, film_at, hertz_contact
 from lube.grid.gap import Gap
 from lube.grid.levels import rolling
@@ -60,15 +61,11 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     with one_blas_thread():
         found = on_threads(lambda level: _passed(study, oil, *level), levels, threads)
     table = xr.concat(found, "operating_point", join="outer").assign_coords(points.coords)
-    table = table.map(_rounded, keep_attrs=True)
+    # Further digits depend on the processor.
+    table = table.map(rounded, keep_attrs=True, digits=4)
     table["lambda_ratio"] = "operating_point", ratios.values[list(chosen)]
     table["critical_thickness"] = study.boundary_layer.critical_thickness
     return label(table.transpose("operating_point", "answer", ...), "passage")
-
-
-def _rounded(values):
-    """Round to four digits: further ones depend on the processor."""
-    return xr.apply_ufunc(np.vectorize(lambda one: float(f"{one:.4g}"), otypes=[float]), values)
 
 
 def _passed(study, oil, temperature, speed, force):
@@ -76,10 +73,7 @@ def _passed(study, oil, temperature, speed, force):
     rollers, meniscus = study.rough_rollers, study.film_model["inlet_meniscus"]
     levels = {"force": [force], "speed": [speed]}
     force, speed = (xr.DataArray(each, {name: each}, [name]) for name, each in levels.items())
-    oil, slip = (
-        oil.sel(temperature=[temperature]),
-        rolling(study.operating_grid.slide_to_roll_ratio),
-    )
+    oil, slip = oil.sel(temperature=[temperature]), rolling(study.slips)
     contact = hertz_contact(rollers, force, speed)
     profile = FilmGroups.at(oil, rollers, force, contact, meniscus).profiles.item()
     width, spec = contact["contact_half_width"].item(), study.line_spec
@@ -148,7 +142,7 @@ def _of_waves(profile):
             log.warning("%s", error)
             continue
         inside = np.abs(wave.position) < INSIDE
-        linear = WaveResponse.of(profile, wavelength).transfer(speed, wave.position)
+        linear = WaveResponse(profile, wavelength).transfer(speed, wave.position)
         smooth = profile.scaled_gap(wave.position) / profile.central_gap
         difference[at] = np.sqrt(np.mean(np.abs(wave.transfer - linear)[inside] ** 2))
         oil[at] = wave.oil_load_share

@@ -47,12 +47,9 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     sizes = [film.sizes[name] for name in POINT_DIMS]
     found = slopes(study.line_spec, film, study.boundary_layer, study.gap, study.seed, threads)
     threshold, reading = _best_threshold(inputs["electrical"], study.experiment.threshold)
-    axes = xr.Dataset(coords={name: film[name] for name in ("force", "speed")})
+    point = inputs["lubricant"], study.rough_rollers, film["force"], film["speed"]
     by_coefficient = film_by_coefficient(
-        inputs["lubricant"],
-        study.rough_rollers,
-        axes["force"],
-        axes["speed"],
+        *point,
         study.film_formulas[0],
         slide_to_roll_ratio=slip,
         inlet_shear_heating=study.inlet_shear_heating,

@@ -12,7 +12,7 @@ import xarray as xr
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.ehl.response import at_wavelengths
-from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES
+from lube.grid.film_responses import SURFACE_VARIABLES, VARIABLES, line_waves
 from lube.grid.films import film_at
 from lube.grid.gap import Gap
 from lube.grid.levels import rolling
@@ -22,7 +22,7 @@ from lube.physics.hertz import hertz_gap
 from lube.schema import LIMITS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval, probability_interval, ratio_interval
 from lube.study.study import Study
-from lube.surfaces.synthetic import draw_realisation, wave_amplitudes
+from lube.surfaces.synthetic import draw_realisation
 from lube.threads import on_threads
 from lube.types import Datasets
 
@@ -213,16 +213,12 @@ def _counted(variants, windows, study, threads):
 def _on_surface(variant, film, own, study, threads):
     """Probabilities on surfaces, and their ratios to the study's own, which are independent."""
     names = "breakthrough_probability", "geometric_contact_probability"
-    points = film["film_thickness"].size
+    unknown = np.full(film["film_thickness"].size, np.nan)
+    found = {f"{name}{end}": unknown for name in names for end in LIMITS}
     if study.has("surface_response") and variant.gap.is_on_surfaces:
         choices = study.boundary_layer, study.seed, variant.gap, threads
         contact = surface_contact(study.line_spec, study.rollers.length, film, *choices)
-        found = {f"{name}{end}": contact[f"{name}{end}"] for name in names for end in LIMITS}
-        found = {
-            name: values.transpose(*POINT_DIMS).values.ravel() for name, values in found.items()
-        }
-    else:
-        found = {f"{name}{end}": np.full(points, np.nan) for name in names for end in LIMITS}
+        found = {name: contact[name].transpose(*POINT_DIMS).values.ravel() for name in found}
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = found[names[0]] / own[names[0]]
         half_widths = [
@@ -259,12 +255,8 @@ def _roughness_ratio(variant, spec, film):
         return np.ones(film["film_thickness"].shape)
     if variant.is_on_surface:
         return np.full(film["film_thickness"].shape, np.nan)
-    waves = [wave_amplitudes(spec, roller) for roller in range(len(spec.lines))]
-    power = np.concatenate([amplitudes**2 for _, amplitudes in waves])
-    wavelengths = [
-        points * spec.spacing / (first + np.arange(amplitudes.size))
-        for points, (first, amplitudes) in zip(spec.points, waves, strict=True)
-    ]
+    wavelengths, powers = zip(*(line_waves(spec, roller) for roller in (0, 1)), strict=True)
+    power = np.concatenate(powers)
 
     def ratio(half_width, *contact):
         if any(np.isnan(each).any() for each in contact):  # the film is not known

@@ -82,15 +82,12 @@ def _curves(found):
 
 def _on_grids(found):
     """Ratios to the study's own probabilities; all grids have the same random numbers."""
-    own, dims = next(iter(found.values())), ("grid", "grid_lambda_ratio")
-    ratios, errors = [], []
-    for each in found.values():
-        ratio = each.mean(axis=0) / own.mean(axis=0)
-        scatter = (each - ratio * own).std(axis=0, ddof=1) / np.sqrt(len(own))
-        ratios.append(ratio)
-        errors.append(1.96 * scatter / own.mean(axis=0))
-    ratio, error = np.array(ratios), np.array(errors)
-    table = {}
+    table, dims = {}, ("grid", "grid_lambda_ratio")
+    of_pairs = np.stack(list(found.values()), axis=1)
+    own = of_pairs[:, :1]  # of the study's grid, which is the first
+    ratio = of_pairs.mean(axis=0) / own.mean(axis=0)
+    scatter = (of_pairs - ratio * own).std(axis=0, ddof=1) / np.sqrt(len(own))
+    error = 1.96 * scatter / own.mean(axis=0)
     for number, name in enumerate(COUNTED):
         ends = (ratio, ratio - error, ratio + error)
         limits = [(dims, six_digits(each[..., number])) for each in ends]

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import scipy
-import scipy.special
 
 from lube.statistics.one_pair import quantile, standard_error
 from lube.types import Array

@@ -92,10 +92,7 @@ class About(StrictModel):
     """who made them; an archive needs at least one"""
     licence: Literal[tuple(LICENCES)] = "CC-BY-4.0"
     """licence of the results"""
-    keywords: tuple[_Line, ...] = Field(
-        tuple(_KEYWORDS.split(", ")),
-        min_length=1,
-    )
+    keywords: tuple[_Line, ...] = Field(tuple(_KEYWORDS.split(", ")), min_length=1)
     """keywords"""
     date: _Day | None = None
     """day of publication, for the archive; by default that of the code's commit"""

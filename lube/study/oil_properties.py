@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from lube.errors import RangeError, RecordError, located
+from lube.errors import RangeError, located
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import (
     initial_pressure_viscosity,
@@ -164,7 +164,9 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
         If a temperature lies outside the range of a lubricant record, or a law or CoolProp has
         no viscosity there.
     RecordError
-        If a name is repeated or a CoolProp fluid cannot be used.
+        If a CoolProp fluid cannot be used.
+    DataError
+        If a name is repeated.
 
     Examples
     --------
@@ -175,8 +177,6 @@ def lubricant_table(records: Sequence[LubricantRecord], temperature: npt.ArrayLi
     """
     temperature = np.array(temperature, dtype=float)
     names = [record.name for record in records]
-    if len(set(names)) < len(names):
-        raise RecordError(f"lubricants: got the names {', '.join(names)}, need different names")
     lowest, highest = zip(*(record.valid_temperatures for record in records), strict=True)
     fit_temperature = np.arange(math.floor(min(lowest)), math.ceil(max(highest)) + 1.0)
     rows = [_row(record, temperature, fit_temperature) for record in records]

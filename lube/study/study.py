@@ -20,13 +20,7 @@ from lube.grid.levels import SAME, level_index
 from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
-from lube.study.field_types import (
-    Slug,
-    StrictModel,
-    each_once,
-    quantity_or_words,
-    validate,
-)
+from lube.study.field_types import Slug, StrictModel, each_once, quantity_or_words, validate
 from lube.study.line_spec import (
     LineSpec,
     band_in_words,
@@ -34,11 +28,7 @@ from lube.study.line_spec import (
     check_width,
     line_spec,
 )
-from lube.study.lubricant_record import (
-    LubricantRecord,
-    check_temperatures,
-    load_record,
-)
+from lube.study.lubricant_record import LubricantRecord, check_temperatures, load_record
 from lube.study.metadata import About
 from lube.study.operating_grid import OperatingGrid, TracePoint
 from lube.study.resolve import resolved_content, with_paths
@@ -322,6 +312,25 @@ class Study(StrictModel):
                 f"{with_unit(half_width, 'm')}, the half-width of the contact at {force:g} N"
             )
 
+    def check_surfaces(self, spec: LineSpec) -> None:
+        """Refuse lines whose surfaces the model cannot bring into contact.
+
+        Parameters
+        ----------
+        spec : LineSpec
+            The study's lines, or lines that deviate.
+
+        Raises
+        ------
+        LubeError
+            As from `lube.study.surface_checks.check_surfaces`.
+        """
+        from lube.study.surface_checks import check_surfaces  # which loads scipy
+
+        width = 2.0 * self.rollers.contact_half_width(max(self.operating_grid.force))
+        with located("contact_model: surface"):
+            check_surfaces(spec, self.rollers.length, width, self.gap)
+
     def check_slip(self, slide_to_roll_ratio: float) -> None:
         """Refuse slip of lines that a formula flattens.
 
@@ -396,27 +405,19 @@ class Study(StrictModel):
             check_sizes(self)
             for ratio in self.slips:
                 self.check_slip(ratio)
-        if self.has_lines:
-            with located(kind=ValueError):
+            if self.has_lines:
                 check_follows_rolling(self.line_spec)
-        if self.has_surfaces:
-            self._check_surfaces()
-        elif self.rough_surfaces is not None:
-            self._check_stands_for_surface()
+            if self.has_surfaces:
+                self.check_surfaces(self.line_spec)
+            elif self.rough_surfaces is not None:
+                self._check_stands_for_surface()
         return self
 
     def _check_stands_for_surface(self):
         from lube.surfaces.rare_contact import check_stands_for_surface  # which loads scipy
 
-        with located(f"load_sharing: got {self.load_sharing}, need none", ValueError):
+        with located(f"load_sharing: got {self.load_sharing}, need none"):
             check_stands_for_surface(self.line_spec)
-
-    def _check_surfaces(self):
-        from lube.study.surface_checks import check_surfaces  # which loads scipy
-
-        width = 2.0 * self.rollers.contact_half_width(max(self.operating_grid.force))
-        with located("contact_model: surface", ValueError):
-            check_surfaces(self.line_spec, self.rollers.length, width, self.gap)
 
     def _check_conductivity(self):
         for record in self.lubricants:

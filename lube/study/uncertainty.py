@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar, get_args
 from pydantic import Field, model_validator
 
 from lube.ehl.film_formulas import FORMULAS, formula
-from lube.errors import LubeError, StudyError, located, shown
+from lube.errors import LubeError, StudyError, shown
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.physics.pressure_viscosity import DEFINITIONS
 from lube.study.field_types import StrictModel, Text, bounded, each_once, read_by
@@ -54,7 +54,10 @@ def _range(units, example, **limits):
 
 
 class _Uncertain(StrictModel):
-    """A quantity that is not known exactly."""
+    """A quantity that is not known exactly, a pure number unless a class says otherwise."""
+
+    _UNITS: ClassVar[str] = ""
+    _SCALE: ClassVar[float] = 1.0
 
     distribution: Literal["uniform", "normal"] = "uniform"
     """uniform over the range, or normal, with 95 % of it in the range"""
@@ -64,23 +67,21 @@ class _Uncertain(StrictModel):
     @property
     def in_words(self) -> str:
         """The range in words."""
-        unit = type(self)._UNITS
-        scale = 100.0 if unit == " %" else 1.0
-        lower, upper = (f"{scale * end:g}{unit}" for end in self.range)
+        lower, upper = (f"{self._SCALE * end:g}{self._UNITS}" for end in self.range)
         return f"{lower} to {upper}"
 
     def within(self, part: float) -> str:
         """Half of the range, reduced to a part of it, in words, such as ``+- 1 %``."""
-        unit = type(self)._UNITS
         lower, upper = self.range
-        half = 0.5 * part * (upper - lower) * (100.0 if unit == " %" else 1.0)
-        return f"+- {float(f'{half:.1g}'):g}{unit}"
+        half = 0.5 * part * (upper - lower) * self._SCALE
+        return f"+- {float(f'{half:.1g}'):g}{self._UNITS}"
 
 
 class Relative(_Uncertain):
     """A quantity whose deviation is given in per cent of its value."""
 
     _UNITS: ClassVar[str] = " %"
+    _SCALE: ClassVar[float] = 100.0
 
     range: Annotated[tuple[float, float], _range("%", "+- 10 %", above=-1.0, most=10.0)]
     """deviation from the study's value"""
@@ -95,27 +96,21 @@ class OfTemperature(_Uncertain):
     """deviation from the study's value"""
 
 
-class _Number(_Uncertain):
-    """A pure number that is not known exactly."""
-
-    _UNITS: ClassVar[str] = ""
-
-
-class OfExponent(_Number):
+class OfExponent(_Uncertain):
     """A Hurst exponent that is not known exactly."""
 
     range: Annotated[tuple[float, float], _range("", "0.6 to 0.8", above=0.0, below=1.0)]
     """least and greatest value"""
 
 
-class OfSkewness(_Number):
+class OfSkewness(_Uncertain):
     """A skewness of heights that is not known exactly."""
 
     range: Annotated[tuple[float, float], _range("", "-0.2 to 0.2", least=-1.0, most=1.0)]
     """least and greatest value"""
 
 
-class OfKurtosis(_Number):
+class OfKurtosis(_Uncertain):
     """A kurtosis of heights that is not known exactly."""
 
     range: Annotated[tuple[float, float], _range("", "3 to 3.5", least=3.0, most=10.0)]
@@ -387,20 +382,18 @@ def _check_temperatures(study, ends):
 def _check_bands(study):
     """Refuse bands of wavelengths that the grid of lines or surfaces cannot have."""
     uncertain, spec = study.uncertainty, study.line_spec
-    ends = [
-        given.range if given else (0.0, 0.0)
-        for given in (uncertain.longest_wavelength, uncertain.shortest_wavelength)
-    ]
-    narrow = {"longest_wavelength": ends[0][0], "shortest_wavelength": ends[1][1]}
-    wide = {"longest_wavelength": ends[0][1], "shortest_wavelength": ends[1][0]}
-    shorter = min(line.longest_wavelength for line in deviating_lines(spec, narrow).lines)
-    longer = max(line.shortest_wavelength for line in deviating_lines(spec, narrow).lines)
+    exact = 0.0, 0.0
+    long = uncertain.longest_wavelength.range if uncertain.longest_wavelength else exact
+    short = uncertain.shortest_wavelength.range if uncertain.shortest_wavelength else exact
+    narrow = deviating_lines(spec, {"longest_wavelength": long[0], "shortest_wavelength": short[1]})
+    wide = deviating_lines(spec, {"longest_wavelength": long[1], "shortest_wavelength": short[0]})
+    shorter = min(line.longest_wavelength for line in narrow.lines)
+    longer = max(line.shortest_wavelength for line in narrow.lines)
     if longer >= shorter:
         raise StudyError(
             f"shortest_wavelength.range: got up to {with_unit(longer, 'm', 3)}, need less than "
             f"the longest wavelength, {with_unit(shorter, 'm', 3)}"
         )
-    wide = deviating_lines(spec, wide)
     least = 2.0 * math.pi / wide.q_max
     if least < 2.0 * spec.spacing:
         raise StudyError(
@@ -409,8 +402,4 @@ def _check_bands(study):
         )
     models = uncertain.contact_model.choices if uncertain.contact_model else study.contact_model
     if "surface" in models:
-        from lube.study.surface_checks import check_surfaces  # which loads scipy
-
-        width = 2.0 * study.rollers.contact_half_width(max(study.operating_grid.force))
-        with located("contact_model: surface"):
-            check_surfaces(wide, study.rollers.length, width, study.gap)
+        study.check_surfaces(wide)

@@ -22,7 +22,6 @@ P. R. Nayak, Some aspects of surface roughness measurement, Wear 26 (1973) 165-1
 
 import numpy as np
 import scipy
-import scipy.special
 
 from lube.types import Array
 

@@ -32,7 +32,6 @@ import math
 
 import numpy as np
 import scipy
-import scipy.fft
 
 from lube.errors import DataError
 from lube.surfaces.abel import line_of_profile, monotone

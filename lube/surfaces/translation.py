@@ -32,7 +32,6 @@ probability distribution and power spectrum, Tribol. Int. 131 (2019) 591-604.
 
 import numpy as np
 import scipy
-import scipy.fft
 
 from lube.kernels.synthesis import power_series
 from lube.types import Array

@@ -35,7 +35,7 @@ def response() -> Array:
     speed = 0.5 * (11.0 / material) ** 4
     profile = solve(LineContact(100.0 * np.sqrt(2.0 * speed), speed, material, 0.1, film_modulus))
     centre = np.array([0.0])
-    kept = [abs(WaveResponse.of(profile, each).transfer(1.0, centre).item()) for each in VENNER]
+    kept = [abs(WaveResponse(profile, each).transfer(1.0, centre).item()) for each in VENNER]
     return np.array(kept)
 
 

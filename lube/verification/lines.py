@@ -70,13 +70,13 @@ class Curves(NamedTuple):
     bound: Array
 
 
-def films_of(study: Study, rms: float, ratios: Array) -> xr.Dataset:
+def films_of(study: Study, ratios: Array) -> xr.Dataset:
     """Flat films of some lambda ratios, at the contact width of the study's middle force."""
     forces = study.operating_grid.force
     half_width = study.rollers.contact_half_width(sorted(forces)[len(forces) // 2])
     return xr.Dataset(
         {
-            "film_thickness": ("lambda_ratio", ratios * rms),
+            "film_thickness": ("lambda_ratio", ratios * math.hypot(*study.line_spec.rms_height)),
             "contact_half_width": half_width,
             "reduced_modulus": study.rollers.reduced_modulus,
         }
@@ -105,9 +105,7 @@ def curves(study: Study, threads: int | None) -> Curves:
 
 
 def _windows(study, spec=None, ratios=LAMBDA_RATIOS):
-    spec = spec or study.line_spec
-    film = films_of(study, math.hypot(*study.line_spec.rms_height), ratios)
-    return ContactWindows(spec, film, study.boundary_layer)
+    return ContactWindows(spec or study.line_spec, films_of(study, ratios), study.boundary_layer)
 
 
 def line_checks(study: Study, found: Curves, threads: int | None) -> dict[str, float]:
@@ -234,7 +232,7 @@ def _time_steps(pairs, windows):
 
 def _batches(study):
     """Compare a realisation in a batch of two with the same realisation alone."""
-    film = films_of(study, math.hypot(*study.line_spec.rms_height), LAMBDA_RATIOS)
+    film = films_of(study, LAMBDA_RATIOS)
     batches = (roughness_batch(study.line_spec, study.seed, some) for some in ([0, 1], [1]))
     two, alone = (contact_at(batch, film, study.boundary_layer) for batch in batches)
     pairs = [(two[name].sel(realisation=1), alone[name].sel(realisation=1)) for name in COUNTED]

@@ -1,5 +1,7 @@
 """Checks of the surfaces that the lines stand for."""
 
+from functools import partial
+
 import numpy as np
 import scipy.ndimage
 import scipy.sparse.csgraph
@@ -46,14 +48,8 @@ def surface_checks(study: Study, threads: int | None) -> dict[str, float]:
     squares = (np.array(heights) * spec.height_step) ** 2
     characteristic, contacts = np.moveaxis(np.array(counts), 2, 0)
     # The surface closes on itself, so it has no sides: the part that grows with the area is left.
-    (down, along), none = surface.sides, 0.0
-    expected = sum(
-        sign * expected_contacts(levels, moments, *sides)
-        for sign, sides in (
-            *((1, (down, along)), (-1, (down, none))),
-            *((-1, (none, along)), (1, (none, none))),
-        )
-    )
+    (down, along), count = surface.sides, partial(expected_contacts, levels, moments)
+    expected = count(down, along) - count(down, 0.0) - count(0.0, along) + count(0.0, 0.0)
     expected = np.broadcast_to(expected, characteristic.shape)
     return {
         "surface_height": errors_apart(squares[:, None], np.full((SURFACES, 1), moments.height)),

@@ -72,7 +72,7 @@ def test_a_single_wave_is_answered_by_its_transfer_function(spec, profile):
     # Away from the ends of the piece it is a wave without end.
     travel = np.array([0.0, 0.1])
     found = piece.heights(position, travel, profile) / grid.height_step / 1e5
-    transfer = WaveResponse.of(profile, wavelength).transfer(1.0, position)
+    transfer = WaveResponse(profile, wavelength).transfer(1.0, position)
     wavenumber = 2.0 * np.pi / wavelength
     middle = 2.0 * np.pi * piece.middle_step / (wavelength * width)
     phase = wavenumber * (position[:, None] - travel) - middle

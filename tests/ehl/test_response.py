@@ -28,7 +28,7 @@ def venners():
 
 
 def at_centre(profile, wavelength, speed=1.0, fineness=1.0, fixed_load=True):
-    wave = WaveResponse.of(profile, wavelength, fineness)
+    wave = WaveResponse(profile, wavelength, fineness)
     return abs(wave.transfer(speed, MIDDLE, fixed_load).item())
 
 
@@ -38,7 +38,7 @@ def at_centre(profile, wavelength, speed=1.0, fineness=1.0, fixed_load=True):
 @pytest.mark.parametrize("point", [HEAVY, LIGHT])
 @pytest.mark.parametrize("wavelength", [0.3, 2.0])
 def test_a_wave_at_rest_changes_the_steady_film_as_the_solver_says(monkeypatch, point, wavelength):
-    wave = WaveResponse.of(profile_at(point), wavelength)
+    wave = WaveResponse(profile_at(point), wavelength)
     smooth, wavenumber = wave.profile, 2.0 * np.pi / wavelength
     position = 0.5 * (smooth.nodes[1:] + smooth.nodes[:-1])
     position = position[np.abs(position) < 1.5]
@@ -90,8 +90,8 @@ def literal(wave, speed, position):
 @pytest.mark.parametrize("speed", [1.0, 1.5, 0.5])
 def test_it_is_what_a_literal_solution_on_finer_nodes_finds(speed):
     position = np.array([-0.5, 0.0, 0.5, 0.8])
-    found = WaveResponse.of(profile_at(HEAVY), 1.0).transfer(speed, position)
-    fine = WaveResponse.of(profile_at(HEAVY), 1.0, fineness=4.0)
+    found = WaveResponse(profile_at(HEAVY), 1.0).transfer(speed, position)
+    fine = WaveResponse(profile_at(HEAVY), 1.0, fineness=4.0)
     np.testing.assert_allclose(found, literal(fine, speed, position), atol=0.02)
 
 
@@ -103,7 +103,7 @@ def test_it_is_what_a_literal_solution_on_finer_nodes_finds(speed):
 def test_short_waves_stay_as_they_are(point, speed):
     position = np.linspace(-1.0, 1.0, 101)
     short, long = (
-        np.abs(WaveResponse.of(profile_at(point), wavelength).transfer(speed, position) - 1.0).max()
+        np.abs(WaveResponse(profile_at(point), wavelength).transfer(speed, position) - 1.0).max()
         for wavelength in (0.05, 4.0)
     )
     assert short < 0.03 < long
@@ -155,7 +155,7 @@ def test_another_code_finds_the_same_in_the_middle(speed, wavelength, expected):
 
 def test_another_code_finds_the_same_across_the_contact_and_at_a_fixed_gap():
     position = np.array([-0.5, 0.0, 0.5, 0.8, 0.9])
-    found = np.abs(WaveResponse.of(profile_at(HEAVY), 2.0).transfer(1.0, position))
+    found = np.abs(WaveResponse(profile_at(HEAVY), 2.0).transfer(1.0, position))
     np.testing.assert_allclose(found, [0.505, 0.501, 0.496, 0.251, 0.370], atol=0.0015)
     for wavelength, expected in ((1.0, 0.853), (2.0, 0.533), (4.0, 0.220)):
         found = at_centre(profile_at(HEAVY), wavelength, fixed_load=False)
@@ -166,7 +166,7 @@ def test_another_code_finds_the_same_across_the_contact_and_at_a_fixed_gap():
 
 
 def at_angle(point, wavelength, angle, speed=1.0, fineness=1.0):
-    wave = WaveResponse.of(profile_at(point), wavelength, fineness, angle)
+    wave = WaveResponse(profile_at(point), wavelength, fineness, angle)
     return wave.transfer(speed, MIDDLE).item()
 
 
@@ -217,9 +217,9 @@ def test_a_small_angle_changes_little():
 def test_between_wavelengths_it_is_interpolated_and_beyond_it_is_the_last_or_one():
     position, profile = np.linspace(-1.3, 1.3, 53), profile_at(HEAVY)
     wavelengths = 2.0 * 1.2 ** -np.arange(8.0)
-    known = np.stack([WaveResponse.of(profile, one).transfer(1.0, position) for one in wavelengths])
+    known = np.stack([WaveResponse(profile, one).transfer(1.0, position) for one in wavelengths])
     np.testing.assert_allclose(at_wavelengths(wavelengths, wavelengths, known, position), known)
-    between = WaveResponse.of(profile, 1.1).transfer(1.0, position)
+    between = WaveResponse(profile, 1.1).transfer(1.0, position)
     found = at_wavelengths(np.array([1.1, 3.0, 0.1]), wavelengths, known, position)
     np.testing.assert_allclose(found[0], between, atol=0.01)
     inside = np.abs(position) <= 1.0

@@ -41,7 +41,7 @@ def profile_at(study):
 def difference(profile, wave, wavelength, speed):
     """Root mean square over the contact, from the linear response."""
     inside = np.abs(wave.position) < 0.95
-    linear = WaveResponse.of(profile, wavelength).transfer(speed, wave.position)
+    linear = WaveResponse(profile, wavelength).transfer(speed, wave.position)
     return np.sqrt(np.mean(np.abs(wave.transfer - linear)[inside] ** 2))
 
 
@@ -87,7 +87,7 @@ def test_waves_as_high_as_the_film_are_answered_otherwise(profile_at):
     profile = profile_at(1600, 100, 80)
     wave = pass_wave(profile, 1.0, 1.0, 1.5)
     assert difference(profile, wave, 1.0, 1.0) > 0.15
-    linear = np.abs(WaveResponse.of(profile, 1.0).transfer(1.0, np.zeros(1))).item()
+    linear = np.abs(WaveResponse(profile, 1.0).transfer(1.0, np.zeros(1))).item()
     assert 1.0 - 1.5 * linear < 0.0
     assert wave.gap.min() > 0.2 * profile.central_gap
 

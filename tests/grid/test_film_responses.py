@@ -44,7 +44,7 @@ def test_each_wave_is_solved_for(responses):
     assert film["wave_angle"].values.tolist() == ANGLES.tolist()
     one = film.isel(wavelength=3).sel(wave_angle=60.0)
     scaled = one["wavelength"] / one["contact_half_width"]
-    wave = WaveResponse.of(profile, scaled.item(), angle=60.0)
+    wave = WaveResponse(profile, scaled.item(), angle=60.0)
     for roller, speed in ((1, 1.0 + slip / 2.0), (2, 1.0 - slip / 2.0)):
         expected = wave.transfer(speed, film["response_position"].values)
         parts = (one[name].sel(roller=roller) for name in SURFACE_VARIABLES[:2])

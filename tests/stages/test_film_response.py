@@ -59,7 +59,7 @@ def test_it_is_the_response_of_each_points_film(slipping, files, found, roller, 
     half_width = one["contact_half_width"].item()
     positions, speed = one["film_position"].values, 1.0 + slip * (1.5 - roller)
     for number in (0, 5):
-        wave = WaveResponse.of(profile, one["wavelength"].values[number] / half_width)
+        wave = WaveResponse(profile, one["wavelength"].values[number] / half_width)
         expected = wave.transfer(speed, positions)
         np.testing.assert_allclose(transfer(one)[number], expected, rtol=1e-5, atol=1e-6)
         central = np.abs(wave.transfer(speed, np.zeros(1))).item()
@@ -95,7 +95,7 @@ def test_the_error_of_interpolation_is_what_a_wave_between_shows(slipping, files
     for number in range(0, scaled.size - 1, 4):
         between = np.sqrt(scaled[number] * scaled[number + 1])
         estimated = at_wavelengths(np.array([between]), scaled, transfer(one).values, positions)
-        exact = WaveResponse.of(profile, between).transfer(1.5, positions)
+        exact = WaveResponse(profile, between).transfer(1.5, positions)
         error = np.sqrt(np.mean(np.abs(estimated[0] - exact)[inside] ** 2))
         assert error < 1.5 * one["interpolation_error"].item() + 1e-3
 
@@ -128,13 +128,13 @@ def test_threads_change_nothing(slipping, files):
 def test_heating_thins_the_film_that_answers(busy_study, monkeypatch):
     study = study_with(busy_study, inlet_shear_heating="zhu-cheng-1988")
     files = made(study, ("lubricant", "film"))
-    central, solve = [], WaveResponse.of.__func__
+    central, form = [], WaveResponse.__init__
 
-    def noted(cls, profile, *arguments, **options):
+    def noted(wave, profile, *arguments, **options):
         central.append(profile.central_film * study.rollers.reduced_radius)
-        return solve(cls, profile, *arguments, **options)
+        form(wave, profile, *arguments, **options)
 
-    monkeypatch.setattr(WaveResponse, "of", classmethod(noted))
+    monkeypatch.setattr(WaveResponse, "__init__", noted)
     heated = make(study, files)
     cold = profiles(study, files)
     films = cold.copy(data=np.vectorize(lambda one: one.central_film)(cold.values))

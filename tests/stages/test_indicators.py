@@ -25,7 +25,7 @@ def test_each_load_share_is_for_its_own_lambda_ratio_and_pressures(files, study)
     composite, mean_ra = study.rollers.composite_rms_roughness, study.rollers.mean_ra_roughness
     assert mean_ra == pytest.approx(composite / np.sqrt(np.pi))
     for name, curve in LOAD_SHARES.items():
-        roughness = mean_ra if curve.roughness == "mean Ra" else composite
+        roughness = mean_ra if curve.roughness == "mean_ra_roughness" else composite
         expected = curve.share(film["film_thickness"] / roughness)
         if name == "aihara-1987":
             expected = expected.where(film["hertz_pressure"] <= AIHARA_PRESSURE)

@@ -363,14 +363,12 @@ def test_fluids_that_coolprop_cannot_serve_are_refused(fluid):
         assert message in str(caught.value) and "\n" not in str(caught.value)
 
 
-def test_temperatures_outside_a_range_and_repeated_names_are_refused(xmp, dodecane, fluid):
+def test_temperatures_outside_a_range_are_refused(xmp, dodecane, fluid):
     record = fluid("n-Dodecane", RANGE.replace("100 degC", "300 degC"))
     with pytest.raises(RangeError, match="a-fluid: n-Dodecane: got 300 degC"):
         lubricant_table([record], [40.0])
     with pytest.raises(RangeError, match="mobilgear-shc-xmp-320: got 30 degC, need 40 to 100"):
         lubricant_table([dodecane, xmp], [30.0, 40.0])
-    with pytest.raises(RecordError, match=r"names mobilgear.*need different"):
-        lubricant_table([xmp, xmp], STUDY)
 
 
 def test_a_law_without_a_viscosity_at_a_temperature_is_refused(tmp_path):
