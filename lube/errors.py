@@ -36,13 +36,13 @@ def shown(value: object) -> str:
     return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "..."
 
 
-def right_one(wrong: str, names: Iterable[str]) -> str:
+def right_one(wrong: object, names: Iterable[str]) -> str:
     """Suggest the known name that was probably meant, or list all known names.
 
     Parameters
     ----------
-    wrong : str
-        The unknown name.
+    wrong : object
+        The unknown name, or what came in its place.
     names : iterable of str
         The known names.
 
@@ -57,7 +57,7 @@ def right_one(wrong: str, names: Iterable[str]) -> str:
     "did you mean 'moes'?"
     """
     names = list(names)
-    near = nearest(wrong, names)
+    near = nearest(str(wrong), names)
     return f"did you mean {near!r}?" if near else f"need one of {', '.join(names)}"
 
 

@@ -15,6 +15,7 @@ from lube.calculator.arguments import (
     check_realisations,
     conditions,
     one_formula,
+    single,
 )
 from lube.calculator.operating_points import FILM_VARIABLES, ensemble, film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
@@ -133,7 +134,7 @@ def _reading_error(rollers, table, gap, slip, rig, threshold, seed):
         return 0.0
     if rig not in PRESETS:
         raise StudyError(f"rig: got {rig!r}, {right_one(rig, PRESETS)}")
-    ohm = amount("threshold", threshold, "ohm", above=0.0).item()
+    ohm = single(amount("threshold", threshold, "ohm", above=0.0))
     experiment = Experiment(thresholds={"values": [ohm], "units": "ohm"}, threshold=f"{ohm!r} ohm")
     known, spec = Rig(preset=rig), rollers.lines
     if np.isnan(rollers.resistivity):

@@ -39,6 +39,9 @@ def test_a_short_record_and_a_slow_rig_tell_less(rollers, oil, found):
     ("argument", "value", "said"),
     [
         ("rig", "mtm", "rig: got 'mtm', "),
+        ("rig", 3, "rig: got 3, need one of mtm-ecr, "),
+        ("film_shape", True, "film_shape: got True, need one of flat, computed"),
+        ("threshold", ["1 ohm", "2 ohm"], "threshold: got 2 values, need one"),
         ("threshold", "5 m", "threshold: wrong dimension or unit 'm'"),
         ("turns", 0, "turns: got 0, need a value above 0"),
         ("film_formula", ["paper", "moes"], "film_formula: got ['paper', 'moes'], need one name"),
