@@ -2,9 +2,10 @@
 
 import re
 
-from lube.report.key_tables import record_keys, study_keys
+from lube.report.key_tables import keys
 from lube.report.pages import render
 from lube.storage.provenance import single_values
+from lube.study.lubricant_record import LubricantRecord
 from lube.study.study import Study
 from lube.units import with_unit
 
@@ -33,9 +34,9 @@ def configuration(study: Study, text: str) -> str:
     return render(
         "configuration.html",
         written=[_without_comment(line) for line in text.rstrip("\n").split("\n")],
-        study=list(_values(content, study_keys())),
+        study=list(_values(content, keys(Study))),
         lubricants=[
-            (record.title, list(_values(values, record_keys())))
+            (record.title, list(_values(values, keys(LubricantRecord))))
             for record, values in zip(study.lubricants, content["lubricants"], strict=True)
         ],
         stages=stages,
