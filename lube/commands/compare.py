@@ -115,8 +115,6 @@ def _read(path):
 def _at_common_labels(one, other, dim):
     """Select the labels of a dimension that both datasets have, and name the others."""
     here, there = one.indexes[dim], other.indexes[dim]
-    if not (here.is_unique and there.is_unique):
-        return one, other, [] if here.equals(there) else [f"{dim}: other labels, some repeated"]
     lost = []
     for number, own, others in (("first", here, there), ("second", there, here)):
         if alone := [_short(label) for label in own if label not in others]:
