@@ -224,23 +224,6 @@ def exact_versions() -> str:
     return system + "\n".join(kept) + "\n"
 
 
-def check_is_archive(folder: File) -> None:
-    """Check that a folder is an archive.
-
-    Parameters
-    ----------
-    folder : str or Path
-        The folder.
-
-    Raises
-    ------
-    DataError
-        If it has no file of SHA-256 sums.
-    """
-    if not (Path(folder) / SUMS).is_file():
-        raise DataError(f"{folder}: not an archive: {SUMS} is missing")
-
-
 def files_of(folder: File) -> list[str]:
     """List all files below a folder.
 
