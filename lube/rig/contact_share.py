@@ -48,6 +48,11 @@ class ContactShare:
         Number of samples that a change of state must last to count; it then counts from the first
         of them on. With 0 every change counts.
 
+    Attributes
+    ----------
+    samples : int
+        Samples counted so far.
+
     Examples
     --------
     >>> share = ContactShare([1.0, 3.0])
@@ -67,7 +72,7 @@ class ContactShare:
             states = np.zeros((self._limits.size, 3), np.int64)
             self._count, self._triggers = follow_contact, (releases_of, hold, states)
         self._counts = np.zeros((self._limits.size, BLOCKS), np.int64)
-        self._doublings = self._samples = 0
+        self._doublings = self.samples = 0
 
     def add(self, values: np.ndarray) -> None:
         """Count the next piece of the record.
@@ -79,20 +84,15 @@ class ContactShare:
         """
         values = np.ascontiguousarray(values)
         while values.size:
-            room = (BLOCKS << self._doublings) - self._samples
-            seen = self._samples, self._doublings
+            room = (BLOCKS << self._doublings) - self.samples
+            seen = self.samples, self._doublings
             self._count(values[:room], *seen, self._limits, *self._triggers, self._counts)
-            self._samples += min(room, values.size)
+            self.samples += min(room, values.size)
             values = values[room:]
-            if self._samples == BLOCKS << self._doublings:
+            if self.samples == BLOCKS << self._doublings:
                 self._counts[:, : BLOCKS // 2] = _pairs(self._counts)
                 self._counts[:, BLOCKS // 2 :] = 0
                 self._doublings += 1
-
-    @property
-    def samples(self) -> int:
-        """Samples counted so far."""
-        return self._samples
 
     @property
     def below(self) -> np.ndarray:
@@ -102,8 +102,8 @@ class ContactShare:
     @property
     def sizes(self) -> np.ndarray:
         """Samples in each block, shape (B,), int64; the last may be shorter."""
-        firsts = np.arange(0, self._samples, 1 << self._doublings)
-        return np.diff(firsts, append=self._samples)
+        firsts = np.arange(0, self.samples, 1 << self._doublings)
+        return np.diff(firsts, append=self.samples)
 
 
 def record_counter(
