@@ -1,6 +1,7 @@
 """The configuration of a study for the report: as written, and with all values filled in."""
 
 import re
+from typing import Any
 
 from lube.report.key_tables import keys
 from lube.report.pages import render
@@ -53,19 +54,19 @@ def _values(content, keys):
     """Rows (key, value, meaning) of the keys that are set."""
     for key, kind, meaning in keys:
         unit = re.match(r"(?:quantity|values and units) in ([^\s,]+)", kind)
-        value = _printed(_at_key(content, key.strip("`")), unit[1] if unit else "")
+        value = _printed(at_key(content, key.strip("`")), unit[1] if unit else "")
         if value:
             yield key, value, meaning
 
 
-def _at_key(content, key):
+def at_key(content: Any, key: str) -> Any:
     """Value at a dotted key; a list of values where the key goes through a list."""
     name, _, rest = key.partition(".")
     if not name or content is None:
         return content
     if name.endswith("[]"):
-        return [_at_key(one, rest) for one in content[name.removesuffix("[]")] or ()]
-    return _at_key(content[name], rest)
+        return [at_key(one, rest) for one in content[name.removesuffix("[]")] or ()]
+    return at_key(content[name], rest)
 
 
 def _printed(value, unit):

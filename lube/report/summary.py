@@ -195,15 +195,11 @@ def _trends(mean):
     return {
         words: {
             level if unit is None else with_unit(float(f"{level:.3g}"), unit): share
-            for level, share in zip(mean[name].values, _by(mean, name), strict=True)
+            for level, share in mean.mean(set(mean.dims) - {name}).to_series().items()
         }
         for name, (words, unit) in _VARIABLES.items()
         if mean.sizes[name] > 1
     }
-
-
-def _by(mean, name):
-    return mean.mean([dim for dim in mean.dims if dim != name]).values.tolist()
 
 
 def _spread(film, contact, first):
@@ -266,18 +262,14 @@ def _compared(comparison, gauge, first):
     rows = []
     for model in ["line"] if models is None else models.values:
         chosen = first | {"contact_model": model}
-        row = _agreement(comparison, chosen) | {"simulation": "the simulation"}
+        at = chosen | {"threshold": comparison["comparison_threshold"].item()}
+        row = {name: _at(comparison[name], at).item() for name in _AGREEMENT}
+        row["simulation"] = "the simulation"
         row["gauged"] = _gauged(_at(gauge, chosen)) if gauge else None
         if models is not None:
             row["simulation"] += f" of {model}s"
         rows.append(row)
     return rows
-
-
-def _agreement(comparison, chosen):
-    """Measures of agreement between simulation and rig; NaN if there is no record."""
-    chosen = chosen | {"threshold": comparison["comparison_threshold"].item()}
-    return {name: _at(comparison[name], chosen).item() for name in _AGREEMENT}
 
 
 def _gauged(gauge):
