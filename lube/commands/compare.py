@@ -150,9 +150,8 @@ def _variables(one, other, name):
     line += f"{_coordinates(here, place)}: {_value(one, name, place)} against "
     line += _value(other, name, place, here.dims)
     if numbers and np.isfinite(gap[place]):
-        line += (
-            f", {100.0 * gap[place] / max(np.abs([here.values[place], there.values[place]])):.2g} %"
-        )
+        largest = max(np.abs([here.values[place], there.values[place]]))
+        line += f", {100.0 * gap[place] / largest:.2g} %"
     return line + _intervals_apart(one, other, name)
 
 
