@@ -142,10 +142,8 @@ def _share_range(datasets):
 
 
 def _plot(x_axis_label, y_axis_label, **options):
-    plot = figure(
-        x_axis_label=x_axis_label, y_axis_label=y_axis_label, tools="", toolbar_location=None,
-        **options
-    )  # fmt: skip
+    options |= {"tools": "", "toolbar_location": None}
+    plot = figure(x_axis_label=x_axis_label, y_axis_label=y_axis_label, **options)
     for axis, span in ((plot.xaxis, plot.x_range), (plot.yaxis, plot.y_range)):
         if isinstance(axis[0], LogAxis):
             _label(axis, _round_numbers(span.start, span.end), "{:g}".format)
@@ -242,9 +240,7 @@ def _film_along(sources, across, films):
 
 
 def _probability_along(sources, across, shares):
-    plot = _plot(
-        "", "Breakthrough probability", y_axis_type="log", x_range=across, y_range=shares
-    )  # fmt: skip
+    plot = _plot("", "Breakthrough probability", y_axis_type="log", x_range=across, y_range=shares)
     _percent_axis(plot)
     plot.line("x", "mean", source=sources["along"], line_color=COLOURS["blue"], line_width=2)
     _whiskers(plot, sources["along"], "x", COLOURS["blue"], 1)
@@ -304,9 +300,7 @@ def _master_map(master, span, sources):
     lines = _edges(widths)
     mean = np.array(master["mean"], dtype=float).ravel()
     rows, columns = np.divmod(np.arange(mean.size), ratios.size)
-    mapper = LogColorMapper(
-        palette=Cividis256, low=_SHARES[0], high=_SHARES[-1], nan_color="white"
-    )  # fmt: skip
+    mapper = LogColorMapper(palette=Cividis256, low=_SHARES[0], high=_SHARES[-1], nan_color="white")
     plot = _plot(
         "Lambda ratio", "Contact width (µm)",
         x_axis_type="log", x_range=span, y_range=(lines[0], lines[-1]),
