@@ -65,14 +65,12 @@ def _durations(points):
         (name, *(_plus(least.sel(quantity=name, turns=turns).item()) for turns in least["turns"]))
         for name in least["quantity"].values
     ]
-    headings = (
-        "best interval by duration",
-        *(f"{turns:g} revolutions" for turns in least["turns"].values),
-    )
+    durations = (f"{turns:g} revolutions" for turns in least["turns"].values)
     threshold = points["best_threshold"].item()
     error = percent(points["reading_error"].median().item())
     said = f"Read the share below {threshold:g} Ω: the rig then misreads it by {error} (median)."
-    return f"{markdown_table(headings, rows)}\n\n{said}"
+    table = markdown_table(["best interval by duration", *durations], rows)
+    return f"{table}\n\n{said}"
 
 
 def _others(points):
