@@ -232,7 +232,7 @@ def _of_surfaces(tail):
 def _held(film, contact, tail, first):
     """Load on the line's asperities, and the numbers of points where the model does not hold."""
     film, surfaces = film.sel(first), tail.sel(first) if contact is None else None
-    found = {"share": math.nan, "overloaded": 0, "merged": 0}
+    found, share = {"share": math.nan, "overloaded": 0, "merged": 0}, film.get("surface_load_share")
     if contact is not None:
         contact = contact.sel(first)
         found = {
@@ -243,9 +243,7 @@ def _held(film, contact, tail, first):
     return found | {
         "deformed": int(deformed(film, surfaces).sum()),
         "small": LARGEST_DEFORMATION,
-        "surface_share": (
-            film["surface_load_share"].max().item() if "surface_load_share" in film else None
-        ),
+        "surface_share": None if share is None else share.max().item(),
         "rubbing": int(rubbing(film).sum()),
         "little": LARGEST_SHARE,
     }
