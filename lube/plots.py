@@ -4,7 +4,6 @@ Colours are those of Okabe and Ito, which readers with any colour vision can tel
 of an ordered quantity get colours from a colour map whose lightness changes steadily.
 """
 
-import io
 import re
 import textwrap
 from collections.abc import Iterable, Sequence
@@ -567,14 +566,15 @@ def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> 
     with plt.rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
         figure.set_layout_engine(None)
         # Without clock time or software version, so that the bytes are the same each time.
-        png = _picture(figure, "png", {"Software": None, "Description": line})
-        pdf = _picture(figure, "pdf", {"CreationDate": None, "Producer": None, "Subject": line})
-    for suffix, picture in {"png": png, "pdf": pdf}.items():
-        with written_whole(f"{stem}.{suffix}") as part:
-            part.write_bytes(picture)
+        for suffix, metadata in {
+            "png": {"Software": None, "Description": line},
+            "pdf": {"CreationDate": None, "Producer": None, "Subject": line},
+        }.items():
+            with written_whole(f"{stem}.{suffix}") as part:
+                figure.savefig(part, format=suffix, metadata=metadata)
     if get_ipython() is not None:
         plt.close(figure)  # or Jupyter would draw it once more
-        display(Image(png, retina=True))
+        display(Image(filename=f"{stem}.png", retina=True))
 
 
 def _fold_labels(figure):
@@ -608,13 +608,6 @@ def _folded(label, excess):
     width = max(int(max(map(len, lines)) / excess) - 1, 1)
     folded = "\n".join(textwrap.fill(line, width) for line in lines)
     return folded.replace("\N{NO-BREAK SPACE}", " ")
-
-
-def _picture(figure, suffix, metadata):
-    """Draw a figure's file in memory: on a full disk Matplotlib's error would say little."""
-    picture = io.BytesIO()
-    figure.savefig(picture, format=suffix, metadata=metadata)
-    return picture.getvalue()
 
 
 def _write_below(figure, line):

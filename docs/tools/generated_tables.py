@@ -10,8 +10,10 @@ from pathlib import Path
 
 from lube.ehl.film_formulas import FORMULAS, TOLERANCE
 from lube.recordings.manifest import Row
-from lube.report.key_tables import files_table, keys, markdown_table, record_keys, study_keys
+from lube.report.key_tables import files_table, keys, markdown_table
 from lube.schema import COORDINATES, DATASETS, FILES, ON_REQUEST, SUMMARIES
+from lube.study.lubricant_record import LubricantRecord
+from lube.study.study import Study
 
 TABLES = ("files", "coordinates", "variables", "study", "record", "manifest", "formulas")
 """Names of the tables, as in the markers of the documentation."""
@@ -35,12 +37,11 @@ def table(name):
                 for kind in (*DATASETS, *ON_REQUEST)
             )
         case "study":
-            return markdown_table(("key", "value", "meaning"), study_keys())
+            return markdown_table(("key", "value", "meaning"), keys(Study))
         case "record":
-            return markdown_table(("key", "value", "meaning"), record_keys())
+            return markdown_table(("key", "value", "meaning"), keys(LubricantRecord))
         case "manifest":
-            rows = keys(Row.model_json_schema())
-            return markdown_table(("column or key", "value", "meaning"), rows)
+            return markdown_table(("column or key", "value", "meaning"), keys(Row))
         case "formulas":
             found = FORMULAS.values()
             rows = [(f"`{row.name}`", row.thickness, row.source, row.validity) for row in found]

@@ -17,20 +17,23 @@ from pathlib import Path
 
 from lube.archive.citation import citation_file, zenodo_metadata
 from lube.archive.crate import CATALOGUE, crate_metadata
-from lube.archive.page import archive_page
 from lube.errors import DataError, StudyError, shown
 from lube.pipeline.figures import wrong_figures
 from lube.pipeline.study_files import origin, products
 from lube.report import SUMMARISED
+from lube.report.pages import render
+from lube.report.summary import facts, findings
+from lube.schema import SUMMARIES
 from lube.storage.files import why_not, write_text, written_whole
-from lube.storage.git import ROOT, code_files, commit
+from lube.storage.git import ROOT, changed_code, code_files, commit
 from lube.storage.netcdf import load
 from lube.storage.provenance import config_text, digest, fingerprint
 from lube.study.lubricant_record import SHIPPED_FOLDER
+from lube.study.metadata import LICENCES, PAPER
 from lube.study.resolve import study_files, with_paths
 from lube.study.study import Study
 from lube.study.text_files import read_yaml
-from lube.types import File
+from lube.types import Datasets, File
 
 SUMS = "SHA256SUMS"
 """Name of the file of SHA-256 sums, in the format of ``sha256sum --check``."""
@@ -210,6 +213,39 @@ def values_text(study: Study, study_file: str, kinds: list[str]) -> str:
     return json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 
 
+def archive_page(study: Study, study_file: str, kinds: list[str], results: Datasets) -> str:
+    """Write the README.md of an archive, for a reader who has nothing else.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    study_file : str
+        Path of its file below the archive's folder ``study``, with slashes.
+    kinds : list of str
+        Its datasets in the archive.
+    results : dict of str to xarray.Dataset
+        Its datasets `lube.report.SUMMARISED`, by name.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    return render(
+        "archive.md",
+        study=study,
+        licence=LICENCES[study.about.licence],
+        paper=PAPER,
+        datasets={kind: SUMMARIES[kind] for kind in kinds},
+        study_file=study_file,
+        commit=commit(),
+        changed=changed_code(),
+        facts=facts(study, results["lubricant"]),
+        findings=findings(study, results),
+    )
+
+
 def exact_versions() -> str:
     """List the versions of Python and of all installed packages, for ``pip install -c``.
 
@@ -222,23 +258,6 @@ def exact_versions() -> str:
     installed = {f"{found.name}=={found.version}" for found in distributions()}
     kept = sorted((line for line in installed if not line.startswith("lube==")), key=str.lower)
     return system + "\n".join(kept) + "\n"
-
-
-def check_is_archive(folder: File) -> None:
-    """Check that a folder is an archive.
-
-    Parameters
-    ----------
-    folder : str or Path
-        The folder.
-
-    Raises
-    ------
-    DataError
-        If it has no file of SHA-256 sums.
-    """
-    if not (Path(folder) / SUMS).is_file():
-        raise DataError(f"{folder}: not an archive: {SUMS} is missing")
 
 
 def files_of(folder: File) -> list[str]:

@@ -85,12 +85,7 @@ def citation_file(study: Study) -> str:
         **({"doi": about.doi} if about.doi else {}),
         "references": [
             {"type": "article", "title": PAPER, "authors": [{"name": "The authors of the paper"}]},
-            {
-                "type": "software",
-                "title": "lube",
-                "version": version("lube"),
-                "authors": authors,
-            },
+            {"type": "software", "title": "lube", "version": version("lube"), "authors": authors},
         ],
     }
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=90)

@@ -24,6 +24,12 @@ from lube.study.line_spec import LineSpec
 from lube.study.rollers import BoundaryLayer
 from lube.types import File
 
+_CORRECTIONS = {
+    "inlet_meniscus": "starvation_factor",
+    "inlet_shear_heating": "inlet_shear_heating_factor",
+}
+"""Values of a study that may reduce the film, each with the factor by which they do."""
+
 
 @dataclass(frozen=True)
 class Explanation:
@@ -167,25 +173,16 @@ def in_words(explanation: Explanation) -> str:
     str
         Several lines.
     """
-    again = explanation.again
+    again, film = explanation.again, explanation.values["film"]
     return render(
         "explanation.txt",
         **vars(explanation),
         dims=CONTACT_DIMS,
-        corrections=_corrections(explanation.values["film"]),
+        corrections=tuple(factor for key, factor in _CORRECTIONS.items() if film[key] != "none"),
         differing=explanation.differing,
         realised=[name for name in again if "realisation" in again[name].dims],
         stated=_stated,
     ).strip()
-
-
-def _corrections(values):
-    """Names of the factors that the film has been reduced by."""
-    factors = {
-        "inlet_meniscus": "starvation_factor",
-        "inlet_shear_heating": "inlet_shear_heating_factor",
-    }
-    return tuple(factor for key, factor in factors.items() if values[key] != "none")
 
 
 def _stated(array):

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from lube.archive.build import check_is_archive
 from lube.errors import DataError
 from lube.pipeline.figures import paths_for, read_origin
 from lube.pipeline.notebooks import execute_notebook
@@ -16,7 +15,7 @@ def redraw(folder: File, target: File, figures: list[str]) -> Iterator[tuple[str
     Parameters
     ----------
     folder : str or Path
-        The unpacked archive.
+        The archive, from `lube.archive.verify.unpacked`.
     target : str or Path
         Folder for the new figures, outside the archive.
     figures : list of str
@@ -31,10 +30,9 @@ def redraw(folder: File, target: File, figures: list[str]) -> Iterator[tuple[str
     Raises
     ------
     LubeError
-        If it is not an archive, there is no such figure, or its notebook cannot be executed.
+        If there is no such figure, or its notebook cannot be executed.
     """
     folder, target = Path(folder).resolve(), Path(target).resolve()
-    check_is_archive(folder)
     if target.is_relative_to(folder) or target.is_file():
         raise DataError(f"got {target} for the new figures, need a folder outside the archive")
     archived = sorted(path.stem for path in (folder / "figures").glob("*.png"))

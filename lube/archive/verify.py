@@ -13,7 +13,7 @@ import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
-from lube.archive.build import SUMS, VALUES, check_is_archive, files_of, values_text
+from lube.archive.build import SUMS, VALUES, files_of, values_text
 from lube.errors import DataError, LubeError, shown
 from lube.pipeline.figures import wrong_figures
 from lube.storage.netcdf import load
@@ -41,12 +41,16 @@ def unpacked(path: File) -> Iterator[Path]:
     Raises
     ------
     DataError
-        If it does not exist, is neither a folder nor a zip, or cannot be unpacked.
+        If it does not exist, is neither a folder nor a zip, cannot be unpacked, or is not an
+        archive.
     """
     path = Path(path)
     if not path.exists():
         raise DataError(f"{path}: no such archive; `snakemake archive` makes it")
+    no_archive = DataError(f"{path}: not an archive: {SUMS} is missing")
     if path.is_dir():
+        if not (path / SUMS).is_file():
+            raise no_archive
         yield path
         return
     with tempfile.TemporaryDirectory(prefix="lube-") as scratch:
@@ -57,7 +61,7 @@ def unpacked(path: File) -> Iterator[Path]:
         # The zip may have been packed with the archive's folder or without it.
         roots = sorted(Path(scratch).rglob(SUMS), key=lambda sums: len(sums.parts))
         if not roots:
-            raise DataError(f"{path}: not an archive: {SUMS} is missing")
+            raise no_archive
         yield roots[0].parent
 
 
@@ -67,19 +71,13 @@ def verify_archive(folder: File) -> list[str]:
     Parameters
     ----------
     folder : str or Path
-        The unpacked archive.
+        The archive, from `unpacked`.
 
     Returns
     -------
     list of str
         What is wrong, one line each, with paths below the archive; empty if nothing is.
-
-    Raises
-    ------
-    DataError
-        If it is not an archive.
     """
-    check_is_archive(folder)
     folder = Path(folder).resolve()
     # A later check would only repeat what an earlier one found.
     for check in (_wrong_sums, _wrong_datasets, _wrong_figures):

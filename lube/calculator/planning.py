@@ -153,7 +153,7 @@ def _reading_error(rollers, table, gap, slip, rig, threshold, seed):
         )
         step = spec.spacing / max(surface_speeds(speed[number], slip))
         resistance = rollers.resistivity / spec.spacing
-        revolution = Revolution(contact, None, step, resistance, plates, (seed, number))
+        revolution = Revolution(contact, step, resistance, plates, (seed, number))
         (read, *_), _ = read_shares(revolution.voltage(known), experiment, known)
         true = np.count_nonzero(contact) / contact.size
         errors[number] = abs(read / true - 1.0) if true else np.nan

@@ -115,8 +115,6 @@ def _read(path):
 def _at_common_labels(one, other, dim):
     """Select the labels of a dimension that both datasets have, and name the others."""
     here, there = one.indexes[dim], other.indexes[dim]
-    if not (here.is_unique and there.is_unique):
-        return one, other, [] if here.equals(there) else [f"{dim}: other labels, some repeated"]
     lost = []
     for number, own, others in (("first", here, there), ("second", there, here)):
         if alone := [_short(label) for label in own if label not in others]:
@@ -152,9 +150,8 @@ def _variables(one, other, name):
     line += f"{_coordinates(here, place)}: {_value(one, name, place)} against "
     line += _value(other, name, place, here.dims)
     if numbers and np.isfinite(gap[place]):
-        line += (
-            f", {100.0 * gap[place] / max(np.abs([here.values[place], there.values[place]])):.2g} %"
-        )
+        largest = max(np.abs([here.values[place], there.values[place]]))
+        line += f", {100.0 * gap[place] / largest:.2g} %"
     return line + _intervals_apart(one, other, name)
 
 

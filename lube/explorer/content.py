@@ -140,16 +140,13 @@ def level_names(name: str, values: list) -> list[str]:
     Returns
     -------
     list of str
-        Different names, such as ``85.71 r/min``.
+        Their names, such as ``85.71 r/min``.
     """
     if name in ("lubricant", "film_formula", MODEL):
         return values
     unit = COORDINATES[name].units
     rounded = [value if value == round(value) else float(f"{value:.4g}") for value in values]
-    names = [with_unit(value, "" if unit == "1" else unit) for value in rounded]
-    if len(set(names)) == len(names):
-        return names
-    return [str(value) for value in values]
+    return [with_unit(value, "" if unit == "1" else unit) for value in rounded]
 
 
 def _variable(array, kind):

@@ -99,11 +99,10 @@ def draw(
     dict of str to bokeh.plotting.figure
         The figures by the names of their positions on the page.
     """
-    ratios, shares = _ratio_range(datasets), _share_range(datasets)
+    ratios = _spread(_values(datasets, "lambda_ratio", "film", "master"), 1.1)
+    shares = _share_range(datasets)
     films = _spread(1e6 * datasets["film"]["film_thickness"].values)
-    traces = [datasets[kind] for kind in ("trace", "surface_trace") if kind in datasets]
-    resistances = [each["contact_resistance"].values.ravel() for each in traces]
-    resistances = _spread(np.concatenate(resistances), 1.5)
+    resistances = _spread(_values(datasets, "contact_resistance", "trace", "surface_trace"), 1.5)
     across = Range1d()
     figures = {
         "film": _film_along(sources, across, films),
@@ -126,33 +125,25 @@ def _spread(values, by=1.3):
     return (values.min() / by, values.max() * by) if values.size else (0.1, 10.0)
 
 
-def _ratio_range(datasets):
-    kinds = [kind for kind in ("film", "master") if kind in datasets]
-    ratios = [datasets[kind]["lambda_ratio"].values.ravel() for kind in kinds]
-    return _spread(np.concatenate(ratios), 1.1)
+def _values(datasets, variable, *kinds):
+    """Values of a variable in all datasets of these kinds that there are."""
+    made = [datasets[kind] for kind in kinds if kind in datasets]
+    return np.concatenate([dataset[variable].values.ravel() for dataset in made])
 
 
 def _share_range(datasets):
     """Range of the study's probabilities, or of their upper limits where no contact was seen."""
-    shares = datasets["tail"]["breakthrough_probability"].values.ravel()
+    shares = datasets["tail"]["breakthrough_probability"].values
     if datasets["tail"].attrs["remarks"]:
-        kinds = [kind for kind in ("contact", "master") if kind in datasets]
-        shares = np.concatenate([_estimate_or_limit(datasets[kind]) for kind in kinds])
+        names = ("breakthrough_probability_mean", "breakthrough_probability_upper")
+        mean, upper = (_values(datasets, name, "contact", "master") for name in names)
+        shares = np.where(mean > 0.0, mean, upper)
     return max(_spread(shares)[0], _RAREST), 1.6
 
 
-def _estimate_or_limit(dataset):
-    mean, upper = (
-        dataset[f"breakthrough_probability_{limit}"].values.ravel() for limit in ("mean", "upper")
-    )
-    return np.where(mean > 0.0, mean, upper)
-
-
 def _plot(x_axis_label, y_axis_label, **options):
-    plot = figure(
-        x_axis_label=x_axis_label, y_axis_label=y_axis_label, tools="", toolbar_location=None,
-        **options
-    )  # fmt: skip
+    options |= {"tools": "", "toolbar_location": None}
+    plot = figure(x_axis_label=x_axis_label, y_axis_label=y_axis_label, **options)
     for axis, span in ((plot.xaxis, plot.x_range), (plot.yaxis, plot.y_range)):
         if isinstance(axis[0], LogAxis):
             _label(axis, _round_numbers(span.start, span.end), "{:g}".format)
@@ -249,9 +240,7 @@ def _film_along(sources, across, films):
 
 
 def _probability_along(sources, across, shares):
-    plot = _plot(
-        "", "Breakthrough probability", y_axis_type="log", x_range=across, y_range=shares
-    )  # fmt: skip
+    plot = _plot("", "Breakthrough probability", y_axis_type="log", x_range=across, y_range=shares)
     _percent_axis(plot)
     plot.line("x", "mean", source=sources["along"], line_color=COLOURS["blue"], line_width=2)
     _whiskers(plot, sources["along"], "x", COLOURS["blue"], 1)
@@ -295,10 +284,9 @@ def _master_curve(sources, ratios, shares):
     plot.varea(
         "lambda", "lower", "upper", source=source, fill_color=COLOURS["orange"], fill_alpha=0.35
     )
-    plot.line("lambda", "narrow", source=source, line_color=COLOURS["grey"], line_dash="dotted",
-              line_width=2)  # fmt: skip
-    plot.line("lambda", "wide", source=source, line_color=COLOURS["grey"], line_dash="dashed",
-              line_width=2)  # fmt: skip
+    grey = {"line_color": COLOURS["grey"], "line_width": 2}
+    plot.line("lambda", "narrow", source=source, line_dash="dotted", **grey)
+    plot.line("lambda", "wide", source=source, line_dash="dashed", **grey)
     plot.line("lambda", "near", source=source, line_color=COLOURS["orange"], line_width=2.5)
     _probabilities(plot, sources, "lambda", "force")
     return plot
@@ -312,9 +300,7 @@ def _master_map(master, span, sources):
     lines = _edges(widths)
     mean = np.array(master["mean"], dtype=float).ravel()
     rows, columns = np.divmod(np.arange(mean.size), ratios.size)
-    mapper = LogColorMapper(
-        palette=Cividis256, low=_SHARES[0], high=_SHARES[-1], nan_color="white"
-    )  # fmt: skip
+    mapper = LogColorMapper(palette=Cividis256, low=_SHARES[0], high=_SHARES[-1], nan_color="white")
     plot = _plot(
         "Lambda ratio", "Contact width (µm)",
         x_axis_type="log", x_range=span, y_range=(lines[0], lines[-1]),

@@ -18,11 +18,11 @@ from bokeh.models import (
     Select,
 )
 from bokeh.resources import Resources
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from lube.explorer.content import CHOICES, MODEL, page_content
 from lube.explorer.figures import COLUMNS, THEME, TINTS, draw
 from lube.pipeline.stamps import stamp
+from lube.report.pages import render
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _NAMES = {
@@ -89,10 +89,7 @@ def _controls(levels, start):
     if several:
         first = several.index("temperature") if "temperature" in several else 0
         controls["along"] = RadioButtonGroup(
-            labels=[_NAMES[name] for name in several],
-            active=first,
-            tags=several,
-            **common,
+            labels=[_NAMES[name] for name in several], active=first, tags=several, **common
         )
     return controls
 
@@ -119,12 +116,10 @@ def _filled(content, datasets, controls, sources, figures):
     # As `bokeh.embed.components` does, but with names instead of random numbers.
     places = {model.id: place for place, model in places.items()}
     items = [{"docid": "explorer", "roots": places, "root_ids": list(places)}]
-    environment = Environment(
-        loader=PackageLoader("lube.explorer"), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
-    return environment.get_template("explorer.html").render(
-        arguments,
+    return render(
+        "explorer.html",
+        package="lube.explorer",
+        **arguments,
         title=datasets["film"].attrs["title"].rpartition(", ")[0],
         content=content,
         names=_NAMES,

@@ -126,9 +126,8 @@ def read_origin(figure: str, folder: File) -> dict[str, Any]:
     """
     path = Path(folder) / origin(figure)
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        return {name: content[name] for name in ("datasets", "products", "drawn_by")}
-    except (OSError, ValueError, KeyError):
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
         raise DataError(f"{path}: missing or damaged") from None
 
 

@@ -111,8 +111,10 @@ def _execute(notebook, output, parameters, drawn_by, code):
     os.environ[DRAWN_BY] = drawn_by
     # Jupyter's debugger, not used here, would print a warning.
     os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"
-    if code is not None:
-        _use_package_in(code)
+    if code is not None:  # the notebook imports `lube` again, from that folder
+        for name in [name for name in sys.modules if name.split(".")[0] == "lube"]:
+            del sys.modules[name]
+        sys.path.insert(0, str(code))
     try:
         papermill.execute_notebook(
             notebook,
@@ -125,13 +127,6 @@ def _execute(notebook, output, parameters, drawn_by, code):
         )
     except PapermillExecutionError:
         raise SystemExit(_CELL_FAILED) from None
-
-
-def _use_package_in(folder):
-    """Let this process import `lube` again, from another folder."""
-    for name in [name for name in sys.modules if name.split(".")[0] == "lube"]:
-        del sys.modules[name]
-    sys.path.insert(0, str(folder))
 
 
 class _InProcess(Engine):

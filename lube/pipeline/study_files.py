@@ -30,7 +30,6 @@ def digest(content: object) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-@one_line_errors()
 def input_paths(files: Files) -> list[str]:
     """List files relative to the working folder, so that the repository can be moved.
 
@@ -43,17 +42,8 @@ def input_paths(files: Files) -> list[str]:
     -------
     list of str
         Their paths, sorted, without repetition.
-
-    Raises
-    ------
-    SystemExit
-        If a name has braces, which Snakemake takes for a wildcard.
     """
-    paths = sorted({os.path.relpath(file) for file in files})
-    for path in paths:
-        if "{" in path or "}" in path:
-            raise LubeError(f"{path}: the name of a file must not contain {{ or }}")
-    return paths
+    return sorted({os.path.relpath(file) for file in files})
 
 
 def products(figure: str) -> list[str]:

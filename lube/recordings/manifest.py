@@ -15,7 +15,6 @@ from pydantic import NonNegativeInt, model_validator
 
 from lube.errors import DataError, located, right_one, shown
 from lube.recordings.signals import header_cell
-from lube.schema import ORIGINS
 from lube.study.field_types import StrictModel, Text, checked_text, quantity, validate
 from lube.study.small_csv import read_cells
 from lube.study.text_files import read_yaml
@@ -30,6 +29,9 @@ _UNITS = (
     | {"sampling_interval": "s", "offset": "mV"}
 )
 """Columns whose header needs a unit, with an example; an offset may also be in ohm."""
+
+ORIGINS = ("measured", "simulated")
+"""Possible origins of the records."""
 
 _TEXTS = ("file", "channel", "unit", "lubricant", "pair", "origin")
 OF_FILES = ("channel", "unit", "gain", "offset", "sampling_interval", "skip")

@@ -1,10 +1,12 @@
 """The configuration of a study for the report: as written, and with all values filled in."""
 
 import re
+from typing import Any
 
-from lube.report.key_tables import record_keys, study_keys
+from lube.report.key_tables import keys
 from lube.report.pages import render
 from lube.storage.provenance import single_values
+from lube.study.lubricant_record import LubricantRecord
 from lube.study.study import Study
 from lube.units import with_unit
 
@@ -33,9 +35,9 @@ def configuration(study: Study, text: str) -> str:
     return render(
         "configuration.html",
         written=[_without_comment(line) for line in text.rstrip("\n").split("\n")],
-        study=list(_values(content, study_keys())),
+        study=list(_values(content, keys(Study))),
         lubricants=[
-            (record.title, list(_values(values, record_keys())))
+            (record.title, list(_values(values, keys(LubricantRecord))))
             for record, values in zip(study.lubricants, content["lubricants"], strict=True)
         ],
         stages=stages,
@@ -52,19 +54,19 @@ def _values(content, keys):
     """Rows (key, value, meaning) of the keys that are set."""
     for key, kind, meaning in keys:
         unit = re.match(r"(?:quantity|values and units) in ([^\s,]+)", kind)
-        value = _printed(_at_key(content, key.strip("`")), unit[1] if unit else "")
+        value = _printed(at_key(content, key.strip("`")), unit[1] if unit else "")
         if value:
             yield key, value, meaning
 
 
-def _at_key(content, key):
+def at_key(content: Any, key: str) -> Any:
     """Value at a dotted key; a list of values where the key goes through a list."""
     name, _, rest = key.partition(".")
     if not name or content is None:
         return content
     if name.endswith("[]"):
-        return [_at_key(one, rest) for one in content[name.removesuffix("[]")] or ()]
-    return _at_key(content[name], rest)
+        return [at_key(one, rest) for one in content[name.removesuffix("[]")] or ()]
+    return at_key(content[name], rest)
 
 
 def _printed(value, unit):

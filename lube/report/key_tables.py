@@ -1,11 +1,10 @@
 """Tables of the keys that people write, and of a study's files, for the report."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+
+from pydantic import BaseModel
 
 from lube.schema import DATASETS, SUMMARIES
-from lube.study.lubricant_record import LubricantRecord
-from lube.study.study import Study
 
 
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -41,50 +40,25 @@ def files_table() -> str:
     )
 
 
-def study_keys() -> list[tuple[str, str, str]]:
-    """Keys of a study.
+def keys(model: type[BaseModel]) -> list[tuple[str, str, str]]:
+    """List all keys of a kind of file, nested ones with dots.
+
+    Parameters
+    ----------
+    model : type
+        Model of its content, such as `lube.study.study.Study`.
 
     Returns
     -------
     list of tuple of str
         Dotted key between backticks; allowed value; meaning.
     """
-    return keys(Study.model_json_schema())
+    schema = model.model_json_schema()
+    return _keys(schema, schema.get("$defs", {}))
 
 
-def record_keys() -> list[tuple[str, str, str]]:
-    """Keys of a lubricant record.
-
-    Returns
-    -------
-    list of tuple of str
-        As from `study_keys`.
-    """
-    return keys(LubricantRecord.model_json_schema())
-
-
-def keys(
-    schema: dict[str, Any],
-    path: str = "",
-    definitions: dict[str, Any] | None = None,
-    section: str = "",
-) -> list[tuple[str, str, str]]:
-    """List all keys below a schema, nested ones with dots.
-
-    Parameters
-    ----------
-    schema : dict
-        JSON schema of a model, or of a section of it.
-    path, definitions, section
-        For a section: the keys that lead to it, the model's definitions, and a remark if it is
-        optional.
-
-    Returns
-    -------
-    list of tuple of str
-        As from `study_keys`.
-    """
-    definitions = definitions or schema.get("$defs", {})
+def _keys(schema, definitions, path="", section=""):
+    """Keys of a model, or of the section of it that `path` leads to; a remark if it is optional."""
     rows = []
     for name, field in schema["properties"].items():
         inner, many = _resolve(field, definitions)
@@ -92,7 +66,7 @@ def keys(
         if "properties" in inner and "format" not in inner:
             optional = "" if required else " (section optional)"
             key = f"{path}{name}{'[]' if many else ''}."
-            rows += keys(inner, key, definitions, section or optional)
+            rows += _keys(inner, definitions, key, section or optional)
         else:
             value = _value(field, inner) + (section if required else _default(field))
             meaning = field.get("description", inner.get("description", ""))

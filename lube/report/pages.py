@@ -1,4 +1,4 @@
-"""HTML and Markdown from the templates in the folder ``templates``."""
+"""HTML and Markdown from the templates in the folders ``templates``."""
 
 import functools
 import math
@@ -9,7 +9,7 @@ from lube.report.markdown import escaped, inline
 from lube.units import with_unit
 
 
-def render(template: str, **values: object) -> str:
+def render(template: str, package: str = "lube.report", **values: object) -> str:
     """Fill a template.
 
     Parameters
@@ -17,6 +17,8 @@ def render(template: str, **values: object) -> str:
     template : str
         File name in the folder ``templates``. Values are escaped in those that end with
         ``.html``.
+    package : str, optional
+        Package that the folder lies in.
     **values
         Values of the names in the template.
 
@@ -25,7 +27,7 @@ def render(template: str, **values: object) -> str:
     str
         The filled template.
     """
-    return _environment().get_template(template).render(values)
+    return _environment(package).get_template(template).render(values)
 
 
 def rounded(number: float) -> float:
@@ -93,12 +95,12 @@ def count(number: float, noun: str) -> str:
 
 
 @functools.cache
-def _environment():
+def _environment(package):
     from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
     from markupsafe import Markup
 
     environment = Environment(
-        loader=PackageLoader("lube.report"),
+        loader=PackageLoader(package),
         autoescape=select_autoescape(["html"]),
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -37,25 +37,21 @@ def tables(found: xr.Dataset) -> str:
 
 def _records(of_quantity, name):
     """Tabulate the records that tell most about a quantity."""
-    assumed = of_quantity.get("half_width_assumed")
-    widths = of_quantity["half_width"].values
+    keys = {"one pair": "half_width", "other quantities uncertain": "half_width_assumed"}
+    columns = {words: of_quantity[key].values for words, key in keys.items() if key in of_quantity}
+    widths = columns["one pair"]
     order = [one for one in np.argsort(np.nan_to_num(widths, nan=np.inf)) if widths[one] < np.inf]
-    headings = [
-        *_POINT,
-        "one pair",
-        *(["other quantities uncertain"] if assumed is not None else []),
-    ]
     rows = []
     for place in order[:MOST]:
         one = of_quantity.isel(point=place)
         temperature, speed, force = one["point"].item()
         share = percent(one["breakthrough_probability"].item())
-        row = [f"{force:g}", f"{speed:.4g}", f"{temperature:g}", share, _plus(widths[place])]
-        rows.append(row + ([_plus(assumed.values[place])] if assumed is not None else []))
+        row = [f"{force:g}", f"{speed:.4g}", f"{temperature:g}", share]
+        rows.append(row + [_plus(values[place]) for values in columns.values()])
     title = f"**{name.capitalize()}**: expected 95 % interval from one record of a revolution"
-    return (
-        f"{title}\n\n{markdown_table(headings, rows)}" if rows else f"{title}: none tells enough."
-    )
+    if not rows:
+        return f"{title}: none tells enough."
+    return f"{title}\n\n{markdown_table([*_POINT, *columns], rows)}"
 
 
 def _plus(width):
@@ -69,28 +65,24 @@ def _durations(points):
         (name, *(_plus(least.sel(quantity=name, turns=turns).item()) for turns in least["turns"]))
         for name in least["quantity"].values
     ]
-    headings = (
-        "best interval by duration",
-        *(f"{turns:g} revolutions" for turns in least["turns"].values),
-    )
+    durations = (f"{turns:g} revolutions" for turns in least["turns"].values)
     threshold = points["best_threshold"].item()
     error = percent(points["reading_error"].median().item())
     said = f"Read the share below {threshold:g} Ω: the rig then misreads it by {error} (median)."
-    return f"{markdown_table(headings, rows)}\n\n{said}"
+    table = markdown_table(["best interval by duration", *durations], rows)
+    return f"{table}\n\n{said}"
 
 
 def _others(points):
     """Tabulate which quantities to measure otherwise, and how well."""
     narrowing = points["narrowing"].mean("point")
-    order = np.argsort(-narrowing.values)
-    rows = [
-        (
-            spoken(narrowing["factor"].values[one]),
-            points["range_of_factor"].values[one],
-            points["accuracy_of_factor"].values[one],
-            percent(narrowing.values[one]),
-        )
-        for one in order[:MOST]
-    ]
+    best = np.argsort(-narrowing.values)[:MOST]
+    rows = zip(
+        map(spoken, narrowing["factor"].values[best]),
+        points["range_of_factor"].values[best],
+        points["accuracy_of_factor"].values[best],
+        map(percent, narrowing.values[best]),
+        strict=True,
+    )
     headings = ("measure otherwise", "now uncertain by", "accuracy that is enough")
     return markdown_table((*headings, "narrows the band of the assumptions by"), rows)

@@ -67,11 +67,8 @@ def rests_on(found: xr.Dataset, records: xr.Dataset | None = None) -> str:
         changes = [f"{rounded(change):g}" for change in np.exp(one["elementary_effect"].values)]
         words = (one[f"{key}_of_factor"].item() for key in ("range", "source"))
         rows.append((spoken(name), *words, *changes))
-    band = (
-        f"{rounded(one['breakthrough_probability_lower']):g} to "
-        f"{rounded(one['breakthrough_probability_upper']):g}"
-        for one in (shown.isel(point=number) for number in range(len(places)))
-    )
+    ends = (shown[f"breakthrough_probability_{end}"].values for end in ("lower", "upper"))
+    band = (f"{rounded(low):g} to {rounded(high):g}" for low, high in zip(*ends, strict=True))
     rows.append(("probability, 5 to 95 % of the samples", "", "", *band))
     table = markdown_table(("uncertain", "range or choices", "source", *conditions), rows)
     measured = _to_measure(shown, factors, conditions)
@@ -83,8 +80,7 @@ def _explained(records):
     if records is None:
         return
     needed = records["band_needed"].values
-    counts = [(np.sum(needed == name), words) for name, words in _BANDS.items()]
-    said = ", ".join(f"{count} {words}" for count, words in counts)
+    said = ", ".join(f"{np.sum(needed == name)} {words}" for name, words in _BANDS.items())
     yield (
         f"Of {np.sum(needed != '')} {records['origin'].item()} records, {said} (`record_bands.nc`)."
     )

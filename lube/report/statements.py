@@ -3,9 +3,9 @@
 A section of the documentation under the heading ``In the paper's study`` is about its values.
 """
 
-import functools
 import re
 
+from lube.report.configuration import at_key
 from lube.study.study import Study
 
 _HEADING = "## In the paper's study\n"
@@ -52,7 +52,7 @@ def assumptions_of(study: Study, paper: Study, text: str) -> str:
 
     def shared(row):
         keys = re.findall(r"`([\w.]+)`", row.rpartition(" | ")[2])
-        return all(_at(values[0], key) == _at(values[1], key) for key in keys)
+        return all(at_key(values[0], key) == at_key(values[1], key) for key in keys)
 
     *head, body = table.strip().split("\n", 2)
     rows = body.split("\n")
@@ -61,7 +61,3 @@ def assumptions_of(study: Study, paper: Study, text: str) -> str:
         return text
     section = ["## The same as in the paper's study", "", *head, *kept] if kept else []
     return "\n".join([general, *section])
-
-
-def _at(content, key):
-    return functools.reduce(dict.__getitem__, key.split("."), content)

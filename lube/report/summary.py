@@ -195,15 +195,11 @@ def _trends(mean):
     return {
         words: {
             level if unit is None else with_unit(float(f"{level:.3g}"), unit): share
-            for level, share in zip(mean[name].values, _by(mean, name), strict=True)
+            for level, share in mean.mean(set(mean.dims) - {name}).to_series().items()
         }
         for name, (words, unit) in _VARIABLES.items()
         if mean.sizes[name] > 1
     }
-
-
-def _by(mean, name):
-    return mean.mean([dim for dim in mean.dims if dim != name]).values.tolist()
 
 
 def _spread(film, contact, first):
@@ -236,7 +232,7 @@ def _of_surfaces(tail):
 def _held(film, contact, tail, first):
     """Load on the line's asperities, and the numbers of points where the model does not hold."""
     film, surfaces = film.sel(first), tail.sel(first) if contact is None else None
-    found = {"share": math.nan, "overloaded": 0, "merged": 0}
+    found, share = {"share": math.nan, "overloaded": 0, "merged": 0}, film.get("surface_load_share")
     if contact is not None:
         contact = contact.sel(first)
         found = {
@@ -247,9 +243,7 @@ def _held(film, contact, tail, first):
     return found | {
         "deformed": int(deformed(film, surfaces).sum()),
         "small": LARGEST_DEFORMATION,
-        "surface_share": (
-            film["surface_load_share"].max().item() if "surface_load_share" in film else None
-        ),
+        "surface_share": None if share is None else share.max().item(),
         "rubbing": int(rubbing(film).sum()),
         "little": LARGEST_SHARE,
     }
@@ -266,18 +260,14 @@ def _compared(comparison, gauge, first):
     rows = []
     for model in ["line"] if models is None else models.values:
         chosen = first | {"contact_model": model}
-        row = _agreement(comparison, chosen) | {"simulation": "the simulation"}
+        at = chosen | {"threshold": comparison["comparison_threshold"].item()}
+        row = {name: _at(comparison[name], at).item() for name in _AGREEMENT}
+        row["simulation"] = "the simulation"
         row["gauged"] = _gauged(_at(gauge, chosen)) if gauge else None
         if models is not None:
             row["simulation"] += f" of {model}s"
         rows.append(row)
     return rows
-
-
-def _agreement(comparison, chosen):
-    """Measures of agreement between simulation and rig; NaN if there is no record."""
-    chosen = chosen | {"threshold": comparison["comparison_threshold"].item()}
-    return {name: _at(comparison[name], chosen).item() for name in _AGREEMENT}
 
 
 def _gauged(gauge):

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from lube.errors import RangeError
 from lube.kernels.threshold import count_below, follow_contact
 from lube.physics.electrical import divider_voltage
 from lube.statistics.confidence import probability_limits
@@ -49,10 +48,10 @@ class ContactShare:
         Number of samples that a change of state must last to count; it then counts from the first
         of them on. With 0 every change counts.
 
-    Raises
-    ------
-    RangeError
-        If the limits do not rise, or a release is below its limit.
+    Attributes
+    ----------
+    samples : int
+        Samples counted so far.
 
     Examples
     --------
@@ -67,19 +66,13 @@ class ContactShare:
         self, limits: npt.ArrayLike, releases: npt.ArrayLike | None = None, hold: int = 0
     ) -> None:
         self._limits = np.array(limits, float)
-        if self._limits.size == 0 or not np.all(np.diff(self._limits) > 0.0):
-            raise RangeError(f"limits: got {limits}, need one or more limits, rising")
-        releases_of = self._limits if releases is None else np.array(releases, float)
-        if releases_of.size != self._limits.size or np.any(releases_of < self._limits):
-            raise RangeError(
-                f"releases: got {releases}, need one release for each limit, not below it"
-            )
         self._count, self._triggers = count_below, ()
         if releases is not None or hold > 0:
+            releases_of = self._limits if releases is None else np.array(releases, float)
             states = np.zeros((self._limits.size, 3), np.int64)
             self._count, self._triggers = follow_contact, (releases_of, hold, states)
         self._counts = np.zeros((self._limits.size, BLOCKS), np.int64)
-        self._doublings = self._samples = 0
+        self._doublings = self.samples = 0
 
     def add(self, values: np.ndarray) -> None:
         """Count the next piece of the record.
@@ -91,20 +84,15 @@ class ContactShare:
         """
         values = np.ascontiguousarray(values)
         while values.size:
-            room = (BLOCKS << self._doublings) - self._samples
-            seen = self._samples, self._doublings
+            room = (BLOCKS << self._doublings) - self.samples
+            seen = self.samples, self._doublings
             self._count(values[:room], *seen, self._limits, *self._triggers, self._counts)
-            self._samples += min(room, values.size)
+            self.samples += min(room, values.size)
             values = values[room:]
-            if self._samples == BLOCKS << self._doublings:
+            if self.samples == BLOCKS << self._doublings:
                 self._counts[:, : BLOCKS // 2] = _pairs(self._counts)
                 self._counts[:, BLOCKS // 2 :] = 0
                 self._doublings += 1
-
-    @property
-    def samples(self) -> int:
-        """Samples counted so far."""
-        return self._samples
 
     @property
     def below(self) -> np.ndarray:
@@ -114,8 +102,8 @@ class ContactShare:
     @property
     def sizes(self) -> np.ndarray:
         """Samples in each block, shape (B,), int64; the last may be shorter."""
-        firsts = np.arange(0, self._samples, 1 << self._doublings)
-        return np.diff(firsts, append=self._samples)
+        firsts = np.arange(0, self.samples, 1 << self._doublings)
+        return np.diff(firsts, append=self.samples)
 
 
 def record_counter(
@@ -219,11 +207,6 @@ def share_interval(
     share, lower, upper : numpy.ndarray
         Shape (K,) each.
 
-    Raises
-    ------
-    RangeError
-        If the record is empty, or `windows` less than one.
-
     References
     ----------
     .. [1] H. Flyvbjerg, H. G. Petersen, Error estimates on averages of correlated data,
@@ -236,10 +219,6 @@ def share_interval(
     array([0.2])
     """
     below, sizes = np.asarray(below), np.asarray(sizes)
-    if not sizes.sum() > 0:
-        raise RangeError("got a record without samples, need one sample or more")
-    if not windows >= 1.0:
-        raise RangeError(f"windows: got {windows:g}, need at least 1 independent window")
     share = below.sum(axis=-1) / sizes.sum()
     found = [(np.zeros(share.size), 1)]
     for counts in ((below, sizes), *folded):

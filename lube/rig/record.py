@@ -151,7 +151,6 @@ class Record:
         folds = [folded_counts(below, sizes, block, each) for each in periods]
         shares = share_interval(below, sizes, self._windows(revolutions), folds)
         conditions = self._corrected(speed_ratio) if correct_speed else self.conditions
-        steps = self._steps
         return {
             **conditions.labelled(self._study),
             **values_with_limits("contact_share", shares),
@@ -162,7 +161,7 @@ class Record:
             **vars(folded),
             "share_error": folded.share_error if repeats(self._study, self._ratios) else 0.0,
             **self._trace(period),
-            "true_contact_share": self._steps_in_contact / steps if steps else np.nan,
+            "true_contact_share": self._steps_in_contact / self._steps if self._steps else np.nan,
         }
 
     def _corrected(self, speed_ratio):
@@ -190,8 +189,7 @@ class Record:
 
 def _thinned(values, interval):
     """At most `TRACE_SAMPLES` times and values; the minimum and maximum of equal parts."""
-    times = np.full(TRACE_SAMPLES, np.nan)
-    kept = times.copy()
+    times, kept = np.full((2, TRACE_SAMPLES), np.nan)
     if values.size <= TRACE_SAMPLES:
         times[: values.size], kept[: values.size] = interval * np.arange(values.size), values
         return times, kept

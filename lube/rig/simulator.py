@@ -127,7 +127,7 @@ def _revolution(contact, point, study, seed):
     speeds = surface_speeds(point.row["entrainment_speed"].item(), point.slide_to_roll_ratio)
     spacing = study.line_spec.spacing
     time_step, resistance = spacing / max(speeds), study.resistivity / spacing
-    return Revolution(contact, point, time_step, resistance, capacitance, seed)
+    return Revolution(contact, time_step, resistance, capacitance, seed)
 
 
 def repeats(study: Study, ratios: Ratios) -> bool:
@@ -163,8 +163,6 @@ class Revolution:
     ----------
     contact : numpy.ndarray
         Shape (T,), int32, grid points in metal contact at each time step.
-    point : OperatingPoint
-        The operating point.
     time_step : float
         Time between two steps, s.
     spot_resistance : float
@@ -176,7 +174,6 @@ class Revolution:
     """
 
     contact: Array
-    point: OperatingPoint
     time_step: float
     spot_resistance: float
     capacitance: float

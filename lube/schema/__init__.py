@@ -22,7 +22,6 @@ from lube.schema.tables import (
     MASTER_DIMS,
     MEAN_LIMITS,
     OPERATING_DIMS,
-    ORIGINS,
     POINT_DIMS,
     REGIMES,
     SUMMARIES,

@@ -40,17 +40,12 @@ def label(dataset: xr.Dataset, kind: str) -> xr.Dataset:
     for name in labelled.variables:
         expected = _expected(kind, name)
         if expected is not None:  # else refused by `check`
-            content = _content(expected.content, labelled)
+            content = expected.content
+            if content == "record":
+                measured = labelled["origin"].item() == "measured"
+                content = "physicalMeasurement" if measured else "modelResult"
             labelled[name].attrs = {**expected.attributes, "coverage_content_type": content}
     return check(labelled, kind)
-
-
-def _content(content, dataset):
-    """Value of ``coverage_content_type`` for an entry in the table's column ``content``."""
-    if content != "record":
-        return content
-    measured = dataset["origin"].item() == "measured"
-    return "physicalMeasurement" if measured else "modelResult"
 
 
 def check(dataset: xr.Dataset, kind: str, where: File = "dataset") -> xr.Dataset:

@@ -153,9 +153,6 @@ LIMITS = ("", "_lower", "_upper")
 MEAN_LIMITS = ("_mean", "_lower", "_upper")
 """Suffixes of the variables that hold an estimate and the limits of its 95 % interval."""
 
-ORIGINS = ("measured", "simulated")
-"""Possible origins of the records."""
-
 REGIMES = tuple(FILES["film"]["regime"].attributes["flag_meanings"].split())
 """Regimes of lubrication, in the order of their flags."""
 

@@ -7,7 +7,7 @@ import pytest
 from markdown_it import MarkdownIt
 from studies import SMOKE_DATASETS
 
-from lube.archive.page import archive_page
+from lube.archive.build import archive_page
 from lube.study.metadata import About
 
 
@@ -60,7 +60,7 @@ def test_the_place_of_measured_records_is_named_and_refused_ones_with_their_reas
 
 
 def test_code_that_is_not_as_in_its_commit_is_named(page_of, monkeypatch):
-    monkeypatch.setattr("lube.archive.page.changed_code", lambda: ["notebooks/fig02_film.ipynb"])
+    monkeypatch.setattr("lube.archive.build.changed_code", lambda: ["notebooks/fig02_film.ipynb"])
     assert "; changed since that commit: `notebooks/fig02_film.ipynb` |" in page_of()
 
 

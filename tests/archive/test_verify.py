@@ -57,8 +57,11 @@ def test_damaged_sums_are_found(changed):
         (changed / SUMS).write_bytes(content)
         assert verify_archive(changed)
     (changed / SUMS).unlink()
-    with pytest.raises(DataError, match="not an archive: SHA256SUMS is missing"):
-        verify_archive(changed)
+    with (
+        pytest.raises(DataError, match="not an archive: SHA256SUMS is missing"),
+        unpacked(changed),
+    ):
+        pass
 
 
 # Contents

@@ -108,9 +108,8 @@ def test_a_figure_of_another_dataset_is_named(drawn):
 def test_a_figure_without_a_readable_origin_is_named(drawn):
     path = drawn / origin(FIGURE)
     expected = [f"{path}: missing or damaged{REMEDY}"]
-    for text in ("{}", "no JSON"):
-        path.write_text(text)
-        assert list(wrong_figures([FIGURE], drawn, drawn)) == expected
+    path.write_text("no JSON")
+    assert list(wrong_figures([FIGURE], drawn, drawn)) == expected
     path.unlink()
     assert list(wrong_figures([FIGURE], drawn, drawn)) == expected
 

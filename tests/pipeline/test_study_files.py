@@ -1,7 +1,5 @@
 """The files of a study as the rules name them."""
 
-import re
-
 import pytest
 from studies import SMOKE
 from unlike_studies import STUDIES, write_study
@@ -46,12 +44,6 @@ def test_profiles_along_rolling_have_no_surface_to_press_or_to_count(tmp_path):
 def test_inputs_are_named_from_the_working_folder_each_once(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert input_paths([tmp_path / "b", "a", tmp_path / "a"]) == ["a", "b"]
-
-
-def test_a_name_that_snakemake_takes_for_a_wildcard_is_refused():
-    line = "The study cannot start. {oil}.yaml: the name of a file must not contain { or }"
-    with pytest.raises(SystemExit, match=f"^{re.escape(line)}$"):
-        input_paths(["{oil}.yaml"])
 
 
 def test_fingerprints_follow_values_and_makers(files, study):

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from kernels.test_threshold import plain_contact
 
-from lube.errors import RangeError
 from lube.physics.electrical import divider_voltage
 from lube.rig.contact_share import (
     BLOCKS,
@@ -73,18 +72,6 @@ def test_a_record_of_single_precision_is_counted_as_it_is():
     values = np.random.default_rng(3).random(10_000).astype(np.float32)
     expected = [np.count_nonzero(values.astype(float) < limit) for limit in (0.1, 0.7)]
     assert count([values], [0.1, 0.7]).below.sum(axis=1).tolist() == expected
-
-
-def test_impossible_limits_are_refused():
-    for options, reason in (
-        (([],), "limits: got"),
-        (([2.0, 1.0],), "need one or more limits, rising"),
-        (([1.0, np.nan],), "need one or more limits, rising"),
-        (([1.0, 2.0], [1.0]), "releases: got"),
-        (([1.0, 2.0], [1.0, 1.5]), "not below it"),
-    ):
-        with pytest.raises(RangeError, match=reason):
-            ContactShare(*options)
 
 
 # A study's thresholds
@@ -252,13 +239,3 @@ def test_folding_loses_no_sample(blocks, period):
     assert around.shape == (3, lengths.size) and lengths.size <= STRETCHES
     np.testing.assert_array_equal(around.sum(axis=1), below.sum(axis=1))
     assert lengths.sum() == sizes.sum()
-
-
-def test_an_interval_needs_samples_and_a_window():
-    for below, sizes, windows, reason in (
-        (np.empty((1, 0)), np.empty(0), 5.0, "without samples"),
-        (np.ones((1, 9)), np.ones(9), 0.5, "windows: got 0.5"),
-        (np.ones((1, 9)), np.ones(9), np.nan, "windows: got nan"),
-    ):
-        with pytest.raises(RangeError, match=reason):
-            share_interval(below, sizes, windows)

@@ -20,7 +20,7 @@ QUIET = {"noise": "0 V", "resolution": 32}
 
 def logged(contact, rig, seed=1, capacitance=CAPACITANCE):
     contact = np.array(contact, np.int32)
-    return Revolution(contact, None, TIME_STEP, SPOT, capacitance, (seed,)).voltage(rig)
+    return Revolution(contact, TIME_STEP, SPOT, capacitance, (seed,)).voltage(rig)
 
 
 def test_a_steady_contact_is_logged_with_its_resistance_and_none_as_the_leak():
@@ -109,7 +109,7 @@ def test_every_pair_passes_all_points_for_all_its_revolutions(finer, with_rig, p
     assert [(pair, number) for pair, number, _ in passed] == [
         (pair, number) for pair in range(3) for _turn in range(3) for number in range(len(points))
     ]
-    assert all(revolution.point is points[number] for _, number, revolution in passed)
+    assert all(revolution.seed[2] == number + 1 for _, number, revolution in passed)
     sizes = [
         revolution.contact.size for pair, number, revolution in passed if (pair, number) == (0, 0)
     ]
@@ -161,7 +161,7 @@ def test_drift_renews_its_share_of_the_variance_each_turn(finer, with_rig, drift
 def test_the_faster_surface_passes_one_grid_point_each_time_step(finer, with_rig, slipping):
     one = with_rig(finer, revolutions=1)
     _, _, revolution = run(one, slipping)[0]
-    faster = 1.05 * revolution.point.row["entrainment_speed"].item()
+    faster = 1.05 * slipping[0].row["entrainment_speed"].item()
     assert revolution.time_step == pytest.approx(finer.line_spec.spacing / faster)
     turn = 2.0 * np.pi * finer.rollers.first.radius / faster
     assert revolution.contact.size * revolution.time_step == pytest.approx(turn)

@@ -7,9 +7,9 @@ from refusals import NEEDED, one_line
 from studies import OIL, PAPER_CONTENT, REMOVED
 
 from lube.errors import LubeError
-from lube.report.key_tables import study_keys
+from lube.report.key_tables import keys
 from lube.study.rollers import AUTOMATIC_WAVELENGTH
-from lube.study.study import load_study
+from lube.study.study import Study, load_study
 
 refusal = partial(one_line, LubeError, load_study)
 
@@ -128,7 +128,7 @@ def test_a_mistake_is_refused_by_key_value_and_what_is_needed(paper_with):
 
 def test_a_quantity_needs_a_unit_of_its_dimension(paper_with):
     tested = 0
-    for cell, value, _ in study_keys():  # of the JSON schema
+    for cell, value, _ in keys(Study):  # of the JSON schema
         key = cell.strip("`").replace("[]", ".0")
         match = re.match(r"quantity in ([^ ,(]+)(, above 0)?", value)
         if match is None:
