@@ -5,6 +5,7 @@ film. The lines enter the gap as drawn, or the oil flattens or answers their wav
 """
 
 import copy
+from itertools import groupby, repeat
 
 import numpy as np
 import xarray as xr
@@ -256,10 +257,12 @@ class ContactWindows:
             widths = 2 * self.half_windows + 1
             return rare_contact(spec, seed, number, self.thickness, widths, self._factors)
         known = np.flatnonzero(~self.unknown)
+        # Points to which the oil answers alike follow one another, so that lines are filtered once.
+        known = known[np.argsort([id(one) for one in self._answers[known, 0]], kind="stable")]
         places = [self._place(point, spec) for point in known]
         pair = RarePair(spec, seed, number, max((one.film.size for one in places), default=1))
         waves = [Waves(line, self._grid) for line in pair.lines]
-        filtered = (_filtered(waves, self._answers[point]) for point in known)
+        filtered = _filtered_by_each(waves, self._answers[known])
         ratios = np.reshape([speed_ratios(slip) for slip in slips.flat], (*slips.shape, 2))
         ratios = np.broadcast_to(ratios, (self.size, *ratios.shape[1:]))[known]
         found = rare_contact_under(pair, places, filtered, self._factors[known], ratios)
@@ -391,6 +394,14 @@ def _begun(pair, ratios, begin):
     """Lines of a pair, turned to their position at a time step."""
     positions = (surface_position(begin, ratio) for ratio in ratios)
     return tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))
+
+
+def _filtered_by_each(waves, answers):
+    """Yield two lines filtered by each pair of answers, the same lines while these are the same."""
+    for _, alike in groupby(answers, key=lambda both: tuple(map(id, both))):
+        both, *others = alike
+        lines = _filtered(waves, both)
+        yield from repeat(lines, 1 + len(others))
 
 
 def _filtered(waves, answers):
