@@ -42,7 +42,8 @@ def test_moved_sliders_show_the_numbers_of_the_datasets_and_curves(expected, tmp
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     moves = [f"controls[{name!r}].value = {level}" for name, level in CHOSEN.items()]
     notebook.cells.append(new_code_cell("\n".join(moves)))
-    NotebookClient(notebook, resources={"metadata": {"path": tmp_path}}).execute()
+    options = {"timeout": 120, "resources": {"metadata": {"path": tmp_path}}}
+    NotebookClient(notebook, **options).execute()
     state = notebook.metadata.widgets["application/vnd.jupyter.widget-state+json"]["state"]
     (shown,) = [one["state"] for one in state.values() if one["model_name"] == "OutputModel"]
     said, picture = shown["outputs"]
