@@ -25,10 +25,11 @@ def test_what_is_missing_or_no_archive_is_refused_in_one_line(files, tmp_path, m
         assert printed.err.count("\n") == 1
 
 
-def test_figures_may_be_named_before_and_after_their_folder(monkeypatch, capsys):
+def test_figures_may_be_named_before_and_after_their_folder(monkeypatch, capsys, tmp_path):
     asked = []
     monkeypatch.setattr("lube.archive.redraw.redraw", lambda *words: asked.append(words) or [])
-    archive = os.path.dirname(__file__)
+    (tmp_path / "SHA256SUMS").touch()
+    archive = str(tmp_path)
     for words in (["a", "b", "--to", "new"], ["a", "--to", "new", "b"], ["--to", "new", "a", "b"]):
         assert main(["figures", archive, *words]) == 0
     assert [words[1:] for words in asked] == [("new", ["a", "b"])] * 3
