@@ -54,25 +54,12 @@ def film_at(
         Names of film formulas.
     slide_to_roll_ratio : xarray.DataArray or float, optional
         Slide-to-roll ratio.
-    with_shape : bool, optional
+    with_shape, inlet_shear_heating, inlet_meniscus, answered_lines
         As in `lube.stages.film.film_table`.
-    inlet_shear_heating : str, optional
-        One of `lube.physics.inlet_heating.INLET_HEATING`; by default the film is not reduced. The
-        factor is a variable of the result in any case.
-    inlet_meniscus : float, optional
-        Distance before the line of centres at which the oil begins, m; by default the contact is
-        fully flooded.
-    answered_lines : LineSpec, optional
-        Roughness lines that the film answers: its response to their waves becomes part of the
-        result. By default lines enter the gap as drawn.
     answered_surfaces : LineSpec, optional
         Roughness lines of surfaces that the oil answers; adds `surface_responses`.
-    rough_surfaces : LineSpec, optional
-        Lines that stand for the rollers' rough surfaces: the result has the share of the load that
-        their asperities carry.
-    load_sharing : str, optional
-        With "iterated" the oil carries only what these asperities leave of the load; by default
-        the oil carries all of it.
+    rough_surfaces, load_sharing
+        As in `lube.stages.film.film_table`.
     threads : int, optional
         Threads that share the responses' work; they do not change the results.
 

@@ -1,7 +1,6 @@
 """The film stage: film thickness, lambda ratio and regime at every operating point."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -9,6 +8,7 @@ import xarray as xr
 
 from lube.grid.films import film_at
 from lube.schema import CONTACT_DIMS, label
+from lube.study.line_spec import LineSpec
 from lube.study.rollers import RollerPair
 from lube.study.study import Study
 from lube.types import Datasets
@@ -36,7 +36,11 @@ def film_table(
     formulas: Sequence[str],
     with_shape: bool = False,
     slide_to_roll_ratio: npt.ArrayLike = (0.0,),
-    **model: Any,
+    inlet_shear_heating: str = "none",
+    inlet_meniscus: float | None = None,
+    answered_lines: LineSpec | None = None,
+    rough_surfaces: LineSpec | None = None,
+    load_sharing: str = "none",
 ) -> xr.Dataset:
     """Tabulate the film thickness of a pair of rollers over the operating grid.
 
@@ -59,9 +63,21 @@ def film_table(
         Whether the film has the shape of the computed one; by default it is flat.
     slide_to_roll_ratio : array_like, shape (slide_to_roll_ratio,), optional
         Levels of the slide-to-roll ratio; the default is pure rolling.
-    **model
-        `inlet_shear_heating`, `inlet_meniscus`, `answered_lines`, `rough_surfaces` and
-        `load_sharing`, as in `lube.grid.films.film_at`.
+    inlet_shear_heating : str, optional
+        One of `lube.physics.inlet_heating.INLET_HEATING`; by default the film is not reduced. The
+        factor is a variable of the result in any case.
+    inlet_meniscus : float, optional
+        Distance before the line of centres at which the oil begins, m; by default the contact is
+        fully flooded.
+    answered_lines : LineSpec, optional
+        Roughness lines that the film answers: its response to their waves becomes part of the
+        result. By default lines enter the gap as drawn.
+    rough_surfaces : LineSpec, optional
+        Lines that stand for the rollers' rough surfaces: the result has the share of the load that
+        their asperities carry.
+    load_sharing : str, optional
+        With "iterated" the oil carries only what these asperities leave of the load; by default
+        the oil carries all of it.
 
     Returns
     -------
@@ -92,7 +108,10 @@ def film_table(
     """
     levels = {"force": force, "speed": speed, "slide_to_roll_ratio": slide_to_roll_ratio}
     axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
-    force, speed, slip = (axes[name] for name in levels)
-    table = film_at(lubricant, rollers, force, speed, formulas, with_shape, slip, **model)
+    slip = axes["slide_to_roll_ratio"]
+    options = with_shape, slip, inlet_shear_heating, inlet_meniscus, answered_lines
+    asperities = {"rough_surfaces": rough_surfaces, "load_sharing": load_sharing}
+    forces, speeds = axes["force"], axes["speed"]
+    table = film_at(lubricant, rollers, forces, speeds, formulas, *options, **asperities)
     dims = CONTACT_DIMS[0], "roller", *CONTACT_DIMS[1:]
     return label(table.transpose(*dims, ..., missing_dims="ignore"), "film")
