@@ -218,12 +218,8 @@ def archive_page(study: Study, study_file: str, kinds: list[str], results: Datas
 
     Parameters
     ----------
-    study : Study
-        The study.
-    study_file : str
-        Path of its file below the archive's folder ``study``, with slashes.
-    kinds : list of str
-        Its datasets in the archive.
+    study, study_file, kinds
+        As in `values_text`.
     results : dict of str to xarray.Dataset
         Its datasets `lube.report.SUMMARISED`, by name.
 

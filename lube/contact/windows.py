@@ -320,8 +320,7 @@ class ContactWindows:
         """Maker of contact windows, the same for all films to which the oil answers alike."""
         key = window.before, window.film.size, *map(id, answers)
         if key not in self._alike:
-            about = spec, window.film.size, window.before, tuple(answers)
-            self._alike[key] = answered_windows(*about)
+            self._alike[key] = answered_windows(spec, window.film.size, window.before, answers)
         return self._alike[key]
 
     def _in_contact(self, pair):
