@@ -222,17 +222,17 @@ class StudyFiles:
             for stage, row in STAGES.items():
                 names = stage, self.result(f"{stage}.nc"), row.target
                 if os.path.normpath(target) in names and not self.study.has(stage):
-                    self._check_stage(target, row)
+                    self._check_stage(target, stage)
                 elif target in names and row.target == "sensitivity":
                     with located(f"{self.path}: uncertainty"):
                         check_uncertainty(self.study)
 
-    def _check_stage(self, target, row):
+    def _check_stage(self, target, stage):
         """Refuse a file, or a target that makes no other file."""
-        others = [name for name, one in STAGES.items() if one.target == row.target]
-        if target == row.target and any(self.study.has(name) for name in others):
+        of_target = [name for name, row in STAGES.items() if row.target == target]
+        if any(self.study.has(name) for name in of_target):
             return
-        needed = " and ".join(_NEEDED[name] for name in row.only_with)
+        needed = " and ".join(_NEEDED[name] for name in self.study.lacks(stage))
         raise LubeError(f"{self.path}: got the target {target}, need {needed}")
 
     def refused_records(self) -> str | None:

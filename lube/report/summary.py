@@ -29,6 +29,8 @@ _AGREEMENT = (
     "overlap_share_expected_lower overlap_share_expected_upper"
 ).split()
 """Measures of agreement between simulation and rig that the summary states."""
+_ENDS = {"_mean": "", "_lower": "_lower", "_upper": "_upper"}
+"""Ends of the names of a mean over realisations and its limits, and of a sampled probability."""
 _VARIABLES = {
     "force": ("normal force", "N"),
     "speed": ("rotation speed", "rpm"),
@@ -107,21 +109,25 @@ def findings(study: Study, results: Mapping[str, xr.Dataset]) -> str:
         Markdown: what was found, with the film formula that the study names first; tables of the
         means over each operating variable and of the points of the traces; the refused records.
     """
-    film, contact, comparison = map(results.get, ("film", "contact", "comparison"))
+    film, comparison = map(results.get, ("film", "comparison"))
     first = {"film_formula": study.film_formulas[0]}
-    counted = contact is not None
-    if not counted:
-        contact = _of_surfaces(results["tail"])
+    lines = results["contact"] if "line" in study.contact_model else None
+    known = {"line": _of_lines, "surface": _of_surfaces}
+    contacts = {model: known[model](study, results) for model in study.contact_model}
     return render(
         "findings.md",
         study=study,
         film=_film(film, first, 2.0 * math.pi / study.line_spec.q_max),
-        contact=_contact(contact.sel(first)),
-        trends=_trends(contact["breakthrough_probability_mean"].sel(first)),
-        spread=_spread(film, contact, first),
-        held=_held(film, contact if counted else None, results["tail"], first),
+        contacts={model: _contact(each.sel(first)) for model, each in contacts.items()},
+        trends={model: _trends(each.sel(first)) for model, each in contacts.items()},
+        spread=None if lines is None else _spread(film, lines, first),
+        held=_held(film, lines, results["tail"], first),
         compared=_compared(comparison, results.get("gauge"), first) if comparison else [],
-        traces=[_trace(point, film, contact, comparison) for point in study.trace_points],
+        traces=[
+            _trace(point, film, model, each, comparison)
+            for point in study.trace_points
+            for model, each in contacts.items()
+        ],
         notes={
             "Records that were refused, and are in no result": _lines(results, "refused"),
             "Remarks on records": _lines(results, "remarks"),
@@ -181,17 +187,17 @@ def _contact(contact):
 def _probability(here):
     """Coordinates and probability of one operating point, and the scatter between its pairs."""
     lower, upper = (here[f"breakthrough_probability_{end}"].item() for end in ("lower", "upper"))
-    pairs = here["breakthrough_probability"].values
     return {
         **{name: here[name].item() for name in _VARIABLES},
         "mean": here["breakthrough_probability_mean"].item(),
         "interval": [lower, upper],
-        "deviation": pairs.std(ddof=1) if pairs.size > 1 else math.nan,
+        "deviation": here["pair_deviation"].item(),
     }
 
 
-def _trends(mean):
+def _trends(contact):
     """Mean probability at each level of the operating variables that have several."""
+    mean = contact["breakthrough_probability_mean"]
     return {
         words: {
             level if unit is None else with_unit(float(f"{level:.3g}"), unit): share
@@ -220,18 +226,30 @@ def _spread(film, contact, first):
     }
 
 
-def _of_surfaces(tail):
+def _of_lines(study, results):
+    """Probabilities of lines, and the scatter between pairs if there are several."""
+    contact = results["contact"]
+    pairs = contact["breakthrough_probability"]
+    deviation = pairs.std("realisation", ddof=1) if study.realisations > 1 else pairs[0] * math.nan
+    return contact[[f"breakthrough_probability{end}" for end in _ENDS]].assign(
+        pair_deviation=deviation
+    )
+
+
+def _of_surfaces(study, results):
     """Probabilities of surfaces, named as the means over realisations of lines are."""
-    of_surfaces = tail.sel(contact_model="surface")
-    name = "breakthrough_probability"
-    ends = {"_mean": "", "_lower": "_lower", "_upper": "_upper"}
-    found = {f"{name}{end}": of_surfaces[f"{name}{own}"] for end, own in ends.items()}
-    return xr.Dataset(found | {name: xr.full_like(found[f"{name}_mean"], np.nan)})
+    tail = results["tail"].sel(contact_model="surface")
+    found = {
+        f"breakthrough_probability{end}": tail[f"breakthrough_probability{own}"]
+        for end, own in _ENDS.items()
+    }
+    rolling = tail["slide_to_roll_ratio"] == 0.0
+    return xr.Dataset(found | {"pair_deviation": tail["surface_pair_deviation"].where(rolling)})
 
 
 def _held(film, contact, tail, first):
     """Load on the line's asperities, and the numbers of points where the model does not hold."""
-    film, surfaces = film.sel(first), tail.sel(first) if contact is None else None
+    film, surfaces = film.sel(first), tail if contact is None else None
     found, share = {"share": math.nan, "overloaded": 0, "merged": 0}, film.get("surface_load_share")
     if contact is not None:
         contact = contact.sel(first)
@@ -286,10 +304,11 @@ def _at(variable, point):
     return variable.sel({name: level for name, level in point.items() if name in variable.dims})
 
 
-def _trace(point, film, contact, comparison):
-    """Values at one operating point."""
+def _trace(point, film, model, contact, comparison):
+    """Values at one operating point, by one contact model."""
     shares = _measured_near(comparison, point) if comparison else np.array([])
     return {
+        "model": model,
         **_probability(contact.sel(point)),
         "film": _at(film["film_thickness"], point).item(),
         "lambda_ratio": _at(film["lambda_ratio"], point).item(),

@@ -121,7 +121,8 @@ def _by_model(study, film, lines, areal):
     found = xr.concat([tables[name] for name in models], levels, join="exact")
     if study.gap.is_answered:
         found = found.assign(surface_rms_deformation=areal["surface_rms_deformation"])
-    return found.assign(theory)
+    deviation = _in_pure_rolling(areal["pair_deviation"])
+    return found.assign(theory, surface_pair_deviation=deviation)
 
 
 def _on_surfaces(study, speed, areal):

@@ -261,8 +261,12 @@ class Study(StrictModel):
         return forerunners(stage, lambda attribute: attrgetter(attribute)(self))
 
     def has(self, stage: str) -> bool:
-        """Whether the study has all that a stage needs (`only_with`)."""
-        return all(attrgetter(name)(self) for name in STAGES[stage].only_with)
+        """Whether the study has all that a stage needs."""
+        return not self.lacks(stage)
+
+    def lacks(self, stage: str) -> list[str]:
+        """List what a stage needs (`only_with`) and the study does not have."""
+        return [name for name in STAGES[stage].only_with if not attrgetter(name)(self)]
 
     @property
     def batches(self) -> range:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from lube.report.summary import facts, findings, made
 from lube.study.oil_properties import lubricant_table
@@ -159,6 +160,26 @@ def test_points_whose_surfaces_carry_much_of_the_load_are_counted(study, results
     text = findings(study, results | {"film": film.assign(surface_load_share=share)})
     assert "Asperities of the surfaces carry up to 30 % of the load, although the film" in text
     assert "more than 10 % at 4 of the 16 operating points" in text
+
+
+def test_contact_of_surfaces_is_stated_beside_that_of_lines_or_alone(study, results):
+    mean = results["contact"]["breakthrough_probability_mean"]
+    models = xr.DataArray(["line", "surface"], dims="contact_model", name="contact_model")
+    probability = xr.concat([np.nan * mean, 0.0 * mean + 0.7], models)
+    ends = {"": 1.0, "_lower": 0.9, "_upper": 1.1}
+    tail = {f"breakthrough_probability{end}": probability * by for end, by in ends.items()}
+    rolling = mean.isel(slide_to_roll_ratio=0, drop=True)
+    tail["surface_pair_deviation"] = xr.full_like(rolling, 0.02)
+    results = results | {"tail": xr.Dataset(tail)}
+    both = findings(study.model_copy(update={"contact_model": ("line", "surface")}), results)
+    sentence = "Metal contact of the surfaces occurs at 16 of 16 operating points: more than 10 %"
+    row = "| 0.283 µm | 1 | surfaces | **70 %** (63 % to 77 %) | 2 % |"
+    lines = "Metal contact of the lines occurs at 2 of 16", "1 | lines | **0 %**", "0.01 %; 1600"
+    for words in (sentence, row, *lines, "| normal force | 800 N: 70 %; 1600 N: 70 % |"):
+        assert words in both
+    alone = findings(study.model_copy(update={"contact_model": ("surface",)}), results)
+    assert sentence in alone and row.replace(" surfaces |", "") in alone
+    assert "43.2 %**" not in alone and "of the lines" not in alone
 
 
 def test_measured_records_are_not_called_simulated(study, results):
