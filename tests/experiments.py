@@ -84,17 +84,23 @@ def surface_probability(ratios):
 
 
 def made_up_surfaces(ratios, error=0.0):
-    """A ``surface_records`` dataset at some lambda ratios, with a relative standard error."""
-    curves = np.repeat(surface_probability(CURVE_RATIOS)[:, None], ratios.size, axis=1)
+    """A ``surface_records`` dataset at the lambda ratios of records by every film formula.
+
+    It has a relative standard error.
+    """
+    ratios = ratios.transpose("film_formula", "record")
+    records = ratios.sizes["record"]
+    curves = np.repeat(surface_probability(CURVE_RATIOS)[:, None], records, axis=1)
     sides = np.array([1.0, 1.0 - 2.0 * error, 1.0 + 2.0 * error])
     values = {
-        "record": [f"record {number}" for number in range(ratios.size)],
-        "sample_size": np.full(ratios.size, float(SURFACE_WINDOWS)),
-        "scatter_ratio": np.ones(ratios.size),
+        "record": [f"record {number}" for number in range(records)],
+        "film_formula": ratios["film_formula"].values,
+        "sample_size": np.full(ratios.shape, float(SURFACE_WINDOWS)),
+        "scatter_ratio": np.ones(records),
         "curve_lambda_ratio": CURVE_RATIOS,
         "curve_sample_size": np.full(curves.shape, float(SURFACE_WINDOWS)),
         **values_with_limits("curve_probability", sides[:, None, None] * curves),
     }
-    limits = sides[:, None] * surface_probability(ratios)
+    limits = sides[:, None, None] * surface_probability(ratios.values)
     values |= values_with_limits("breakthrough_probability", limits)
     return label(xr.Dataset(with_dims("surface_records", values)), "surface_records")

@@ -6,6 +6,7 @@ record, and its film is read from their probability at thinner and thicker films
 """
 
 import numpy as np
+import scipy.special
 import xarray as xr
 
 from lube.contact.strip_film import surface_moments
@@ -34,7 +35,7 @@ _SLIP = "slide_to_roll_ratio"
 def surfaces_at_records(
     study: Study,
     experiment: xr.Dataset,
-    first: xr.Dataset,
+    films: xr.Dataset,
     inputs: Datasets,
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -46,9 +47,8 @@ def surfaces_at_records(
         Its surfaces, boundary layer, films and seed.
     experiment : xarray.Dataset
         An ``experiment`` dataset.
-    first : xarray.Dataset
-        Films at its records by the first film formula, from
-        `lube.inference.at_records.study_films_at_records`, without the dimension film_formula.
+    films : xarray.Dataset
+        Films at its records, from `lube.inference.at_records.study_films_at_records`.
     inputs : dict of str to xarray.Dataset
         The study's ``film`` and ``areal``, and its ``surface_response`` if the oil answers the
         surfaces. Where they contain the film of a record, its probability is taken from them.
@@ -58,13 +58,15 @@ def surfaces_at_records(
     Returns
     -------
     xarray.Dataset
-        ``breakthrough_probability`` with ``_lower`` and ``_upper`` over record;
-        ``sample_size``, the effective sample size of one revolution of pure rolling; and
-        ``scatter_ratio`` from `lube.inference.surface_scatter.surface_scatter`. As
-        ``curve_probability`` and ``curve_sample_size`` the same over curve_lambda_ratio and record:
-        for the film of the record, made thinner and thicker. The shape of the film, and how the oil
-        deforms the surfaces, stay those of the record.
+        ``breakthrough_probability`` with ``_lower`` and ``_upper`` over film_formula and record,
+        and ``sample_size``, the effective sample size of one revolution of pure rolling: sampled
+        for the first film formula, read from curves for the others. These curves are
+        ``curve_probability`` and ``curve_sample_size`` over curve_lambda_ratio and record: the
+        same for the film of the record, made thinner and thicker. The shape of the film, and how
+        the oil deforms the surfaces, stay those of the record. And ``scatter_ratio`` from
+        `lube.inference.surface_scatter.surface_scatter`.
     """
+    first = films.isel(film_formula=0)
     grid, known = _on_grid(study, inputs)
     rows = {key: row for row, key in enumerate(study_windows(study, grid).keys)}
     row_of = np.array([rows.get(key, -1) for key in study_windows(study, first).keys], int)
@@ -78,18 +80,34 @@ def surfaces_at_records(
     if study.gap.is_answered:  # the responses of the film are over other wavelengths
         parts = [(here, grid.isel(record=row_of[here])), (~here, others)]
     thickness = xr.DataArray(ratios, dims="curve_film") * first["composite_rms_roughness"].item()
-    for records, films in parts:
-        films = films.assign(film_thickness=thickness * xr.ones_like(films["film_thickness"]))
-        curves[..., records] = _sampled(study, films, threads, FEWER)
+    for records, some in parts:
+        some = some.assign(film_thickness=thickness * xr.ones_like(some["film_thickness"]))
+        curves[..., records] = _sampled(study, some, threads, FEWER)
+    by_formula = _by_formula(own, np.log(ratios), curves, films, study.gap.has_shape)
     found = {
+        "film_formula": films["film_formula"].values,
         "curve_lambda_ratio": ratios,
-        **values_with_limits("breakthrough_probability", own[:3]),
-        "sample_size": own[3],
+        **values_with_limits("breakthrough_probability", by_formula[:3]),
+        "sample_size": by_formula[3],
         "scatter_ratio": surface_scatter(study, experiment, first, own[0]),
         **values_with_limits("curve_probability", curves[:3]),
         "curve_sample_size": curves[3],
     }
     return xr.Dataset(with_dims("surface_records", found))
+
+
+def _by_formula(own, log_ratios, curves, films, has_shape):
+    """Numbers as from `_numbers` by every film formula: by the others, read from the curves."""
+    others = np.log(films["lambda_ratio"].transpose("film_formula", "record").values)
+    others = (others + curve_offsets(films, has_shape))[1:]
+    found = np.empty((4, *others.shape))
+    for record in range(others.shape[1]):
+        *limits, sizes = curves[..., record]
+        for values, limit in zip(found, limits, strict=False):
+            curve = contact_curve(log_ratios, limit, sizes)
+            values[:, record] = scipy.special.expit(curve.logit_at(others[:, record]))
+        found[3, :, record] = np.interp(others[:, record], log_ratios, sizes)
+    return np.concatenate([own[:, None], found], axis=1)
 
 
 def _on_grid(study, inputs):

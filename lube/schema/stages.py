@@ -160,6 +160,7 @@ _ROWS = (
         inputs=("film",),
         inputs_with={"surface_response": "gap.is_answered"},
         values=_LINES | _CONTACT | _named("rollers.length"),
+        parameters=("has_surfaces",),
         target="areal_contact",
         only_with=(*_SURFACE, "gap.is_on_surfaces"),
         parallel=True,

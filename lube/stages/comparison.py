@@ -83,9 +83,9 @@ def compare(
         the measured share lies in it; figures of agreement for every film formula and
         threshold, with their range for a correct model; and the simulated and measured means over
         the records at every force, speed and temperature. With surfaces these are also over
-        contact_model; surfaces are compared by the first film formula, without the range for a
-        correct model. The attribute ``missing`` lists operating points without a record,
-        ``remarks`` records of one point that contradict each other.
+        contact_model; surfaces are compared without the range for a correct model. The attribute
+        ``missing`` lists operating points without a record, ``remarks`` records of one point that
+        contradict each other.
     """
     table = _table(model, experiment).set_coords([*AT_RECORDS, "origin"])
     sides = {}
@@ -136,14 +136,11 @@ def _of_lines(table):
 
 
 def _of_surfaces(table, surfaces):
-    """As `_of_lines`, of surfaces by the first film formula; NaN for other formulas."""
-    shape = table.sizes["film_formula"] - 1, table.sizes["record"]
+    """As `_of_lines`, of surfaces."""
     limits = [surfaces[f"breakthrough_probability{limit}"].values for limit in LIMITS]
     noise = np.hypot(table["share_error"].values, 0.25 * (limits[2] - limits[1]))
     size, ratio = surfaces["sample_size"].values, surfaces["scatter_ratio"].values
-    predicted = prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
-    others = np.full(shape, np.nan)
-    return tuple([np.vstack([row, others]) for row in rows] for rows in (limits, predicted))
+    return limits, prediction_limits(limits[0], size, ratio, SURFACES, noise, 0.0)
 
 
 def _judged(table, experiment, sides):

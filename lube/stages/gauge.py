@@ -7,7 +7,7 @@ the pressure-viscosity coefficient, or the strength of the boundary layer.
 
 A record comes from one pair of rollers. How far its share may lie from the mean follows from the
 scatter between the realisations; the interval includes it, and the error of the mean. Records that
-are compared with surfaces are also read as contact of surfaces, by the first film formula.
+are compared with surfaces are also read as contact of surfaces.
 """
 
 import numpy as np
@@ -46,8 +46,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         else:
             records = _of_surfaces(records, inputs["surface_records"])
             curves = surface_curves(inputs["surface_records"], records, study.gap.has_shape)
-            of_first = _inferred(curves, contact, records)
-            inferred.append(of_first.reindex(film_formula=comparison["film_formula"]))
+            inferred.append(_inferred(curves, contact, records))
     by_model = xr.concat(inferred, comparison["contact_model"], join="exact")
     layer = study.boundary_layer
     strength = layer.shear_strength / layer.critical_thickness
@@ -55,18 +54,17 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 
 def _of_surfaces(comparison, surfaces):
-    """Comparison with surfaces, by the first film formula, as the fits read it.
+    """Comparison with surfaces, as the fits read it.
 
     Its probability has no error from realisations, but that of its curve adds to the noise.
     """
-    first = comparison.isel(film_formula=[0])
-    probability, noise = first["simulated_probability"], first["share_error"]
-    errors = reading_errors(surfaces, first["measured_share"].values)
-    return first.assign(
+    probability, noise = comparison["simulated_probability"], comparison["share_error"]
+    errors = reading_errors(surfaces, comparison["measured_share"].values)
+    return comparison.assign(
         pooled_probability=probability,
         pooled_error=xr.zeros_like(probability),
         share_error=noise.copy(data=np.hypot(noise.values, errors)),
-        scatter_ratio=probability.copy(data=surfaces["scatter_ratio"].values[None]),
+        scatter_ratio=xr.zeros_like(probability) + surfaces["scatter_ratio"].drop_attrs(),
         sample_size=surfaces["sample_size"].drop_attrs(),
     )
 

@@ -24,6 +24,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
         `lube.inference.surface_records.surfaces_at_records`.
     """
     experiment = inputs["experiment"]
-    first = study_films_at_records(study, experiment).isel(film_formula=0)
-    found = surfaces_at_records(study, experiment, first, inputs, threads)
+    films = study_films_at_records(study, experiment)
+    found = surfaces_at_records(study, experiment, films, inputs, threads)
     return label(found.assign_coords(record=experiment["record"].values), "surface_records")

@@ -113,7 +113,6 @@ def _by_model(study, film, lines, areal):
     """Variables of lines and of surfaces over contact_model; the theory is for lines."""
     theory, lines = lines[list(_ASYMPTOTES)], lines.drop_vars(_ASYMPTOTES)
     known = _on_surfaces(study, film["entrainment_speed"], areal.drop_attrs())
-    known = known.reindex(film_formula=lines["film_formula"])
     surfaces = {name: known[name].transpose(*lines[name].dims) for name in lines}
     tables = {"line": lines, "surface": lines.assign(surfaces)}
     models = list(study.contact_model)
@@ -122,11 +121,11 @@ def _by_model(study, film, lines, areal):
     if study.gap.is_answered:
         found = found.assign(surface_rms_deformation=areal["surface_rms_deformation"])
     deviation = _in_pure_rolling(areal["pair_deviation"])
-    return found.assign(theory, surface_pair_deviation=deviation)
+    return found.assign(surface_pair_deviation=deviation, **theory)
 
 
 def _on_surfaces(study, speed, areal):
-    """Variables of surfaces, for the first film formula.
+    """Variables of surfaces.
 
     A contact is counted once, from where it appears in the strip to where it disappears.
     """

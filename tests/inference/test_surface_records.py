@@ -28,8 +28,9 @@ def of_surfaces(busy_study, **changes):
 def at_records(study, inputs, force, temperature=40.0):
     """Surfaces at records of some forces."""
     experiment = experiment_of(np.full(len(force), 0.5), np.array(force), 100.0, temperature)
-    first = study_films_at_records(study, experiment).isel(film_formula=0)
-    return first, surfaces_at_records(study, experiment, first, inputs, 2)
+    films = study_films_at_records(study, experiment)
+    found = surfaces_at_records(study, experiment, films, inputs, 2)
+    return films.isel(film_formula=0), found.isel(film_formula=0)
 
 
 @pytest.fixture(scope="module")
@@ -127,10 +128,27 @@ def test_between_its_films_a_curve_is_that_of_independent_contacts():
 def test_an_unknown_film_has_no_contact_and_no_curve_its_neighbours_have(plain):
     study, inputs = plain
     experiment = experiment_of([0.5, 0.5], np.array([900.0, 1600.0]), 100.0, 40.0)
-    first = study_films_at_records(study, experiment).isel(film_formula=0)
-    first["film_thickness"][0] = np.nan
-    share = surfaces_at_records(study, experiment, first, inputs, 2)["breakthrough_probability"]
-    assert np.isnan(share[0]) and share[1] > 0.0
+    films = study_films_at_records(study, experiment)
+    films["film_thickness"][:, 0] = films["lambda_ratio"][:, 0] = np.nan
+    share = surfaces_at_records(study, experiment, films, inputs, 2)["breakthrough_probability"]
+    assert share[:, 0].isnull().all() and (share[:, 1] > 0.0).all()
+
+
+@pytest.mark.parametrize("film_shape", ["flat", "computed"])
+def test_other_film_formulas_are_read_from_the_curves(busy_study, few_surfaces, film_shape):
+    """They are right to the errors of the curve and of areal.nc, which has every formula."""
+    study = of_surfaces(busy_study, film_shape=film_shape)
+    inputs = made(study, ("lubricant", "film", "areal"))
+    experiment = experiment_of([0.5, 0.5], np.array([400.0, 1600.0]), 100.0, 40.0)
+    films = study_films_at_records(study, experiment)
+    found = surfaces_at_records(study, experiment, films, inputs, 2)
+    known = inputs["areal"].squeeze().transpose("film_formula", "force")
+    name = "breakthrough_probability"
+    errors = [0.5 * (each[f"{name}_upper"] - each[name]).values for each in (found, known)]
+    apart = found[name].values - known[name].values
+    assert (apart[0] == 0.0).all()
+    assert (abs(apart[1]) > 0.0).all() and (abs(apart[1]) < 3.0 * np.hypot(*errors)[1]).all()
+    assert (found["sample_size"] > 1.0).all()
 
 
 def test_surfaces_that_the_oil_answers_have_the_response_at_their_record(busy_study):

@@ -50,7 +50,7 @@ def on_surfaces(busy):
 
     def run(experiment, models=("line", "surface"), error=0.0):
         model = model_of_records(experiment, busy.film, busy.contact, busy.study)
-        surfaces = made_up_surfaces(model["lambda_ratio"].values[0], error)
+        surfaces = made_up_surfaces(model["lambda_ratio"], error)
         return compare(model, experiment, busy.contact, models, surfaces)
 
     return run
@@ -63,7 +63,7 @@ def without_lines(busy):
     def run(experiment):
         model = study_films_at_records(busy.study, experiment)
         model.attrs = busy.contact.attrs
-        surfaces = made_up_surfaces(model["lambda_ratio"].values[0])
+        surfaces = made_up_surfaces(model["lambda_ratio"])
         return compare(model, experiment, busy.film, ("surface",), surfaces)
 
     return run

@@ -309,12 +309,12 @@ def test_an_error_of_the_surfaces_widens_the_prediction(on_surfaces, busy, mean)
     assert (widths[1] > 1.1 * widths[0]).any() and (widths[1] >= widths[0]).all()
 
 
-def test_other_film_formulas_are_not_compared_with_surfaces(on_surfaces, busy, mean):
+def test_surfaces_are_compared_by_every_film_formula(on_surfaces, busy, mean):
     experiment = experiment_at(busy.study.operating_grid.model_dump(), mean)
     found = on_surfaces(experiment).sel(contact_model="surface")
-    others = found.isel(film_formula=slice(1, None))
-    assert others["simulated_probability"].isnull().all()
-    assert not others["within_prediction"].any() and not others["compared_records"].any()
+    exact = surface_probability(found["lambda_ratio"].values)
+    np.testing.assert_allclose(found["simulated_probability"], exact, rtol=1e-12)
+    assert (found["compared_records"] == experiment.sizes["record"]).all()
     assert found["bias_expected_lower"].isnull().all()
 
 

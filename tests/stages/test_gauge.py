@@ -301,7 +301,7 @@ def gauge_on_surfaces(busy, comparison, error=0.0):
     experiment = busy.study.experiment.model_copy(update={"manifest": "records.csv"})
     changes = {"experiment": experiment, "contact_model": ("line", "surface")}
     study = busy.study.model_copy(update=changes)
-    surfaces = made_up_surfaces(comparison["lambda_ratio"].values[0], error)
+    surfaces = made_up_surfaces(comparison["lambda_ratio"], error)
     inputs = {"master": busy.master, "contact": busy.contact, "comparison": comparison}
     if "realisation" not in comparison.dims:
         inputs = {"film": busy.film, "comparison": comparison}
@@ -341,10 +341,11 @@ def test_the_coefficient_is_fitted_by_surfaces_and_the_layer_is_not(busy, on_sur
     by_formula = film_table_with_alpha(busy, value)
     assert by_formula == pytest.approx(1.0 / 1.1, rel=2e-3)
     assert lower < value < upper < 1.0
-    assert np.isnan(first["fitted_layer_strength"])
-    assert first["fitted_layer_strength_lower"] == 0.0
-    assert first["fitted_layer_strength_upper"] == np.inf
-    assert found["alpha_factor"].isel(film_formula=1).isnull().all()
+    assert (found["alpha_factor_lower"] < found["alpha_factor"]).all()
+    assert (found["alpha_factor"] < found["alpha_factor_upper"]).all()
+    assert found["fitted_layer_strength"].isnull().all()
+    assert (found["fitted_layer_strength_lower"] == 0.0).all()
+    assert (found["fitted_layer_strength_upper"] == np.inf).all()
     assert found["interval_coverage"].isnull().all()
 
 

@@ -101,23 +101,25 @@ def test_results_are_over_the_dimensions_of_the_contact_model(tail, few):
 
 
 def test_probabilities_of_surfaces_stand_beside_those_of_lines(coarse, few, few_surfaces):
-    """The first film formula has both; everything else is of lines."""
-    first = {"film_formula": [0]}
     both = coarse(contact_model=("surface", "line"), shear_strength=3e4)
     films = {"film": few.isel(force=[0])}
     films["areal"] = make_areal(both, films)
-    found, lines = make(both, films), make(coarse(shear_strength=3e4), films)
+    without = coarse(shear_strength=3e4)
+    assert make_areal(without, films).equals(films["areal"].isel(film_formula=[0]))
+    found, lines = make(both, films), make(without, films)
     assert found["contact_model"].values.tolist() == ["surface", "line"]
     assert found["breakthrough_rate"].dims == ("contact_model", *CONTACT_DIMS)
-    assert found.sel(contact_model="line", drop=True).equals(lines)
+    deviation = films["areal"]["pair_deviation"].isel(slide_to_roll_ratio=0, drop=True)
+    assert found["surface_pair_deviation"].equals(deviation)
+    of_lines = found.sel(contact_model="line", drop=True)
+    assert of_lines.drop_vars("surface_pair_deviation").equals(lines)
     surface = found.sel(contact_model="surface", drop=True)
     for name in PROBABILITIES:
-        assert surface[name].isel(first).equals(films["areal"][name])
-        assert (surface[name].isel(first) > lines[name].isel(first)).all()
-        assert surface[name].isel(film_formula=1).isnull().all()
+        assert surface[name].equals(films["areal"][name])
+        assert (surface[name] > lines[name]).all()
     of_both = lines.drop_vars(("geometric_contact_asymptote", "breakthrough_asymptote"))
     for name, each in of_both.items():
-        assert (surface[name].isel(first).notnull() == each.isel(first).notnull()).all(), name
+        assert (surface[name].notnull() == each.notnull()).all(), name
     only = make(coarse(contact_model=("surface",), shear_strength=3e4), films)
     assert only.equals(found.sel(contact_model=["surface"]))
 

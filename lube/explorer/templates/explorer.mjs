@@ -160,7 +160,7 @@ function showAnswers(point) {
     const { lower, upper, seen, text } = probability(point);
     element("probability").textContent = text;
     const unseen = isSurface(point)
-        ? "computed for the first film formula only, where the film is known"
+        ? "not known, because the film is not"
         : "of the time: no contact was seen; 95 % upper limit";
     element("interval").textContent = seen ? `of the time; 95 % interval ${percent(lower)} to ${percent(upper)}` : unseen;
     element("bands").textContent = bands(point);
