@@ -7,6 +7,7 @@ of an ordered quantity get colours from a colour map whose lightness changes ste
 import re
 import textwrap
 from collections.abc import Iterable, Sequence
+from itertools import cycle
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -169,8 +170,7 @@ def level_colours(levels: npt.ArrayLike) -> dict[float, np.ndarray]:
 
 def level_markers(levels: npt.ArrayLike) -> dict[float, str]:
     """Markers for the levels of a quantity, from level to marker."""
-    values = np.asarray(levels).tolist()
-    return {value: MARKERS[number % len(MARKERS)] for number, value in enumerate(values)}
+    return dict(zip(np.asarray(levels).tolist(), cycle(MARKERS), strict=False))
 
 
 def level_name(value: float, units: str) -> str:
@@ -283,10 +283,10 @@ def level_groups(
     near = records[f"{name}_level"].values
     levels = np.unique(near[np.isfinite(near)])
     colours, markers = level_colours(levels), level_markers(levels)
-    names = [level_name(level, COORDINATES[name].units) for level in levels.tolist()]
+    units = COORDINATES[name].units
     groups = [
-        (text, colours[level], markers[level], records.isel(record=near == level))
-        for text, level in zip(names, levels.tolist(), strict=True)
+        (level_name(level, units), colour, markers[level], records.isel(record=near == level))
+        for level, colour in colours.items()
     ]
     if np.isnan(near).any():
         other = records.isel(record=np.isnan(near))
@@ -507,6 +507,7 @@ def mark_outside(*panels: Axes) -> None:
     >>> axes.lines[-1].get_xydata().tolist()
     [[2.0, 1.0]]
     """
+    edge_mark = {"linestyle": "none", "clip_on": False, "gid": EDGE_MARK, "zorder": 4}
     for panel in panels:
         (left, right), (low, high) = panel.get_xbound(), panel.get_ybound()
         for line in [line for line in panel.lines if line.get_marker() not in NOT_POINTS]:
@@ -519,16 +520,8 @@ def mark_outside(*panels: Axes) -> None:
             }
             for marker, there in beyond.items():
                 if there.any():
-                    panel.plot(
-                        x[there].clip(left, right),
-                        y[there].clip(low, high),
-                        linestyle="none",
-                        marker=marker,
-                        color=line.get_color(),
-                        clip_on=False,
-                        gid=EDGE_MARK,
-                        zorder=4,
-                    )
+                    at = x[there].clip(left, right), y[there].clip(low, high)
+                    panel.plot(*at, marker=marker, color=line.get_color(), **edge_mark)
 
 
 def save_figure(figure: Figure, stem: str | Path | None, *shown: xr.Dataset) -> None:

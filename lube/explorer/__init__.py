@@ -16,6 +16,5 @@ def explored(study, made: Collection[str] = ()) -> list[str]:
     made : collection of str, optional
         Datasets made on request only that there are.
     """
-    shown = [kind for kind in EXPLORED if study.has(kind)]
-    shown = [kind for kind in shown if kind != "sensitivity" or kind in made]
-    return [kind for kind in shown if study.has_surfaces or kind != "surface_trace"]
+    asked = {"sensitivity": "sensitivity" in made, "surface_trace": study.has_surfaces}
+    return [kind for kind in EXPLORED if study.has(kind) and asked.get(kind, True)]

@@ -72,9 +72,7 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
         - ``traces``: the traces of lines and of surfaces, each with the indices of its levels.
     """
     film, tail = datasets["film"], datasets["tail"]
-    levels = {name: tail[name].values.tolist() for name in CHOICES}
-    if MODEL in tail.dims:
-        levels[MODEL] = tail[MODEL].values.tolist()
+    levels = {name: tail[name].values.tolist() for name in (*CHOICES, MODEL) if name in tail.dims}
     traces = _traces(datasets, levels)
     marks = {"deformed": _deformed(film, tail), "rubbing": rubbing(film)}
     if "contact" in datasets:
@@ -97,8 +95,8 @@ def page_content(datasets: dict[str, xr.Dataset]) -> dict:
             name: {"dims": list(where.dims), "values": _plain(where.values.ravel())}
             for name, where in marks.items()
         },
-        "sampled": not datasets["tail"].attrs["remarks"],
-        "regimes": datasets["film"]["regime"].attrs["flag_meanings"].split(),
+        "sampled": not tail.attrs["remarks"],
+        "regimes": film["regime"].attrs["flag_meanings"].split(),
         "validity": {
             name: {moes: getattr(FORMULAS[name], moes) for moes in ("moes_load", "moes_material")}
             for name in levels["film_formula"]

@@ -64,15 +64,12 @@ _POINT = (
     MODEL,
 )
 COLUMNS = {
-    "chosen": _POINT,
-    "along": _POINT,  # along one variable
-    "force": _POINT,  # at one force
-    "grid": _POINT,  # at all forces, speeds and temperatures
+    # The chosen point, those along one variable, at one force, and at all levels of the grid.
+    **dict.fromkeys(("chosen", "along", "force", "grid"), _POINT),
     "records": ("x", "lambda", "share", "name"),
     "master": ("lambda", "narrow", "near", "lower", "upper", "wide"),
     "frame": ("left", "right", "bottom", "top"),  # of the film formula's validity
-    "whole": ("time", "length", "resistance"),
-    "close": ("time", "length", "resistance"),
+    **dict.fromkeys(("whole", "close"), ("time", "length", "resistance")),
 }
 """Columns of each source of the figures. ``limit`` is an upper limit where no contact was seen;
 ``outside``, ``falling``, ``deformed`` and ``rubbing`` are means where the model cannot hold, where
@@ -306,15 +303,13 @@ def _master_map(master, span, sources):
         x_axis_type="log", x_range=span, y_range=(lines[0], lines[-1]),
         background_fill_color=TINTS[2],
     )  # fmt: skip
-    fields = ColumnDataSource(
-        {
-            "left": edges[columns],
-            "right": edges[columns + 1],
-            "bottom": lines[rows],
-            "top": lines[rows + 1],
-            "mean": np.where(mean > 0.0, mean, np.nan),
-        }
-    )
+    fields = {
+        "left": edges[columns],
+        "right": edges[columns + 1],
+        "bottom": lines[rows],
+        "top": lines[rows + 1],
+        "mean": np.where(mean > 0.0, mean, np.nan),
+    }
     plot.quad(
         source=fields, left="left", right="right", bottom="bottom", top="top",
         fill_color={"field": "mean", "transform": mapper},

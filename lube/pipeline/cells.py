@@ -149,6 +149,5 @@ def datasets_of(notebook: File) -> dict[str, str]:
         As from `parameters_of`.
     """
     kinds = {f"{kind}.nc": kind for kind in (*DATASETS, *ON_REQUEST)}
-    values = parameters_of(notebook).items()
-    names = {parameter: str(value).rsplit("/", 1)[-1] for parameter, value in values}
+    names = {key: str(value).rpartition("/")[2] for key, value in parameters_of(notebook).items()}
     return {parameter: kinds[name] for parameter, name in names.items() if name in kinds}

@@ -55,14 +55,13 @@ def rests_on(found: xr.Dataset, records: xr.Dataset | None = None) -> str:
     places = (np.array(_PLACES) * (order.size - 1)).round().astype(int)
     shown = points.isel(point=order[places]).reset_index("point")
     factors = [name for name in shown["factor"].values.tolist() if name != SEED]
-    strongest = shown["elementary_effect"].sel(factor=factors).mean("point")
-    names = np.array(factors)[np.argsort(-strongest.values)].tolist()
+    strength = shown["elementary_effect"].sel(factor=factors).mean("point")
     conditions = [
         ", ".join(f"{one[name].item():.4g} {unit}" for name, unit in _UNITS.items())
         for one in (points.isel(point=order[place]) for place in places)
     ]
     rows = []
-    for name in names:
+    for name in strength["factor"].values[np.argsort(-strength.values)]:
         one = shown.sel(factor=name)
         changes = [f"{rounded(change):g}" for change in np.exp(one["elementary_effect"].values)]
         words = (one[f"{key}_of_factor"].item() for key in ("range", "source"))

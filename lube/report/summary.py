@@ -16,7 +16,9 @@ from lube.grid.model_limits import (
     overloaded,
     rubbing,
 )
+from lube.grid.operating_points import by_contact_model
 from lube.report.pages import render
+from lube.schema import LIMITS, MEAN_LIMITS
 from lube.storage.git import commit
 from lube.storage.provenance import LIBRARIES
 from lube.study.study import Study
@@ -29,8 +31,6 @@ _AGREEMENT = (
     "overlap_share_expected_lower overlap_share_expected_upper"
 ).split()
 """Measures of agreement between simulation and rig that the summary states."""
-_ENDS = {"_mean": "", "_lower": "_lower", "_upper": "_upper"}
-"""Ends of the names of a mean over realisations and its limits, and of a sampled probability."""
 _VARIABLES = {
     "force": ("normal force", "N"),
     "speed": ("rotation speed", "rpm"),
@@ -231,9 +231,8 @@ def _of_lines(study, results):
     contact = results["contact"]
     pairs = contact["breakthrough_probability"]
     deviation = pairs.std("realisation", ddof=1) if study.realisations > 1 else pairs[0] * math.nan
-    return contact[[f"breakthrough_probability{end}" for end in _ENDS]].assign(
-        pair_deviation=deviation
-    )
+    means = contact[[f"breakthrough_probability{end}" for end in MEAN_LIMITS]]
+    return means.assign(pair_deviation=deviation)
 
 
 def _of_surfaces(study, results):
@@ -241,7 +240,7 @@ def _of_surfaces(study, results):
     tail = results["tail"].sel(contact_model="surface")
     found = {
         f"breakthrough_probability{end}": tail[f"breakthrough_probability{own}"]
-        for end, own in _ENDS.items()
+        for end, own in zip(MEAN_LIMITS, LIMITS, strict=True)
     }
     rolling = tail["slide_to_roll_ratio"] == 0.0
     return xr.Dataset(found | {"pair_deviation": tail["surface_pair_deviation"].where(rolling)})
@@ -274,16 +273,14 @@ def _largest_excess(films):
 
 def _compared(comparison, gauge, first):
     """Agreement between simulation and rig, and the films gauged, for each contact model."""
-    models = comparison.get("contact_model")
+    of_models = "contact_model" in comparison.dims
     rows = []
-    for model in ["line"] if models is None else models.values:
+    for model in by_contact_model(comparison)["contact_model"].values:
         chosen = first | {"contact_model": model}
         at = chosen | {"threshold": comparison["comparison_threshold"].item()}
         row = {name: _at(comparison[name], at).item() for name in _AGREEMENT}
-        row["simulation"] = "the simulation"
+        row["simulation"] = f"the simulation{f' of {model}s' if of_models else ''}"
         row["gauged"] = _gauged(_at(gauge, chosen)) if gauge else None
-        if models is not None:
-            row["simulation"] += f" of {model}s"
         rows.append(row)
     return rows
 

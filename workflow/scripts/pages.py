@@ -16,18 +16,17 @@ from lube.storage.netcdf import load
 from lube.study.study import load_study
 
 study, paper = study_of_job(snakemake), load_study(snakemake.input.paper)
-results = {kind: load(snakemake.input[kind], kind, study) for kind in SUMMARISED if study.has(kind)}
+results = {
+    kind: load(path, kind, study)
+    for kind in (*SUMMARISED, "sensitivity", "record_bands")
+    if (path := snakemake.input.get(kind))
+}
 written = Path(snakemake.input.study).read_text(encoding="utf-8")
 docs = {Path(file).stem: Path(file).read_text(encoding="utf-8") for file in snakemake.input.docs}
 title, assumptions = title_and_text(assumptions_of(study, paper, docs["assumptions"]))
 _, limits = title_and_text(limits_of(study, paper, docs["limits"]))
-bands = {
-    kind: load(path, kind, study)
-    for kind in ("sensitivity", "record_bands")
-    if (path := snakemake.input.get(kind))
-}
-if "sensitivity" in bands:
-    assumptions += rests_on(bands["sensitivity"], bands.get("record_bands"))
+if "sensitivity" in results:
+    assumptions += rests_on(results["sensitivity"], results.get("record_bands"))
 drawing = docs["architecture"].split("```")[1]
 parts = {
     "facts": to_html(f"{facts(study, results['lubricant'])}\n\n{made(study)}"),
