@@ -30,7 +30,8 @@ import xarray as xr
 
 from lube.contact.pair_scatter import pair_deviation
 from lube.contact.strip_film import COLUMNS, StripFilm, surface_moments, surface_motion
-from lube.contact.surface_answers import COARSEST, surface_answers
+from lube.contact.surface_answers import COARSEST, SurfaceAnswer
+from lube.contact.waves import answers_at
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
@@ -199,7 +200,7 @@ def strip_films(
     strips = drawn_strips(film, thickness, half_width, gap, rms)
     if not gap.is_answered:
         return strips
-    answers = xr.broadcast(surface_answers(film, gap.has_shape), thickness)[0]
+    answers = xr.broadcast(answers_at(film, gap.has_shape, SurfaceAnswer), thickness)[0]
     answers = answers.transpose(*thickness.dims, "roller").values.reshape(-1, 2)
     return [
         replace(strip, answers=tuple(both)) if strip and both[0] else None

@@ -370,7 +370,7 @@ class ContactWindows:
         surfaces = list(drawn)
         for roller, (lines, answer) in enumerate(zip(filtered, answers, strict=True)):
             if lines.any():
-                shapes = answer.at(window.before - nodes, self._grid.spacing)
+                shapes = answer.at_points(window.before - nodes, self._grid.spacing)
                 surfaces[roller] = drawn[roller]._replace(filtered=lines, shapes=shapes)
         return tuple(surfaces), window
 
