@@ -128,11 +128,11 @@ class ContactWindows:
         columns = self._films, self.half_windows, self._factors, *self._contacts.T[1:]
         return list(zip(*(column.tolist() for column in columns), strict=True))
 
-    def distinct(self) -> tuple["ContactWindows", Array]:
-        """Select one of each set of equal points, and find the index of every point among them."""
-        numbers = {}
-        inverse = np.array([numbers.setdefault(key, len(numbers)) for key in self.keys], int)
-        return self[np.unique(inverse, return_index=True)[1]], inverse
+    def distinct(self) -> tuple[Array, Array]:
+        """Find the first of each set of equal points, and the set of every point."""
+        first = {}
+        equal = [first.setdefault(key, point) for point, key in enumerate(self.keys)]
+        return np.unique(np.array(equal, int), return_inverse=True)
 
     def count(self, pair: Pair, slip: float = 0.0, turns: float = 1.0, begin: int = 0) -> Array:
         """Count contact on a pair of lines.
@@ -156,9 +156,9 @@ class ContactWindows:
             and the means over time of broken points and overlap (height steps); NaN where the film
             is not known.
         """
-        distinct, inverse = self.distinct()
-        if distinct.size < self.size:
-            return distinct.count(pair, slip, turns, begin)[inverse]
+        first, inverse = self.distinct()
+        if first.size < self.size:
+            return self[first].count(pair, slip, turns, begin)[inverse]
         ratios = speed_ratios(slip)
         steps = max(round(turns * revolution(pair, ratios)), 1)
         pair, counts = _begun(pair, ratios, begin), np.full((self.size, 4), np.nan)

@@ -200,8 +200,8 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
     """
     first = comparison.isel(film_formula=0)
     ratios, layer = first["lambda_ratio"].values, study.boundary_layer
-    _, inverse = study_windows(study, first).distinct()
-    records = first.isel(record=np.unique(inverse, return_index=True)[1])
+    some, inverse = study_windows(study, first).distinct()
+    records = first.isel(record=some)
     ends = BEYOND[0] * np.nanmin(ratios), BEYOND[1] * np.nanmax(ratios)
     films = np.geomspace(*ends, FILMS)
     (pairs,) = _on_pairs(study, records, films, [1.0], PAIRS, threads)
