@@ -16,7 +16,7 @@ from lube.calculator.arguments import (
     bare_number,
     check_realisations,
     conditions,
-    one_formula,
+    one_name,
     single,
 )
 from lube.calculator.parts import Oil, Rollers, with_parts
@@ -410,7 +410,7 @@ def trace(
     """
     slip = bare_number("slide_to_roll_ratio", slide_to_roll_ratio, least=-2.0, most=2.0)
     one = _one_point(rollers, oil, force, speed, temperature)
-    table = film_table(*one, [one_formula(film_formula)])
+    table = film_table(*one, [one_name("film_formula", film_formula)])
     point = {name: table[name].item() for name in OPERATING_DIMS} | {"slide_to_roll_ratio": slip}
     check_width(rollers.lines, 2.0 * table["contact_half_width"].item(), "force: the contact")
     check_follows_rolling(rollers.lines)

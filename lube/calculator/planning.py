@@ -14,7 +14,7 @@ from lube.calculator.arguments import (
     bare_number,
     check_realisations,
     conditions,
-    one_formula,
+    one_name,
     single,
 )
 from lube.calculator.operating_points import FILM_VARIABLES, ensemble, film_in_si, with_remarks
@@ -102,7 +102,7 @@ def plan(
     choices = Choices.of(film_shape, roughness_deformation, "none", "line")
     check_realisations(realisations, seed)
     point = force, speed, temperature
-    table = film_in_si(rollers, oil, *point, one_formula(film_formula), choices, slip)
+    table = film_in_si(rollers, oil, *point, one_name("film_formula", film_formula), choices, slip)
     contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
     shares = contact["breakthrough_probability"].values
     spec, width = rollers.lines, 2.0 * table["contact_half_width"]
