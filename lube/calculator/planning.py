@@ -34,7 +34,7 @@ from lube.physics.electrical import film_capacitance
 from lube.rig.readings import read_shares
 from lube.rig.simulator import Revolution
 from lube.statistics.one_pair import scatter_ratio
-from lube.statistics.sample_size import effective_sample_size, independent_windows
+from lube.statistics.sample_size import effective_sample_size
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, Rig
 from lube.surfaces.synthetic import draw_realisation
 
@@ -105,15 +105,14 @@ def plan(
     table = film_in_si(rollers, oil, *point, one_name("film_formula", film_formula), choices, slip)
     contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
     shares = contact["breakthrough_probability"].values
-    spec, width = rollers.lines, 2.0 * table["contact_half_width"]
-    travel = spec.travel * min(speed_ratios(slip))
-    windows = independent_windows(travel, width, spec.longest_wavelength)
-    windows = xr.DataArray(windows).broadcast_like(table["film_thickness"]).values
+    spec, ratios = rollers.lines, speed_ratios(slip)
+    width = 2.0 * table["contact_half_width"].broadcast_like(table["film_thickness"])
+    windows = spec.independent_windows(width, min(ratios)).values
     size = effective_sample_size(shares, windows).ravel()
     found = slopes(spec, table, rollers.layer, choices.gap, seed)
     reading = _reading_error(rollers, table, choices.gap, slip, rig, threshold, seed)
     reach = spec.longest_wavelength / spec.spacing
-    ratio = scatter_ratio(turns, speed_ratios(slip), spec.points, reach, 1.0, 0.0)
+    ratio = scatter_ratio(turns, ratios, spec.points, reach, 1.0, 0.0)
     error = relative_error(found.probability, size, ratio, reading)
     *point, temperature = conditions(*point, rollers.pair.first.radius)
     oils, dims = oil.at(temperature), table["film_thickness"].dims
