@@ -140,19 +140,13 @@ def _reading_error(rollers, table, gap, slip, rig, threshold, seed):
         raise StudyError("rig: got one for rollers that do not conduct, need none")
     windows = ContactWindows(spec, table, rollers.layer, gap)
     traces = windows.trace(draw_realisation(spec, seed, RIG_REALISATIONS), slip)
-    thickness = table["film_thickness"]
-    film, half_width, speed = (
-        each.transpose(*thickness.dims).values.ravel()
-        for each in xr.broadcast(thickness, table["contact_half_width"], table["entrainment_speed"])
-    )
-    errors = np.empty(len(traces))
-    for number, contact in enumerate(traces):
-        plates = film_capacitance(
-            film[number], half_width[number], rollers.pair.length, known.oil_permittivity
-        )
-        step = spec.spacing / max(surface_speeds(speed[number], slip))
-        resistance = rollers.resistivity / spec.spacing
-        revolution = Revolution(contact, step, resistance, plates, (seed, number))
+    film, half_width = table["film_thickness"], table["contact_half_width"]
+    plates = film_capacitance(film, half_width, rollers.pair.length, known.oil_permittivity)
+    steps = spec.spacing / np.maximum(*surface_speeds(table["entrainment_speed"], slip))
+    of_points = (each.transpose(*film.dims).values.ravel() for each in xr.broadcast(steps, plates))
+    resistance, errors = rollers.resistivity / spec.spacing, np.empty(len(traces))
+    for number, (contact, step, plate) in enumerate(zip(traces, *of_points, strict=True)):
+        revolution = Revolution(contact, step, resistance, plate, (seed, number))
         (read, *_), _ = read_shares(revolution.voltage(known), experiment, known)
         true = np.count_nonzero(contact) / contact.size
         errors[number] = abs(read / true - 1.0) if true else np.nan
