@@ -19,6 +19,7 @@ from lube.calculator.arguments import (
 )
 from lube.calculator.operating_points import FILM_VARIABLES, ensemble, film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.contact.ensemble import sample_size
 from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, right_one
 from lube.grid.discretise import speed_ratios
@@ -34,7 +35,6 @@ from lube.physics.electrical import film_capacitance
 from lube.rig.readings import read_shares
 from lube.rig.simulator import Revolution
 from lube.statistics.one_pair import scatter_ratio
-from lube.statistics.sample_size import effective_sample_size
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, Rig
 from lube.surfaces.synthetic import draw_realisation
 
@@ -104,11 +104,9 @@ def plan(
     point = force, speed, temperature
     table = film_in_si(rollers, oil, *point, one_name("film_formula", film_formula), choices, slip)
     contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
-    shares = contact["breakthrough_probability"].values
     spec, ratios = rollers.lines, speed_ratios(slip)
-    width = 2.0 * table["contact_half_width"].broadcast_like(table["film_thickness"])
-    windows = spec.independent_windows(width, min(ratios)).values
-    size = effective_sample_size(shares, windows).ravel()
+    windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
+    size = sample_size(contact["breakthrough_probability"], windows).ravel()
     found = slopes(spec, table, rollers.layer, choices.gap, seed)
     reading = _reading_error(rollers, table, choices.gap, slip, rig, threshold, seed)
     reach = spec.longest_wavelength / spec.spacing
