@@ -20,7 +20,7 @@ COARSEST = 5
 """Binary logarithm of the largest number of points from node to node."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SurfaceAnswer(Answer):
     r"""What the oil adds to the waves of a surface at an operating point.
 

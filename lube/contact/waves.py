@@ -35,7 +35,7 @@ _IN_PHASE = 0.2
 """Difference of phase of neighbouring bands of waves, over the window, rad."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Answer:
     r"""What the oil adds to the waves of a surface at an operating point.
 

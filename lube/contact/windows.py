@@ -5,7 +5,7 @@ film. The lines enter the gap as drawn, or the oil flattens or answers their wav
 """
 
 import copy
-from itertools import groupby, repeat
+import functools
 
 import numpy as np
 import xarray as xr
@@ -262,7 +262,8 @@ class ContactWindows:
         places = [self._place(point, spec) for point in known]
         pair = RarePair(spec, seed, number, max((one.film.size for one in places), default=1))
         waves = [Waves(line, self._grid) for line in pair.lines]
-        filtered = _filtered_by_each(waves, self._answers[known])
+        once = functools.lru_cache(maxsize=1)(lambda *answers: _filtered(waves, answers))
+        filtered = (once(*answers) for answers in self._answers[known])
         ratios = np.reshape([speed_ratios(slip) for slip in slips.flat], (*slips.shape, 2))
         ratios = np.broadcast_to(ratios, (self.size, *ratios.shape[1:]))[known]
         found = rare_contact_under(pair, places, filtered, self._factors[known], ratios)
@@ -318,7 +319,7 @@ class ContactWindows:
 
     def _answered(self, spec, window, answers):
         """Maker of contact windows, the same for all films to which the oil answers alike."""
-        key = window.before, window.film.size, *map(id, answers)
+        key = window.before, window.film.size, *answers
         if key not in self._alike:
             self._alike[key] = answered_windows(spec, window.film.size, window.before, answers)
         return self._alike[key]
@@ -348,7 +349,7 @@ class ContactWindows:
             waves = [Waves(line, self._grid) for line in lines] if self._gap.is_answered else []
             alike = {}
             for point in here[~self.unknown[here]]:
-                key = tuple(map(id, self._answers[point])) if waves else point
+                key = tuple(self._answers[point]) if waves else point
                 alike.setdefault(key, []).append(point)
             for points in alike.values():
                 yield points, *self._meeting(points, drawn, waves)
@@ -393,14 +394,6 @@ def _begun(pair, ratios, begin):
     """Lines of a pair, turned to their position at a time step."""
     positions = (surface_position(begin, ratio) for ratio in ratios)
     return tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))
-
-
-def _filtered_by_each(waves, answers):
-    """Yield two lines filtered by each pair of answers, the same lines while these are the same."""
-    for _, alike in groupby(answers, key=lambda both: tuple(map(id, both))):
-        both, *others = alike
-        lines = _filtered(waves, both)
-        yield from repeat(lines, 1 + len(others))
 
 
 def _filtered(waves, answers):
