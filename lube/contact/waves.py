@@ -336,7 +336,7 @@ def answered_windows(
 
     def under(film):
         _, part = likely_part(film, rms * ratio)
-        nodes, shapes = _nodes_of(slice(part.start, part.stop), before, answers, spec.spacing)
+        nodes, shapes = _nodes_of(part, before, answers, spec.spacing)
         at_once = np.zeros((nodes.size, nodes.size), np.float32)
         with one_blas_thread():
             for at, (power, by_point, filters) in zip(shapes, bands, strict=True):

@@ -293,11 +293,11 @@ class ContactWindows:
             all positions; None where the film is not known.
         """
         rms, _ = sum_of_lines(spec, 1)
-        return [
-            None if self.unknown[one] else self._gap_at(one, spec, rms) for one in range(self.size)
-        ]
+        return [self._gap_at(point, spec, rms) for point in range(self.size)]
 
     def _gap_at(self, point, spec, rms):
+        if self.unknown[point]:
+            return None
         if self._gap.is_plain:
             return self.thickness[point], np.asarray(rms)
         window, half_window = self._window([point]), self.half_windows[point]
