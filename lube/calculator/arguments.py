@@ -189,46 +189,26 @@ class Choices:
             If a study has no such choice.
         """
         gap = {"film_shape": film_shape, "roughness_deformation": roughness_deformation}
-        for name, value in (gap | {"load_sharing": load_sharing}).items():
-            options = get_args(Study.model_fields[name].annotation)
+        models = tuple(np.ravel(contact_model).tolist())
+        given = [*gap.items(), ("load_sharing", load_sharing)]
+        for name, value in given + [("contact_model", model) for model in models]:
+            kind = Study.model_fields[name].annotation
+            options = CONTACT_MODELS if name == "contact_model" else get_args(kind)
             if value not in options:
                 raise StudyError(f"{name}: got {shown(value)}, {right_one(value, options)}")
-        return cls(Gap(**gap), tuple(contact_models(contact_model)), load_sharing)
+        return cls(Gap(**gap), models, load_sharing)
 
 
-def contact_models(names: str | Sequence[str]) -> list[str]:
-    """Return the names of one or several contact models as a list.
-
-    Raises
-    ------
-    StudyError
-        If a name is not that of a contact model.
-    """
-    models = np.ravel(names).tolist()
-    for model in models:
-        if model not in CONTACT_MODELS:
-            needed = right_one(model, CONTACT_MODELS)
-            raise StudyError(f"contact_model: got {shown(model)}, {needed}")
-    return models
-
-
-def one_model(name: str) -> str:
-    """Return the name of a contact model; refuse several names and what `contact_models` does."""
-    if not isinstance(name, str):
-        raise StudyError(f"contact_model: got {shown(name)}, need one name")
-    return contact_models(name)[0]
-
-
-def one_formula(name: str) -> str:
-    """Return the name of a film formula; refuse several names.
+def one_name(argument: str, name: str) -> str:
+    """Return a name that an argument must have one of; refuse several.
 
     Raises
     ------
     StudyError
-        If there are several.
+        If there are several, with the name of the argument.
     """
     if not isinstance(name, str):
-        raise StudyError(f"film_formula: got {shown(name)}, need one name")
+        raise StudyError(f"{argument}: got {shown(name)}, need one name")
     return name
 
 

@@ -17,7 +17,7 @@ from lube.calculator.arguments import (
     Choices,
     amount,
     check_realisations,
-    one_formula,
+    one_name,
 )
 from lube.calculator.operating_points import (
     FILM_VARIABLES,
@@ -178,7 +178,7 @@ def _film(columns, rollers, oil, film_formula, choices):
         if (entrainment := columns.get("entrainment_speed")) is None:
             entrainment = 0.5 * (columns["surface_speed"] + columns["second_surface_speed"])
         rotation = entrainment * 60.0 / (2.0 * np.pi * radius)
-    formulas = [one_formula(film_formula)]
+    formulas = [one_name("film_formula", film_formula)]
     point = columns["force"], rotation, columns["temperature"]
     table = film_of_oil(oil, own, *point, formulas, **choices)
     table = table.isel(film_formula=0).drop_vars("temperature", errors="ignore")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from lube.calculator.arguments import Choices, bare_number, check_realisations, one_model
+from lube.calculator.arguments import Choices, bare_number, check_realisations, one_name
 from lube.contact.strip_film import surface_moments
 from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
@@ -60,7 +60,8 @@ class FilmSearch:
     def __init__(
         self, rollers, share, realisations, seed, contact_model, shape="flat", deformation="none"
     ):
-        self.choices = Choices.of(shape, deformation, "none", one_model(contact_model))
+        model = one_name("contact_model", contact_model)
+        self.choices = Choices.of(shape, deformation, "none", model)
         self._share, self._gap = bare_number("share", share, above=0.0, below=1.0), self.choices.gap
         self._on_surface = "surface" in self.choices.models
         self._realisations = check_realisations(realisations, seed)

@@ -80,9 +80,6 @@ def _each_by_name(found):
     flat = {}
     for name, values in found.items():
         by = {"load_share_curve", "resistance_formula"}.intersection(values.dims)
-        for dim in by:
-            for one in values[dim].values:
-                flat[variable_of(name, one)] = values.sel({dim: one}, drop=True)
-        if not by:
-            flat[name] = values
+        each = values.to_dataset(*by).items() if by else ()
+        flat |= {variable_of(name, one): value for one, value in each} or {name: values}
     return flat

@@ -14,11 +14,12 @@ from lube.calculator.arguments import (
     bare_number,
     check_realisations,
     conditions,
-    one_formula,
+    one_name,
     single,
 )
 from lube.calculator.operating_points import FILM_VARIABLES, ensemble, film_in_si, with_remarks
 from lube.calculator.parts import Oil, Rollers, with_parts
+from lube.contact.ensemble import sample_size
 from lube.contact.windows import ContactWindows
 from lube.errors import StudyError, right_one
 from lube.grid.discretise import speed_ratios
@@ -34,7 +35,6 @@ from lube.physics.electrical import film_capacitance
 from lube.rig.readings import read_shares
 from lube.rig.simulator import Revolution
 from lube.statistics.one_pair import scatter_ratio
-from lube.statistics.sample_size import effective_sample_size, independent_windows
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, Rig
 from lube.surfaces.synthetic import draw_realisation
 
@@ -102,18 +102,15 @@ def plan(
     choices = Choices.of(film_shape, roughness_deformation, "none", "line")
     check_realisations(realisations, seed)
     point = force, speed, temperature
-    table = film_in_si(rollers, oil, *point, one_formula(film_formula), choices, slip)
+    table = film_in_si(rollers, oil, *point, one_name("film_formula", film_formula), choices, slip)
     contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
-    shares = contact["breakthrough_probability"].values
-    spec, width = rollers.lines, 2.0 * table["contact_half_width"]
-    travel = spec.travel * min(speed_ratios(slip))
-    windows = independent_windows(travel, width, spec.longest_wavelength)
-    windows = xr.DataArray(windows).broadcast_like(table["film_thickness"]).values
-    size = effective_sample_size(shares, windows).ravel()
+    spec, ratios = rollers.lines, speed_ratios(slip)
+    windows = spec.independent_windows(2.0 * table["contact_half_width"], min(ratios))
+    size = sample_size(contact["breakthrough_probability"], windows).ravel()
     found = slopes(spec, table, rollers.layer, choices.gap, seed)
     reading = _reading_error(rollers, table, choices.gap, slip, rig, threshold, seed)
     reach = spec.longest_wavelength / spec.spacing
-    ratio = scatter_ratio(turns, speed_ratios(slip), spec.points, reach, 1.0, 0.0)
+    ratio = scatter_ratio(turns, ratios, spec.points, reach, 1.0, 0.0)
     error = relative_error(found.probability, size, ratio, reading)
     *point, temperature = conditions(*point, rollers.pair.first.radius)
     oils, dims = oil.at(temperature), table["film_thickness"].dims
@@ -141,19 +138,13 @@ def _reading_error(rollers, table, gap, slip, rig, threshold, seed):
         raise StudyError("rig: got one for rollers that do not conduct, need none")
     windows = ContactWindows(spec, table, rollers.layer, gap)
     traces = windows.trace(draw_realisation(spec, seed, RIG_REALISATIONS), slip)
-    thickness = table["film_thickness"]
-    film, half_width, speed = (
-        each.transpose(*thickness.dims).values.ravel()
-        for each in xr.broadcast(thickness, table["contact_half_width"], table["entrainment_speed"])
-    )
-    errors = np.empty(len(traces))
-    for number, contact in enumerate(traces):
-        plates = film_capacitance(
-            film[number], half_width[number], rollers.pair.length, known.oil_permittivity
-        )
-        step = spec.spacing / max(surface_speeds(speed[number], slip))
-        resistance = rollers.resistivity / spec.spacing
-        revolution = Revolution(contact, step, resistance, plates, (seed, number))
+    film, half_width = table["film_thickness"], table["contact_half_width"]
+    plates = film_capacitance(film, half_width, rollers.pair.length, known.oil_permittivity)
+    steps = spec.spacing / np.maximum(*surface_speeds(table["entrainment_speed"], slip))
+    of_points = (each.transpose(*film.dims).values.ravel() for each in xr.broadcast(steps, plates))
+    resistance, errors = rollers.resistivity / spec.spacing, np.empty(len(traces))
+    for number, (contact, step, plate) in enumerate(zip(traces, *of_points, strict=True)):
+        revolution = Revolution(contact, step, resistance, plate, (seed, number))
         (read, *_), _ = read_shares(revolution.voltage(known), experiment, known)
         true = np.count_nonzero(contact) / contact.size
         errors[number] = abs(read / true - 1.0) if true else np.nan

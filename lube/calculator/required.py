@@ -14,7 +14,7 @@ from lube.calculator.arguments import (
     REALISATIONS,
     SEED,
     amount,
-    one_formula,
+    one_name,
     rotation_speed,
     single,
 )
@@ -116,7 +116,7 @@ def required_viscosity(
         Which argument, what came, what is needed; or that no viscosity is enough.
     """
     rotation = single(rotation_speed(speed, rollers.pair.first.radius))
-    one = one_formula(film_formula)
+    one = one_name("film_formula", film_formula)
 
     def table(factors, choices):
         # The film depends on the product of viscosity and speed, so the speed is varied for both.
@@ -168,7 +168,7 @@ def required_speed(
     LubeError
         Which argument, what came, what is needed; or that no speed is enough.
     """
-    one = one_formula(film_formula)
+    one = one_name("film_formula", film_formula)
 
     def table(speeds, choices):
         return film_in_si(rollers, oil, force, (speeds, "m/s"), temperature, one, choices)
@@ -215,7 +215,7 @@ def required_temperature(
     LubeError
         Which argument, what came, what is needed; or that no temperature is low enough.
     """
-    one = one_formula(film_formula)
+    one = one_name("film_formula", film_formula)
 
     def table(temperatures, choices):
         return film_in_si(rollers, oil, force, speed, (temperatures, "degC"), one, choices)
@@ -269,7 +269,7 @@ def required_roughness(
     """
     model = contact_model, film_shape, roughness_deformation
     search = FilmSearch(rollers, share, realisations, seed, *model)
-    one = one_formula(film_formula)
+    one = one_name("film_formula", film_formula)
     point = force, speed, temperature, one
     film = film_in_si(rollers, oil, *point, search.choices)
     own = single(film["lambda_ratio"])

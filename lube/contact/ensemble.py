@@ -21,7 +21,7 @@ from lube.schema import LIMITS, MEAN_LIMITS, label, values_with_limits
 from lube.statistics.confidence import mean_over_first, probability_interval
 from lube.statistics.one_pair import prediction_limits
 from lube.statistics.sample_size import effective_sample_size, independent_windows
-from lube.types import Values
+from lube.types import Array, Values
 
 PROBABILITIES = ("breakthrough_probability", "geometric_contact_probability")
 ATTRIBUTES = ("travel", "longest_wavelength")
@@ -166,12 +166,33 @@ def with_pair_limits(dataset: xr.Dataset, windows: xr.DataArray) -> xr.Dataset:
         The same, and ``breakthrough_probability_pair_lower`` and ``_pair_upper``.
     """
     shares = dataset["breakthrough_probability"]
-    dims = shares.dims[1:]
-    windows_here = windows.broadcast_like(shares[0]).transpose(*dims).values
-    size, mean = effective_sample_size(shares.values, windows_here), mean_over_first(shares.values)
-    limits = prediction_limits(mean, size, 1.0, len(shares))
-    names = (f"breakthrough_probability_pair{end}" for end in LIMITS[1:])
-    return dataset.assign({name: (dims, each) for name, each in zip(names, limits, strict=True)})
+    size, mean = sample_size(shares, windows), mean_over_first(shares.values)
+    limits = zip(LIMITS[1:], prediction_limits(mean, size, 1.0, len(shares)), strict=True)
+    name, dims = "breakthrough_probability_pair", shares.dims[1:]
+    return dataset.assign({f"{name}{end}": (dims, limit) for end, limit in limits})
+
+
+def sample_size(shares: xr.DataArray, windows: xr.DataArray) -> Array:
+    """Find the effective sample size of one realisation at each operating point.
+
+    Parameters
+    ----------
+    shares : xarray.DataArray
+        Shares of time with contact, over realisation and other dimensions.
+    windows : xarray.DataArray
+        Independent windows in one realisation, over any of these dimensions.
+
+    Returns
+    -------
+    numpy.ndarray
+        From `lube.statistics.sample_size.effective_sample_size`, over the other dimensions.
+    """
+    return effective_sample_size(shares.values, _at_each(windows, shares))
+
+
+def _at_each(windows, shares):
+    """Windows at each point of the shares."""
+    return windows.broadcast_like(shares[0]).transpose(*shares.dims[1:]).values
 
 
 def _join(batches):
@@ -212,8 +233,8 @@ def with_limits(dataset: xr.Dataset, windows: xr.DataArray) -> xr.Dataset:
         The same, and the variables ``_mean``, ``_lower`` and ``_upper`` of each probability.
     """
     for name in PROBABILITIES:
-        dims = dataset[name].dims[1:]
-        windows_here = windows.broadcast_like(dataset[name][0]).transpose(*dims)
-        interval = probability_interval(dataset[name].values, windows_here.values)
-        dataset = dataset.assign(values_with_limits(name, interval, dims, MEAN_LIMITS))
+        shares = dataset[name]
+        interval = probability_interval(shares.values, _at_each(windows, shares))
+        limits = values_with_limits(name, interval, shares.dims[1:], MEAN_LIMITS)
+        dataset = dataset.assign(limits)
     return dataset

@@ -24,7 +24,7 @@ variance that new alignments do not average out follows from c(s) with :math:`M 
 """
 
 import numpy as np
-import scipy.fft
+import scipy
 
 from lube.surfaces.rough_surface import rough_surface
 from lube.surfaces.synthetic import LineSpecLike
@@ -124,5 +124,5 @@ def _excess(film):
     angles = np.arcsin(_LEVELS)
     with np.errstate(divide="ignore"):
         density = np.exp(-(film**2) / (1.0 + _LEVELS)) / (2.0 * np.pi)
-    sums = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(angles))])
+    sums = scipy.integrate.cumulative_trapezoid(density, angles, initial=0.0)
     return sums - np.interp(0.0, angles, sums)

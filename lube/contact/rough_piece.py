@@ -7,9 +7,9 @@ import numpy as np
 import scipy.fft
 
 from lube.ehl.line_contact import FilmProfile
-from lube.ehl.response import WaveResponse, at_wavelengths
+from lube.ehl.response import at_wavelengths
 from lube.grid.discretise import LineGrid, speed_ratios
-from lube.grid.film_responses import SHORTEST, SLIDING_RATIO, UNCHANGED
+from lube.grid.film_responses import SHORTEST, SLIDING_RATIO, changed_waves
 from lube.grid.operating_points import surface_speeds
 from lube.types import Array, Pair
 
@@ -126,9 +126,5 @@ def _response(profile, wavenumber, speed, position):
     wanted = 2.0 * np.pi / wavenumber
     count = int(np.log(wanted[0] / SHORTEST) / np.log(SLIDING_RATIO)) + 2
     solved = np.geomspace(wanted[0], SHORTEST, count)
-    transfer = np.ones((count, position.size), complex)
-    for number, wavelength in enumerate(solved):
-        transfer[number] = WaveResponse(profile, wavelength).transfer(speed, position)
-        if np.abs(transfer[number] - 1.0).max() < UNCHANGED:
-            break
+    transfer = changed_waves(profile, solved, np.array([speed]), position)[0]
     return at_wavelengths(wanted, solved, transfer, position).T

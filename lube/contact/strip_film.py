@@ -205,13 +205,9 @@ def surface_motion(spec: LineSpecLike, slide_to_roll_ratio: float) -> SurfaceMot
         Slide-to-roll ratio.
     """
     speeds = surface_speeds(1.0, slide_to_roll_ratio)
-    change, along, across = 0.0, 0.0, 0.0
-    for roller, speed in enumerate(speeds):
-        own = _slopes(spec, roller)
-        change += speed**2 * own[0]
-        along -= speed * own[0]
-        across -= speed * own[2]
-    return SurfaceMotion(change, along, across)
+    both = [(speed, _slopes(spec, roller)) for roller, speed in enumerate(speeds)]
+    along, _, across = sum(-speed * slopes for speed, slopes in both)
+    return SurfaceMotion(sum(speed**2 * slopes[0] for speed, slopes in both), along, across)
 
 
 def _slopes(spec, roller):

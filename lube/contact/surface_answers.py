@@ -1,13 +1,14 @@
 """What the oil adds to rough surfaces across a strip: the response of the film to their waves."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import scipy
 import scipy.fft
-import xarray as xr
 
-from lube.contact.waves import FINER, NODES, PRECISION, STEEPNESS, expanded, of_both_rollers
+from lube.contact.waves import FINER, PRECISION, STEEPNESS, Answer, expanded
 from lube.ehl.response import at_wavelengths
 from lube.kernels.areal import Answered
 from lube.surfaces.rough_surface import Surface, on_coarser_grid
@@ -19,8 +20,8 @@ COARSEST = 5
 """Binary logarithm of the largest number of points from node to node."""
 
 
-@dataclass(frozen=True)
-class SurfaceAnswer:
+@dataclass(frozen=True, eq=False)
+class SurfaceAnswer(Answer):
     r"""What the oil adds to the waves of a surface at an operating point.
 
     The response of the film to waves at the angle :math:`\theta` to rolling is expanded as that to
@@ -30,34 +31,18 @@ class SurfaceAnswer:
 
     Attributes
     ----------
-    half_width : float
-        Half-width of the contact, m.
-    position : numpy.ndarray, shape (n,)
-        Positions over the half-width, rising.
-    shapes : numpy.ndarray, shape (n, M)
-        :math:`u_m` at these positions.
-    wavenumber : numpy.ndarray, shape (K,)
-        Wavenumbers, rad/m, rising. The oil does not change shorter waves.
     angle : numpy.ndarray, shape (A,)
-        Angles from 0 to 90, degrees.
-    filters : numpy.ndarray of complex, shape (K, A, M)
-        :math:`f_m` at these wavenumbers and angles.
+        Angles from 0 to 90, degrees. The shape of the filters is (K, A, M).
     """
 
-    half_width: float
-    position: Array
-    shapes: Array
-    wavenumber: Array
     angle: Array
-    filters: Array
+    response: ClassVar[str] = "surface_response"
+    waves: ClassVar[tuple[str, ...]] = ("wave_angle", "wavelength")
+    coarsest: ClassVar[int] = COARSEST
 
     @classmethod
     def of(
-        cls,
-        response: Array,
-        levels: tuple[Array, Array, Array],
-        half_width: float,
-        importance: Array,
+        cls, response: Array, levels: Sequence[Array], half_width: float, importance: Array
     ) -> "SurfaceAnswer":
         """Expand a response of the film.
 
@@ -65,7 +50,7 @@ class SurfaceAnswer:
         ----------
         response : numpy.ndarray of complex, shape (a, w, n)
             The response.
-        levels : tuple of numpy.ndarray
+        levels : sequence of numpy.ndarray
             Angles from 0 to 90 degrees, shape (a,), wavelengths in m, falling, shape (w,), and
             positions over the half-width, rising, shape (n,).
         half_width : float
@@ -97,16 +82,7 @@ class SurfaceAnswer:
         waves = finer[:, None] ** STEEPNESS * np.sqrt(np.where(more % angles[-1], 1.0, 0.5))
         shapes, filters = expanded(change.reshape(-1, position.size), waves.ravel(), importance)
         filters = filters.reshape(finer.size, more.size, -1)
-        return cls(half_width, position, shapes, 2.0 * np.pi / finer, more, filters)
-
-    def shift(self, spacing: float) -> int:
-        """Binary logarithm of the number of points of a surface from node to node."""
-        return int(np.log2(np.clip(self.half_width / (NODES * spacing), 1, 2**COARSEST)))
-
-    def at(self, position: Array) -> Array:
-        """Functions :math:`u_m` at positions in m, shape (positions, M)."""
-        scaled = np.clip(position / self.half_width, *self.position[[0, -1]])
-        return scipy.interpolate.CubicSpline(self.position, self.shapes)(scaled)
+        return cls(half_width, position, shapes, 2.0 * np.pi / finer, filters, more)
 
     def filters_at(self, along: Array, across: Array) -> Array:
         """Functions :math:`f_m` of waves with wavenumbers along rolling and across, (waves, M)."""
@@ -117,33 +93,6 @@ class SurfaceAnswer:
         beyond = {"bounds_error": False, "fill_value": 0.0}  # the oil does not change shorter waves
         filters = scipy.interpolate.RegularGridInterpolator(grid, self.filters, **beyond)
         return filters((longest, angle))
-
-
-def surface_answers(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
-    """Answers of the oil to the surfaces of both rollers.
-
-    Parameters
-    ----------
-    film : xarray.Dataset
-        A ``film`` dataset, or rows of one, with `lube.grid.film_responses.surface_responses`.
-    has_shape : bool
-        Whether the surfaces may touch outside the contact too.
-
-    Returns
-    -------
-    xarray.DataArray
-        Over roller and the dimensions of the response: a `SurfaceAnswer`, or None where the
-        response is not known. Both rollers have the same object where the film responds to both
-        alike.
-    """
-    response = film["surface_response_real"] + 1j * film["surface_response_imaginary"]
-    waves = ["wave_angle", "wavelength"]
-    levels = tuple(response[name].values for name in (*waves, "response_position"))
-
-    def answer(response, half_width, importance):
-        return SurfaceAnswer.of(response, levels, half_width, importance)
-
-    return of_both_rollers(film, response, waves, answer, has_shape)
 
 
 class AnsweredStrip:
@@ -181,7 +130,8 @@ class AnsweredStrip:
         self.shift = self.answers[0].shift(surface.spacing[1])
         self.points = tuple(number >> self.shift for number in surface.points)
         nodes = np.arange(((columns - 1) >> self.shift) + 2) << self.shift
-        self._shapes = [one.at(begin + nodes * surface.spacing[1]) for one in self.answers]
+        position = begin + nodes * surface.spacing[1]
+        self._shapes = [one.at(position / one.half_width) for one in self.answers]
         # The waves that the oil changes: their places among those of the coarser grid.
         halves = [(number - 1) // 2 for number in self.points]
         down = np.arange(-halves[0], halves[0] + 1)

@@ -30,7 +30,8 @@ import xarray as xr
 
 from lube.contact.pair_scatter import pair_deviation
 from lube.contact.strip_film import COLUMNS, StripFilm, surface_moments, surface_motion
-from lube.contact.surface_answers import COARSEST, surface_answers
+from lube.contact.surface_answers import COARSEST, SurfaceAnswer
+from lube.contact.waves import answers_at
 from lube.ehl.line_contact import one_blas_thread
 from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
@@ -135,8 +136,7 @@ def surface_contact(
     """
     thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
     check_surfaces(spec, length, 2.0 * half_width.max().item(), gap)
-    rms = math.sqrt(surface_moments(spec).height)
-    strips = strip_films(film, thickness, half_width, gap, rms)
+    strips = strip_films(spec, film, gap)
     known = [point for point, strip in enumerate(strips) if strip is not None]
     sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
     sharp = np.broadcast_to(sharp / weaker, thickness.size)[known]
@@ -182,44 +182,33 @@ def surface_seeds(seed: int, count: int) -> list:
     return [np.random.SeedSequence((seed, number)).spawn(7)[5:] for number in range(count)]
 
 
-def strip_films(
-    film: xr.Dataset, thickness: xr.DataArray, half_width: xr.DataArray, gap: Gap, rms: float
-) -> list[StripFilm | None]:
+def strip_films(spec: LineSpecLike, film: xr.Dataset, gap: Gap) -> list[StripFilm | None]:
     """Films across the strips of operating points, None where they are not known.
 
     Parameters
     ----------
-    film, gap
+    spec, film, gap
         As in `surface_contact`.
-    thickness, half_width : xarray.DataArray
-        Film thickness and half-width of the contact, m, over the same dimensions.
-    rms : float
-        Rms height of both surfaces together, m.
     """
-    strips = drawn_strips(film, thickness, half_width, gap, rms)
+    thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
+    widths = half_width.values.ravel().tolist()
+    if gap.has_shape:
+        rms, position = math.sqrt(surface_moments(spec).height), film["film_position"].values
+        rows = shaped_films(film).values.reshape(thickness.size, -1)
+        strips = [
+            StripFilm.shaped(position * width, row, rms) if np.isfinite(row).all() else None
+            for width, row in zip(widths, rows, strict=True)
+        ]
+    else:
+        points = zip(thickness.values.ravel().tolist(), widths, strict=True)
+        strips = [None if math.isnan(one[0]) else StripFilm.flat(*one) for one in points]
     if not gap.is_answered:
         return strips
-    answers = xr.broadcast(surface_answers(film, gap.has_shape), thickness)[0]
+    answers = xr.broadcast(answers_at(film, gap.has_shape, SurfaceAnswer), thickness)[0]
     answers = answers.transpose(*thickness.dims, "roller").values.reshape(-1, 2)
     return [
         replace(strip, answers=tuple(both)) if strip and both[0] else None
         for strip, both in zip(strips, answers, strict=True)
-    ]
-
-
-def drawn_strips(
-    film: xr.Dataset, thickness: xr.DataArray, half_width: xr.DataArray, gap: Gap, rms: float
-) -> list[StripFilm | None]:
-    """Films across the strips, as `strip_films`, for surfaces as drawn."""
-    thickness, half_width = thickness.values.ravel(), half_width.values.ravel()
-    if not gap.has_shape:
-        points = zip(thickness.tolist(), half_width.tolist(), strict=True)
-        return [None if math.isnan(one[0]) else StripFilm.flat(*one) for one in points]
-    position, shaped = film["film_position"].values, shaped_films(film)
-    rows = zip(half_width, shaped.values.reshape(thickness.size, -1), strict=True)
-    return [
-        StripFilm.shaped(position * width, row, rms) if np.isfinite(row).all() else None
-        for width, row in rows
     ]
 
 
@@ -229,18 +218,18 @@ def _contacts(spec, strips, sharp, length, seeds, threads):
     known = zip(strips, sharp, strict=True)
     expected = np.array([strip.expected(moments, length, own) for strip, own in known]).T
     certain, found = expected[0] > MANY, {name: np.empty(len(strips)) for name in _SAMPLED}
+
+    def sample(surface, some, certain):
+        own = [strips[point] for point in some]
+        sampled = _sampled(spec, surface, own, certain, sharp[some], length, seeds, threads)
+        for name, values in sampled.items():
+            found[name][some] = values
+
     for surface, some in _on_alike_grids(spec, strips):
-
-        def sample(some, certain, surface=surface):
-            own = [strips[point] for point in some]
-            sampled = _sampled(spec, surface, own, certain, sharp[some], length, seeds, threads)
-            for name, values in sampled.items():
-                found[name][some] = values
-
-        sample(some, certain[some])
+        sample(surface, some, certain[some])
         holds = certain[some] & (found["breakthrough_probability"][some] < CERTAIN)
         if holds.any():  # few strips do not tell how often the layer breaks
-            sample(some[holds], np.zeros(holds.sum(), bool))
+            sample(surface, some[holds], np.zeros(holds.sum(), bool))
     passages = [strip.passage(moments, length) for strip in strips]
     perimeter = spec.points[0] * spec.spacing
     shares = zip(found["breakthrough_probability"], passages, strict=True)

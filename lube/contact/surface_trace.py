@@ -5,14 +5,12 @@ longest waves. Their joins cut few contacts. The rollers move by one period of t
 """
 
 import itertools
-import math
 
 import numpy as np
 import scipy.fft
 import scipy.ndimage
 import xarray as xr
 
-from lube.contact.strip_film import surface_moments
 from lube.contact.surface_answers import COARSEST
 from lube.contact.surface_strip import mean_breaking_curvature, strip_films
 from lube.ehl.line_contact import one_blas_thread
@@ -63,39 +61,38 @@ def surface_traces(
     StudyError, DataError
         As from `lube.study.surface_checks.check_surfaces`.
     """
-    thickness, half_width = xr.broadcast(film["film_thickness"], film["contact_half_width"])
-    widest = 2.0 * half_width.max().item()
+    widest = 2.0 * film["contact_half_width"].max().item()
     check_surfaces(spec, length, widest, gap)
-    rms = math.sqrt(surface_moments(spec).height)
-    strips = strip_films(film, thickness, half_width, gap, rms)
+    strips = strip_films(spec, film, gap)
     wide = max([widest, *(strip.width for strip in strips if strip)])
     surface = rough_surface(spec, wide, multiple=2**COARSEST if gap.is_answered else 1)
     down, along = surface.spacing
     sharp = mean_breaking_curvature(film["reduced_modulus"].item(), boundary_layer)
     with one_blas_thread():
-        known = [
-            None
-            if strip is None
-            else (
+        known = {
+            point: (
                 (strip.films(along) / spec.height_step).astype(np.float32),
                 strip.breaking_curvatures(along, sharp) / spec.height_step,
                 strip.answered(surface, (1, 1)),
             )
-            for strip in strips
-        ]
+            for point, strip in enumerate(strips)
+            if strip
+        }
     rows = max(int(length / down), 1)
-    pieces = [surface.points[0]] * (rows // surface.points[0]) + [rows % surface.points[0]]
+    begins = range(0, rows, surface.points[0])
     speeds = surface_speeds(1.0, slide_to_roll_ratio)
     way = surface.sides[1] / max(speeds) / STEPS * np.arange(STEPS)
 
-    def of_piece(number):
-        seeds = np.random.SeedSequence((seed, number)).spawn(9)[8]
+    def of_piece(begin):
+        seeds = np.random.SeedSequence((seed, begins.index(begin))).spawn(9)[8]
         moving = _moving(surface, np.random.default_rng(seeds), speeds)
-        return [_followed(surface, moving, each, pieces[number], way) for each in known]
+        return {
+            point: _followed(surface, moving, *each, rows - begin, way)
+            for point, each in known.items()
+        }
 
-    numbers = [number for number, size in enumerate(pieces) if size]
-    found = on_threads(of_piece, numbers, threads, "trace of surfaces")
-    return _table(found, [pieces[number] for number in numbers], thickness, way, rows, down)
+    found = on_threads(of_piece, begins, threads, "trace of surfaces")
+    return _table(dict(zip(begins, found, strict=True)), len(strips), way, rows, down)
 
 
 def _moving(surface, generator, speeds):
@@ -111,11 +108,8 @@ def _moving(surface, generator, speeds):
     return both
 
 
-def _followed(surface, moving, known, rows, way):
+def _followed(surface, moving, films, sharp, answer, rows, way):
     """Contacts of a piece at every step: their row, diameter, and whether they break."""
-    if known is None:
-        return None
-    films, sharp, answer = known
     added = _added(surface, moving, answer)
     shift = answer.shift if answer else 0
     columns, steps = np.arange(films.size), []
@@ -178,18 +172,16 @@ def _finer(nodes, shift):
     return between.reshape(-1, nodes.shape[1])
 
 
-def _table(found, pieces, thickness, way, rows, spacing):
+def _table(found, points, way, rows, spacing):
     """Numbers and lengths over operating point, step and place along the rollers."""
-    shape = thickness.size, way.size
-    values = {name: np.zeros(shape) for name in ("contacts", "breakthroughs", "contact_length")}
-    at = np.zeros((*shape, PLACES))
-    begins = np.concatenate([[0], np.cumsum(pieces)[:-1]])
-    for begin, of_points in zip(begins, found, strict=True):
-        for point, steps in enumerate(of_points):
-            if steps is None:
-                for each in (*values.values(), at):
-                    each[point] = np.nan
-                continue
+    shape = points, way.size
+    names = "contacts", "breakthroughs", "contact_length"
+    values = {name: np.full(shape, np.nan) for name in names}
+    at = np.full((*shape, PLACES), np.nan)
+    for each in (*values.values(), at):
+        each[list(found[0])] = 0.0
+    for begin, of_points in found.items():
+        for point, steps in of_points.items():
             for step, contacts in enumerate(steps):
                 row, diameter, breaks = contacts.T
                 broken = breaks > 0.0
@@ -200,6 +192,6 @@ def _table(found, pieces, thickness, way, rows, spacing):
                 at[point, step] += np.bincount(place, diameter[broken], PLACES)
     middle = (np.arange(PLACES) + 0.5) * rows * spacing / PLACES
     dims = "operating_point", "step"
-    found = {name: (dims, each) for name, each in values.items()}
-    found["contact_length_at"] = (*dims, "roller_position"), at
-    return xr.Dataset(found, {"step": way, "roller_position": middle})
+    table = {name: (dims, each) for name, each in values.items()}
+    table["contact_length_at"] = (*dims, "roller_position"), at
+    return xr.Dataset(table, {"step": way, "roller_position": middle})

@@ -1,8 +1,9 @@
 """Waves of rough lines in the gap: a formula flattens them, or the computed film answers them."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import scipy
@@ -14,7 +15,7 @@ from lube.ehl.response import at_wavelengths
 from lube.grid.discretise import LineGrid
 from lube.grid.film_profiles import six_digits
 from lube.kernels.motion import surface_position
-from lube.kernels.runs import BLOCK
+from lube.kernels.runs import BLOCK_SHIFT
 from lube.kernels.shaped import Surface, answer_at
 from lube.physics.flattening import amplitude_ratio
 from lube.physics.hertz import hertz_gap
@@ -34,7 +35,7 @@ _IN_PHASE = 0.2
 """Difference of phase of neighbouring bands of waves, over the window, rad."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Answer:
     r"""What the oil adds to the waves of a surface at an operating point.
 
@@ -56,6 +57,10 @@ class Answer:
         Wavenumbers, rad/m, rising. The oil does not change shorter waves.
     filters : numpy.ndarray of complex, shape (K, M)
         :math:`f_m` at these wavenumbers.
+    response, waves
+        Variable of the response without its ending, and dimensions of the waves, in ``film.nc``.
+    coarsest : int
+        Largest `shift`.
     """
 
     half_width: float
@@ -63,15 +68,13 @@ class Answer:
     shapes: Array
     wavenumber: Array
     filters: Array
+    response: ClassVar[str] = "response"
+    waves: ClassVar[tuple[str, ...]] = ("wavelength",)
+    coarsest: ClassVar[int] = BLOCK_SHIFT
 
     @classmethod
     def of(
-        cls,
-        response: Array,
-        wavelength: Array,
-        position: Array,
-        half_width: float,
-        importance: Array,
+        cls, response: Array, levels: Sequence[Array], half_width: float, importance: Array
     ) -> "Answer":
         """Expand a response of the film.
 
@@ -79,10 +82,9 @@ class Answer:
         ----------
         response : numpy.ndarray of complex, shape (w, n)
             The response.
-        wavelength : numpy.ndarray, shape (w,)
-            Wavelengths, m, falling.
-        position : numpy.ndarray, shape (n,)
-            Positions over the half-width, rising.
+        levels : sequence of numpy.ndarray
+            Wavelengths in m, falling, shape (w,), and positions over the half-width, rising,
+            shape (n,).
         half_width : float
             Half-width of the contact, m.
         importance : numpy.ndarray, shape (n,)
@@ -93,6 +95,7 @@ class Answer:
         Answer
             The expansion.
         """
+        wavelength, position = levels
         changed = np.flatnonzero(np.abs(response - 1.0).max(axis=1))
         last = changed[-1] if changed.size else 1
         finer = np.geomspace(wavelength[0], wavelength[last], FINER * last + 1)
@@ -102,13 +105,18 @@ class Answer:
         return cls(half_width, position, shapes, 2.0 * np.pi / finer, filters)
 
     def shift(self, spacing: float) -> int:
-        """Binary logarithm of the number of points of a line from node to node."""
-        return int(np.log2(np.clip(self.half_width / (NODES * spacing), 1, BLOCK)))
+        """Binary logarithm of the number of points, at this spacing in m, from node to node."""
+        points = self.half_width / (NODES * spacing)
+        return int(np.log2(np.clip(points, 1, 2**self.coarsest)))
 
-    def at(self, points: Array, spacing: float) -> Array:
+    def at(self, position: Array) -> Array:
+        """Functions :math:`u_m` at positions over the half-width, shape (positions, M)."""
+        known = np.clip(position, *self.position[[0, -1]])
+        return scipy.interpolate.CubicSpline(self.position, self.shapes)(known)
+
+    def at_points(self, points: Array, spacing: float) -> Array:
         """Functions :math:`u_m` at points counted from the centre with the motion, (points, M)."""
-        position = np.clip(points * (spacing / self.half_width), *self.position[[0, -1]])
-        return scipy.interpolate.CubicSpline(self.position, self.shapes)(position)
+        return self.at(points * (spacing / self.half_width))
 
 
 def expanded(change: Array, weight: Array, importance: Array) -> Pair:
@@ -161,58 +169,27 @@ def longest_answers(film: xr.Dataset) -> list[xr.DataArray]:
     return [longest.isel(roller=roller, drop=True) for roller in (0, 1)]
 
 
-def answers_at(film: xr.Dataset, has_shape: bool) -> xr.DataArray:
-    """Answers of the oil to both surfaces.
+def answers_at(film: xr.Dataset, has_shape: bool, kind: type[Answer] = Answer) -> xr.DataArray:
+    """Answers of the oil to the roughness of both rollers.
 
     Parameters
     ----------
     film : xarray.Dataset
         A ``film`` dataset, or rows of one, with the film's response.
     has_shape : bool
-        Whether lines may touch outside the contact too.
+        Whether the rollers may touch outside the contact too.
+    kind : type, optional
+        `Answer` to lines, or `lube.contact.surface_answers.SurfaceAnswer`.
 
     Returns
     -------
     xarray.DataArray
-        Over roller and the dimensions of the response: an `Answer`, or None where the response is
-        not known. Both rollers have the same object where the film responds to both alike.
+        Over roller and the dimensions of the response: an answer, or None where the response is not
+        known. Both rollers have the same object where the film responds to both alike.
     """
-    response = film["response_real"] + 1j * film["response_imaginary"]
-    levels = response["wavelength"].values, response["response_position"].values
-
-    def answer(response, half_width, importance):
-        return Answer.of(response, *levels, half_width, importance)
-
-    return of_both_rollers(film, response, ["wavelength"], answer, has_shape)
-
-
-def of_both_rollers(
-    film: xr.Dataset,
-    response: xr.DataArray,
-    waves: list[str],
-    answer: Callable,
-    has_shape: bool,
-) -> xr.DataArray:
-    """Expand the responses of the film to the roughness of both rollers.
-
-    Parameters
-    ----------
-    film, has_shape
-        As in `answers_at`.
-    response : xarray.DataArray
-        Complex response, over roller, the dimensions of the waves, response_position and others.
-    waves : list of str
-        Dimensions of the waves.
-    answer : callable
-        Expansion of one response, over the waves and the position: a function of it, of the
-        contact's half-width, m, and of the weight of an error at each position.
-
-    Returns
-    -------
-    xarray.DataArray
-        As from `answers_at`.
-    """
-    position, names = response["response_position"].values, ["roller", *waves, "response_position"]
+    response = film[f"{kind.response}_real"] + 1j * film[f"{kind.response}_imaginary"]
+    names = [*kind.waves, "response_position"]
+    *_, position = levels = [response[name].values for name in names]
     radius, roughness = film["reduced_radius"].item(), film["composite_rms_roughness"].item()
 
     def of_both(response, half_width):
@@ -224,14 +201,12 @@ def of_both_rollers(
                 answers[1] = answers[0]
             elif np.isfinite(one).all():
                 with one_blas_thread():
-                    answers[roller] = answer(one, half_width, importance)
+                    answers[roller] = kind.of(one, levels, half_width, importance)
         return answers
 
-    core, options = [names, []], {"output_core_dims": [["roller"]], "output_dtypes": [object]}
-    widths = film["contact_half_width"]
-    return xr.apply_ufunc(
-        of_both, response, widths, input_core_dims=core, vectorize=True, **options
-    )
+    core = {"input_core_dims": [["roller", *names], []], "output_core_dims": [["roller"]]}
+    widths, options = film["contact_half_width"], {"vectorize": True, "output_dtypes": [object]}
+    return xr.apply_ufunc(of_both, response, widths, **core, **options)
 
 
 def lifted(
@@ -265,7 +240,7 @@ def lifted(
     begin = step >> shift << shift
     at_nodes = np.zeros((2, 2, nodes.size))
     for roller, (line, answer) in enumerate(zip(lines, answers, strict=True)):
-        shapes = answer.at(-nodes, grid.spacing)
+        shapes = answer.at_points(-nodes, grid.spacing)
         surface = Surface(line, line, Waves(line, grid).filtered(answer), shapes)
         for time in (0, 1):
             moved = surface_position(begin + (time << shift), ratios[roller])
@@ -284,7 +259,7 @@ def _nodes_of(part, before, answers, spacing):
     """Nodes of a part of a window, from its first point on, and the shapes of both answers."""
     shift = answers[0].shift(spacing)
     nodes = part.start + (np.arange((part.stop - part.start >> shift) + 2) << shift)
-    return nodes - part.start, [answer.at(before - nodes, spacing) for answer in answers]
+    return nodes - part.start, [answer.at_points(before - nodes, spacing) for answer in answers]
 
 
 def rms_along(
@@ -361,7 +336,7 @@ def answered_windows(
 
     def under(film):
         _, part = likely_part(film, rms * ratio)
-        nodes, shapes = _nodes_of(slice(part.start, part.stop), before, answers, spec.spacing)
+        nodes, shapes = _nodes_of(part, before, answers, spec.spacing)
         at_once = np.zeros((nodes.size, nodes.size), np.float32)
         with one_blas_thread():
             for at, (power, by_point, filters) in zip(shapes, bands, strict=True):

@@ -5,7 +5,7 @@ film. The lines enter the gap as drawn, or the oil flattens or answers their wav
 """
 
 import copy
-from itertools import groupby, repeat
+import functools
 
 import numpy as np
 import xarray as xr
@@ -128,11 +128,11 @@ class ContactWindows:
         columns = self._films, self.half_windows, self._factors, *self._contacts.T[1:]
         return list(zip(*(column.tolist() for column in columns), strict=True))
 
-    def distinct(self) -> tuple["ContactWindows", Array]:
-        """Select one of each set of equal points, and find the index of every point among them."""
-        numbers = {}
-        inverse = np.array([numbers.setdefault(key, len(numbers)) for key in self.keys], int)
-        return self[np.unique(inverse, return_index=True)[1]], inverse
+    def distinct(self) -> tuple[Array, Array]:
+        """Find the first of each set of equal points, and the set of every point."""
+        first = {}
+        equal = [first.setdefault(key, point) for point, key in enumerate(self.keys)]
+        return np.unique(np.array(equal, int), return_inverse=True)
 
     def count(self, pair: Pair, slip: float = 0.0, turns: float = 1.0, begin: int = 0) -> Array:
         """Count contact on a pair of lines.
@@ -156,9 +156,9 @@ class ContactWindows:
             and the means over time of broken points and overlap (height steps); NaN where the film
             is not known.
         """
-        distinct, inverse = self.distinct()
-        if distinct.size < self.size:
-            return distinct.count(pair, slip, turns, begin)[inverse]
+        first, inverse = self.distinct()
+        if first.size < self.size:
+            return self[first].count(pair, slip, turns, begin)[inverse]
         ratios = speed_ratios(slip)
         steps = max(round(turns * revolution(pair, ratios)), 1)
         pair, counts = _begun(pair, ratios, begin), np.full((self.size, 4), np.nan)
@@ -262,7 +262,8 @@ class ContactWindows:
         places = [self._place(point, spec) for point in known]
         pair = RarePair(spec, seed, number, max((one.film.size for one in places), default=1))
         waves = [Waves(line, self._grid) for line in pair.lines]
-        filtered = _filtered_by_each(waves, self._answers[known])
+        once = functools.lru_cache(maxsize=1)(lambda *answers: _filtered(waves, answers))
+        filtered = (once(*answers) for answers in self._answers[known])
         ratios = np.reshape([speed_ratios(slip) for slip in slips.flat], (*slips.shape, 2))
         ratios = np.broadcast_to(ratios, (self.size, *ratios.shape[1:]))[known]
         found = rare_contact_under(pair, places, filtered, self._factors[known], ratios)
@@ -292,11 +293,11 @@ class ContactWindows:
             all positions; None where the film is not known.
         """
         rms, _ = sum_of_lines(spec, 1)
-        return [
-            None if self.unknown[one] else self._gap_at(one, spec, rms) for one in range(self.size)
-        ]
+        return [self._gap_at(point, spec, rms) for point in range(self.size)]
 
     def _gap_at(self, point, spec, rms):
+        if self.unknown[point]:
+            return None
         if self._gap.is_plain:
             return self.thickness[point], np.asarray(rms)
         window, half_window = self._window([point]), self.half_windows[point]
@@ -318,7 +319,7 @@ class ContactWindows:
 
     def _answered(self, spec, window, answers):
         """Maker of contact windows, the same for all films to which the oil answers alike."""
-        key = window.before, window.film.size, *map(id, answers)
+        key = window.before, window.film.size, *answers
         if key not in self._alike:
             self._alike[key] = answered_windows(spec, window.film.size, window.before, answers)
         return self._alike[key]
@@ -348,7 +349,7 @@ class ContactWindows:
             waves = [Waves(line, self._grid) for line in lines] if self._gap.is_answered else []
             alike = {}
             for point in here[~self.unknown[here]]:
-                key = tuple(map(id, self._answers[point])) if waves else point
+                key = tuple(self._answers[point]) if waves else point
                 alike.setdefault(key, []).append(point)
             for points in alike.values():
                 yield points, *self._meeting(points, drawn, waves)
@@ -370,7 +371,7 @@ class ContactWindows:
         surfaces = list(drawn)
         for roller, (lines, answer) in enumerate(zip(filtered, answers, strict=True)):
             if lines.any():
-                shapes = answer.at(window.before - nodes, self._grid.spacing)
+                shapes = answer.at_points(window.before - nodes, self._grid.spacing)
                 surfaces[roller] = drawn[roller]._replace(filtered=lines, shapes=shapes)
         return tuple(surfaces), window
 
@@ -393,14 +394,6 @@ def _begun(pair, ratios, begin):
     """Lines of a pair, turned to their position at a time step."""
     positions = (surface_position(begin, ratio) for ratio in ratios)
     return tuple(np.roll(line, -at) for line, at in zip(pair, positions, strict=True))
-
-
-def _filtered_by_each(waves, answers):
-    """Yield two lines filtered by each pair of answers, the same lines while these are the same."""
-    for _, alike in groupby(answers, key=lambda both: tuple(map(id, both))):
-        both, *others = alike
-        lines = _filtered(waves, both)
-        yield from repeat(lines, 1 + len(others))
 
 
 def _filtered(waves, answers):

@@ -147,11 +147,6 @@ class FilmProfile:
         """Positions midway between the nodes, where the equation holds."""
         return 0.5 * (self.nodes[1:] + self.nodes[:-1])
 
-    @property
-    def middle_gap(self) -> Array:
-        """Scaled gap midway between the nodes."""
-        return self.flow.gap
-
     @cached_property
     def end(self) -> int:
         """Index of the last node with pressure; the film ends between it and the next."""
@@ -169,13 +164,13 @@ class FilmProfile:
         def beyond(position):
             return self.scaled_gap(np.array([position])).item() - self.flow.flux[0]
 
-        thinnest = self.middle[np.argmin(self.middle_gap)]
+        thinnest = self.middle[np.argmin(self.flow.gap)]
         return float(brentq(beyond, thinnest, self.nodes[-1]))
 
     @cached_property
     def central_gap(self) -> float:
         """Scaled gap at the line of centres, linear between the two nearest positions."""
-        return float(np.interp(0.0, self.middle, self.middle_gap))
+        return float(np.interp(0.0, self.middle, self.flow.gap))
 
     @cached_property
     def central_film(self) -> float:
@@ -191,7 +186,7 @@ class FilmProfile:
     @cached_property
     def minimum_film(self) -> float:
         """Minimum film over R*."""
-        thinnest = self.middle[np.argmin(self.middle_gap)]
+        thinnest = self.middle[np.argmin(self.flow.gap)]
         near = np.searchsorted(self.nodes, thinnest) + np.array([-3, 2])
         low, high = self.nodes[np.clip(near, 0, self.nodes.size - 1)]
         return float(self.film_at(np.linspace(low, high, 201)).min())

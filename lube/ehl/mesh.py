@@ -103,7 +103,7 @@ def fitted_mesh(profile, end: float, fineness: float) -> Array:
     density = np.max(
         [
             np.abs(np.diff(_smooth(profile.pressure))) / step * width / _PRESSURE_STEP,
-            np.abs(np.gradient(np.log(profile.middle_gap), middle)) / _FILM_STEP,
+            np.abs(np.gradient(np.log(profile.flow.gap), middle)) / _FILM_STEP,
             # Where no oil is driven by pressure, its viscosity does not matter.
             (driven > 1e-3) * np.abs(np.diff(_smooth(logarithm))) / step / _VISCOSITY_STEP,
             1.0 / (_LARGEST * np.hypot(width, middle)),

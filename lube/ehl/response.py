@@ -182,7 +182,7 @@ def at_wavelengths(
 def _resolving_nodes(profile, step):
     """Nodes of a film, with others between them where they are further apart than a step."""
     nodes, size = profile.nodes, np.diff(profile.nodes)
-    middle, gap = profile.middle, profile.middle_gap
+    middle, gap = profile.middle, profile.flow.gap
     wide = middle[(middle < 0.0) & (gap > WIDE * profile.central_gap)]
     low, high = wide[-1] if wide.size else nodes[0], nodes[profile.end + 1]
     largest = step + _GROWTH * np.maximum(0.0, np.maximum(low - middle, middle - high))

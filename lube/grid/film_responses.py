@@ -5,14 +5,14 @@ import logging
 import numpy as np
 import xarray as xr
 
-from lube.ehl.line_contact import ConvergenceError, one_blas_thread
+from lube.ehl.line_contact import ConvergenceError, FilmProfile, one_blas_thread
 from lube.ehl.response import WaveResponse, at_wavelengths
 from lube.grid.film_profiles import film_positions, six_digits
 from lube.grid.operating_points import surface_speeds
 from lube.surfaces.lay import cosine_and_sine
 from lube.surfaces.synthetic import amplitudes_across_lay, wave_amplitudes
 from lube.threads import on_threads
-from lube.types import Datasets, Pair
+from lube.types import Array, Datasets, Pair
 
 log = logging.getLogger(__name__)
 
@@ -198,29 +198,60 @@ def _of_film(profile, wavelengths, speeds, positions, angle):
     if profile is None:
         return unknown
     distinct, inverse = np.unique(speeds, return_inverse=True)
-    response = np.ones((distinct.size, wavelengths.size, positions.size), complex)
-
-    def solved(wavelength):
-        wave = WaveResponse(profile, wavelength, angle=angle)
-        return np.stack([wave.transfer(speed, positions) for speed in distinct])
-
     try:
-        for number, wavelength in enumerate(wavelengths):
-            if wavelength < SHORTEST:
-                break
-            response[:, number] = solved(wavelength)
-            if np.abs(response[:, number] - 1.0).max() < UNCHANGED:
-                break
+        response = changed_waves(profile, wavelengths, distinct, positions, angle)
         curvature = np.abs(np.diff(response, 2, axis=1)).max(axis=(0, 2))
         at = np.argmax(curvature) + 1
         between = np.sqrt(wavelengths[at - 1 : at + 1] * wavelengths[at : at + 2])
-        exact = np.stack([solved(each) for each in between], axis=1)
+        exact = [_of_wave(profile, each, distinct, positions, angle) for each in between]
     except ConvergenceError as error:
         log.warning("%s", error)
         return unknown
     found = at_wavelengths(between, wavelengths, response, positions, angle)
-    errors = np.abs(found - exact)
+    errors = np.abs(found - np.stack(exact, axis=1))
     errors = np.sqrt(np.mean(errors[..., np.abs(positions) <= 1.0] ** 2, axis=-1)).max(axis=1)
     inverse = inverse.reshape(speeds.shape)
     rounded = six_digits(response.real) + 1j * six_digits(response.imag)
     return rounded[inverse], six_digits(errors)[inverse]
+
+
+def changed_waves(
+    profile: FilmProfile, wavelengths: Array, speeds: Array, positions: Array, angle: float = 0.0
+) -> Array:
+    """Response of a film to waves, solved for from the longest until the oil changes one no more.
+
+    Parameters
+    ----------
+    profile : FilmProfile
+        The film of smooth rollers.
+    wavelengths : numpy.ndarray, shape (w,)
+        Wavelengths over the half-width, falling.
+    speeds : numpy.ndarray, shape (s,)
+        Surface speeds over the entrainment speed.
+    positions : numpy.ndarray, shape (n,)
+        Positions over the half-width.
+    angle : float, optional
+        Angle between rolling and the direction of the waves, degrees.
+
+    Returns
+    -------
+    numpy.ndarray of complex, shape (s, w, n)
+        1 for shorter waves.
+
+    Raises
+    ------
+    ConvergenceError
+        If the film does not converge on a finer mesh.
+    """
+    response = np.ones((len(speeds), wavelengths.size, positions.size), complex)
+    for number, wavelength in enumerate(wavelengths[wavelengths >= SHORTEST]):
+        response[:, number] = _of_wave(profile, wavelength, speeds, positions, angle)
+        if np.abs(response[:, number] - 1.0).max() < UNCHANGED:
+            break
+    return response
+
+
+def _of_wave(profile, wavelength, speeds, positions, angle):
+    """Response to a wave at some speeds."""
+    wave = WaveResponse(profile, wavelength, angle=angle)
+    return np.stack([wave.transfer(speed, positions) for speed in speeds])

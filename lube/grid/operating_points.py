@@ -145,27 +145,14 @@ class OperatingPoint:
 
     Attributes
     ----------
-    slide_to_roll_ratio : float
-        (v1 - v2) / v, with the surface speeds v1 and v2 and the entrainment speed v.
-    lubricant : str
-        Name of the lubricant.
-    temperature, speed, force : float
-        Levels of the study, degC, rpm and N.
+    levels : dict of str to float or str
+        Levels of the operating variables, by the names of `lube.schema.EXPERIMENT_DIMS`.
     row : xarray.Dataset
         The film table at the point, without coordinates of the operating variables.
     """
 
-    slide_to_roll_ratio: float
-    lubricant: str
-    temperature: float
-    speed: float
-    force: float
+    levels: dict[str, float | str]
     row: xr.Dataset = field(compare=False, repr=False)
-
-    @property
-    def levels(self) -> dict[str, float | str]:
-        """Levels of the operating variables, by the names of `lube.schema.EXPERIMENT_DIMS`."""
-        return {name: getattr(self, name) for name in EXPERIMENT_DIMS}
 
 
 def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[OperatingPoint]:
@@ -189,12 +176,13 @@ def operating_points(table: xr.Dataset, slide_to_roll_ratio: float) -> list[Oper
     >>> levels = ["oil"], [40.0], [100.0], [200.0, 400.0]
     >>> films = {"film_thickness": (names, [[[[1.0e-6, 0.9e-6]]]])}
     >>> table = xr.Dataset(films, dict(zip(names, levels)))
-    >>> [point.force for point in operating_points(table, 0.0)]
+    >>> [point.levels["force"] for point in operating_points(table, 0.0)]
     [200.0, 400.0]
     """
     names, points = EXPERIMENT_DIMS[1:], []
     table = at_slip(table, slide_to_roll_ratio)
-    for levels in product(*(table[name].values.tolist() for name in names)):
-        row = table.sel(dict(zip(names, levels, strict=True))).reset_coords(drop=True)
-        points.append(OperatingPoint(slide_to_roll_ratio, *levels, row))
+    for values in product(*(table[name].values.tolist() for name in names)):
+        levels = dict(zip(names, values, strict=True))
+        row = table.sel(levels).reset_coords(drop=True)
+        points.append(OperatingPoint({EXPERIMENT_DIMS[0]: slide_to_roll_ratio} | levels, row))
     return points

@@ -53,9 +53,8 @@ def model_at_records(experiment: Data, film: Data, contact: Data, study: Study) 
         expected probability, only the scatter of a record.
     """
     at_records = study_films_at_records(study, experiment)
-    windows, inverse = study_windows(study, at_records).distinct()
-    stored = _stored(study, film, contact)
-    probability = _probability(windows, stored, contact.sizes["realisation"], study)[:, inverse]
+    windows, stored = study_windows(study, at_records), _stored(study, film, contact)
+    probability = _probability(windows, stored, contact.sizes["realisation"], study)
     shape = at_records.sizes["film_formula"], at_records.sizes["record"]
     scatter = record_scatter(at_records, experiment, probability, study)
     values = {"breakthrough_probability": probability, **scatter}

@@ -11,15 +11,13 @@ import scipy
 import scipy.special
 import xarray as xr
 
-from lube.contact.ensemble import windows_in
 from lube.contact.surface_strip import SURFACES
 from lube.ehl.film_formulas import formula
 from lube.grid.films import FilmGroups
-from lube.inference.record_curves import RecordCurves
+from lube.inference.record_curves import RecordCurves, realised_shares
 from lube.schema import LIMITS, values_with_limits, with_dims
 from lube.statistics.curves import fit_factor, realisation_correlation
 from lube.statistics.one_pair import quantile
-from lube.statistics.sample_size import effective_sample_size
 from lube.types import Array
 
 Data = xr.Dataset
@@ -59,27 +57,11 @@ def fit_alpha(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
         infinity. For ``alpha_factor_coverage`` each realisation in turn is left out of the ensemble
         and taken as the records; it is the fraction of these cases whose interval contains 1.
     """
-    logits = alpha_logits(curves, comparison)
-    model = curves.contact_model
-    return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison, model)
-
-
-def alpha_logits(curves: RecordCurves, comparison: Data) -> xr.DataArray:
-    """Logits of the mean probability at the records, for each of `ALPHA_FACTORS`.
-
-    Parameters
-    ----------
-    curves, comparison
-        As in `fit_alpha`.
-
-    Returns
-    -------
-    xarray.DataArray
-        Over (factor, film_formula, record).
-    """
     factor = xr.DataArray(ALPHA_FACTORS, dims="factor")
     logits = curves.logits(_lambda_ratios(comparison, factor))
-    return logits.transpose("factor", "film_formula", "record")
+    logits = logits.transpose("factor", "film_formula", "record")
+    model = curves.contact_model
+    return _fits("alpha_factor", ALPHA_FACTORS, 1.0, logits, contact, comparison, model)
 
 
 def fit_layer_strength(curves: RecordCurves, contact: Data, comparison: Data) -> Data:
@@ -216,12 +198,11 @@ def _undetermined(name, contact, comparison):
 def _fits(name, tried, truth, logits, contact, comparison, contact_model="line"):
     """Fit a factor, with its limits and coverage, for every lubricant and film formula."""
     oils, formulas = contact["lubricant"].values, comparison["film_formula"].values
-    fits = np.empty((len(LIMITS) + 1, oils.size, formulas.size))
+    fits = np.full((len(LIMITS) + 1, oils.size, formulas.size), np.nan)
     for oil, number in np.ndindex(fits.shape[1:]):
         here = {"film_formula": number, "record": comparison["lubricant"].values == oils[oil]}
         model, records = logits.isel(here).values, comparison.isel(here)
         fits[:-1, oil, number] = fit_records(np.log(tried), model, records, contact_model)
-        fits[-1, oil, number] = np.nan
         if contact_model == "line":
             fits[-1, oil, number] = _coverage(np.log(tried), np.log(truth), model, records)
     variables = values_with_limits(name, fits[:-1]) | {f"{name}_coverage": fits[-1]}
@@ -256,7 +237,7 @@ def fit_records(
     logits, count = logits + _pooled_shift(comparison), SURFACES
     covariance = _pair_scatter(comparison)
     if "realisation" in comparison.dims:
-        probabilities, size = _of_realisations(comparison)
+        probabilities, size = realised_shares(comparison)
         deviations = comparison["record_deviation"].values
         # Only the first realisations were run as records of several revolutions.
         deviations = deviations[np.isfinite(deviations).all(axis=1)]
@@ -274,13 +255,6 @@ def _usable(logits, comparison):
     """Keep the records that have a share and a probability at every factor."""
     used = np.isfinite(comparison["measured_share"].values) & np.isfinite(logits).all(axis=0)
     return logits[:, used], comparison.isel(record=used)
-
-
-def _of_realisations(comparison):
-    """Probabilities of the realisations, and their effective sample size."""
-    probabilities = comparison["breakthrough_probability"].values
-    windows = windows_in(comparison, 2.0 * comparison["contact_half_width"].values)
-    return probabilities, effective_sample_size(probabilities, windows)
 
 
 def _pooled_shift(comparison):
@@ -305,7 +279,7 @@ def _coverage(log_factors, truth, logits, comparison):
     where the misfit there is within its quantile.
     """
     logits, comparison = _usable(logits, comparison)
-    probabilities, size = _of_realisations(comparison)
+    probabilities, size = realised_shares(comparison)
     count = len(probabilities)
     if count < 3 or not size.size:
         return np.nan

@@ -23,7 +23,7 @@ from lube.statistics.curves import Curve, film_interval, peaked_curve
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.study import Study
 from lube.threads import on_threads
-from lube.types import Array
+from lube.types import Array, Pair
 
 PROBABILITY = "breakthrough_probability"
 
@@ -200,8 +200,8 @@ def own_curves(study: Study, comparison: xr.Dataset, threads: int | None = None)
     """
     first = comparison.isel(film_formula=0)
     ratios, layer = first["lambda_ratio"].values, study.boundary_layer
-    _, inverse = study_windows(study, first).distinct()
-    records = first.isel(record=np.unique(inverse, return_index=True)[1])
+    some, inverse = study_windows(study, first).distinct()
+    records = first.isel(record=some)
     ends = BEYOND[0] * np.nanmin(ratios), BEYOND[1] * np.nanmax(ratios)
     films = np.geomspace(*ends, FILMS)
     (pairs,) = _on_pairs(study, records, films, [1.0], PAIRS, threads)
@@ -253,9 +253,7 @@ def _on_pairs(study, records, films, weaker, pairs, threads):
 
 def _own_curve(films, pairs, record):
     """Curve of one record, shifted towards the mean over the realisations."""
-    realised = record[PROBABILITY].values
-    windows = windows_in(record, 2.0 * record["contact_half_width"].item())
-    size = effective_sample_size(realised, windows).item()
+    realised, size = realised_shares(record)
     curve = _through(films, pairs.mean(axis=0), size)
     if len(pairs) == 1:  # the study has no other realisation
         return curve
@@ -272,6 +270,13 @@ def _own_curve(films, pairs, record):
     if not np.isfinite(shift):
         return curve
     return dataclasses.replace(curve, logits=curve.logits + shift)
+
+
+def realised_shares(comparison: xr.Dataset) -> Pair:
+    """Probabilities of the realisations at records, and the effective sample size of one."""
+    probabilities = comparison[PROBABILITY].values
+    windows = windows_in(comparison, 2.0 * comparison["contact_half_width"].values)
+    return probabilities, effective_sample_size(probabilities, windows)
 
 
 def _through(films, mean, sample_size):

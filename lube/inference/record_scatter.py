@@ -259,15 +259,14 @@ def alignment_windows(model: Data, study: Study) -> tuple[Array, ContactWindows]
 def _pooled(study, windows, count, mean, persistent):
     """Mean over several pairings of the lines, the first of them known, and its variance ratio."""
     pairings = min(PAIRINGS, count)
-    distinct, inverse = windows.distinct()
-    shares, firsts = np.zeros(distinct.size), deque(maxlen=pairings - 1)
+    shares, firsts = np.zeros(windows.size), deque(maxlen=pairings - 1)
     for number in range(count + pairings - 1):
         first, second = drawn(study, number % count)
         if number >= pairings - 1:
-            shares += sum(distinct.count((other, second))[:, 1] for other in firsts)
+            shares += sum(windows.count((other, second))[:, 1] for other in firsts)
         firsts.append(first)
     log.info("each line paired with %d others: done", pairings - 1)
-    mean = (mean + shares[inverse] / count) / pairings
+    mean = (mean + shares / count) / pairings
     return mean, persistent + (1.0 - persistent) / pairings
 
 

@@ -125,8 +125,7 @@ def _off_grid(study, experiment, first):
     """Films of records; where the oil answers the surfaces, with its responses."""
     if not (study.gap.is_answered and first.sizes["record"]):
         return first
-    _, inverse = study_windows(study, first).distinct()
-    some = np.unique(inverse, return_index=True)[1]
+    some, inverse = study_windows(study, first).distinct()
     choices = study.film_model | {"answered_surfaces": study.line_spec}
     experiment = experiment.isel(record=some)
     oils = lubricant_table(study.lubricants, np.unique(experiment["temperature"]))
@@ -141,10 +140,10 @@ def _sampled(study, films, threads, fewer=1):
     if not films.sizes["record"]:
         return np.empty((4, *films["film_thickness"].shape))
     one_film = films.isel(curve_film=0, missing_dims="ignore")
-    _, inverse = study_windows(study, one_film).distinct()
-    some = films.isel(record=np.unique(inverse, return_index=True)[1])
+    some, inverse = study_windows(study, one_film).distinct()
+    given = study.line_spec, study.rollers.length, films.isel(record=some)
     choices = study.boundary_layer, study.seed, study.gap, threads
-    found = surface_contact(study.line_spec, study.rollers.length, some, *choices, fewer=fewer)
+    found = surface_contact(*given, *choices, fewer=fewer)
     return _numbers(study, found.transpose(..., "record"))[..., inverse]
 
 

@@ -11,8 +11,9 @@ import xarray as xr
 
 from lube.contact.pair_scatter import RecurringContacts, persistent_part
 from lube.contact.strip_film import COLUMNS, surface_moments, surface_motion
-from lube.contact.surface_strip import drawn_strips
+from lube.contact.surface_strip import strip_films
 from lube.grid.discretise import speed_ratios
+from lube.grid.gap import Gap
 from lube.statistics.one_pair import scatter_ratio
 from lube.study.study import Study
 from lube.types import Array
@@ -43,8 +44,7 @@ def surface_scatter(
     spec, length = study.line_spec, study.rollers.length
     moments, recurring = surface_moments(spec), RecurringContacts(spec)
     reach, rms = spec.longest_wavelength / spec.spacing, math.sqrt(moments.height)
-    widths = films["film_thickness"], films["contact_half_width"]
-    strips = drawn_strips(films, *widths, study.gap, rms)
+    strips = strip_films(spec, films, Gap(study.film_shape))  # of surfaces as drawn
     records = zip(
         *(experiment[name].values.tolist() for name in ("slide_to_roll_ratio", "turns")),
         shares,

@@ -75,7 +75,7 @@ def simulated_revolutions(
 
 def _turns(study, points, pairs):
     """Grid points in contact at all time steps of each turn, at some operating points."""
-    slip, windows = points[0].slide_to_roll_ratio, _windows(study, points)
+    slip, windows = points[0].levels["slide_to_roll_ratio"], _windows(study, points)
     ratios = speed_ratios(slip)
     for turn, pair in enumerate(drifting_rollers(study, pairs)):
         steps = revolution(pair, ratios)
@@ -124,7 +124,8 @@ def _revolution(contact, point, study, seed):
         study.rollers.length,
         study.rig.oil_permittivity,
     )
-    speeds = surface_speeds(point.row["entrainment_speed"].item(), point.slide_to_roll_ratio)
+    slip = point.levels["slide_to_roll_ratio"]
+    speeds = surface_speeds(point.row["entrainment_speed"].item(), slip)
     spacing = study.line_spec.spacing
     time_step, resistance = spacing / max(speeds), study.resistivity / spacing
     return Revolution(contact, time_step, resistance, capacitance, seed)

@@ -87,7 +87,7 @@ def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
 def _name_of_point(point: OperatingPoint, pair: int, study: Study) -> str:
     """Operating point, and lubricant and pair if there are several."""
     words = [levels_named({name: point.levels[name] for name in LEVELS})]
-    words += [point.lubricant] * (len(study.lubricants) > 1)
+    words += [point.levels["lubricant"]] * (len(study.lubricants) > 1)
     words += [f"pair {pair + 1}"] * (study.rig.pairs > 1)
     return ", ".join(words)
 

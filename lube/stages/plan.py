@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from lube.contact.ensemble import windows_by_force
+from lube.contact.ensemble import sample_size, windows_by_force
 from lube.grid.discretise import speed_ratios
 from lube.grid.film_profiles import six_digits
 from lube.grid.levels import rolling
@@ -18,7 +18,6 @@ from lube.inference.planning import (
 from lube.schema import POINT_DIMS, label
 from lube.sensitivity.samples import SEED
 from lube.statistics.one_pair import scatter_ratio
-from lube.statistics.sample_size import effective_sample_size
 from lube.study.rig_settings import OWN_RIG
 from lube.study.study import Study
 from lube.study.uncertainty import CHOICES
@@ -91,9 +90,7 @@ def _sample_size(contact, film, slip):
     contact = contact.isel(film_formula=0, drop=True)
     windows = windows_by_force(contact, film).sel(slide_to_roll_ratio=slip, drop=True)
     shares = contact["breakthrough_probability"].sel(slide_to_roll_ratio=slip, drop=True)
-    shares = shares.transpose("realisation", *POINT_DIMS)
-    windows = windows.broadcast_like(shares[0]).transpose(*POINT_DIMS).values
-    return effective_sample_size(shares.values, windows).ravel()
+    return sample_size(shares.transpose("realisation", *POINT_DIMS), windows).ravel()
 
 
 def _digits(values):

@@ -30,7 +30,7 @@ A. W. Bush, R. D. Gibson and T. R. Thomas, The elastic contact of a rough surfac
 import functools
 
 import numpy as np
-import scipy.special
+import scipy
 
 from lube.surfaces.rare_contact import check_stands_for_surface
 from lube.surfaces.synthetic import LineSpecLike, wave_amplitudes
@@ -95,18 +95,20 @@ def _curve(spec):
 
 def _waves(spec):
     """Wavenumbers, rad/m, and variances, m^2, of bands of both surfaces' waves, rising."""
-    lines = [(wave_amplitudes(spec, roller), spec.points[roller]) for roller in range(2)]
-    steps = [2.0 * np.pi / (points * spec.spacing) for _, points in lines]
-    each = zip(lines, steps, strict=True)
-    numbers = [step * (one[0] + np.arange(one[1].size)) for (one, _), step in each]
-    wavenumber = np.concatenate(numbers)
-    variance = np.concatenate([0.5 * one[1] ** 2 for one, _ in lines])
+    both = [_waves_of_line(spec, roller) for roller in (0, 1)]
+    wavenumber, variance = np.concatenate(both, axis=1)
     order = np.argsort(wavenumber)
     wavenumber, variance = wavenumber[order], variance[order]
     edges = np.geomspace(wavenumber[0], wavenumber[-1], BANDS + 1)[:-1]
     edges = np.unique(np.searchsorted(wavenumber, edges))
     of_bands = np.add.reduceat(variance, edges)
     return np.add.reduceat(variance * wavenumber, edges) / of_bands, of_bands
+
+
+def _waves_of_line(spec, roller):
+    first, amplitudes = wave_amplitudes(spec, roller)
+    step = 2.0 * np.pi / (spec.points[roller] * spec.spacing)
+    return step * (first + np.arange(amplitudes.size)), 0.5 * amplitudes**2
 
 
 def _mean_gaps(wavenumber, variance, pressures):
@@ -116,8 +118,7 @@ def _mean_gaps(wavenumber, variance, pressures):
     at = w * pressures
     integrand = STIFFNESS + 3.0 * (1.0 - STIFFNESS) * scipy.special.erf(at) ** 2
     integrand *= np.exp(-(at**2))
-    pieces = 0.5 * (integrand[:, 1:] + integrand[:, :-1]) * np.diff(np.log(pressures))
-    above = np.zeros_like(integrand)
-    above[:, :-1] = np.cumsum(pieces[:, ::-1], axis=1)[:, ::-1]
+    falling = integrand[:, ::-1], np.log(pressures)[::-1]
+    above = -scipy.integrate.cumulative_trapezoid(*falling, initial=0.0)[:, ::-1]
     weights = variance * wavenumber / (2.0 * np.sqrt(np.pi))  # sqrt(pi) q^2 C dq
     return np.sum(weights[:, None] * w * above, axis=0)

@@ -227,7 +227,7 @@ def rare_contact_under(
     pair: "RarePair",
     windows: Sequence[UnevenWindow],
     filtered: Sequence[Pair],
-    factor: Values,
+    factors: Array,
     speed_ratios: Array,
 ) -> Pair:
     """Estimate probabilities and rates in uneven windows, from one pair of lines.
@@ -240,8 +240,8 @@ def rare_contact_under(
         The window of each operating point.
     filtered : sequence of tuple of numpy.ndarray
         The filtered lines at each point, as in `lube.kernels.shaped.Surface`.
-    factor : float or numpy.ndarray
-        As in `rare_contact`.
+    factors : numpy.ndarray
+        As in `rare_contact`, shape (P,).
     speed_ratios : numpy.ndarray
         Surface speeds over that of the faster surface, at S slide-to-roll ratios of each point,
         shape (P, S, 2). Without any, probabilities alone are found.
@@ -257,7 +257,6 @@ def rare_contact_under(
     """
     levels = speed_ratios.shape[1]
     shares, runs = np.empty((2, len(windows))), np.full((1 + levels, len(windows)), np.nan)
-    factors = np.broadcast_to(factor, len(windows))
     for i, (window, own, lines) in enumerate(zip(windows, factors, filtered, strict=True)):
         rms = np.broadcast_to(pair.rms * window.rms, window.film.shape)
         log_tails, part = likely_part(window.film, rms)

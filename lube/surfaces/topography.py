@@ -233,13 +233,8 @@ def remove_form(heights: Array, form: str) -> Array:
     first, second = np.array(terms).T
     right = (along.T @ np.where(measured, columns, 0.0) @ across)[first, second]
     # Sums over the measured points of the products of any two terms.
-    normal = np.einsum(
-        "iab,icd->abcd",
-        along[:, :, None] * along[:, None, :],
-        (measured @ (across[:, :, None] * across[:, None, :]).reshape(len(across), -1)).reshape(
-            len(along), across.shape[1], across.shape[1]
-        ),
-    )
+    of_rows, of_columns = (each[:, :, None] * each[:, None, :] for each in (along, across))
+    normal = np.einsum("iab,icd->abcd", of_rows, np.tensordot(measured, of_columns, 1))
     matrix = normal[first[:, None], first[None, :], second[:, None], second[None, :]]
     coefficients = np.zeros((orders[0] + 1, orders[1] + 1))
     coefficients[first, second] = np.linalg.lstsq(matrix, right, rcond=None)[0]

@@ -92,4 +92,4 @@ def _moment_off(profile: FilmProfile) -> float:
     """Difference of two forms of the resistance to rolling, which agree at any pressure, %."""
     scale = profile.contact.hertz_pressure / profile.contact.film_modulus
     moment = 2.0 * profile.rolling_resistance / (scale * profile.contact.half_width**2)
-    return percent_off(np.sum(np.diff(profile.pressure) * profile.middle_gap), moment)
+    return percent_off(np.sum(np.diff(profile.pressure) * profile.flow.gap), moment)

@@ -119,9 +119,7 @@ def answered_strip(study, spec, film_shape, slip):
     rms = surface.rms * spec.height_step
     scale = 2.0 * rms / film["film_thickness"]
     film = film.assign({name: scale * film[name] for name in ("film_thickness", "film_profile")})
-    thickness, width = film["film_thickness"], film["contact_half_width"]
-    gap = Gap(film_shape, "computed")
-    (strip,) = surface_strip.strip_films(film, thickness, width, gap, rms)
+    (strip,) = surface_strip.strip_films(spec, film, Gap(film_shape, "computed"))
     return surface, strip, film
 
 

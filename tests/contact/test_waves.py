@@ -50,15 +50,15 @@ def test_a_response_of_two_factors_takes_one_function_of_each():
     of_place = np.cos(position)
     of_wave = (0.3 + 0.2j) * np.linspace(1.0, 0.0, 17) ** 2
     response = 1.0 + of_wave[:, None] * of_place
-    answer = Answer.of(response, wavelength, position, 1e-4, np.ones(41))
+    answer = Answer.of(response, (wavelength, position), 1e-4, np.ones(41))
     assert answer.shapes.shape == (41, 1)
-    found = answer.filters @ answer.at(position, answer.half_width).T
+    found = answer.filters @ answer.at(position).T
     np.testing.assert_allclose(found[:: waves.FINER], response[:-1] - 1.0, atol=1e-5)
 
 
 def test_an_oil_that_changes_nothing_takes_no_function(pair, spec):
     position, wavelength = np.linspace(-1.0, 1.0, 41), np.geomspace(4e-4, 2e-5, 17)
-    answer = Answer.of(np.ones((17, 41), complex), wavelength, position, 1e-4, np.ones(41))
+    answer = Answer.of(np.ones((17, 41), complex), (wavelength, position), 1e-4, np.ones(41))
     assert answer.shapes.shape == (41, 0)
     assert Waves(pair[0], spec).filtered(answer).shape[1] == 0
 
