@@ -47,16 +47,16 @@ class Variant:
     is_uncut : bool, optional
         Whether the boundary layer is judged on uncut segments, of which any part lies in the
         window; otherwise on the parts that the edges of the window leave.
-    contact_model : str, optional
-        ``line``, or ``surface``: the surface that the line stands for, over the length of
-        the rollers.
+    is_on_surface : bool, optional
+        Whether contact is that of the surface that the line stands for, over the length of the
+        rollers.
     """
 
     film: str | None = None
     film_shape: str | None = None
     roughness_deformation: str | None = None
     is_uncut: bool = False
-    contact_model: str = "line"
+    is_on_surface: bool = False
 
     def of(self, study: Study) -> "Variant":
         """Return the variant with the study's own choices in place of None."""
@@ -71,11 +71,6 @@ class Variant:
     def gap(self) -> Gap:
         """How film and roughness make up the gap."""
         return Gap("flat" if self.film_shape == "flat" else "computed", self.roughness_deformation)
-
-    @property
-    def is_on_surface(self) -> bool:
-        """Whether contact is that of the surface."""
-        return self.contact_model == "surface"
 
 
 STUDY = "study"
@@ -94,9 +89,9 @@ VARIANTS = {
     "plain": Variant(None, "flat", "none"),
     "plain, computed film": Variant("computed", "flat", "none"),
     "plain, computed shape": Variant("computed", "computed", "none"),
-    "plain, surface": Variant(None, "flat", "none", contact_model="surface"),
-    "computed shape, surface": Variant("computed", "computed", "none", contact_model="surface"),
-    "complete": Variant("computed", "computed", "computed", contact_model="surface"),
+    "plain, surface": Variant(None, "flat", "none", is_on_surface=True),
+    "computed shape, surface": Variant("computed", "computed", "none", is_on_surface=True),
+    "complete": Variant("computed", "computed", "computed", is_on_surface=True),
 }
 """All variants by name, the study's own first; the others are compared with it."""
 
@@ -188,12 +183,8 @@ def _on_lines(own, films, sampled, study, threads):
 
 def _sampled(variants, windows, study, threads):
     """Probabilities by importance sampling."""
-
-    def run(number):
-        pair = study.line_spec, study.seed, number
-        return [windows[each].sample(*pair)[0] for each in variants]
-
-    values = np.array(on_threads(run, range(PAIRS), threads))
+    pairs = study.line_spec, study.seed, PAIRS, threads
+    values = np.stack([windows[each].on_pairs(*pairs) for each in variants], axis=1)
     return _with_limits(variants, values, mean_interval(values, 1.0))
 
 
