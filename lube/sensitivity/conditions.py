@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import scipy.fft
@@ -16,7 +17,7 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.heights import EquivalentRatio
 from lube.study.line_spec import LineSpec
 from lube.study.oil_properties import lubricant_table
-from lube.study.rollers import BoundaryLayer, Roller
+from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.study.uncertainty import Factor, check_uncertainty, deviating_lines
 from lube.types import Array
@@ -33,27 +34,6 @@ SECANT = 200e6
 """Pressure to which a secant goes if the definition of the coefficient is not known, Pa."""
 TRAVEL = 100.0
 """Length of a drawn line over its longest wavelength: more contact windows than are sampled."""
-
-
-@dataclass(frozen=True)
-class DeviatingRollers:
-    """Rollers as far as films depend on them, with a modulus and a roughness for each run.
-
-    Attributes
-    ----------
-    first : lube.study.rollers.Roller
-        The first roller.
-    length, reduced_radius : float
-        As of `lube.study.rollers.RollerPair`.
-    reduced_modulus, composite_rms_roughness : float or xarray.DataArray
-        As of `RollerPair`.
-    """
-
-    first: Roller
-    length: float
-    reduced_radius: float
-    reduced_modulus: float | xr.DataArray
-    composite_rms_roughness: float | xr.DataArray
 
 
 @dataclass(frozen=True)
@@ -130,11 +110,6 @@ class Deviating:
         """Film formulas that the study leaves open."""
         return self.choices("film_formula", self.study.film_formulas[0])
 
-    @property
-    def heating(self) -> tuple[str, ...]:
-        """Models of inlet heating that the study leaves open."""
-        return self.choices("inlet_shear_heating", self.study.inlet_shear_heating)
-
     def films(self, values: dict, points: xr.Dataset, **shape) -> list[tuple[Array, xr.Dataset]]:
         """Compute the films of some samples at some operating points.
 
@@ -154,17 +129,17 @@ class Deviating:
             both, and their films as from `film_at`. Where a run chooses the computed film, and no
             shape is asked for, the film of Moes' formula stands in for it.
         """
-        formulas = np.array([*self.formulas, self.study.film_formulas[0]])
-        heating = np.array([*self.heating, self.study.inlet_shear_heating])
+        heating = self.choices("inlet_shear_heating", self.study.inlet_shear_heating)
         count = next(iter(values.values())).sizes["run"]
         names = "film_formula", "inlet_shear_heating"
-        chosen = np.array([np.broadcast_to(values.get(name, -1), count) for name in names])
+        # What is not uncertain has one choice, the study's own.
+        chosen = np.array([np.broadcast_to(values.get(name, 0), count) for name in names])
         found = []
         for pair in np.unique(chosen, axis=1).T:
             here = np.flatnonzero((chosen == pair[:, None]).all(axis=0))
             own = {name: value.isel(run=here) for name, value in values.items()}
             at = points.isel(run=here, missing_dims="ignore")
-            film = self._film(own, at, formulas[pair[0]].item(), heating[pair[1]].item(), **shape)
+            film = self._film(own, at, self.formulas[pair[0]], heating[pair[1]], **shape)
             found.append((here, film))
         return found
 
@@ -195,14 +170,14 @@ class Deviating:
         return table.isel(film_formula=0, drop=True).assign(dynamic_viscosity=viscosity)
 
     def _rollers(self, values):
-        """Return the rollers, as far as films depend on them."""
+        """Return the rollers as far as films depend on them, with values for each run."""
         study, scale = self.study, 1.0 + values.get("young_modulus", 0.0)
-        return DeviatingRollers(
-            study.rollers.first,
-            study.rollers.length,
-            study.rollers.reduced_radius,
-            study.rollers.reduced_modulus * scale,
-            self.rms_roughness(values),
+        return SimpleNamespace(
+            first=study.rollers.first,
+            length=study.rollers.length,
+            reduced_radius=study.rollers.reduced_radius,
+            reduced_modulus=study.rollers.reduced_modulus * scale,
+            composite_rms_roughness=self.rms_roughness(values),
         )
 
     def rms_roughness(self, values: dict):
