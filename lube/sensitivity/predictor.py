@@ -11,7 +11,7 @@ from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_sum, models
-from lube.sensitivity.samples import deviations, quantiles
+from lube.sensitivity.samples import deviations, over_run, quantiles
 from lube.sensitivity.shape import EffectiveRatio
 from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
 from lube.types import Array, Pair
@@ -78,7 +78,7 @@ class Predictor:
         surrogates, effective = {}, _effective(deviating, runs)
         for model in sorted(models(deviating), key=Model.deviations):
             own = _of_model(runs, model)
-            values = _by(deviations(deviating.factors, own["factor_quantile"].values), "run")
+            values = over_run(deviations(deviating.factors, own["factor_quantile"].values))
             variables = groups(deviating, own, values, model.gap, effective)
             variables = variables.transpose("group", "run").values
             found = own["breakthrough_probability"].transpose("run", "seed").values
@@ -175,7 +175,7 @@ class Predictor:
         deviating = self.deviating
         seed = np.minimum((unit[:, -1] * SEEDS).astype(int), SEEDS - 1)
         numbers = deviations(deviating.factors, unit[:, :-1])
-        values = _by(numbers, "run")
+        values = over_run(numbers)
         film = self._with_computed(joined(deviating.films(values, points)), numbers)
         found = np.full((len(unit), points.sizes["point"]), np.nan)
         for model, surrogate in self.surrogates.items():
@@ -215,10 +215,6 @@ def _of_model(runs, model):
     return runs.isel(run=np.all(same, axis=0))
 
 
-def _by(values, dim):
-    return {name: xr.DataArray(column, dims=dim) for name, column in values.items()}
-
-
 def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> Array:
     """Find which of some samples choose a model; `numbers` are their deviations."""
     chosen = np.ones(count, bool)
@@ -246,7 +242,7 @@ def _film(deviating, runs):
     values = deviations(deviating.factors, runs["factor_quantile"].values)
     number = values.get("film_formula", np.zeros(runs.sizes["run"], int))
     computed = runs.isel(run=(formulas[number] == COMPUTED) & runs["film_thickness"].notnull())
-    values = _by(deviations(deviating.factors, computed["factor_quantile"].values), "run")
+    values = over_run(deviations(deviating.factors, computed["factor_quantile"].values))
     points = computed.reset_coords()[list(POINT_DIMS)]
     moes = joined(deviating.films(values, points))["film_thickness"]
     ratio = np.log(computed["film_thickness"] / moes).values[:, None]
