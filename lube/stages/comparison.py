@@ -239,18 +239,16 @@ def _expected(table, contact_model):
     Each realisation in turn is left out of the ensemble and compared with the others as the
     record of a pair of rollers, at all records at once. NaN for surfaces, which have none.
     """
-    if contact_model == "surface":
-        unknown = np.full(table.sizes["film_formula"], np.nan)
-        return {f"{name}_expected_{side}": unknown for name in FIGURES for side in _SIDES}
-    measured = np.isfinite(table["measured_share"].values)
-    windows = windows_in(table, 2.0 * table["contact_half_width"].values)
-    members = table["breakthrough_probability"].values.swapaxes(0, 1)
-    ranges = []
-    for row in members:
-        known = measured & np.isfinite(row).all(axis=0)
-        ranges.append(_ranges(row[:, known], windows[known]))
+    ranges = np.full((table.sizes["film_formula"], len(FIGURES), len(_SIDES)), np.nan)
+    if contact_model == "line":
+        measured = np.isfinite(table["measured_share"].values)
+        windows = windows_in(table, 2.0 * table["contact_half_width"].values)
+        for row, members in enumerate(table["breakthrough_probability"].values.swapaxes(0, 1)):
+            known = measured & np.isfinite(members).all(axis=0)
+            if len(members) > 2 and known.any():
+                ranges[row] = _ranges(members[:, known], windows[known])
     return {
-        f"{name}_expected_{side}": np.array(ranges)[:, figure, end]
+        f"{name}_expected_{side}": ranges[:, figure, end]
         for figure, name in enumerate(FIGURES)
         for end, side in enumerate(_SIDES)
     }
@@ -258,18 +256,13 @@ def _expected(table, contact_model):
 
 def _ranges(members, windows):
     """Range of each figure over the realisations left out, shape (figures, 2)."""
-    if len(members) < 3 or not windows.size:
-        return np.full((len(FIGURES), 2), np.nan)
     rows = []
     for number, member in enumerate(members):
         others = np.delete(members, number, axis=0)
         mean, size = others.mean(axis=0), effective_sample_size(others, windows)
         limits = prediction_limits(mean, size, np.ones(mean.size), len(others))
         rows.append(agreement(mean, *limits, member))
-    columns = np.array([[row[name] for row in rows] for name in FIGURES])
-    known = [values[np.isfinite(values)] for values in columns]
-    nothing = [np.nan, np.nan]
-    return [np.quantile(each, [0.025, 0.975]) if each.size else nothing for each in known]
+    return pd.DataFrame(rows)[list(FIGURES)].quantile([0.025, 0.975]).T  # of the known ones
 
 
 def _level_means(table, simulated):
