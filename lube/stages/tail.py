@@ -10,15 +10,7 @@ from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
-from lube.schema import (
-    CONTACT_DIMS,
-    FILES,
-    LIMITS,
-    OPERATING_DIMS,
-    POINT_DIMS,
-    label,
-    values_with_limits,
-)
+from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval
 from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
@@ -80,15 +72,14 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     share of pairs with any is :math:`1 - e^{-\mu}`.
     """
     film = inputs["film"].transpose("film_formula", *POINT_DIMS, ...)
-    if remark := _why_not(study.line_spec, study.gap):
-        return _unknown(film, np.asarray(study.slips, float), remark)
-    if study.line_spec.follows_rolling:
-        table = _on_lines(study, film, threads)
+    remark = _why_not(study.line_spec, study.gap)
+    if remark or not study.line_spec.follows_rolling:
+        table = _unknown(film, np.asarray(study.slips, float))
     else:
-        table = _unknown(film, np.asarray(study.slips, float), "").drop_attrs()
-    if study.has_surfaces:
+        table = _on_lines(study, film, threads)
+    if study.has_surfaces and not remark:
         table = _by_model(study, film, table, inputs["areal"])
-    return label(table.assign_attrs(remarks=""), "tail")
+    return label(table.assign_attrs(remarks=remark), "tail")
 
 
 def _on_lines(study, film, threads):
@@ -106,7 +97,7 @@ def _on_lines(study, film, threads):
             tables.append(_table(spec, some, study.boundary_layer, found, levels, gap))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
-    return table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
+    return table.assign_coords(coordinates).transpose(_SLIP, *OPERATING_DIMS)
 
 
 def _by_model(study, film, lines, areal):
@@ -238,7 +229,7 @@ def _why_not(spec, gap):
     return ""
 
 
-def _unknown(film, slide_to_roll_ratio, remark):
+def _unknown(film, slide_to_roll_ratio):
     """Table without any value."""
     levels = {name: film[name] for name in OPERATING_DIMS} | {_SLIP: slide_to_roll_ratio}
     empty = {
@@ -246,7 +237,7 @@ def _unknown(film, slide_to_roll_ratio, remark):
         for name, row in FILES["tail"].items()
         if not row.optional
     }
-    return label(xr.Dataset(empty, attrs={"remarks": remark}), "tail")
+    return xr.Dataset(empty)
 
 
 def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
