@@ -220,14 +220,13 @@ def _probabilities(deviating, model, values, film):
     thicker = deviating.equivalent(ratio, values) / ratio
     film["film_thickness"] = film["film_thickness"] * thicker
     if model.contact_model == "surface":
+        given = spec, study.rollers.length, film, layer
         choices = {"gap": model.gap, "threads": 1, "fewer": FEWER_SURFACES}
         found = []
         for seed in range(SURFACE_SEEDS):
             # The scatter between so few surfaces is not needed.
             with np.errstate(invalid="ignore", divide="ignore"):
-                contact = surface_contact(
-                    spec, study.rollers.length, film, layer, study.seed + seed, **choices
-                )
+                contact = surface_contact(*given, study.seed + seed, **choices)
             found.append(contact["breakthrough_probability"].values)
         return np.stack([found[seed % SURFACE_SEEDS] for seed in range(SEEDS)], axis=1)
     windows = ContactWindows(spec, film, layer, model.gap)

@@ -88,9 +88,8 @@ def _capacitances(study, film):
 
 def _readings(study, film, rigs, slip):
     """Contact shares by all rigs and readings, and the true ones."""
-    once = study.model_copy(
-        update={"rig": study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})}
-    )
+    one_turn = study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})
+    once = study.model_copy(update={"rig": one_turn})
     points = operating_points(film, slip)
     known = [number for number, one in enumerate(points) if known_films(one.row, study.gap)]
     ways = len(READINGS) + len(study.experiment.thresholds)

@@ -134,8 +134,7 @@ def _of_waves(profile):
     difference, oil = np.full((2, *shape), np.nan)
     gaps = np.full((len(ANSWERS), *shape), np.nan)
     for at in np.ndindex(shape):
-        chosen = (values[number] for values, number in zip(WAVES.values(), at, strict=True))
-        speed, wavelength, amplitude = chosen
+        speed, wavelength, amplitude = (w[n] for w, n in zip(WAVES.values(), at, strict=True))
         try:
             wave = pass_wave(profile, wavelength, speed, amplitude)
         except ConvergenceError as error:

@@ -152,12 +152,11 @@ def _film(variant, study, inputs):
         film = film.assign(film_thickness=thinner * other["film_thickness"])
         film["formula_place"] = other["formula_place"]
     film["film_thickness"] = film["film_thickness"].transpose(*POINT_DIMS)
-    response = inputs["film_response"][list(VARIABLES)].rename(film_position="response_position")
-    slip = rolling(response["slide_to_roll_ratio"].values)
+    kind, names = "film_response", VARIABLES
     if variant.is_on_surface and "surface_response" in inputs:
-        response = inputs["surface_response"][list(SURFACE_VARIABLES)]
-        response = response.rename(film_position="response_position")
-    film = film.assign(response.sel(slide_to_roll_ratio=slip, drop=True))
+        kind, names = "surface_response", SURFACE_VARIABLES
+    response = inputs[kind][list(names)].rename(film_position="response_position")
+    film = film.assign(response.sel(slide_to_roll_ratio=rolling(study.slips), drop=True))
     if variant.film_shape == "flat":
         return film.drop_vars("film_profile", errors="ignore")
     if variant.film_shape == "computed":
@@ -242,10 +241,9 @@ def _with_limits(variants, values, means):
 
 def _roughness_ratio(variant, spec, film):
     """Rms height of both lines together at the line of centres, over that as drawn."""
-    if variant.roughness_deformation == "none":
-        return np.ones(film["film_thickness"].shape)
-    if variant.is_on_surface:
-        return np.full(film["film_thickness"].shape, np.nan)
+    is_drawn = variant.roughness_deformation == "none"
+    if is_drawn or variant.is_on_surface:
+        return np.full(film["film_thickness"].shape, 1.0 if is_drawn else np.nan)
     wavelengths, powers = zip(*(line_waves(spec, roller) for roller in (0, 1)), strict=True)
     power = np.concatenate(powers)
 

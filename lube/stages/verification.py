@@ -64,9 +64,8 @@ def _curves(found):
     table = {"touching_bound": ("lambda_ratio", six_digits(found.bound))}
     for way in ("counted", "sampled"):
         for number, name in enumerate(lines.COUNTED):
-            limits = mean_interval(getattr(found, way)[..., number], 1.0)
-            digits = [("lambda_ratio", six_digits(each)) for each in limits]
-            table |= values_with_limits(f"{way}_{name}", digits)
+            limits = map(six_digits, mean_interval(getattr(found, way)[..., number], 1.0))
+            table |= values_with_limits(f"{way}_{name}", limits, "lambda_ratio")
     return table
 
 
@@ -78,8 +77,8 @@ def _on_grids(found):
     ratio = of_pairs.mean(axis=0) / own.mean(axis=0)
     scatter = (of_pairs - ratio * own).std(axis=0, ddof=1) / np.sqrt(len(own))
     error = 1.96 * scatter / own.mean(axis=0)
+    ends = ratio, ratio - error, ratio + error
     for number, name in enumerate(lines.COUNTED):
-        ends = (ratio, ratio - error, ratio + error)
-        limits = [(dims, six_digits(each[..., number])) for each in ends]
-        table |= values_with_limits(f"{name}_ratio", limits)
+        limits = (six_digits(each[..., number]) for each in ends)
+        table |= values_with_limits(f"{name}_ratio", limits, dims)
     return table
