@@ -118,9 +118,8 @@ def _table(model, experiment):
     table = table.merge(model, join="exact", compat="no_conflicts").assign_attrs(model.attrs)
     measured = experiment.sel(threshold=experiment["comparison_threshold"].item())
     measured = [measured[f"contact_share{limit}"].values for limit in LIMITS]
-    return table.assign(
-        with_dims("comparison", values_with_limits("measured_share", measured))
-    ).assign_coords(threshold=experiment["threshold"].values)
+    table = table.assign(values_with_limits("measured_share", measured, "record"))
+    return table.assign_coords(threshold=experiment["threshold"].values)
 
 
 def _of_lines(table):
