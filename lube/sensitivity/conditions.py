@@ -163,7 +163,7 @@ class Deviating:
             [formula if shape else STAND_IN.get(formula, formula)],
             slide_to_roll_ratio=rolling(study.slips),
             inlet_shear_heating=heating,
-            inlet_meniscus=study.film_model["inlet_meniscus"],
+            inlet_meniscus=study.inlet_model["inlet_meniscus"],
             **shape,
         )
         viscosity = oil["dynamic_viscosity"]

@@ -70,7 +70,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 def _passed(study, oil, temperature, speed, force):
     """Let a piece of the lines and single waves pass at one operating point."""
-    rollers, meniscus = study.rough_rollers, study.film_model["inlet_meniscus"]
+    rollers, meniscus = study.rough_rollers, study.inlet_model["inlet_meniscus"]
     levels = {"force": [force], "speed": [speed]}
     force, speed = (xr.DataArray(each, {name: each}, [name]) for name, each in levels.items())
     oil, slip = oil.sel(temperature=[temperature]), rolling(study.slips)

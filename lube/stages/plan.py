@@ -44,11 +44,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     threshold, reading = _best_threshold(inputs["electrical"], study.experiment.threshold)
     point = inputs["lubricant"], study.rough_rollers, film["force"], film["speed"]
     by_coefficient = planning.film_by_coefficient(
-        *point,
-        study.film_formulas[0],
-        slide_to_roll_ratio=slip,
-        inlet_shear_heating=study.inlet_shear_heating,
-        inlet_meniscus=study.film_model["inlet_meniscus"],
+        *point, study.film_formulas[0], slide_to_roll_ratio=slip, **study.inlet_model
     )
     by_coefficient = by_coefficient.transpose(*POINT_DIMS).values.ravel()
     table = {

@@ -45,7 +45,7 @@ def _contact(study, lubricant):
     force, speed = (sorted(levels)[len(levels) // 2] for levels in (grid.force, grid.speed))
     oil = lubricant.isel(lubricant=0, temperature=lubricant.sizes["temperature"] // 2)
     contact = hertz_contact(rollers, force, speed)
-    meniscus = study.film_model["inlet_meniscus"]
+    meniscus = study.inlet_model["inlet_meniscus"]
     return FilmGroups.at(oil, rollers, force, contact, meniscus).profiles.item().contact
 
 
