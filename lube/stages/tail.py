@@ -94,7 +94,7 @@ def _on_lines(study, film, threads):
         some = film.isel(film_formula=formulas)
         if some["film_formula"].size:
             found = _sampled(spec, some, windows[points], levels, study.seed, pairs, threads)
-            tables.append(_table(spec, some, study.boundary_layer, found, levels, gap))
+            tables.append(_table(spec, some, study.boundary_layer, *found, levels, gap))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
     return table.assign_coords(coordinates).transpose(_SLIP, *OPERATING_DIMS)
@@ -240,10 +240,9 @@ def _unknown(film, slide_to_roll_ratio):
     return xr.Dataset(empty)
 
 
-def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
+def _table(spec, film, boundary_layer, of_pairs, runs, slide_to_roll_ratio, gap):
     """Variables of some film formulas, unlabelled."""
     slip = xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
-    of_pairs, runs = outcomes
     breakthrough = of_pairs["breakthrough_probability"]
     in_window, rate = _in_time(spec, film, runs, slip, gap)
     of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)
