@@ -18,7 +18,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-import scipy.special
+import scipy
 import xarray as xr
 
 from lube.contact.ensemble import windows_in
@@ -128,9 +128,8 @@ def _of_lines(table):
     windows = windows_in(table, 2.0 * table["contact_half_width"].values)
     limits = probability_interval(probabilities, windows)
     size, noise = effective_sample_size(probabilities, windows), table["share_error"].values
-    pooled, ratio, error = (
-        table[name].values for name in ("pooled_probability", "scatter_ratio", "pooled_error")
-    )
+    names = "pooled_probability", "scatter_ratio", "pooled_error"
+    pooled, ratio, error = (table[name].values for name in names)
     return limits, prediction_limits(pooled, size, ratio, len(probabilities), noise, error)
 
 
@@ -222,9 +221,7 @@ def _rank_correlation(first, second):
     if first.size < 2 or np.ptp(first) == 0.0 or np.ptp(second) == 0.0:
         return np.nan
     # Ranks are multiples of 1/2, so these sums are exact in any order.
-    first, second = (
-        pd.Series(each).rank().values - (each.size + 1) / 2 for each in (first, second)
-    )
+    first, second = scipy.stats.rankdata([first, second], axis=1) - (first.size + 1) / 2
     return np.sum(first * second) / np.sqrt(np.sum(first**2) * np.sum(second**2))
 
 

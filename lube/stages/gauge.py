@@ -92,13 +92,9 @@ def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Data
 
 def _inferred(curves, contact, comparison):
     """Infer films, the pressure-viscosity coefficient and the boundary layer."""
-    parts = (
-        gauge_film(curves, comparison),
-        gauge_coverage(curves, comparison),
-        fit_alpha(curves, contact, comparison),
-        fit_layer_strength(curves, contact, comparison),
-    )
-    return xr.merge(parts, join="exact", combine_attrs="drop")
+    films = gauge_film(curves, comparison), gauge_coverage(curves, comparison)
+    fits = (fit(curves, contact, comparison) for fit in (fit_alpha, fit_layer_strength))
+    return xr.merge((*films, *fits), join="exact", combine_attrs="drop")
 
 
 def _with_records(inferred, strength, comparison):

@@ -141,12 +141,11 @@ def _by_groups(found, passages, revolution):
     sampled one by one, this gives 2 to 11 % too many of them where P is below 0.001; where it is
     greater, nearly all pairs have a breakthrough anyway.
     """
+    name = "breakthrough_probability"
     with np.errstate(divide="ignore"):  # where contact is always seen
-        groups = {
-            end: -passages * np.log1p(-found[f"breakthrough_probability{end}"]) for end in LIMITS
-        }
+        groups = {end: -passages * np.log1p(-found[f"{name}{end}"]) for end in LIMITS}
     shares = {f"touching_pair_share{end}": -np.expm1(-each) for end, each in groups.items()}
-    never = 1.0 - found["breakthrough_probability"]
+    never = 1.0 - found[name]
     return shares | {"first_breakthrough_time": revolution * never * _wait(groups[""])}
 
 
@@ -186,10 +185,8 @@ def pair_probabilities(
     """
     if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
-        return xr.Dataset(
-            dict.fromkeys((*_PROBABILITIES, "breakthrough_rate"), unknown),
-            attrs={"remarks": remark},
-        )
+        names = *_PROBABILITIES, "breakthrough_rate"
+        return xr.Dataset(dict.fromkeys(names, unknown), attrs={"remarks": remark})
     windows = ContactWindows(spec, film, boundary_layer, gap)
     table, runs = _sampled(spec, film, windows, slide_to_roll_ratio, seed, PAIRS)
     table["breakthrough_rate"] = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]

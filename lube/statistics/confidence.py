@@ -130,9 +130,8 @@ def probability_limits(mean: Array, sample_size: Values, degrees: Values, window
     scattered = ~np.isnan(sample_size)
     student = scipy.special.stdtrit(degrees, 0.5 + CONFIDENCE / 2.0)
     normal = scipy.special.ndtri(0.5 + CONFIDENCE / 2.0)
-    lower, upper = score_interval(
-        mean, np.where(scattered, sample_size, windows), np.where(scattered, student, normal)
-    )
+    quantile = np.where(scattered, student, normal)
+    lower, upper = score_interval(mean, np.where(scattered, sample_size, windows), quantile)
     bound = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
     one_sided = [mean == 0.0, mean == 1.0]
     lower = np.select(one_sided, [0.0, 1.0 - bound], np.minimum(lower, 1.0 - bound))
