@@ -1,6 +1,7 @@
 """Films, lines and boundary layers of a study whose uncertain quantities deviate."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from types import SimpleNamespace
@@ -14,7 +15,7 @@ from lube.grid.films import film_at
 from lube.grid.levels import rolling
 from lube.physics.pressure_viscosity import roelands_slope
 from lube.schema import POINT_DIMS
-from lube.sensitivity.heights import EquivalentRatio
+from lube.sensitivity.heights import equivalent_ratio
 from lube.study.line_spec import LineSpec
 from lube.study.oil_properties import lubricant_table
 from lube.study.rollers import BoundaryLayer
@@ -47,13 +48,13 @@ class Deviating:
     oils : xarray.Dataset
         Logarithms of the properties of its lubricants over a range of temperatures; also of the
         slope over the pressure-viscosity coefficient, by definition of the latter.
-    heights : EquivalentRatio or None
-        Lambda ratios of heights that are not Gaussian; None if all are.
+    heights : callable or None
+        From `lube.sensitivity.heights.equivalent_ratio`; None if all heights are Gaussian.
     """
 
     study: Study
     oils: xr.Dataset
-    heights: EquivalentRatio | None
+    heights: Callable | None
 
     @classmethod
     def of(cls, study: Study, named: str = "uncertainty") -> "Deviating":
@@ -239,7 +240,7 @@ def _heights(study):
         uncertain.range if uncertain else (GAUSSIAN[name], GAUSSIAN[name] + 1e-6)
         for name, uncertain in given.items()
     )
-    return EquivalentRatio.of(*ends, study.line_spec.rms_height)
+    return equivalent_ratio(*ends, study.line_spec.rms_height)
 
 
 FILM = (

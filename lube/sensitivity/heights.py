@@ -7,7 +7,7 @@ drawn lines they do within 9 %, errors of counting included, at skewness from -1
 up to 6. The layer breaks as often within 25 %, since peaks of another shape load it otherwise.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
 import scipy.special
@@ -24,46 +24,36 @@ LEAST_EXCESS = 1e-3
 """By how much the kurtosis exceeds that of lognormal heights at least."""
 
 
-@dataclass(frozen=True, eq=False)
-class EquivalentRatio:
-    """Lambda ratio of the Gaussian roughness that touches as often.
+def equivalent_ratio(
+    skewness: tuple[float, float], kurtosis: tuple[float, float], rms_height: tuple[float, float]
+) -> Callable[[Array, Array, Array], Array]:
+    """Tabulate the lambda ratio of the Gaussian roughness that touches as often.
 
     The heights have at least the kurtosis of lognormal ones with the same skewness. With less they
     would end at a bound, and would never touch from some lambda ratio on.
 
-    Attributes
+    Parameters
     ----------
-    table : scipy.interpolate.RegularGridInterpolator
-        Ratio over that of the roughness itself, over skewness, kurtosis and lambda ratio.
+    skewness, kurtosis : tuple of float
+        Least and greatest value, of both lines alike.
+    rms_height : tuple of float
+        Rms heights of the lines, of which only the ratio counts.
+
+    Returns
+    -------
+    callable
+        Equivalent ratios from lambda ratios, skewness and kurtosis, arrays of the same shape.
     """
+    axes = [np.linspace(*ends, LEVELS) for ends in (skewness, kurtosis)]
+    parts = np.array(rms_height) / np.hypot(*rms_height)
+    values = [[_ratios(skew, each, parts) / RATIOS for each in axes[1]] for skew in axes[0]]
+    table = RegularGridInterpolator((*axes, RATIOS), values)
 
-    table: RegularGridInterpolator
-
-    @classmethod
-    def of(
-        cls,
-        skewness: tuple[float, float],
-        kurtosis: tuple[float, float],
-        rms_height: tuple[float, float],
-    ) -> "EquivalentRatio":
-        """Tabulate the ratio.
-
-        Parameters
-        ----------
-        skewness, kurtosis : tuple of float
-            Least and greatest value, of both lines alike.
-        rms_height : tuple of float
-            Rms heights of the lines, of which only the ratio counts.
-        """
-        axes = [np.linspace(*ends, LEVELS) for ends in (skewness, kurtosis)]
-        parts = np.array(rms_height) / np.hypot(*rms_height)
-        values = [[_ratios(skew, each, parts) / RATIOS for each in axes[1]] for skew in axes[0]]
-        return cls(RegularGridInterpolator((*axes, RATIOS), values))
-
-    def __call__(self, ratio: Array, skewness: Array, kurtosis: Array) -> Array:
-        """Equivalent ratios; the arguments have the same shape."""
+    def equivalent(ratio, skewness, kurtosis):
         inside = np.clip(ratio, RATIOS[0], RATIOS[-1])
-        return ratio * self.table(np.stack([skewness, kurtosis, inside], axis=-1))
+        return ratio * table(np.stack([skewness, kurtosis, inside], axis=-1))
+
+    return equivalent
 
 
 def _ratios(skewness, kurtosis, parts):

@@ -1,5 +1,6 @@
 """Probabilities of many samples at all operating points, by surrogates of films and contact."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import chain
 
@@ -12,7 +13,7 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_sum, models
 from lube.sensitivity.samples import deviations, over_run, quantiles
-from lube.sensitivity.shape import EffectiveRatio
+from lube.sensitivity.shape import effective_ratio
 from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
 from lube.types import Array, Pair
 
@@ -49,7 +50,7 @@ class Predictor:
         the viscosity; None if the study does not choose it.
     film_error : float
         Its rms error at runs that were left out of the fit.
-    effective : EffectiveRatio or None
+    effective : callable or None
         Lambda ratios of films with a shape; None if the study has none.
     """
 
@@ -57,7 +58,7 @@ class Predictor:
     surrogates: dict[Model, Surrogate]
     film: Interpolant | None
     film_error: float
-    effective: EffectiveRatio | None
+    effective: Callable | None
 
     @classmethod
     def of(cls, deviating: Deviating, runs: xr.Dataset) -> "Predictor":
@@ -231,7 +232,7 @@ def _effective(deviating, runs):
         return None
     names = "moes_load", "moes_material", "lambda_ratio"
     ranges = [(runs[name].min().item(), runs[name].max().item()) for name in names]
-    return EffectiveRatio.of(deviating, np.array(ranges) * (0.9, 1.1))
+    return effective_ratio(deviating, np.array(ranges) * (0.9, 1.1))
 
 
 def _film(deviating, runs):

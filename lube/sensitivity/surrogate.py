@@ -7,6 +7,7 @@ than its height, and on Moes' numbers with a shape or an answer of the oil. Its 
 nearly linear in the lambda ratio, so one function of these groups serves all operating points.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +17,6 @@ from scipy.interpolate import RBFInterpolator
 
 from lube.grid.gap import PLAIN, Gap
 from lube.sensitivity.conditions import Deviating
-from lube.sensitivity.shape import EffectiveRatio
 from lube.types import Array
 
 SMOOTHING = 0.1
@@ -35,7 +35,7 @@ def groups(
     film: xr.Dataset,
     values: dict,
     gap: Gap = PLAIN,
-    effective: EffectiveRatio | None = None,
+    effective: Callable | None = None,
 ) -> xr.DataArray:
     """Form the dimensionless groups on which the probability depends.
 
@@ -49,7 +49,7 @@ def groups(
         From `lube.sensitivity.samples.deviations`.
     gap : Gap, optional
         If it is not plain, the probability depends on Moes' numbers, too.
-    effective : EffectiveRatio, optional
+    effective : callable, optional
         Takes the place of the lambda ratio of a film with a shape.
 
     Returns

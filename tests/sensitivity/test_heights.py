@@ -7,13 +7,13 @@ from made import made
 from scipy.interpolate import PchipInterpolator
 from studies import CONFIG
 
-from lube.sensitivity.heights import RATIOS, EquivalentRatio
+from lube.sensitivity.heights import RATIOS, equivalent_ratio
 from lube.study.study import load_study
 from lube.surfaces.translation import REACH, johnson_curve, lognormal_kurtosis
 
 
 def equivalent(ratio, skewness, kurtosis, rms_height=(1.0, 1.0)):
-    table = EquivalentRatio.of((-1.0, 1.0), (3.0, 6.0), rms_height)
+    table = equivalent_ratio((-1.0, 1.0), (3.0, 6.0), rms_height)
     return table(*np.broadcast_arrays(np.asarray(ratio, float), skewness, kurtosis))
 
 

@@ -8,7 +8,7 @@ from studies import CONFIG
 from lube.ehl.line_contact import LineContact, solve
 from lube.sensitivity import shape
 from lube.sensitivity.conditions import Deviating
-from lube.sensitivity.shape import WINDOW, EffectiveRatio, _ratio
+from lube.sensitivity.shape import WINDOW, _ratio, effective_ratio
 from lube.study.study import load_study
 
 RATIOS = np.array([[1.0], [3.0], [6.0]])
@@ -39,7 +39,7 @@ def deviating():
 
 def test_between_its_levels_the_table_is_a_solved_film(deviating, monkeypatch):
     monkeypatch.setattr(shape, "NODES", (6, 4, 12))
-    table = EffectiveRatio.of(deviating, np.array([[1.0, 4.0], [6.0, 10.0], [1.0, 7.0]]))
+    table = effective_ratio(deviating, np.array([[1.0, 4.0], [6.0, 10.0], [1.0, 7.0]]))
     study = deviating.study
     modulus = 2.0 * study.rollers.reduced_modulus
     oil = np.exp(deviating.oils.isel(lubricant=0).median())
@@ -58,6 +58,6 @@ def test_between_its_levels_the_table_is_a_solved_film(deviating, monkeypatch):
 
 def test_beyond_its_levels_it_is_that_of_the_last(deviating, monkeypatch):
     monkeypatch.setattr(shape, "NODES", (4, 4, 4))
-    table = EffectiveRatio.of(deviating, np.array([[1.0, 4.0], [6.0, 10.0], [1.0, 7.0]]))
+    table = effective_ratio(deviating, np.array([[1.0, 4.0], [6.0, 10.0], [1.0, 7.0]]))
     far, last = (table(np.array([3.0]), np.array([load]), np.array([8.0])) for load in (9.0, 4.0))
     np.testing.assert_allclose(far, last)
