@@ -123,9 +123,8 @@ class Predictor:
             absolute.append(np.sqrt(np.mean(missed**2)))
             relative.append(np.sqrt(np.mean(scaled**2)))
             counts.append(left_out.size)
-        names = np.array([", ".join(model) for model in self.surrogates])
         return {
-            "surrogate_model": ("surrogate_model", names),
+            "surrogate_model": ("surrogate_model", [", ".join(model) for model in self.surrogates]),
             "surrogate_error": ("surrogate_model", six_digits(np.array(absolute))),
             "relative_surrogate_error": ("surrogate_model", six_digits(np.array(relative))),
             "run_count": ("surrogate_model", counts),

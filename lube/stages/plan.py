@@ -72,8 +72,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     if "sensitivity" in inputs:
         factors = inputs["sensitivity"]["factor"].values.tolist()
         if names := [name for name in factors if name not in (*CHOICES, SEED)]:
-            found = _to_measure(study, inputs["sensitivity"], names)
-            dataset = dataset.merge(found, join="exact")
+            dataset = dataset.merge(_to_measure(study, inputs["sensitivity"], names), join="exact")
     return label(dataset, "plan")
 
 
