@@ -37,7 +37,6 @@ log = logging.getLogger(__name__)
 GROUPS = ("force", "speed", "temperature")
 FIGURES = ("bias", "rms_difference", "logit_rms_difference", "overlap_share")
 """Figures of agreement whose range for a correct model is estimated."""
-_SIDES = "lower", "upper"
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -231,7 +230,7 @@ def _expected(table, contact_model):
     Each realisation in turn is left out of the ensemble and compared with the others as the
     record of a pair of rollers, at all records at once. NaN for surfaces, which have none.
     """
-    ranges = np.full((table.sizes["film_formula"], len(FIGURES), len(_SIDES)), np.nan)
+    ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
     if contact_model == "line":
         measured = np.isfinite(table["measured_share"].values)
         windows = windows_in(table, 2.0 * table["contact_half_width"].values)
@@ -240,9 +239,9 @@ def _expected(table, contact_model):
             if len(members) > 2 and known.any():
                 ranges[row] = _ranges(members[:, known], windows[known])
     return {
-        f"{name}_expected_{side}": ranges[:, figure, end]
+        f"{name}_expected{side}": ranges[:, figure, end]
         for figure, name in enumerate(FIGURES)
-        for end, side in enumerate(_SIDES)
+        for end, side in enumerate(LIMITS[1:])
     }
 
 
@@ -310,5 +309,5 @@ def _half_widths(table, comparisons):
     """Half-width of each prediction interval of the first formula, for many comparisons at once."""
     first, count = table.isel(film_formula=0), table.sizes.get("realisation", SURFACES)
     mean = first.get("pooled_probability", first["simulated_probability"]).values
-    sides = [abs(first[f"predicted_share_{side}"].values - mean) for side in _SIDES]
+    sides = [abs(first[f"predicted_share{side}"].values - mean) for side in LIMITS[1:]]
     return np.maximum(*sides) * quantile(count, comparisons) / quantile(count)
