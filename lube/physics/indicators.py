@@ -7,6 +7,7 @@ published, within that range only.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -141,17 +142,16 @@ def _biboulet(load, speed, material):
     return load**1.5 * 1.4 / (moes_load * joined)
 
 
+def _powers(factor, of_speed, of_load, of_material, load, speed, material):
+    """Resistance by powers of U, W and G."""
+    return factor * speed**of_speed * load**of_load * material**of_material
+
+
 _DOUBLED = {
     "biboulet-houpert-2010": _biboulet,
-    "pan-hamrock": lambda load, speed, material: (
-        1.16 * speed**0.638 * load**0.019 * material**-0.358
-    ),
-    "goksem-hargreaves": lambda load, speed, material: (
-        2.74 * speed**0.658 * load**0.0126 * material**-0.342
-    ),
-    "zhou-hoeprich-1991": lambda load, speed, material: (
-        18.62 * speed**0.648 * load**0.246 * material**-0.352
-    ),
+    "pan-hamrock": partial(_powers, 1.16, 0.638, 0.019, -0.358),
+    "goksem-hargreaves": partial(_powers, 2.74, 0.658, 0.0126, -0.342),
+    "zhou-hoeprich-1991": partial(_powers, 18.62, 0.648, 0.246, -0.352),
 }
 RESISTANCE_FORMULAS = tuple(_DOUBLED)
 """Published formulas of the rolling resistance, by name."""

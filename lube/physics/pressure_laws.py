@@ -42,10 +42,8 @@ def barus(
     >>> barus(1e8, 2e-8, 0.1)
     (2.0, 2e-08)
     """
-    return (
-        pressure_viscosity_coefficient * pressure,
-        pressure_viscosity_coefficient + 0.0 * pressure,
-    )
+    slope = pressure_viscosity_coefficient + 0.0 * pressure
+    return pressure_viscosity_coefficient * pressure, slope
 
 
 def roelands(

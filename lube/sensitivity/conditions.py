@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import scipy.fft
@@ -17,7 +18,7 @@ from lube.schema import POINT_DIMS
 from lube.sensitivity.heights import equivalent_ratio
 from lube.study.line_spec import LineSpec
 from lube.study.oil_properties import lubricant_table
-from lube.study.rollers import BoundaryLayer, Roller
+from lube.study.rollers import BoundaryLayer
 from lube.study.study import Study
 from lube.study.uncertainty import Factor, check_uncertainty, deviating_lines
 from lube.types import Array
@@ -37,27 +38,6 @@ TRAVEL = 100.0
 
 
 @dataclass(frozen=True)
-class DeviatingRollers:
-    """Rollers as far as films depend on them, with a modulus and a roughness for each run.
-
-    Attributes
-    ----------
-    first : lube.study.rollers.Roller
-        The first roller.
-    length, reduced_radius : float
-        As of `lube.study.rollers.RollerPair`.
-    reduced_modulus, composite_rms_roughness : float or xarray.DataArray
-        As of `RollerPair`.
-    """
-
-    first: Roller
-    length: float
-    reduced_radius: float
-    reduced_modulus: float | xr.DataArray
-    composite_rms_roughness: float | xr.DataArray
-
-
-@dataclass(frozen=True)
 class Deviating:
     """A study whose uncertain quantities deviate.
 
@@ -69,12 +49,12 @@ class Deviating:
         Logarithms of the properties of its lubricants over a range of temperatures; also of the
         slope over the pressure-viscosity coefficient, by definition of the latter.
     heights : callable or None
-        Lambda ratios of heights that are not Gaussian; None if all are.
+        From `lube.sensitivity.heights.equivalent_ratio`; None if all heights are Gaussian.
     """
 
     study: Study
     oils: xr.Dataset
-    heights: Callable[..., Array] | None
+    heights: Callable | None
 
     @classmethod
     def of(cls, study: Study, named: str = "uncertainty") -> "Deviating":
@@ -131,11 +111,6 @@ class Deviating:
         """Film formulas that the study leaves open."""
         return self.choices("film_formula", self.study.film_formulas[0])
 
-    @property
-    def heating(self) -> tuple[str, ...]:
-        """Models of inlet heating that the study leaves open."""
-        return self.choices("inlet_shear_heating", self.study.inlet_shear_heating)
-
     def films(self, values: dict, points: xr.Dataset, **shape) -> list[tuple[Array, xr.Dataset]]:
         """Compute the films of some samples at some operating points.
 
@@ -155,17 +130,17 @@ class Deviating:
             both, and their films as from `film_at`. Where a run chooses the computed film, and no
             shape is asked for, the film of Moes' formula stands in for it.
         """
-        formulas = np.array([*self.formulas, self.study.film_formulas[0]])
-        heating = np.array([*self.heating, self.study.inlet_shear_heating])
+        heating = self.choices("inlet_shear_heating", self.study.inlet_shear_heating)
         count = next(iter(values.values())).sizes["run"]
         names = "film_formula", "inlet_shear_heating"
-        chosen = np.array([np.broadcast_to(values.get(name, -1), count) for name in names])
+        # What is not uncertain has one choice, the study's own.
+        chosen = np.array([np.broadcast_to(values.get(name, 0), count) for name in names])
         found = []
         for pair in np.unique(chosen, axis=1).T:
             here = np.flatnonzero((chosen == pair[:, None]).all(axis=0))
             own = {name: value.isel(run=here) for name, value in values.items()}
             at = points.isel(run=here, missing_dims="ignore")
-            film = self._film(own, at, formulas[pair[0]].item(), heating[pair[1]].item(), **shape)
+            film = self._film(own, at, self.formulas[pair[0]], heating[pair[1]], **shape)
             found.append((here, film))
         return found
 
@@ -189,21 +164,21 @@ class Deviating:
             [formula if shape else STAND_IN.get(formula, formula)],
             slide_to_roll_ratio=rolling(study.slips),
             inlet_shear_heating=heating,
-            inlet_meniscus=study.film_model["inlet_meniscus"],
+            inlet_meniscus=study.inlet_model["inlet_meniscus"],
             **shape,
         )
         viscosity = oil["dynamic_viscosity"]
         return table.isel(film_formula=0, drop=True).assign(dynamic_viscosity=viscosity)
 
     def _rollers(self, values):
-        """Return the rollers, as far as films depend on them."""
+        """Return the rollers as far as films depend on them, with values for each run."""
         study, scale = self.study, 1.0 + values.get("young_modulus", 0.0)
-        return DeviatingRollers(
-            study.rollers.first,
-            study.rollers.length,
-            study.rollers.reduced_radius,
-            study.rollers.reduced_modulus * scale,
-            self.rms_roughness(values),
+        return SimpleNamespace(
+            first=study.rollers.first,
+            length=study.rollers.length,
+            reduced_radius=study.rollers.reduced_radius,
+            reduced_modulus=study.rollers.reduced_modulus * scale,
+            composite_rms_roughness=self.rms_roughness(values),
         )
 
     def rms_roughness(self, values: dict):

@@ -14,7 +14,7 @@ import scipy.special
 from scipy.interpolate import RegularGridInterpolator
 
 from lube.surfaces.translation import REACH, johnson_curve, lognormal_kurtosis
-from lube.types import Array, Pair
+from lube.types import Array
 
 LEVELS = 9
 """Levels of skewness and of kurtosis."""
@@ -24,7 +24,9 @@ LEAST_EXCESS = 1e-3
 """By how much the kurtosis exceeds that of lognormal heights at least."""
 
 
-def equivalent_ratio(skewness: Pair, kurtosis: Pair, rms_height: Pair) -> Callable[..., Array]:
+def equivalent_ratio(
+    skewness: tuple[float, float], kurtosis: tuple[float, float], rms_height: tuple[float, float]
+) -> Callable[[Array, Array, Array], Array]:
     """Tabulate the lambda ratio of the Gaussian roughness that touches as often.
 
     The heights have at least the kurtosis of lognormal ones with the same skewness. With less they
@@ -40,7 +42,7 @@ def equivalent_ratio(skewness: Pair, kurtosis: Pair, rms_height: Pair) -> Callab
     Returns
     -------
     callable
-        Equivalent ratios at lambda ratios, skewness and kurtosis of the same shape.
+        Equivalent ratios from lambda ratios, skewness and kurtosis, arrays of the same shape.
     """
     axes = [np.linspace(*ends, LEVELS) for ends in (skewness, kurtosis)]
     parts = np.array(rms_height) / np.hypot(*rms_height)

@@ -139,9 +139,8 @@ def morris(
         if not np.isfinite(column).all():
             return np.full((4, len(names)), np.nan)
         found = morris_analysis.analyze(problem, unit, column, **options)
-        mean, absolute, error, deviation = (
-            np.ma.filled(found[key], np.nan) for key in ("mu", "mu_star", "mu_star_conf", "sigma")
-        )
+        own = "mu", "mu_star", "mu_star_conf", "sigma"
+        mean, absolute, error, deviation = (np.ma.filled(found[key], np.nan) for key in own)
         square = mean**2 + deviation**2 * (1.0 - 1.0 / TRAJECTORIES)
         effects = np.array([absolute, error, deviation], float) * scale
         return np.concatenate([effects, [np.sqrt(square * parts) * step]])

@@ -12,7 +12,7 @@ from lube.grid.film_profiles import six_digits
 from lube.schema import POINT_DIMS
 from lube.sensitivity.conditions import Deviating, joined
 from lube.sensitivity.runs import SEEDS, Model, is_sum, models
-from lube.sensitivity.samples import deviations, quantiles
+from lube.sensitivity.samples import deviations, over_run, quantiles
 from lube.sensitivity.shape import effective_ratio
 from lube.sensitivity.surrogate import Interpolant, Surrogate, groups, held_out
 from lube.types import Array, Pair
@@ -58,7 +58,7 @@ class Predictor:
     surrogates: dict[Model, Surrogate]
     film: Interpolant | None
     film_error: float
-    effective: Callable[..., Array] | None
+    effective: Callable | None
 
     @classmethod
     def of(cls, deviating: Deviating, runs: xr.Dataset) -> "Predictor":
@@ -79,7 +79,7 @@ class Predictor:
         surrogates, effective = {}, _effective(deviating, runs)
         for model in sorted(models(deviating), key=Model.deviations):
             own = _of_model(runs, model)
-            values = _by(deviations(deviating.factors, own["factor_quantile"].values), "run")
+            values = over_run(deviations(deviating.factors, own["factor_quantile"].values))
             variables = groups(deviating, own, values, model.gap, effective)
             variables = variables.transpose("group", "run").values
             found = own["breakthrough_probability"].transpose("run", "seed").values
@@ -123,9 +123,8 @@ class Predictor:
             absolute.append(np.sqrt(np.mean(missed**2)))
             relative.append(np.sqrt(np.mean(scaled**2)))
             counts.append(left_out.size)
-        names = np.array([", ".join(model) for model in self.surrogates])
         return {
-            "surrogate_model": ("surrogate_model", names),
+            "surrogate_model": ("surrogate_model", [", ".join(model) for model in self.surrogates]),
             "surrogate_error": ("surrogate_model", six_digits(np.array(absolute))),
             "relative_surrogate_error": ("surrogate_model", six_digits(np.array(relative))),
             "run_count": ("surrogate_model", counts),
@@ -176,7 +175,7 @@ class Predictor:
         deviating = self.deviating
         seed = np.minimum((unit[:, -1] * SEEDS).astype(int), SEEDS - 1)
         numbers = deviations(deviating.factors, unit[:, :-1])
-        values = _by(numbers, "run")
+        values = over_run(numbers)
         film = self._with_computed(joined(deviating.films(values, points)), numbers)
         found = np.full((len(unit), points.sizes["point"]), np.nan)
         for model, surrogate in self.surrogates.items():
@@ -216,10 +215,6 @@ def _of_model(runs, model):
     return runs.isel(run=np.all(same, axis=0))
 
 
-def _by(values, dim):
-    return {name: xr.DataArray(column, dims=dim) for name, column in values.items()}
-
-
 def is_chosen(deviating: Deviating, model: Model, numbers: dict, count: int) -> Array:
     """Find which of some samples choose a model; `numbers` are their deviations."""
     chosen = np.ones(count, bool)
@@ -247,7 +242,7 @@ def _film(deviating, runs):
     values = deviations(deviating.factors, runs["factor_quantile"].values)
     number = values.get("film_formula", np.zeros(runs.sizes["run"], int))
     computed = runs.isel(run=(formulas[number] == COMPUTED) & runs["film_thickness"].notnull())
-    values = _by(deviations(deviating.factors, computed["factor_quantile"].values), "run")
+    values = over_run(deviations(deviating.factors, computed["factor_quantile"].values))
     points = computed.reset_coords()[list(POINT_DIMS)]
     moes = joined(deviating.films(values, points))["film_thickness"]
     ratio = np.log(computed["film_thickness"] / moes).values[:, None]

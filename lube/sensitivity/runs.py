@@ -14,7 +14,7 @@ from lube.contact.surface_strip import surface_contact
 from lube.contact.windows import ContactWindows
 from lube.grid.gap import Gap
 from lube.sensitivity.conditions import Deviating, joined
-from lube.sensitivity.samples import deviations, quantiles
+from lube.sensitivity.samples import deviations, over_run, quantiles
 from lube.study.uncertainty import SAMPLE_BATCHES
 from lube.threads import on_threads
 from lube.types import Array
@@ -31,23 +31,16 @@ SURFACE_SEEDS = 2
 """Sets that have surfaces of their own; the others share these."""
 FEWER_SURFACES = 16
 """Surfaces in each set are this many times fewer than elsewhere."""
-
-
-class Sizes(NamedTuple):
-    """Number of samples of a model, and of operating points of each."""
-
-    samples: int
-    points: int
-
-
 SIZES = {
-    "plain line": Sizes(1024, 2),
-    "line": Sizes(1024, 3),
-    "answered line": Sizes(256, 2),
-    "surface": Sizes(32, 12),
-    "sum": Sizes(4, 24),
+    "plain line": (1024, 2),
+    "line": (1024, 3),
+    "answered line": (256, 2),
+    "surface": (32, 12),
+    "sum": (4, 24),
 }
-"""Surfaces are slow to draw, but once drawn they serve many operating points. The response of the
+"""Numbers of samples of a model, and of operating points of each.
+
+Surfaces are slow to draw, but once drawn they serve many operating points. The response of the
 film takes half a second a run. Runs of a sum, as in `is_sum`, only test it."""
 
 
@@ -191,9 +184,7 @@ def run(
         where the film is not known, or the layer holds in all contacts that were sampled.
     """
     values = deviations(deviating.factors, unit)
-    by_run = {name: xr.DataArray(column, dims="run") for name, column in values.items()}
-
-    films = deviating.films(by_run, points, **model.shape(deviating.study.line_spec))
+    films = deviating.films(over_run(values), points, **model.shape(deviating.study.line_spec))
     of_samples = [
         (runs[same], film.isel(run=same))
         for runs, film in films
@@ -229,14 +220,13 @@ def _probabilities(deviating, model, values, film):
     thicker = deviating.equivalent(ratio, values) / ratio
     film["film_thickness"] = film["film_thickness"] * thicker
     if model.contact_model == "surface":
+        given = spec, study.rollers.length, film, layer
         choices = {"gap": model.gap, "threads": 1, "fewer": FEWER_SURFACES}
         found = []
         for seed in range(SURFACE_SEEDS):
             # The scatter between so few surfaces is not needed.
             with np.errstate(invalid="ignore", divide="ignore"):
-                contact = surface_contact(
-                    spec, study.rollers.length, film, layer, study.seed + seed, **choices
-                )
+                contact = surface_contact(*given, study.seed + seed, **choices)
             found.append(contact["breakthrough_probability"].values)
         return np.stack([found[seed % SURFACE_SEEDS] for seed in range(SEEDS)], axis=1)
     windows = ContactWindows(spec, film, layer, model.gap)

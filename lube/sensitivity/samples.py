@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy.special
+import xarray as xr
 from scipy.stats import qmc
 
 from lube.study.uncertainty import Factor
@@ -61,6 +62,11 @@ def deviations(factors: Sequence[Factor], unit: Array) -> dict[str, Array]:
     """
     columns = zip(factors, np.transpose(unit), strict=True)
     return {factor.name: _at(factor, column) for factor, column in columns}
+
+
+def over_run(values: dict[str, Array]) -> dict[str, xr.DataArray]:
+    """Label deviations from `deviations`, one for each run."""
+    return {name: xr.DataArray(column, dims="run") for name, column in values.items()}
 
 
 def _at(factor, unit):

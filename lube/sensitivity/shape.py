@@ -16,7 +16,7 @@ WINDOW = np.linspace(-1.2, 1.2, 241)
 """Positions over the half-width at which roughness may touch."""
 
 
-def effective_ratio(deviating: Deviating, ranges: Array) -> Callable[..., Array]:
+def effective_ratio(deviating: Deviating, ranges: Array) -> Callable[[Array, Array, Array], Array]:
     """Tabulate the lambda ratio of the flat film in which as many points of the contact touch.
 
     A film with a shape is thinner at the outlet, so points touch there first. The share of points
@@ -27,13 +27,13 @@ def effective_ratio(deviating: Deviating, ranges: Array) -> Callable[..., Array]
     deviating : Deviating
         The study, for the modulus of its rollers and a typical oil.
     ranges : numpy.ndarray
-        Shape (3, 2): least and greatest M, L and lambda ratio.
+        Shape (3, 2): least and greatest M, L and lambda ratio, between which films are solved. A
+        film that does not converge is that of the next smaller M.
 
     Returns
     -------
     callable
-        Effective ratios at lambda ratios, M and L of the same shape. A film that did not converge
-        is that of the next smaller M.
+        Effective ratios from lambda ratios, M and L, arrays of the same shape.
     """
     levels = [np.geomspace(*ends, count) for ends, count in zip(ranges, NODES, strict=True)]
     oil = np.exp(deviating.oils.isel(lubricant=0).median())
@@ -57,7 +57,7 @@ def effective_ratio(deviating: Deviating, ranges: Array) -> Callable[..., Array]
     table = RegularGridInterpolator(logarithms, values, "cubic", **options)
 
     def effective(ratio, moes_load, moes_material):
-        axes = zip(table.grid, (moes_load, moes_material, ratio), strict=True)
+        axes = zip(logarithms, (moes_load, moes_material, ratio), strict=True)
         points = [np.clip(np.log(values), axis[0], axis[-1]) for axis, values in axes]
         return ratio * table(np.stack(points, axis=-1))
 

@@ -15,7 +15,7 @@ import scipy.special
 import xarray as xr
 from scipy.interpolate import RBFInterpolator
 
-from lube.grid.gap import PLAIN, Gap
+from lube.grid.gap import Gap
 from lube.sensitivity.conditions import Deviating
 from lube.types import Array
 
@@ -31,11 +31,7 @@ def held_out(count: int) -> int:
 
 
 def groups(
-    deviating: Deviating,
-    film: xr.Dataset,
-    values: dict,
-    gap: Gap = PLAIN,
-    effective: Callable[..., Array] | None = None,
+    deviating: Deviating, film: xr.Dataset, values: dict, gap: Gap, effective: Callable | None
 ) -> xr.DataArray:
     """Form the dimensionless groups on which the probability depends.
 
@@ -47,10 +43,10 @@ def groups(
         From `lube.sensitivity.conditions.joined`.
     values : dict of str to xarray.DataArray
         From `lube.sensitivity.samples.deviations`.
-    gap : Gap, optional
+    gap : Gap
         If it is not plain, the probability depends on Moes' numbers, too.
-    effective : callable, optional
-        Takes the place of the lambda ratio of a film with a shape.
+    effective : callable or None
+        From `lube.sensitivity.shape.effective_ratio`, for films with a shape.
 
     Returns
     -------

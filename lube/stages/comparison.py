@@ -18,7 +18,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-import scipy.special
+import scipy
 import xarray as xr
 
 from lube.contact.ensemble import windows_in
@@ -26,7 +26,7 @@ from lube.contact.surface_strip import SURFACES
 from lube.inference.at_records import model_at_records, study_films_at_records
 from lube.inference.study_shares import levels_named, log_lines
 from lube.schema import AT_RECORDS, LIMITS, label, model_dependent, values_with_limits, with_dims
-from lube.statistics.confidence import probability_interval
+from lube.statistics.confidence import known_mean, probability_interval
 from lube.statistics.one_pair import prediction_limits, quantile
 from lube.statistics.sample_size import effective_sample_size
 from lube.study.study import Study
@@ -37,7 +37,6 @@ log = logging.getLogger(__name__)
 GROUPS = ("force", "speed", "temperature")
 FIGURES = ("bias", "rms_difference", "logit_rms_difference", "overlap_share")
 """Figures of agreement whose range for a correct model is estimated."""
-_SIDES = "lower", "upper"
 
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
@@ -118,9 +117,8 @@ def _table(model, experiment):
     table = table.merge(model, join="exact", compat="no_conflicts").assign_attrs(model.attrs)
     measured = experiment.sel(threshold=experiment["comparison_threshold"].item())
     measured = [measured[f"contact_share{limit}"].values for limit in LIMITS]
-    return table.assign(
-        with_dims("comparison", values_with_limits("measured_share", measured))
-    ).assign_coords(threshold=experiment["threshold"].values)
+    table = table.assign(values_with_limits("measured_share", measured, "record"))
+    return table.assign_coords(threshold=experiment["threshold"].values)
 
 
 def _of_lines(table):
@@ -129,9 +127,8 @@ def _of_lines(table):
     windows = windows_in(table, 2.0 * table["contact_half_width"].values)
     limits = probability_interval(probabilities, windows)
     size, noise = effective_sample_size(probabilities, windows), table["share_error"].values
-    pooled, ratio, error = (
-        table[name].values for name in ("pooled_probability", "scatter_ratio", "pooled_error")
-    )
+    names = "pooled_probability", "scatter_ratio", "pooled_error"
+    pooled, ratio, error = (table[name].values for name in names)
     return limits, prediction_limits(pooled, size, ratio, len(probabilities), noise, error)
 
 
@@ -208,18 +205,14 @@ def agreement(
     within = (measured >= lower) & (measured <= upper)
     logits = scipy.special.logit(simulated[inside]) - scipy.special.logit(measured[inside])
     return {
-        "bias": _mean(simulated - measured),
-        "rms_difference": np.sqrt(_mean((simulated - measured) ** 2)),
-        "logit_rms_difference": np.sqrt(_mean(logits**2)),
+        "bias": known_mean(simulated - measured),
+        "rms_difference": np.sqrt(known_mean((simulated - measured) ** 2)),
+        "logit_rms_difference": np.sqrt(known_mean(logits**2)),
         "rank_correlation": _rank_correlation(simulated, measured),
-        "overlap_share": _mean(np.where(np.isnan(lower), np.nan, within)),
+        "overlap_share": known_mean(np.where(np.isnan(lower), np.nan, within)),
         "compared_records": simulated.size,
         "logit_records": int(np.count_nonzero(inside)),
     }
-
-
-def _mean(values):
-    return np.mean(values) if values.size else np.nan
 
 
 def _rank_correlation(first, second):
@@ -227,9 +220,7 @@ def _rank_correlation(first, second):
     if first.size < 2 or np.ptp(first) == 0.0 or np.ptp(second) == 0.0:
         return np.nan
     # Ranks are multiples of 1/2, so these sums are exact in any order.
-    first, second = (
-        pd.Series(each).rank().values - (each.size + 1) / 2 for each in (first, second)
-    )
+    first, second = scipy.stats.rankdata([first, second], axis=1) - (first.size + 1) / 2
     return np.sum(first * second) / np.sqrt(np.sum(first**2) * np.sum(second**2))
 
 
@@ -239,37 +230,30 @@ def _expected(table, contact_model):
     Each realisation in turn is left out of the ensemble and compared with the others as the
     record of a pair of rollers, at all records at once. NaN for surfaces, which have none.
     """
-    if contact_model == "surface":
-        unknown = np.full(table.sizes["film_formula"], np.nan)
-        return {f"{name}_expected_{side}": unknown for name in FIGURES for side in _SIDES}
-    measured = np.isfinite(table["measured_share"].values)
-    windows = windows_in(table, 2.0 * table["contact_half_width"].values)
-    members = table["breakthrough_probability"].values.swapaxes(0, 1)
-    ranges = []
-    for row in members:
-        known = measured & np.isfinite(row).all(axis=0)
-        ranges.append(_ranges(row[:, known], windows[known]))
+    ranges = np.full((table.sizes["film_formula"], len(FIGURES), 2), np.nan)
+    if contact_model == "line":
+        measured = np.isfinite(table["measured_share"].values)
+        windows = windows_in(table, 2.0 * table["contact_half_width"].values)
+        for row, members in enumerate(table["breakthrough_probability"].values.swapaxes(0, 1)):
+            known = measured & np.isfinite(members).all(axis=0)
+            if len(members) > 2 and known.any():
+                ranges[row] = _ranges(members[:, known], windows[known])
     return {
-        f"{name}_expected_{side}": np.array(ranges)[:, figure, end]
+        f"{name}_expected{side}": ranges[:, figure, end]
         for figure, name in enumerate(FIGURES)
-        for end, side in enumerate(_SIDES)
+        for end, side in enumerate(LIMITS[1:])
     }
 
 
 def _ranges(members, windows):
     """Range of each figure over the realisations left out, shape (figures, 2)."""
-    if len(members) < 3 or not windows.size:
-        return np.full((len(FIGURES), 2), np.nan)
     rows = []
     for number, member in enumerate(members):
         others = np.delete(members, number, axis=0)
         mean, size = others.mean(axis=0), effective_sample_size(others, windows)
         limits = prediction_limits(mean, size, np.ones(mean.size), len(others))
         rows.append(agreement(mean, *limits, member))
-    columns = np.array([[row[name] for row in rows] for name in FIGURES])
-    known = [values[np.isfinite(values)] for values in columns]
-    nothing = [np.nan, np.nan]
-    return [np.quantile(each, [0.025, 0.975]) if each.size else nothing for each in known]
+    return pd.DataFrame(rows)[list(FIGURES)].quantile([0.025, 0.975]).T  # of the known ones
 
 
 def _level_means(table, simulated):
@@ -279,11 +263,11 @@ def _level_means(table, simulated):
         assigned = table[f"{name}_level"].values
         levels = np.unique(assigned[np.isfinite(assigned)])
         at = [(assigned == level) & np.isfinite(measured) for level in levels]
-        rows = np.array([[_mean(row[here & np.isfinite(row)]) for here in at] for row in simulated])
+        rows = [[known_mean(row[here & np.isfinite(row)]) for here in at] for row in simulated]
         means |= {
             f"{name}_group": levels,
             f"simulated_mean_by_{name}": rows,
-            f"measured_mean_by_{name}": [_mean(measured[here]) for here in at],
+            f"measured_mean_by_{name}": [known_mean(measured[here]) for here in at],
         }
     return means
 
@@ -325,5 +309,5 @@ def _half_widths(table, comparisons):
     """Half-width of each prediction interval of the first formula, for many comparisons at once."""
     first, count = table.isel(film_formula=0), table.sizes.get("realisation", SURFACES)
     mean = first.get("pooled_probability", first["simulated_probability"]).values
-    sides = [abs(first[f"predicted_share_{side}"].values - mean) for side in _SIDES]
+    sides = [abs(first[f"predicted_share{side}"].values - mean) for side in LIMITS[1:]]
     return np.maximum(*sides) * quantile(count, comparisons) / quantile(count)

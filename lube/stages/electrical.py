@@ -1,7 +1,5 @@
 """The electrical stage: what electrical meters read at every operating point."""
 
-from functools import partial
-
 import numpy as np
 import xarray as xr
 
@@ -9,12 +7,7 @@ from lube.contact.windows import study_windows
 from lube.grid.film_profiles import six_digits
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip, known_films, operating_points
-from lube.physics.electrical import (
-    film_capacitance,
-    mean_inverse_gap,
-    read_impedance,
-    surrounding_capacitance,
-)
+from lube.physics import electrical
 from lube.rig.readings import READINGS, read_shares
 from lube.rig.simulator import simulated_revolutions
 from lube.schema import POINT_DIMS, label
@@ -68,7 +61,8 @@ def _phase(rig, *circuit):
     """Phase of the impedance that a bridge with a rig's series resistance reads."""
     series = rig.series_resistance + rig.lead_resistance
     settings = {"frequency": rig.frequency, "series": series}
-    return xr.apply_ufunc(lambda *given: np.angle(read_impedance(*given, **settings)), *circuit)
+    impedance = xr.apply_ufunc(electrical.read_impedance, *circuit, kwargs=settings)
+    return xr.apply_ufunc(np.angle, impedance)
 
 
 def _capacitances(study, film):
@@ -77,26 +71,25 @@ def _capacitances(study, film):
     step, layer = spec.height_step, study.boundary_layer.critical_thickness
     mean_gap, inverse = film["film_thickness"], []
     for gap in study_windows(study, film).gaps(spec):
-        at_gap = [np.nan] if gap is None else mean_inverse_gap(gap[0] * step, gap[1] * step, layer)
-        inverse.append(np.mean(at_gap))
+        height, rms = (part * step for part in gap or (np.nan, np.nan))
+        inverse.append(np.mean(electrical.mean_inverse_gap(height, rms, layer)))
     read = mean_gap.copy(data=1.0 / np.reshape(inverse, mean_gap.shape))
     contact = film["contact_half_width"], study.rollers.length, rig.oil_permittivity
-    around = partial(surrounding_capacitance, length=contact[1], oil=contact[2])
-    sizes = mean_gap, film["contact_half_width"], film["reduced_radius"]
+    edge = film["contact_half_width"], film["reduced_radius"], *contact[1:]
+    around = xr.apply_ufunc(electrical.surrounding_capacitance, mean_gap, *edge)
     return {
         "film_thickness": mean_gap,
-        "capacitance": film_capacitance(read, *contact),
-        "plate_capacitance": film_capacitance(mean_gap, *contact),
-        "surrounding_capacitance": xr.apply_ufunc(around, *sizes),
+        "capacitance": electrical.film_capacitance(read, *contact),
+        "plate_capacitance": electrical.film_capacitance(mean_gap, *contact),
+        "surrounding_capacitance": around,
         "capacitance_film": read,
     }
 
 
 def _readings(study, film, rigs, slip):
     """Contact shares by all rigs and readings, and the true ones."""
-    once = study.model_copy(
-        update={"rig": study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})}
-    )
+    one_turn = study.rig.model_copy(update={"revolutions": 1, "pairs": 1, "drift": 0.0})
+    once = study.model_copy(update={"rig": one_turn})
     points = operating_points(film, slip)
     known = [number for number, one in enumerate(points) if known_films(one.row, study.gap)]
     ways = len(READINGS) + len(study.experiment.thresholds)

@@ -5,17 +5,15 @@ operating conditions are those of each record; the study's levels near them are 
 """
 
 import logging
-from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from lube.errors import DataError, LubeError
 from lube.grid.levels import rolling
-from lube.grid.operating_points import OperatingPoint, known_films, operating_points
+from lube.grid.operating_points import known_films, operating_points
 from lube.inference.study_shares import levels_named
-from lube.recordings.manifest import Entry, Manifest, read_manifest
+from lube.recordings.manifest import Manifest, read_manifest
 from lube.recordings.usable import lubricant_of, open_entry, unsaturated_pieces
 from lube.rig.record import LEVELS, TRACE_SAMPLES, Conditions, Record
 from lube.rig.simulator import simulated_revolutions
@@ -84,7 +82,7 @@ def simulated_experiment(film: xr.Dataset, study: Study) -> xr.Dataset:
     return _dataset(rows, study, "simulated", refused)
 
 
-def _name_of_point(point: OperatingPoint, pair: int, study: Study) -> str:
+def _name_of_point(point, pair, study):
     """Operating point, and lubricant and pair if there are several."""
     words = [levels_named({name: point.levels[name] for name in LEVELS})]
     words += [point.levels["lubricant"]] * (len(study.lubricants) > 1)
@@ -125,7 +123,7 @@ def measured_experiment(manifest: Manifest, study: Study) -> xr.Dataset:
     return _dataset(rows, study, manifest.origin, refused, remarks)
 
 
-def _row_of_entry(entry: Entry, study: Study, remarks: list[str]) -> dict[str, Any]:
+def _row_of_entry(entry, study, remarks):
     """Evaluate an entry of the manifest, a recording or a stated share."""
     conditions = _conditions_of_entry(entry, study)
     if entry.file is None:
@@ -143,7 +141,7 @@ def _row_of_entry(entry: Entry, study: Study, remarks: list[str]) -> dict[str, A
     return row | {"record": name}
 
 
-def _conditions_of_entry(entry: Entry, study: Study) -> Conditions:
+def _conditions_of_entry(entry, study):
     """Conditions of a measured record; refused where the study's model is not defined."""
     slip, of_study = entry.slide_to_roll_ratio, study.experiment
     return Conditions(
@@ -159,7 +157,7 @@ def _conditions_of_entry(entry: Entry, study: Study) -> Conditions:
     )
 
 
-def _stated_row(entry: Entry, conditions: Conditions, study: Study) -> dict[str, Any]:
+def _stated_row(entry, conditions, study):
     """Row of a share that was evaluated elsewhere, at the threshold that is compared."""
     at = np.array(study.experiment.thresholds) == study.experiment.threshold
     stated = (entry.probability, entry.lower, entry.upper)
@@ -171,13 +169,7 @@ def _stated_row(entry: Entry, conditions: Conditions, study: Study) -> dict[str,
 # The dataset
 
 
-def _dataset(
-    rows: Sequence[Mapping[str, Any]],
-    study: Study,
-    origin: str,
-    refused: Sequence[str] = (),
-    remarks: Sequence[str] = (),
-) -> xr.Dataset:
+def _dataset(rows, study, origin, refused, remarks=()):
     """Dataset of all records' rows, NaN where a row has no value; refusals are logged."""
     for line in (*(f"Refused: {line}" for line in refused), *remarks):
         log.warning("%s", line)

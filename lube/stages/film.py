@@ -108,10 +108,9 @@ def film_table(
     """
     levels = {"force": force, "speed": speed, "slide_to_roll_ratio": slide_to_roll_ratio}
     axes = xr.Dataset(coords={name: np.asarray(each, float) for name, each in levels.items()})
-    slip = axes["slide_to_roll_ratio"]
-    options = with_shape, slip, inlet_shear_heating, inlet_meniscus, answered_lines
+    forces, speeds, slips = axes.coords.values()
+    options = with_shape, slips, inlet_shear_heating, inlet_meniscus, answered_lines
     asperities = {"rough_surfaces": rough_surfaces, "load_sharing": load_sharing}
-    forces, speeds = axes["force"], axes["speed"]
     table = film_at(lubricant, rollers, forces, speeds, formulas, *options, **asperities)
     dims = CONTACT_DIMS[0], "roller", *CONTACT_DIMS[1:]
     return label(table.transpose(*dims, ..., missing_dims="ignore"), "film")

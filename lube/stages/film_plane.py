@@ -45,10 +45,8 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     oils = lubricant.sel(temperature=levels[levels.size // 2])
     properties = ["dynamic_viscosity", "pressure_viscosity_coefficient"]
     film_modulus = 2.0 * study.rollers.reduced_modulus
-    planes = [
-        _plane(*oil, film_modulus)
-        for oil in zip(*(oils[name].values.tolist() for name in properties), strict=True)
-    ]
+    columns = (oils[name].values.tolist() for name in properties)
+    planes = [_plane(*oil, film_modulus) for oil in zip(*columns, strict=True)]
     films, groups = (np.array(each) for each in zip(*planes, strict=True))
     found = {name: films[..., at] for at, name in enumerate(PLACES)}
     load, speed, material = np.moveaxis(groups, -1, 0)

@@ -24,7 +24,7 @@ _DIGITS = {
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film_profile.nc``; see `lube.stages`."""
-    grid, meniscus = study.operating_grid, study.film_model["inlet_meniscus"]
+    grid, meniscus = study.operating_grid, study.inlet_model["inlet_meniscus"]
     rollers = study.rough_rollers
     return film_profile_table(inputs["lubricant"], rollers, grid.force, grid.speed, meniscus)
 

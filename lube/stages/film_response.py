@@ -14,9 +14,8 @@ from lube.types import Datasets
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``film_response.nc``; see `lube.stages`."""
-    heat, meniscus = study.inlet_shear_heating, study.film_model["inlet_meniscus"]
-    options = study.rough_rollers, study.line_spec, heat, meniscus, threads
-    return film_responses(inputs["lubricant"], inputs["film"], *options)
+    given = inputs["lubricant"], inputs["film"], study.rough_rollers, study.line_spec
+    return film_responses(*given, threads=threads, **study.inlet_model)
 
 
 def film_responses(

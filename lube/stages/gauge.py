@@ -18,6 +18,7 @@ from lube.inference.fits import fit_alpha, fit_layer_strength, study_strength
 from lube.inference.record_curves import RecordCurves, gauged_ratios, map_curves, own_curves
 from lube.inference.surface_records import reading_errors, surface_curves
 from lube.schema import AT_RECORDS, label, values_with_limits, with_dims
+from lube.statistics.confidence import known_mean
 from lube.statistics.one_pair import quantile, standard_error
 from lube.study.study import Study
 from lube.types import Datasets
@@ -91,13 +92,9 @@ def gauge_records(curves: RecordCurves, contact: xr.Dataset, comparison: xr.Data
 
 def _inferred(curves, contact, comparison):
     """Infer films, the pressure-viscosity coefficient and the boundary layer."""
-    parts = (
-        gauge_film(curves, comparison),
-        gauge_coverage(curves, comparison),
-        fit_alpha(curves, contact, comparison),
-        fit_layer_strength(curves, contact, comparison),
-    )
-    return xr.merge(parts, join="exact", combine_attrs="drop")
+    films = gauge_film(curves, comparison), gauge_coverage(curves, comparison)
+    fits = (fit(curves, contact, comparison) for fit in (fit_alpha, fit_layer_strength))
+    return xr.merge((*films, *fits), join="exact", combine_attrs="drop")
 
 
 def _with_records(inferred, strength, comparison):
@@ -170,15 +167,10 @@ def gauge_coverage(curves: RecordCurves, comparison: xr.Dataset) -> xr.Dataset:
         films = np.log(comparison["lambda_ratio"].values[0])
         for record, (curve, film) in enumerate(zip(curves.of_records, films, strict=True)):
             held, closed = _leave_one_out(curve, film, members[:, record])
-            coverage[:, record] = [
-                _mean(each) for each in (held, held[closed], held[~closed], closed)
-            ]
+            cases = held, held[closed], held[~closed], closed
+            coverage[:, record] = [known_mean(each) for each in cases]
     names = ("interval_coverage", "closed_coverage", "one_sided_coverage", "closed_share")
     return xr.Dataset(with_dims("gauge", dict(zip(names, coverage, strict=True))))
-
-
-def _mean(held):
-    return np.mean(held) if held.size else np.nan
 
 
 def _leave_one_out(curve, film, shares):

@@ -13,8 +13,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``indicators.nc``; see `lube.stages`. With slip, the film is that nearest to rolling."""
     film = at_slip(inputs["film"]).assign(inputs["lubricant"][["dynamic_viscosity"]])
     resistance = inputs["film_profile"]["rolling_resistance"]
-    with xr.set_options(keep_attrs=False):
-        found = indicators(film, resistance, study.rough_rollers)
-    rows = FILES["indicators"].items()
-    table = {name: found[name].drop_attrs().transpose(*row.dims) for name, row in rows}
+    found = indicators(film, resistance, study.rough_rollers)
+    table = {name: found[name].transpose(*row.dims) for name, row in FILES["indicators"].items()}
     return label(xr.Dataset(table), "indicators")

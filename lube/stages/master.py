@@ -69,10 +69,8 @@ def _levels(film, lambda_levels, width_levels):
     """Lambda ratios and contact widths over the range of a film table."""
     ratio, width = film["lambda_ratio"].values, 2.0 * film["contact_half_width"].values
     # Some films may not be known. Unique, because all values of a film table may be the same.
-    return (
-        np.unique(np.geomspace(np.nanmin(ratio), np.nanmax(ratio), lambda_levels)),
-        np.unique(np.linspace(width.min(), width.max(), width_levels)),
-    )
+    ratios = np.unique(np.geomspace(np.nanmin(ratio), np.nanmax(ratio), lambda_levels))
+    return ratios, np.unique(np.linspace(width.min(), width.max(), width_levels))
 
 
 def _map(lines, film, boundary_layer, levels, dims):

@@ -70,7 +70,7 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
 
 def _passed(study, oil, temperature, speed, force):
     """Let a piece of the lines and single waves pass at one operating point."""
-    rollers, meniscus = study.rough_rollers, study.film_model["inlet_meniscus"]
+    rollers, meniscus = study.rough_rollers, study.inlet_model["inlet_meniscus"]
     levels = {"force": [force], "speed": [speed]}
     force, speed = (xr.DataArray(each, {name: each}, [name]) for name, each in levels.items())
     oil, slip = oil.sel(temperature=[temperature]), rolling(study.slips)
@@ -134,8 +134,7 @@ def _of_waves(profile):
     difference, oil = np.full((2, *shape), np.nan)
     gaps = np.full((len(ANSWERS), *shape), np.nan)
     for at in np.ndindex(shape):
-        chosen = (values[number] for values, number in zip(WAVES.values(), at, strict=True))
-        speed, wavelength, amplitude = chosen
+        speed, wavelength, amplitude = (w[n] for w, n in zip(WAVES.values(), at, strict=True))
         try:
             wave = pass_wave(profile, wavelength, speed, amplitude)
         except ConvergenceError as error:

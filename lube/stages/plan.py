@@ -8,13 +8,7 @@ from lube.grid.discretise import speed_ratios
 from lube.grid.film_profiles import six_digits
 from lube.grid.levels import rolling
 from lube.grid.operating_points import at_slip
-from lube.inference.planning import (
-    QUANTITIES,
-    film_by_coefficient,
-    half_widths,
-    relative_error,
-    slopes,
-)
+from lube.inference import planning
 from lube.schema import POINT_DIMS, label
 from lube.sensitivity.samples import SEED
 from lube.statistics.one_pair import scatter_ratio
@@ -44,15 +38,12 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     slip = rolling(study.slips)
     film = at_slip(inputs["film"], slip).isel(film_formula=0, drop=True).transpose(*POINT_DIMS, ...)
     sizes = [film.sizes[name] for name in POINT_DIMS]
-    found = slopes(study.line_spec, film, study.boundary_layer, study.gap, study.seed, threads)
+    choices = study.boundary_layer, study.gap, study.seed, threads
+    found = planning.slopes(study.line_spec, film, *choices)
     threshold, reading = _best_threshold(inputs["electrical"], study.experiment.threshold)
     point = inputs["lubricant"], study.rough_rollers, film["force"], film["speed"]
-    by_coefficient = film_by_coefficient(
-        *point,
-        study.film_formulas[0],
-        slide_to_roll_ratio=slip,
-        inlet_shear_heating=study.inlet_shear_heating,
-        inlet_meniscus=study.film_model["inlet_meniscus"],
+    by_coefficient = planning.film_by_coefficient(
+        *point, study.film_formulas[0], slide_to_roll_ratio=slip, **study.inlet_model
     )
     by_coefficient = by_coefficient.transpose(*POINT_DIMS).values.ravel()
     table = {
@@ -65,23 +56,22 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     table = {name: (POINT_DIMS, _digits(each.reshape(sizes))) for name, each in table.items()}
     size = _sample_size(inputs["contact"], inputs["film"], slip)
     ratios = [_ratio(study, slip, turns) for turns in TURNS]
-    errors = [relative_error(found.probability, size, ratio, reading) for ratio in ratios]
+    errors = [planning.relative_error(found.probability, size, ratio, reading) for ratio in ratios]
     unknown = {"half_width": 0.0}
     if "sensitivity" in inputs:
         unknown["half_width_assumed"] = _assumed(inputs["sensitivity"])[:, None]
     for name, others in unknown.items():
         error, realisations = np.hypot(errors, others), inputs["contact"].sizes["realisation"]
-        widths = half_widths(found, by_coefficient, error, realisations)
-        widths = _digits(widths.reshape(len(QUANTITIES), len(TURNS), *sizes))
+        widths = planning.half_widths(found, by_coefficient, error, realisations)
+        widths = _digits(widths.reshape(len(planning.QUANTITIES), len(TURNS), *sizes))
         table[name] = ("quantity", "turns", *POINT_DIMS), widths
     coordinates = {name: film[name].values for name in POINT_DIMS}
-    coordinates |= {"quantity": list(QUANTITIES), "turns": list(TURNS)}
+    coordinates |= {"quantity": list(planning.QUANTITIES), "turns": list(TURNS)}
     dataset = xr.Dataset(table | {"best_threshold": threshold}, coordinates)
     if "sensitivity" in inputs:
         factors = inputs["sensitivity"]["factor"].values.tolist()
         if names := [name for name in factors if name not in (*CHOICES, SEED)]:
-            found = _to_measure(study, inputs["sensitivity"], names)
-            dataset = dataset.merge(found, join="exact")
+            dataset = dataset.merge(_to_measure(study, inputs["sensitivity"], names), join="exact")
     return label(dataset, "plan")
 
 
@@ -130,7 +120,7 @@ def _assumed(sensitivity):
     parts = sensitivity["first_order"].clip(0.0, 1.0)
     each = zip(parts["factor"].values, sensitivity["group_of_factor"].values, strict=True)
     groups, found = dict(each), []
-    for quantity in QUANTITIES:
+    for quantity in planning.QUANTITIES:
         given = {*_GIVEN[quantity], *CHOICES, SEED}
         unknown = [name for name, group in groups.items() if not {name, group} & given]
         part = parts.sel(factor=unknown).sum("factor").clip(0.0, 1.0)

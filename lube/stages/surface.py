@@ -30,8 +30,7 @@ _UNKNOWN = (np.nan, np.nan, np.nan)
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``surface.nc``; see `lube.stages`."""
-    hurst_exponent = study.roughness.hurst_exponent
-    return measured_surfaces(study.topographies, study.line_spec, hurst_exponent)
+    return measured_surfaces(study.topographies, study.line_spec, study.roughness.hurst_exponent)
 
 
 def measured_surfaces(

@@ -10,11 +10,10 @@ from lube.types import Datasets
 
 def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     """Make ``surface_response.nc``; see `lube.stages`."""
-    film, model = inputs["film"], study.film_model
+    film = inputs["film"]
     levels = film["force"], film["speed"], ["computed"], False, film["slide_to_roll_ratio"]
-    heat, meniscus = model["inlet_shear_heating"], model["inlet_meniscus"]
-    surfaces = {"answered_surfaces": study.line_spec, "threads": threads}
-    table = film_at(inputs["lubricant"], study.rough_rollers, *levels, heat, meniscus, **surfaces)
+    options = study.inlet_model | {"answered_surfaces": study.line_spec, "threads": threads}
+    table = film_at(inputs["lubricant"], study.rough_rollers, *levels, **options)
     table = table.rename(response_position="film_position")
     variables = FILES["surface_response"]
     dims = variables["surface_response_real"].dims

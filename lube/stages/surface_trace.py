@@ -36,8 +36,6 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     times = found["step"].values / film["entrainment_speed"].values[0]
     levels = {name: ("operating_point", film[name].values) for name in CONTACT_DIMS}
     found = found.assign_coords(step=times, **levels).rename(step="time")
-    found = found.assign(
-        contact_resistance=(("operating_point", "time"), resistance),
-        **film[["film_thickness", "contact_half_width", "entrainment_speed"]],
-    )
+    found["contact_resistance"] = ("operating_point", "time"), resistance
+    found = found.assign(film[["film_thickness", "contact_half_width", "entrainment_speed"]])
     return label(found.drop_attrs(), "surface_trace")

@@ -10,15 +10,7 @@ from lube.grid.film_profiles import shaped_films
 from lube.grid.gap import PLAIN, Gap
 from lube.grid.operating_points import surface_speeds
 from lube.physics.excursions import breaking_curvature, crossing_rate, sharp_summit_share
-from lube.schema import (
-    CONTACT_DIMS,
-    FILES,
-    LIMITS,
-    OPERATING_DIMS,
-    POINT_DIMS,
-    label,
-    values_with_limits,
-)
+from lube.schema import FILES, LIMITS, OPERATING_DIMS, POINT_DIMS, label, values_with_limits
 from lube.statistics.confidence import mean_interval
 from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import LineSpec
@@ -80,15 +72,14 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     share of pairs with any is :math:`1 - e^{-\mu}`.
     """
     film = inputs["film"].transpose("film_formula", *POINT_DIMS, ...)
-    if remark := _why_not(study.line_spec, study.gap):
-        return _unknown(film, np.asarray(study.slips, float), remark)
-    if study.line_spec.follows_rolling:
-        table = _on_lines(study, film, threads)
+    remark = _why_not(study.line_spec, study.gap)
+    if remark or not study.line_spec.follows_rolling:
+        table = _unknown(film, np.asarray(study.slips, float))
     else:
-        table = _unknown(film, np.asarray(study.slips, float), "").drop_attrs()
-    if study.has_surfaces:
+        table = _on_lines(study, film, threads)
+    if study.has_surfaces and not remark:
         table = _by_model(study, film, table, inputs["areal"])
-    return label(table.assign_attrs(remarks=""), "tail")
+    return label(table.assign_attrs(remarks=remark), "tail")
 
 
 def _on_lines(study, film, threads):
@@ -103,10 +94,10 @@ def _on_lines(study, film, threads):
         some = film.isel(film_formula=formulas)
         if some["film_formula"].size:
             found = _sampled(spec, some, windows[points], levels, study.seed, pairs, threads)
-            tables.append(_table(spec, some, study.boundary_layer, found, levels, gap))
+            tables.append(_table(spec, some, study.boundary_layer, *found, levels, gap))
     table = xr.concat(tables, "film_formula", data_vars="minimal", coords="minimal", join="exact")
     coordinates = {name: film[name] for name in OPERATING_DIMS}
-    return table.assign_coords(coordinates).transpose(*CONTACT_DIMS)
+    return table.assign_coords(coordinates).transpose(_SLIP, *OPERATING_DIMS)
 
 
 def _by_model(study, film, lines, areal):
@@ -150,12 +141,11 @@ def _by_groups(found, passages, revolution):
     sampled one by one, this gives 2 to 11 % too many of them where P is below 0.001; where it is
     greater, nearly all pairs have a breakthrough anyway.
     """
+    name = "breakthrough_probability"
     with np.errstate(divide="ignore"):  # where contact is always seen
-        groups = {
-            end: -passages * np.log1p(-found[f"breakthrough_probability{end}"]) for end in LIMITS
-        }
+        groups = {end: -passages * np.log1p(-found[f"{name}{end}"]) for end in LIMITS}
     shares = {f"touching_pair_share{end}": -np.expm1(-each) for end, each in groups.items()}
-    never = 1.0 - found["breakthrough_probability"]
+    never = 1.0 - found[name]
     return shares | {"first_breakthrough_time": revolution * never * _wait(groups[""])}
 
 
@@ -195,10 +185,8 @@ def pair_probabilities(
     """
     if remark := _why_not(spec, gap):
         unknown = xr.full_like(film["film_thickness"], np.nan).expand_dims(pair=2)
-        return xr.Dataset(
-            dict.fromkeys((*_PROBABILITIES, "breakthrough_rate"), unknown),
-            attrs={"remarks": remark},
-        )
+        names = *_PROBABILITIES, "breakthrough_rate"
+        return xr.Dataset(dict.fromkeys(names, unknown), attrs={"remarks": remark})
     windows = ContactWindows(spec, film, boundary_layer, gap)
     table, runs = _sampled(spec, film, windows, slide_to_roll_ratio, seed, PAIRS)
     table["breakthrough_rate"] = _in_time(spec, film, runs, slide_to_roll_ratio, gap)[1]
@@ -238,7 +226,7 @@ def _why_not(spec, gap):
     return ""
 
 
-def _unknown(film, slide_to_roll_ratio, remark):
+def _unknown(film, slide_to_roll_ratio):
     """Table without any value."""
     levels = {name: film[name] for name in OPERATING_DIMS} | {_SLIP: slide_to_roll_ratio}
     empty = {
@@ -246,13 +234,12 @@ def _unknown(film, slide_to_roll_ratio, remark):
         for name, row in FILES["tail"].items()
         if not row.optional
     }
-    return label(xr.Dataset(empty, attrs={"remarks": remark}), "tail")
+    return xr.Dataset(empty)
 
 
-def _table(spec, film, boundary_layer, outcomes, slide_to_roll_ratio, gap):
+def _table(spec, film, boundary_layer, of_pairs, runs, slide_to_roll_ratio, gap):
     """Variables of some film formulas, unlabelled."""
     slip = xr.DataArray(slide_to_roll_ratio, {_SLIP: slide_to_roll_ratio})
-    of_pairs, runs = outcomes
     breakthrough = of_pairs["breakthrough_probability"]
     in_window, rate = _in_time(spec, film, runs, slip, gap)
     of_pairs = (of_pairs * xr.ones_like(slip)).assign(breakthrough_rate=rate)

@@ -158,7 +158,6 @@ def contact_window(
     """
     point = trace.isel(operating_point=operating_point)
     grid = LineGrid.of(lines)
-    spacing, height_step = grid.spacing, grid.height_step
     gap = Gap(trace.attrs["film_shape"], trace.attrs["roughness_deformation"])
     half_width = point["contact_half_width"].item()
     widest = half_width * (point["film_position"].values[-1] if gap.has_shape else 1.0)
@@ -183,16 +182,16 @@ def contact_window(
     overlap = heights.sum(axis=0) - film
     if reach is None:
         touching = np.abs(window[overlap > 0]).max(initial=0)
-        shown = np.abs(window) <= max(half_width / spacing, touching + 1)
+        shown = np.abs(window) <= max(half_width / grid.spacing, touching + 1)
         window, heights, overlap = window[shown], heights[:, shown], overlap[shown]
     segments = _segments(overlap, point, grid)
     return xr.Dataset(
         {
-            "height": (("roller", "x"), heights * height_step),
-            "overlap": ("x", overlap * height_step),
+            "height": (("roller", "x"), heights * grid.height_step),
+            "overlap": ("x", overlap * grid.height_step),
             **{name: ("segment", values) for name, values in segments.items()},
         },
-        coords={"x": window * spacing, "roller": lines["roller"]},
+        coords={"x": window * grid.spacing, "roller": lines["roller"]},
     )
 
 

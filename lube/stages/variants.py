@@ -47,16 +47,16 @@ class Variant:
     is_uncut : bool, optional
         Whether the boundary layer is judged on uncut segments, of which any part lies in the
         window; otherwise on the parts that the edges of the window leave.
-    contact_model : str, optional
-        ``line``, or ``surface``: the surface that the line stands for, over the length of
-        the rollers.
+    is_on_surface : bool, optional
+        Whether contact is that of the surface that the line stands for, over the length of the
+        rollers.
     """
 
     film: str | None = None
     film_shape: str | None = None
     roughness_deformation: str | None = None
     is_uncut: bool = False
-    contact_model: str = "line"
+    is_on_surface: bool = False
 
     def of(self, study: Study) -> "Variant":
         """Return the variant with the study's own choices in place of None."""
@@ -71,11 +71,6 @@ class Variant:
     def gap(self) -> Gap:
         """How film and roughness make up the gap."""
         return Gap("flat" if self.film_shape == "flat" else "computed", self.roughness_deformation)
-
-    @property
-    def is_on_surface(self) -> bool:
-        """Whether contact is that of the surface."""
-        return self.contact_model == "surface"
 
 
 STUDY = "study"
@@ -94,9 +89,9 @@ VARIANTS = {
     "plain": Variant(None, "flat", "none"),
     "plain, computed film": Variant("computed", "flat", "none"),
     "plain, computed shape": Variant("computed", "computed", "none"),
-    "plain, surface": Variant(None, "flat", "none", contact_model="surface"),
-    "computed shape, surface": Variant("computed", "computed", "none", contact_model="surface"),
-    "complete": Variant("computed", "computed", "computed", contact_model="surface"),
+    "plain, surface": Variant(None, "flat", "none", is_on_surface=True),
+    "computed shape, surface": Variant("computed", "computed", "none", is_on_surface=True),
+    "complete": Variant("computed", "computed", "computed", is_on_surface=True),
 }
 """All variants by name, the study's own first; the others are compared with it."""
 
@@ -157,12 +152,11 @@ def _film(variant, study, inputs):
         film = film.assign(film_thickness=thinner * other["film_thickness"])
         film["formula_place"] = other["formula_place"]
     film["film_thickness"] = film["film_thickness"].transpose(*POINT_DIMS)
-    response = inputs["film_response"][list(VARIABLES)].rename(film_position="response_position")
-    slip = rolling(response["slide_to_roll_ratio"].values)
+    kind, names = "film_response", VARIABLES
     if variant.is_on_surface and "surface_response" in inputs:
-        response = inputs["surface_response"][list(SURFACE_VARIABLES)]
-        response = response.rename(film_position="response_position")
-    film = film.assign(response.sel(slide_to_roll_ratio=slip, drop=True))
+        kind, names = "surface_response", SURFACE_VARIABLES
+    response = inputs[kind][list(names)].rename(film_position="response_position")
+    film = film.assign(response.sel(slide_to_roll_ratio=rolling(study.slips), drop=True))
     if variant.film_shape == "flat":
         return film.drop_vars("film_profile", errors="ignore")
     if variant.film_shape == "computed":
@@ -188,12 +182,8 @@ def _on_lines(own, films, sampled, study, threads):
 
 def _sampled(variants, windows, study, threads):
     """Probabilities by importance sampling."""
-
-    def run(number):
-        pair = study.line_spec, study.seed, number
-        return [windows[each].sample(*pair)[0] for each in variants]
-
-    values = np.array(on_threads(run, range(PAIRS), threads))
+    pairs = study.line_spec, study.seed, PAIRS, threads
+    values = np.stack([windows[each].on_pairs(*pairs) for each in variants], axis=1)
     return _with_limits(variants, values, mean_interval(values, 1.0))
 
 
@@ -251,10 +241,9 @@ def _with_limits(variants, values, means):
 
 def _roughness_ratio(variant, spec, film):
     """Rms height of both lines together at the line of centres, over that as drawn."""
-    if variant.roughness_deformation == "none":
-        return np.ones(film["film_thickness"].shape)
-    if variant.is_on_surface:
-        return np.full(film["film_thickness"].shape, np.nan)
+    is_drawn = variant.roughness_deformation == "none"
+    if is_drawn or variant.is_on_surface:
+        return np.full(film["film_thickness"].shape, 1.0 if is_drawn else np.nan)
     wavelengths, powers = zip(*(line_waves(spec, roller) for roller in (0, 1)), strict=True)
     power = np.concatenate(powers)
 

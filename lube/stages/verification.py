@@ -9,18 +9,8 @@ from lube.schema import label, values_with_limits
 from lube.statistics.confidence import mean_interval
 from lube.study.study import Study
 from lube.types import Datasets
+from lube.verification import films, lines, surfaces
 from lube.verification.check import CHECKS
-from lube.verification.films import VENNER, film_checks, response
-from lube.verification.lines import (
-    COUNTED,
-    FEW,
-    LAMBDA_RATIOS,
-    curves,
-    line_checks,
-    on_grids,
-    scaled_checks,
-)
-from lube.verification.surfaces import surface_checks
 
 _TEXTS = "subject", "against", "kind", "unit", "source"
 
@@ -31,20 +21,20 @@ def make(study: Study, inputs: Datasets, threads: int = 1) -> xr.Dataset:
     The checks are made with the study's lines, layer, rollers and oils. Its film has the shape and
     its roughness the deformation of the paper, flat and none.
     """
-    found, waves = curves(study, threads), response()
-    seen = line_checks(study, found, threads) | scaled_checks(study, inputs["lubricant"])
-    seen |= surface_checks(study, threads) if study.line_spec.is_isotropic else {}
-    seen |= film_checks(_contact(study, inputs["lubricant"]), waves)
-    on_others = on_grids(study, threads)
+    lubricant, found, waves = inputs["lubricant"], lines.curves(study, threads), films.response()
+    seen = lines.line_checks(study, found, threads) | lines.scaled_checks(study, lubricant)
+    seen |= surfaces.surface_checks(study, threads) if study.line_spec.is_isotropic else {}
+    seen |= films.film_checks(_contact(study, lubricant), waves)
+    on_others = lines.on_grids(study, threads)
     table = _outcomes(seen) | _curves(found) | _on_grids(on_others)
     table["response"] = "response_wavelength", six_digits(waves)
-    table["printed_response"] = "response_wavelength", list(VENNER.values())
+    table["printed_response"] = "response_wavelength", list(films.VENNER.values())
     coordinates = {
         "check": np.arange(1, len(seen) + 1),
-        "lambda_ratio": LAMBDA_RATIOS,
+        "lambda_ratio": lines.LAMBDA_RATIOS,
         "grid": list(on_others),
-        "grid_lambda_ratio": LAMBDA_RATIOS[FEW],
-        "response_wavelength": list(VENNER),
+        "grid_lambda_ratio": lines.LAMBDA_RATIOS[lines.FEW],
+        "response_wavelength": list(films.VENNER),
     }
     return label(xr.Dataset(table, coordinates), "verification")
 
@@ -55,7 +45,7 @@ def _contact(study, lubricant):
     force, speed = (sorted(levels)[len(levels) // 2] for levels in (grid.force, grid.speed))
     oil = lubricant.isel(lubricant=0, temperature=lubricant.sizes["temperature"] // 2)
     contact = hertz_contact(rollers, force, speed)
-    meniscus = study.film_model["inlet_meniscus"]
+    meniscus = study.inlet_model["inlet_meniscus"]
     return FilmGroups.at(oil, rollers, force, contact, meniscus).profiles.item().contact
 
 
@@ -73,10 +63,9 @@ def _outcomes(deviations):
 def _curves(found):
     table = {"touching_bound": ("lambda_ratio", six_digits(found.bound))}
     for way in ("counted", "sampled"):
-        for number, name in enumerate(COUNTED):
-            limits = mean_interval(getattr(found, way)[..., number], 1.0)
-            digits = [("lambda_ratio", six_digits(each)) for each in limits]
-            table |= values_with_limits(f"{way}_{name}", digits)
+        for number, name in enumerate(lines.COUNTED):
+            limits = map(six_digits, mean_interval(getattr(found, way)[..., number], 1.0))
+            table |= values_with_limits(f"{way}_{name}", limits, "lambda_ratio")
     return table
 
 
@@ -88,8 +77,8 @@ def _on_grids(found):
     ratio = of_pairs.mean(axis=0) / own.mean(axis=0)
     scatter = (of_pairs - ratio * own).std(axis=0, ddof=1) / np.sqrt(len(own))
     error = 1.96 * scatter / own.mean(axis=0)
-    for number, name in enumerate(COUNTED):
-        ends = (ratio, ratio - error, ratio + error)
-        limits = [(dims, six_digits(each[..., number])) for each in ends]
-        table |= values_with_limits(f"{name}_ratio", limits)
+    ends = ratio, ratio - error, ratio + error
+    for number, name in enumerate(lines.COUNTED):
+        limits = (six_digits(each[..., number]) for each in ends)
+        table |= values_with_limits(f"{name}_ratio", limits, dims)
     return table

@@ -45,6 +45,11 @@ def mean_over_first(values: Array) -> Array:
     return total / len(values)
 
 
+def known_mean(values: Array) -> float:
+    """Mean of the values that are known; NaN if there are none."""
+    return np.mean(values) if values.size else np.nan
+
+
 def score_interval(mean: Values, sample_size: Values, quantile: Values) -> Pair:
     r"""Wilson's score interval of a probability.
 
@@ -125,14 +130,12 @@ def probability_limits(mean: Array, sample_size: Values, degrees: Values, window
     scattered = ~np.isnan(sample_size)
     student = scipy.special.stdtrit(degrees, 0.5 + CONFIDENCE / 2.0)
     normal = scipy.special.ndtri(0.5 + CONFIDENCE / 2.0)
-    lower, upper = score_interval(
-        mean, np.where(scattered, sample_size, windows), np.where(scattered, student, normal)
-    )
+    quantile = np.where(scattered, student, normal)
+    lower, upper = score_interval(mean, np.where(scattered, sample_size, windows), quantile)
     bound = 1.0 - (1.0 - CONFIDENCE) ** (1.0 / windows)
-    lower = np.select(
-        [mean == 0.0, mean == 1.0], [0.0, 1.0 - bound], np.minimum(lower, 1.0 - bound)
-    )
-    upper = np.select([mean == 0.0, mean == 1.0], [bound, 1.0], np.maximum(upper, bound))
+    one_sided = [mean == 0.0, mean == 1.0]
+    lower = np.select(one_sided, [0.0, 1.0 - bound], np.minimum(lower, 1.0 - bound))
+    upper = np.select(one_sided, [bound, 1.0], np.maximum(upper, bound))
     return lower, upper
 
 

@@ -262,31 +262,28 @@ def film_interval(
     """
     if np.isnan(share) or curve.films.size < 2:
         return np.nan, np.nan, np.nan
-    record, limit = (share, ratio, realisations, noise), quantile(realisations)
+    known, limit = (share, ratio, realisations, noise), quantile(realisations)
     last = curve.films.size - 1
-    films, distance = _distances(curve, (curve.peak, last), record)
+    films, distance = _distances(curve, curve.peak, last, *known)
     lower = np.interp(-limit, distance, films, left=-np.inf, right=films[-1])
     upper = np.interp(limit, distance, films, left=films[0], right=np.inf)
     if lower == -np.inf and curve.peak and distance[0] <= limit:
-        thinner, distance = _distances(curve, (curve.peak, 0), record)
+        thinner, distance = _distances(curve, curve.peak, 0, *known)
         lower = np.interp(limit, distance, thinner, right=-np.inf)
     return curve.film_at(share), lower, upper
 
 
-def _distances(curve, ends, record):
+def _distances(curve, first, last, share, *known):
     """Films, and the distances of a share from the curve there, in standard errors.
 
     The films go from one end to the other, both given as indices of the curve's levels. The
     distances are made non-decreasing.
     """
-    share, ratio, realisations, noise = record
-    first, last = ends
-    levels = np.arange(STEPS * abs(last - first) + 1) / STEPS
-    levels = first + np.sign(last - first) * levels
+    levels = np.linspace(first, last, STEPS * abs(last - first) + 1)
     films = np.interp(levels, np.arange(curve.films.size), curve.films)
     model = scipy.special.expit(curve.logit_at(films))
     sample_size = np.interp(films, curve.films, curve.sample_size)
-    error = standard_error(model, sample_size, ratio, realisations, noise)
+    error = standard_error(model, sample_size, *known)
     return films, np.maximum.accumulate((share - model) / error)
 
 

@@ -142,12 +142,17 @@ class Study(StrictModel):
         return self.rollers.with_rms_heights(self.line_spec.rms_height)
 
     @property
+    def inlet_model(self) -> dict[str, Any]:
+        """What the study assumes of the inlet, as arguments of `lube.grid.films.film_at`."""
+        meniscus = None if self.inlet_meniscus == "none" else self.inlet_meniscus
+        return {"inlet_shear_heating": self.inlet_shear_heating, "inlet_meniscus": meniscus}
+
+    @property
     def film_model(self) -> dict[str, Any]:
         """What the study assumes of its films, as arguments of `lube.stages.film.film_table`."""
         return {
             "with_shape": self.film_shape != "flat",
-            "inlet_shear_heating": self.inlet_shear_heating,
-            "inlet_meniscus": None if self.inlet_meniscus == "none" else self.inlet_meniscus,
+            **self.inlet_model,
             "answered_lines": self.answered_lines,
             "rough_surfaces": self.rough_surfaces,
             "load_sharing": self.load_sharing,
@@ -309,7 +314,7 @@ class Study(StrictModel):
         half_width = self.rollers.contact_half_width(force)
         what = f"operating_grid.force: the contact at {force:g} N"
         check_width(self.line_spec, 2.0 * half_width, what)
-        meniscus = self.film_model["inlet_meniscus"]
+        meniscus = self.inlet_model["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:
             raise StudyError(
                 f"inlet_meniscus: got {with_unit(meniscus, 'm')}, need more than "

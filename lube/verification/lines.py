@@ -256,15 +256,12 @@ def scaled_checks(study: Study, lubricant: xr.Dataset) -> dict[str, float]:
     """
     rollers, grid = study.rough_rollers, study.operating_grid
     axes = xr.Dataset(coords={"force": list(grid.force), "speed": list(grid.speed)})
+    model = {"slide_to_roll_ratio": rolling(study.slips), **study.inlet_model}
     films, counts = [], []
     for times in (1.0, 2.0):
         longer = rollers.model_copy(update={"length": times * rollers.length})
-        film = film_at(
-            *(lubricant, longer, times * axes["force"], axes["speed"], study.film_formulas[:1]),
-            slide_to_roll_ratio=rolling(study.slips),
-            inlet_shear_heating=study.inlet_shear_heating,
-            inlet_meniscus=study.film_model["inlet_meniscus"],
-        )
+        levels = times * axes["force"], axes["speed"], study.film_formulas[:1]
+        film = film_at(lubricant, longer, *levels, **model)
         windows = ContactWindows(study.line_spec, film, study.boundary_layer)
         films.append(np.append(windows.thickness, windows.half_windows))
         counts.append(windows.count(draw_realisation(study.line_spec, study.seed, 0))[:, 1])

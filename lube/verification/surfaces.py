@@ -107,9 +107,7 @@ def contact_count(above: Array) -> int:
     """
     labels, count = scipy.ndimage.label(above)
     # Groups that are joined across a side count once.
-    pairs = [each[:, (each > 0).all(axis=0)] for each in (labels[[0, -1]], labels[:, [0, -1]].T)]
-    joined = scipy.sparse.coo_array(
-        (np.ones(sum(each.shape[1] for each in pairs)), np.concatenate(pairs, axis=1)),
-        shape=(count + 1, count + 1),
-    )
+    ends = np.concatenate([labels[[0, -1]], labels[:, [0, -1]].T], axis=1)
+    pairs = ends[:, (ends > 0).all(axis=0)]
+    joined = scipy.sparse.coo_array((np.ones(pairs.shape[1]), pairs), shape=(count + 1, count + 1))
     return scipy.sparse.csgraph.connected_components(joined, directed=False)[0] - 1

@@ -14,7 +14,7 @@ from lube.sensitivity import indices, runs
 from lube.sensitivity.conditions import Deviating
 from lube.sensitivity.indices import sobol
 from lube.sensitivity.predictor import Predictor
-from lube.sensitivity.runs import PAIRS, PLAIN_LINE, SEEDS, Sizes, design, models, run
+from lube.sensitivity.runs import PAIRS, PLAIN_LINE, SEEDS, design, models, run
 from lube.sensitivity.samples import SEED
 from lube.stages import sensitivity
 from lube.stages.film import make as make_film
@@ -45,7 +45,7 @@ def study():
 @pytest.fixture(scope="module")
 def few():
     patch = pytest.MonkeyPatch()
-    patch.setattr(runs, "SIZES", dict.fromkeys(runs.SIZES, Sizes(64, 2)))
+    patch.setattr(runs, "SIZES", dict.fromkeys(runs.SIZES, (64, 2)))
     patch.setattr(indices, "BASE_SAMPLES", 256)
     yield
     patch.undo()
