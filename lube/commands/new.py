@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from lube.commands.run import repository
-from lube.errors import DataError, LubeError, shown
+from lube.errors import DataError, LubeError, located, shown
 from lube.pipeline.command_line import PAPER
 from lube.report.pages import render
 from lube.storage.files import why_not
@@ -99,11 +99,9 @@ def _numbers(option, text):
     values, units = match[1].replace(",", " ").split(), match[2]
     if option in OF_ROLLERS and len(values) > 2:
         raise LubeError(f"--{option}: got {shown(text)}, need one number, or one for each roller")
-    for value in values:
-        try:
+    with located(f"--{option}"):
+        for value in values:
             parse_quantity(f"{value} {units}", (OF_ROLLERS | OF_GRID)[option])
-        except LubeError as error:
-            raise LubeError(f"--{option}: {error}") from None
     return values, units
 
 
