@@ -90,8 +90,9 @@ def _datasets(first, second, where):
     lines = [*_only_in_one(sorted(one.variables), sorted(other.variables))]
     labelled = [dim for dim in one.dims if dim in one.indexes and dim in other.indexes]
     for dim in labelled:
-        one, other, lost = _at_common_labels(one, other, dim)
-        lines += lost
+        lines += _labels_only_in_one(one.indexes[dim], other.indexes[dim], dim)
+    unlabelled = {*one.dims, *other.dims}.difference(labelled)
+    one, other = xr.align(one, other, join="inner", exclude=unlabelled)
     shared = sorted(set(one.variables) & set(other.variables) - set(labelled))
     differing = {name: line for name in shared if (line := _variables(one, other, name))}
     for name in differing:
@@ -112,16 +113,12 @@ def _read(path):
         raise DataError(f"{path}: not a complete NetCDF file ({reason})") from None
 
 
-def _at_common_labels(one, other, dim):
-    """Select the labels of a dimension that both datasets have, and name the others."""
-    here, there = one.indexes[dim], other.indexes[dim]
-    lost = []
+def _labels_only_in_one(here, there, dim):
+    """Name the labels of a dimension that only one of both datasets has."""
     for number, own, others in (("first", here, there), ("second", there, here)):
         if alone := [_short(label) for label in own if label not in others]:
             names = "; ".join([*alone[:_MOST_NAMED], *["..."] * (len(alone) > _MOST_NAMED)])
-            lost.append(f"{dim}: {len(alone)} of {own.size} only in the {number}: {names}")
-    common = [label for label in here if label in there]
-    return one.sel({dim: common}), other.sel({dim: common}), lost
+            yield f"{dim}: {len(alone)} of {own.size} only in the {number}: {names}"
 
 
 def _short(value):
