@@ -4,6 +4,7 @@ import json
 import os
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 from lube.commands.run import repository
@@ -122,20 +123,17 @@ def _values(numbers):
 
 
 def _written(path, text, records):
-    """Write the files and check the study."""
-    written = []
-    try:
-        _write(path, text)
-        written.append(path)
-        if records is not None and not records.exists():
-            _write(records, _RECORDS)
-            written.append(records)
+    """Write the files and check the study; if it is refused, no new file is left."""
+    texts = {path: text}
+    if records is not None and not records.exists():
+        texts.setdefault(records, _RECORDS)
+    with ExitStack() as written:
+        for file, content in texts.items():
+            _write(file, content)
+            written.callback(file.unlink)
         load_study(path)
-    except LubeError:
-        for file in written:
-            file.unlink()
-        raise
-    return written
+        written.pop_all()
+    return [*texts]
 
 
 def _write(path, text):
