@@ -355,6 +355,26 @@ class Study(StrictModel):
                 "its formula is for pure rolling"
             )
 
+    def check_conductivity(self, needed: str) -> None:
+        """Refuse heating at the inlet of an oil whose thermal conductivity is not known.
+
+        Parameters
+        ----------
+        needed : str
+            What came and what is needed, before the conductivity, for the message.
+
+        Raises
+        ------
+        StudyError
+            With the name of the first such lubricant.
+        """
+        for record in self.lubricants:
+            if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:
+                raise StudyError(
+                    f"inlet_shear_heating: {needed} the thermal_conductivity of the lubricant "
+                    f"{record.name}"
+                )
+
     @property
     def evaluation(self) -> dict:
         """Settings of the experiment; for the manifest only whether there is one.
@@ -401,9 +421,9 @@ class Study(StrictModel):
         with located("operating_grid.temperature", ValueError):
             for record in self.lubricants:
                 check_temperatures(record, self.operating_grid.temperature)
-        if self.inlet_shear_heating != "none":
-            self._check_conductivity()
         with located(kind=ValueError):
+            if self.inlet_shear_heating != "none":
+                self.check_conductivity(f"got {self.inlet_shear_heating}, need none, or")
             for force in self.operating_grid.force:
                 self.check_window(force)
             check_sizes(self)
@@ -422,14 +442,6 @@ class Study(StrictModel):
 
         with located(f"load_sharing: got {self.load_sharing}, need none"):
             check_stands_for_surface(self.line_spec)
-
-    def _check_conductivity(self):
-        for record in self.lubricants:
-            if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:
-                raise ValueError(
-                    f"inlet_shear_heating: got {self.inlet_shear_heating}, need none, or the "
-                    f"thermal_conductivity of the lubricant {record.name}"
-                )
 
     @model_validator(mode="after")
     def _check_traces(self):

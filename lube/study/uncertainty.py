@@ -358,12 +358,7 @@ def check_uncertainty(study) -> None:
                     "definition of its coefficient, need none"
                 )
     if uncertain.inlet_shear_heating:
-        for record in study.lubricants:
-            if record.thermal_conductivity is None and not record.viscosity.coolprop_fluid:
-                raise StudyError(
-                    "inlet_shear_heating: got choices, need the thermal_conductivity of the "
-                    f"lubricant {record.name}"
-                )
+        study.check_conductivity("got choices, need")
     _check_bands(study)
 
 
