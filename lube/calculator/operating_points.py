@@ -34,7 +34,6 @@ from lube.stages.film import film_table
 from lube.stages.film_profile import film_profile_table
 from lube.stages.tail import pair_limits, pair_probabilities
 from lube.stages.trace import contact_trace
-from lube.statistics.sample_size import independent_windows
 from lube.study.line_spec import check_follows_rolling, check_width
 from lube.study.oil_properties import lubricant_table
 from lube.surfaces.synthetic import draw_realisation
@@ -363,8 +362,7 @@ def ensemble(
     dims = "realisation", *thickness.dims
     contact = {name: (dims, each) for name, each in zip(_PROBABILITIES, shares, strict=True)}
     levels = {"realisation": np.arange(realisations), **thickness.coords}
-    moved = spec.travel * min(speed_ratios(slip))
-    independent = independent_windows(moved, width, spec.longest_wavelength)
+    independent = spec.independent_windows(width, min(speed_ratios(slip)))
     found = with_limits(xr.Dataset(contact, levels, {"seed": seed}), independent)
     return with_pair_limits(found, independent)
 

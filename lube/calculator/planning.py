@@ -34,7 +34,7 @@ from lube.physics.electrical import film_capacitance
 from lube.rig.readings import read_shares
 from lube.rig.simulator import Revolution
 from lube.statistics.one_pair import scatter_ratio
-from lube.statistics.sample_size import effective_sample_size, independent_windows
+from lube.statistics.sample_size import effective_sample_size
 from lube.study.rig_settings import PRESETS, RIG_REALISATIONS, Experiment, Rig
 from lube.surfaces.synthetic import draw_realisation
 
@@ -106,8 +106,7 @@ def plan(
     contact = ensemble(table, rollers, realisations, seed, slip, choices.gap)
     shares = contact["breakthrough_probability"].values
     spec, width = rollers.lines, 2.0 * table["contact_half_width"]
-    travel = spec.travel * min(speed_ratios(slip))
-    windows = independent_windows(travel, width, spec.longest_wavelength)
+    windows = spec.independent_windows(width, min(speed_ratios(slip)))
     windows = xr.DataArray(windows).broadcast_like(table["film_thickness"]).values
     size = effective_sample_size(shares, windows).ravel()
     found = slopes(spec, table, rollers.layer, choices.gap, seed)

@@ -175,12 +175,13 @@ class LineSpec(StrictModel):
         """Perimeter of the smaller roller, m."""
         return self.spacing * min(self.points)
 
-    def independent_windows(self, width: Values) -> Values:
+    def independent_windows(self, width: Values, slower: float = 1.0) -> Values:
         """Count the windows of a contact width, m, in a turn of the smaller roller.
 
-        As in `lube.statistics.sample_size.independent_windows`.
+        As in `lube.statistics.sample_size.independent_windows`. A slower surface, whose speed is
+        this fraction of the faster one's, shows less of its line.
         """
-        return independent_windows(self.travel, width, self.longest_wavelength)
+        return independent_windows(self.travel * slower, width, self.longest_wavelength)
 
 
 def line_spec(rollers: RollerPair, roughness: Roughness, largest_force: float) -> LineSpec:
