@@ -103,11 +103,8 @@ _ROWS = (
         "Hertz contact and film thickness over forces, speeds and temperatures",
         inputs=("lubricant",),
         values={
-            "rollers": {
-                "length": "rollers.length",
-                "first": _cylinder("first"),
-                "second": _cylinder("second"),
-            },
+            "rollers": {"length": "rollers.length"}
+            | {name: _cylinder(name) for name in ("first", "second")},
             **_named(
                 "rollers.reduced_radius rollers.reduced_modulus "
                 "rough_rollers.composite_rms_roughness film_formulas film_shape "
