@@ -143,9 +143,9 @@ def _variables(one, other, name):
         gap[differ] = np.abs(there.values[differ].astype(float) - here.values[differ])
     # A value that only one dataset has counts as the largest difference.
     place = np.unravel_index(np.argmax(np.where(np.isnan(gap), np.inf, gap)), gap.shape)
+    at = dict(zip(here.dims, place, strict=True))
     line = f"{np.count_nonzero(differ)} of {gap.size} differ, {'most' if numbers else 'first'}"
-    line += f"{_coordinates(here, place)}: {_value(one, name, place)} against "
-    line += _value(other, name, place, here.dims)
+    line += f"{_coordinates(here, at)}: {_value(one, name, at)} against {_value(other, name, at)}"
     if numbers and np.isfinite(gap[place]):
         largest = max(np.abs([here.values[place], there.values[place]]))
         line += f", {100.0 * gap[place] / largest:.2g} %"
@@ -156,19 +156,18 @@ def _sizes(variable):
     return " x ".join(f"{size} {dim}" for dim, size in variable.sizes.items()) or "a single value"
 
 
-def _coordinates(variable, place):
+def _coordinates(variable, at):
     """Say where a value is."""
     labels = [
         f"{dim} {_short(variable[dim].values[index]) if dim in variable.coords else index}"
-        for dim, index in zip(variable.dims, place, strict=True)
+        for dim, index in at.items()
         if variable.sizes[dim] > 1
     ]
     return f" at {', '.join(labels)}" if labels else ""
 
 
-def _value(dataset, name, place, dims=None):
+def _value(dataset, name, at):
     """Format a value, with its interval if it has one."""
-    at = dict(zip(dims or dataset[name].dims, place, strict=True))
     value, *interval = (one.isel(at).item() for one in (dataset[name], *_limits(dataset, name)))
     between = f" ({_short(interval[0])} to {_short(interval[1])})" if interval else ""
     return f"{_short(value) if not isinstance(value, str) else shown(value)}{between}"
