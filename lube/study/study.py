@@ -237,13 +237,9 @@ class Study(StrictModel):
         """
         needed = {"surface_trace"} if self.has_surfaces else set()
         needed = needed.union(*(self._files_before(name) for name in self.datasets))
+        made = needed.union(path.stem for path in Path(folder).glob("*.nc"))
         extra = [name for name, target in ON_REQUEST.items() if target != "benchmark"]
-        made = [
-            name
-            for name in extra
-            if self.has(name) and (name in needed or Path(folder, f"{name}.nc").is_file())
-        ]
-        return [*self.datasets, *made]
+        return [*self.datasets, *(name for name in extra if name in made and self.has(name))]
 
     def _files_before(self, stage):
         """Names of all stages whose files a stage is made from, directly or through others."""
