@@ -21,13 +21,7 @@ from lube.physics.electrical import divider_voltage
 from lube.physics.inlet_heating import INLET_HEATING
 from lube.schema.stages import DATASETS, ON_REQUEST, STAGES, forerunners
 from lube.study.field_types import Slug, StrictModel, each_once, quantity_or_words, validate
-from lube.study.line_spec import (
-    LineSpec,
-    band_in_words,
-    check_follows_rolling,
-    check_width,
-    line_spec,
-)
+from lube.study.line_spec import LineSpec, band_in_words, line_spec
 from lube.study.lubricant_record import LubricantRecord, check_temperatures, load_record
 from lube.study.metadata import About
 from lube.study.operating_grid import OperatingGrid, TracePoint
@@ -304,7 +298,7 @@ class Study(StrictModel):
         """
         half_width = self.rollers.contact_half_width(force)
         what = f"operating_grid.force: the contact at {force:g} N"
-        check_width(self.line_spec, 2.0 * half_width, what)
+        self.line_spec.check_width(2.0 * half_width, what)
         meniscus = self.film_model["inlet_meniscus"]
         if meniscus is not None and meniscus <= half_width:
             raise StudyError(
@@ -426,7 +420,7 @@ class Study(StrictModel):
             for ratio in self.slips:
                 self.check_slip(ratio)
             if self.has_lines:
-                check_follows_rolling(self.line_spec)
+                self.line_spec.check_follows_rolling()
             if self.has_surfaces:
                 self.check_surfaces(self.line_spec)
             elif self.rough_surfaces is not None:
