@@ -16,14 +16,14 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
-from lube.errors import RangeError, RecordError, located, right_one, shown
+from lube.errors import RangeError, RecordError, located, nearest, shown
 from lube.physics import ZERO_CELSIUS
 from lube.physics.coolprop_fluids import ATMOSPHERIC_PRESSURE, liquid_property, liquid_range
 from lube.physics.density import linear_density
 from lube.physics.pressure_viscosity import DEFINITIONS, FORMULA_DEFINITION, GOLD_BASES
 from lube.physics.viscosity_index import viscosity_at_100
 from lube.physics.viscosity_laws import VISCOSITY_LAWS
-from lube.study.field_types import Slug, StrictModel, Text, given_keys, quantity, validate
+from lube.study.field_types import Slug, StrictModel, Text, quantity, validate
 from lube.study.text_files import read_yaml
 from lube.study.viscosity_checks import ROUNDING, check_points
 from lube.study.viscosity_points import OilTemperature, ViscosityPoint, read_viscosity_csv
@@ -64,7 +64,7 @@ class Viscosity(Sourced):
     @model_validator(mode="after")
     def _check_one_way(self):
         ways = ("points", "csv", "iso_vg", "coolprop_fluid")
-        given = given_keys(self, ways)
+        given = self.given_keys(ways)
         if len(given) != 1:
             raise ValueError(f"got {' and '.join(given) or 'none'}, need one of {', '.join(ways)}")
         if (self.iso_vg is None) != (self.viscosity_index is None):
@@ -139,7 +139,7 @@ class PressureViscosity(Sourced):
     @property
     def given(self) -> list[str]:
         """Keys that give the coefficient; none if it follows from viscosities under pressure."""
-        return given_keys(self, ("gold_base", "value", "points"))
+        return self.given_keys(("gold_base", "value", "points"))
 
     @property
     def span(self) -> float | None:
@@ -207,7 +207,7 @@ class LubricantRecord(StrictModel):
                 raise ValueError("density: missing, need it unless CoolProp gives it")
             return self
         given = [f"pressure_viscosity.{key}" for key in alpha.given]
-        for key in given + given_keys(self, ("density", "thermal_conductivity", "viscosity_law")):
+        for key in given + self.given_keys(("density", "thermal_conductivity", "viscosity_law")):
             raise ValueError(f"{key}: not allowed, CoolProp gives it for {fluid}")
         if alpha.definition == "reciprocal-asymptotic":
             raise ValueError(
@@ -395,13 +395,12 @@ def _record_path(name_or_path, folder):
     shipped, is_name = _shipped(), isinstance(name_or_path, str)
     if is_name and name_or_path in shipped:
         return shipped[name_or_path]
-    near = right_one(name_or_path, shipped) if is_name else ""
+    near = nearest(name_or_path, shipped) if is_name else None
     lowest, *_, highest = GEAR_OIL_GRADES
-    grades = f"-iso-vg-<{lowest} to {highest}>"
-    names = {re.sub(r"-iso-vg-\d+", grades, name): None for name in sorted(shipped)}
+    names = {_GRADED.sub(rf"\1<{lowest} to {highest}>", name): None for name in sorted(shipped)}
     raise RecordError(
         f"got {shown(name_or_path)}, need one of {', '.join(names)}, or a path of a .yaml file"
-        f"{f'; {near}' if near.startswith('did') else ''}"
+        f"{f'; did you mean {near!r}?' if near else ''}"
     )
 
 
