@@ -327,15 +327,13 @@ def is_record_path(name: object) -> bool:
     return isinstance(name, str | Path) and Path(name).suffix in (".yaml", ".yml")
 
 
-def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
+def load_record(name_or_path: File) -> LubricantRecord:
     """Read and check a lubricant record.
 
     Parameters
     ----------
     name_or_path : str or Path
         Name of a shipped record, or path of a ``.yaml`` file.
-    folder : str or Path, optional
-        Folder that a relative path starts from; by default the current one.
 
     Returns
     -------
@@ -352,7 +350,7 @@ def load_record(name_or_path: File, folder: File = ".") -> LubricantRecord:
     >>> load_record("n-dodecane").viscosity.coolprop_fluid
     'n-Dodecane'
     """
-    path, grade = _record_path(name_or_path, folder)
+    path, grade = _record_path(name_or_path)
     content = read_yaml(path, RecordError)
     if grade is not None:
         content = _regraded(content, name_or_path, grade)
@@ -388,10 +386,10 @@ def _regraded(content, name, grade):
     return content | {"name": name, "title": title, "viscosity": viscosity | {"iso_vg": grade}}
 
 
-def _record_path(name_or_path, folder):
+def _record_path(name_or_path):
     """Path of a record's file, and the ISO grade to insert, if any."""
     if is_record_path(name_or_path):
-        return Path(folder) / name_or_path, None
+        return Path(name_or_path), None
     shipped, is_name = _shipped(), isinstance(name_or_path, str)
     if is_name and name_or_path in shipped:
         return shipped[name_or_path]

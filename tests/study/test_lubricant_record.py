@@ -135,7 +135,7 @@ def test_an_unknown_name_and_a_missing_file_are_refused(tmp_path):
     with pytest.raises(RecordError, match=r"got 'mobil-1', need one of base-oil.*mobilgear"):
         load_record("mobil-1")
     with pytest.raises(RecordError, match=r"none\.yaml: cannot be read: No such file"):
-        load_record("none.yaml", folder=tmp_path)
+        load_record(tmp_path / "none.yaml")
 
 
 SLOPE = "slope-at-atmospheric"
