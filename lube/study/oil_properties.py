@@ -50,9 +50,8 @@ class _MeasuredOil:
 
     def __init__(self, record):
         self._record, self.density = record, record.density_at
-        temperature, viscosity = (np.array(column) for column in zip(*record.data, strict=True))
+        temperature, self.data_viscosity = np.transpose(record.data)
         self.data_temperature = temperature + ZERO_CELSIUS
-        self.data_viscosity = viscosity
         self._law = VISCOSITY_LAWS[record.law_used]
         self._parameters = self._law.fit(self.data_temperature, self.data_viscosity / MM2_PER_S)
         # The law also holds a little outside the range of the data.

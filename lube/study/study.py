@@ -371,8 +371,7 @@ class Study(StrictModel):
 
         Measured files are identified by their contents, not by their paths.
         """
-        manifest = self.experiment.manifest
-        return self.experiment.model_dump() | {"manifest": manifest is not None}
+        return self.experiment.model_dump() | {"manifest": self.experiment.manifest is not None}
 
     def stage_inputs(self, stage: str) -> dict:
         """Return the values of the study that a stage depends on, as plain data.
