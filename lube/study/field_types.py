@@ -43,7 +43,7 @@ def _texts(model):
     """Text under each field in the source of a model and of those that it is based on."""
     found = {}
     for base in reversed(model.__mro__):
-        if issubclass(base, StrictModel):
+        if issubclass(base, StrictModel) and not base.__pydantic_generic_metadata__["origin"]:
             (source,) = ast.parse(textwrap.dedent(inspect.getsource(base))).body
             for field, text in pairwise(source.body):
                 if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr):
