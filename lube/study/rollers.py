@@ -78,7 +78,6 @@ _ShortestWavelength = Annotated[
     float | str,
     quantity_or_words("m", "a number of grid points such as `10 points`", " points$"),
 ]
-_Hurst = Annotated[float, quantity(None, above=0.0, below=1.0)]
 _Skewness = Annotated[float, quantity(None, least=-3.0, most=3.0)]
 _Kurtosis = Annotated[float, quantity(None, above=1.0, most=20.0)]
 _Stress = Annotated[float, quantity("Pa", above=0.0)]
@@ -88,7 +87,7 @@ _LayRatio = Annotated[float, quantity(None, least=1.0, most=1e4)]
 class OwnRoughness(StrictModel):
     """Values of one roller that override those of the study's section `roughness`."""
 
-    hurst_exponent: _Hurst | None = None
+    hurst_exponent: Annotated[float, quantity(None, above=0.0, below=1.0)] | None = None
     """Hurst exponent H; a measured surface needs none"""
     longest_wavelength: _LongestWavelength | None = None
     """longest wavelength of the line, 2 pi / q_min"""

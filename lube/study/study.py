@@ -34,10 +34,6 @@ from lube.study.uncertainty import FilmFormula, Uncertainty
 from lube.types import File
 from lube.units import with_unit
 
-_Meniscus = Annotated[float | str, quantity_or_words("m", "none", "^none$")]
-_Resistivity = Annotated[float | str, quantity_or_words("ohm*m", INSULATOR, f"^{INSULATOR}$")]
-
-
 CONTACT_MODELS = "line", "surface"
 """What touches: two roughness lines, or the surfaces that they stand for."""
 
@@ -79,7 +75,7 @@ class Study(StrictModel):
     the formula of Zhu and Cheng (1988) or that of Wilson and Sheu (1983), which differ with slip,
     or by the equation behind the latter
     """
-    inlet_meniscus: _Meniscus = "none"
+    inlet_meniscus: Annotated[float | str, quantity_or_words("m", "none", "^none$")] = "none"
     """distance of the oil's meniscus before the line of centres, more than the half-width of the
     contact; without it the contact is fully flooded
     """
@@ -100,7 +96,7 @@ class Study(StrictModel):
     need [surface]
     """
     boundary_layer: BoundaryLayer
-    resistivity: _Resistivity
+    resistivity: Annotated[float | str, quantity_or_words("ohm*m", INSULATOR, f"^{INSULATOR}$")]
     """resistivity of the rollers' material (Eq. 1); insulator, if either does not conduct, so that
     there is neither a resistance nor a rig
     """
